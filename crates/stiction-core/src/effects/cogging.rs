@@ -1,0 +1,50 @@
+//! Effort that depends on position alone.
+
+use super::{Effect, EffectFacts, Hook, Situation};
+use crate::parameter::ParameterSpec;
+use crate::parameters;
+use crate::scalar::Scalar;
+
+parameters! {
+    /// Parameters of [`Cogging`].
+    pub struct CoggingParameters {
+        cosine: Effort, "amplitude of the cosine part",
+            default Value(0.0), neutral Some(0.0), typical 0.02, bounds -1e9, 1e9;
+        sine: Effort, "amplitude of the sine part",
+            default Value(0.0), neutral Some(0.0), typical 0.02, bounds -1e9, 1e9;
+        order: Order, "periods per 2π rad (rotary) or per 2π m (linear), N",
+            default Value(12.0), neutral None, typical 12.0, bounds 1e-6, 1e9;
+    }
+}
+
+/// Effort a·cos(N·x) + b·sin(N·x), the same in both directions.
+///
+/// Neutral: a = b = 0. Written with two amplitudes because amplitude and phase are not linear.
+/// Source: Hendershot, Miller, Design of Brushless Permanent-Magnet Motors (1994), ch. 4.
+#[derive(Debug, Clone)]
+pub struct Cogging<S>(CoggingParameters<S>);
+
+impl<S: Scalar> Effect<S> for Cogging<S> {
+    const PARAMETERS: &'static [ParameterSpec] = CoggingParameters::<f64>::SPECS;
+    const HOOKS: &'static [Hook] = &[Hook::AddedEffort];
+    const FACTS: EffectFacts = EffectFacts {
+        summary: "effort that repeats with position, whatever the direction",
+        class: "cogging",
+        coordinate: "order spectrum over position, not odd in direction",
+        channels: &[],
+        look_alikes: &["torque_bias"],
+        experiment: "slow full turns both ways",
+        gains: &["cosine", "sine"],
+    };
+
+    fn build(values: &[S]) -> Self {
+        Self(CoggingParameters::from_values(values))
+    }
+
+    #[inline]
+    fn effort(&self, at: &Situation<S>) -> S {
+        let p = &self.0;
+        let angle = p.order * at.position;
+        p.cosine * angle.cos() + p.sine * angle.sin()
+    }
+}

@@ -1,0 +1,308 @@
+//! Effects: what a plant may do beside its friction law. The trait they fulfil and the one list.
+//!
+//! An effect is one file in this folder plus one line in [`effects!`] below. Every effect has a
+//! neutral point at which it changes no bit, and hooks that say where it enters.
+
+use crate::error::{Error, Result};
+use crate::parameter::{Default as DefaultValue, ParameterSpec};
+use crate::scalar::Scalar;
+
+/// Where an effect enters the plant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hook {
+    /// Multiplies the friction level.
+    FrictionLevel,
+    /// Adds effort on the body.
+    AddedEffort,
+    /// Changes the way from input to effort.
+    InputMap,
+    /// Changes what the position sensor reads.
+    SensorMap,
+    /// Lets the friction state relax: a plastic module in series with the law.
+    StateRelaxation,
+    /// Splits the inertia in two with a shaft between.
+    SecondMass,
+}
+
+impl Hook {
+    /// The word used in the catalogue.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::FrictionLevel => "friction level",
+            Self::AddedEffort => "added effort",
+            Self::InputMap => "input map",
+            Self::SensorMap => "sensor map",
+            Self::StateRelaxation => "state relaxation",
+            Self::SecondMass => "second mass",
+        }
+    }
+}
+
+/// Where the plant is when an effect is asked.
+#[derive(Debug, Clone, Copy)]
+pub struct Situation<S> {
+    /// Position.
+    pub position: S,
+    /// Velocity.
+    pub velocity: S,
+    /// Time on the session clock.
+    pub time: S,
+}
+
+/// Change of the friction level: multipliers are 1 plus the sum of these.
+#[derive(Debug, Clone, Copy)]
+pub struct LevelChange<S> {
+    /// Share added to the friction level.
+    pub friction: S,
+    /// Share added to viscous friction.
+    pub viscous: S,
+}
+
+/// A plastic module in series with the friction law, see
+/// [`crate::friction::elements::plastic::Plastic`].
+pub type Relaxation<S> = crate::friction::elements::plastic::Plastic<S>;
+
+/// A second mass behind a shaft: it carries `share` of the inertia.
+#[derive(Debug, Clone, Copy)]
+pub struct SecondMass<S> {
+    /// Share of the inertia beyond the shaft; 0 is neutral.
+    pub share: S,
+    /// Stiffness of the shaft.
+    pub stiffness: S,
+    /// Damping of the shaft.
+    pub damping: S,
+}
+
+/// What diagnosis needs to know of an effect.
+#[derive(Debug, Clone, Copy)]
+pub struct EffectFacts {
+    /// One sentence: what it is.
+    pub summary: &'static str,
+    /// Family of effects that look alike on ordinary data.
+    pub class: &'static str,
+    /// Coordinate in which the residual shows it.
+    pub coordinate: &'static str,
+    /// Channels that a recording must have, beyond input and position.
+    pub channels: &'static [&'static str],
+    /// Effects that imitate it.
+    pub look_alikes: &'static [&'static str],
+    /// Experiment that separates it from them.
+    pub experiment: &'static str,
+    /// Its parameters in which it is linear and which are 0 at the neutral point.
+    pub gains: &'static [&'static str],
+}
+
+/// An effect: hooks that it does not use keep their neutral default.
+pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
+    /// Parameters, in the order of [`Effect::build`]'s values. Gains default to 0.
+    const PARAMETERS: &'static [ParameterSpec];
+    /// Where it enters.
+    const HOOKS: &'static [Hook];
+    /// What diagnosis needs to know.
+    const FACTS: EffectFacts;
+
+    /// The effect with these values.
+    fn build(values: &[S]) -> Self;
+
+    /// Share added to the friction levels.
+    #[inline]
+    fn level(&self, _at: &Situation<S>) -> LevelChange<S> {
+        LevelChange { friction: S::constant(0.0), viscous: S::constant(0.0) }
+    }
+    /// Effort added on the body, positive along +x.
+    #[inline]
+    fn effort(&self, _at: &Situation<S>) -> S {
+        S::constant(0.0)
+    }
+    /// What the input becomes.
+    #[inline]
+    fn input(&self, input: S, _at: &Situation<S>) -> S {
+        input
+    }
+    /// What the sensor reads at this position.
+    #[inline]
+    fn sensor(&self, position: S) -> S {
+        position
+    }
+    /// The plastic module that it puts in series with the law.
+    fn relaxation(&self) -> Option<Relaxation<S>> {
+        None
+    }
+    /// The second mass that it adds.
+    fn second_mass(&self) -> Option<SecondMass<S>> {
+        None
+    }
+}
+
+/// An effect as the catalogue knows it.
+#[derive(Debug, Clone, Copy)]
+pub struct EffectRecord {
+    /// Canonical name.
+    pub name: &'static str,
+    /// Parameters.
+    pub parameters: &'static [ParameterSpec],
+    /// Where it enters.
+    pub hooks: &'static [Hook],
+    /// What diagnosis needs to know.
+    pub facts: EffectFacts,
+}
+
+macro_rules! effects {
+    ($($module:ident => $effect:ident,)*) => {
+        $(pub mod $module;)*
+
+        /// Any effect of the catalogue.
+        #[derive(Debug, Clone)]
+        pub enum AnyEffect<S: Scalar> {
+            $(#[doc = stringify!($module)] $effect($module::$effect<S>),)*
+        }
+
+        /// Every effect, in the order of the list.
+        pub const EFFECTS: &[EffectRecord] = &[$(EffectRecord {
+            name: stringify!($module),
+            parameters: <$module::$effect<f64> as Effect<f64>>::PARAMETERS,
+            hooks: <$module::$effect<f64> as Effect<f64>>::HOOKS,
+            facts: <$module::$effect<f64> as Effect<f64>>::FACTS,
+        },)*];
+
+        impl<S: Scalar> AnyEffect<S> {
+            /// The effect called `name` with these values.
+            pub fn build(name: &str, values: &[S]) -> Result<Self> {
+                match name {
+                    $(stringify!($module) => Ok(Self::$effect($module::$effect::build(values))),)*
+                    _ => Err(unknown_effect(name)),
+                }
+            }
+
+            fn hooks(&self) -> &'static [Hook] {
+                match self {
+                    $(Self::$effect(_) => <$module::$effect<S> as Effect<S>>::HOOKS,)*
+                }
+            }
+        }
+
+        /// Runs an expression with the concrete effect.
+        macro_rules! with_effect {
+            ($any:expr, |$inner:ident| $body:expr) => {
+                match $any { $(AnyEffect::$effect($inner) => $body,)* }
+            };
+        }
+    };
+}
+
+effects! {
+    cogging => Cogging,
+    stribeck => Stribeck,
+    torque_bias => TorqueBias,
+}
+
+/// The record of the effect called `name`.
+pub fn effect_record(name: &str) -> Result<&'static EffectRecord> {
+    EFFECTS.iter().find(|effect| effect.name == name).ok_or_else(|| unknown_effect(name))
+}
+
+fn unknown_effect(name: &str) -> Error {
+    Error::unknown("effect", name, EFFECTS.iter().map(|effect| effect.name))
+}
+
+/// The values at which an effect changes nothing: gains 0, the rest at their typical values.
+pub fn neutral_values(record: &EffectRecord) -> Vec<f64> {
+    record
+        .parameters
+        .iter()
+        .map(|spec| match (spec.neutral, spec.default) {
+            (Some(neutral), _) => neutral,
+            (None, DefaultValue::Value(value)) => value,
+            (None, DefaultValue::Ratio { otherwise, .. }) => otherwise,
+        })
+        .collect()
+}
+
+/// The effects of a plant, sorted once by where they enter.
+#[derive(Debug, Clone, Default)]
+pub struct Effects<S: Scalar> {
+    levels: Vec<AnyEffect<S>>,
+    efforts: Vec<AnyEffect<S>>,
+    inputs: Vec<AnyEffect<S>>,
+    sensors: Vec<AnyEffect<S>>,
+    relaxation: Option<Relaxation<S>>,
+    second_mass: Option<SecondMass<S>>,
+}
+
+impl<S: Scalar> Effects<S> {
+    /// Sorts effects by hook. Of several relaxations or second masses the last one counts.
+    pub fn new(effects: impl IntoIterator<Item = AnyEffect<S>>) -> Self {
+        let mut sorted = Self {
+            levels: Vec::new(),
+            efforts: Vec::new(),
+            inputs: Vec::new(),
+            sensors: Vec::new(),
+            relaxation: None,
+            second_mass: None,
+        };
+        for effect in effects {
+            for hook in effect.hooks() {
+                match hook {
+                    Hook::FrictionLevel => sorted.levels.push(effect.clone()),
+                    Hook::AddedEffort => sorted.efforts.push(effect.clone()),
+                    Hook::InputMap => sorted.inputs.push(effect.clone()),
+                    Hook::SensorMap => sorted.sensors.push(effect.clone()),
+                    Hook::StateRelaxation => {
+                        sorted.relaxation =
+                            with_effect!(&effect, |e| e.relaxation()).or(sorted.relaxation);
+                    }
+                    Hook::SecondMass => {
+                        sorted.second_mass =
+                            with_effect!(&effect, |e| e.second_mass()).or(sorted.second_mass);
+                    }
+                }
+            }
+        }
+        sorted
+    }
+
+    /// Multipliers of friction and of viscous friction.
+    #[inline]
+    pub fn levels(&self, at: &Situation<S>) -> (S, S) {
+        let mut friction = S::constant(1.0);
+        let mut viscous = S::constant(1.0);
+        for effect in &self.levels {
+            let change = with_effect!(effect, |e| e.level(at));
+            friction += change.friction;
+            viscous += change.viscous;
+        }
+        (friction, viscous)
+    }
+
+    /// Sum of the added efforts.
+    #[inline]
+    pub fn effort(&self, at: &Situation<S>) -> S {
+        let mut sum = S::constant(0.0);
+        for effect in &self.efforts {
+            sum += with_effect!(effect, |e| e.effort(at));
+        }
+        sum
+    }
+
+    /// What the input becomes.
+    #[inline]
+    pub fn input(&self, input: S, at: &Situation<S>) -> S {
+        self.inputs.iter().fold(input, |input, effect| with_effect!(effect, |e| e.input(input, at)))
+    }
+
+    /// What the sensor reads.
+    #[inline]
+    pub fn sensor(&self, position: S) -> S {
+        self.sensors.iter().fold(position, |x, effect| with_effect!(effect, |e| e.sensor(x)))
+    }
+
+    /// Plastic module in series with the law.
+    pub fn relaxation(&self) -> Option<Relaxation<S>> {
+        self.relaxation
+    }
+
+    /// Second mass behind a shaft.
+    pub fn second_mass(&self) -> Option<SecondMass<S>> {
+        self.second_mass
+    }
+}

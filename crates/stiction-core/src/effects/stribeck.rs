@@ -1,0 +1,50 @@
+//! Friction that is higher at low speed.
+
+use super::{Effect, EffectFacts, Hook, LevelChange, Situation};
+use crate::parameter::ParameterSpec;
+use crate::parameters;
+use crate::scalar::Scalar;
+
+parameters! {
+    /// Parameters of [`Stribeck`].
+    pub struct StribeckParameters {
+        excess: One, "friction at rest above that at high speed, as a share of the latter",
+            default Value(0.0), neutral Some(0.0), typical 0.3, bounds -0.99, 10.0;
+        velocity: Velocity, "speed scale of the fall",
+            default Value(0.1), neutral None, typical 0.1, bounds 1e-9, 1e6;
+        exponent: One, "shape of the fall",
+            default Value(2.0), neutral None, typical 2.0, bounds 0.3, 5.0;
+    }
+}
+
+/// Level 1 + e·exp(−|v/v_s|^δ).
+///
+/// Neutral: e = 0.
+/// Source: Stribeck (1902), in the form of Bo, Pavelescu, Wear 82 (1982).
+#[derive(Debug, Clone)]
+pub struct Stribeck<S>(StribeckParameters<S>);
+
+impl<S: Scalar> Effect<S> for Stribeck<S> {
+    const PARAMETERS: &'static [ParameterSpec] = StribeckParameters::<f64>::SPECS;
+    const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
+    const FACTS: EffectFacts = EffectFacts {
+        summary: "friction falls from a level at rest to a lower one as speed rises",
+        class: "breakaway",
+        coordinate: "logarithm of speed, odd in direction",
+        channels: &[],
+        look_alikes: &["dwell_strengthening", "rate_dependent_breakaway"],
+        experiment: "two-way constant-speed ramps over three decades, without rests",
+        gains: &["excess"],
+    };
+
+    fn build(values: &[S]) -> Self {
+        Self(StribeckParameters::from_values(values))
+    }
+
+    #[inline]
+    fn level(&self, at: &Situation<S>) -> LevelChange<S> {
+        let p = &self.0;
+        let power = (at.velocity / p.velocity).power_of_magnitude(p.exponent);
+        LevelChange { friction: p.excess * (-power).exp(), viscous: S::constant(0.0) }
+    }
+}

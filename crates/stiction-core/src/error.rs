@@ -1,0 +1,129 @@
+//! Every way in which a request can be wrong, each as one sentence: what was given, what is
+//! allowed, where, what to do.
+
+use thiserror::Error;
+
+/// A request that cannot be carried out.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Error {
+    /// A name that is in no list.
+    #[error("{kind} '{given}' is unknown{near}; known: {known}")]
+    UnknownName {
+        /// What was being named: "law", "effect", "parameter of hsieh_pan" …
+        kind: String,
+        /// The name as given.
+        given: String,
+        /// "; did you mean 'x'?" or empty.
+        near: String,
+        /// The allowed names, separated by commas.
+        known: String,
+    },
+    /// A number outside its bounds.
+    #[error("{name} = {given} is out of bounds: allowed is {lower} to {upper}{unit}; change {name}")]
+    OutOfBounds {
+        /// Path of the parameter, `friction.coulomb`.
+        name: String,
+        /// The value as given.
+        given: f64,
+        /// Least allowed value.
+        lower: f64,
+        /// Greatest allowed value.
+        upper: f64,
+        /// Unit with a leading space, or empty.
+        unit: String,
+    },
+    /// A number that must be finite.
+    #[error("{name} = {given} is not a finite number; give a finite one")]
+    NotFinite {
+        /// What the number is.
+        name: String,
+        /// The value as given.
+        given: f64,
+    },
+    /// Two parameters in the wrong order.
+    #[error("{lesser} = {lesser_value} must {relation} {greater} = {greater_value}; change one of them")]
+    Order {
+        /// Name of the parameter that must be the lesser.
+        lesser: String,
+        /// Its value.
+        lesser_value: f64,
+        /// "stay below" or "not exceed".
+        relation: &'static str,
+        /// Name of the other parameter.
+        greater: String,
+        /// Its value.
+        greater_value: f64,
+    },
+    /// A state that does not fit the law.
+    #[error("state entry '{name}' {problem}; give a state that the same law returned")]
+    State {
+        /// Entry of the state.
+        name: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// Array lengths that do not fit.
+    #[error("{name} has {given} values where {wanted} are needed; give one value a sample")]
+    Length {
+        /// The array.
+        name: String,
+        /// Its length.
+        given: usize,
+        /// The needed length.
+        wanted: usize,
+    },
+}
+
+/// Shorthand for results of this crate.
+pub type Result<T> = std::result::Result<T, Error>;
+
+impl Error {
+    /// An unknown name with the nearest known one suggested.
+    pub fn unknown<'a>(
+        kind: impl Into<String>,
+        given: &str,
+        known: impl IntoIterator<Item = &'a str>,
+    ) -> Self {
+        let known: Vec<&str> = known.into_iter().collect();
+        let near = known
+            .iter()
+            .map(|name| (edit_distance(given, name), *name))
+            .filter(|(distance, name)| *distance <= 1 + name.len() / 4)
+            .min()
+            .map_or(String::new(), |(_, name)| format!(" (did you mean '{name}'?)"));
+        Self::UnknownName {
+            kind: kind.into(),
+            given: given.to_owned(),
+            near,
+            known: known.join(", "),
+        }
+    }
+}
+
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let substitute = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substitute.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_near_miss_is_suggested() {
+        let error = Error::unknown("law", "hseih_pan", ["coulomb", "hsieh_pan"]);
+        assert!(error.to_string().contains("did you mean 'hsieh_pan'"), "{error}");
+        let error = Error::unknown("law", "zzz", ["coulomb", "hsieh_pan"]);
+        assert!(!error.to_string().contains("did you mean"), "{error}");
+    }
+}

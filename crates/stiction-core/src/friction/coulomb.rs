@@ -1,0 +1,286 @@
+//! Dry friction with true stick, viscous friction and, as an option, a Stribeck fall.
+
+use super::{
+    Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
+    Statistics,
+};
+use crate::error::{Error, Result};
+use crate::parameter::{OptionSpec, ParameterSpec};
+use crate::parameters;
+use crate::scalar::{Scalar, sign};
+
+parameters! {
+    /// Parameters of [`Coulomb`].
+    pub struct CoulombParameters {
+        coulomb: Effort, "friction while sliding fast, F_c",
+            default Ratio { of: "breakaway", factor: 0.7, otherwise: 0.35 }, neutral Some(0.0),
+            typical 0.35, bounds 0.0, 1e9;
+        breakaway: Effort, "greatest effort that a resting contact holds, F_s; equal to coulomb unless stated",
+            default Ratio { of: "coulomb", factor: 1.0, otherwise: 0.35 }, neutral None,
+            typical 0.5, bounds 0.0, 1e9;
+        stribeck_velocity: Velocity, "speed scale of the fall from F_s to F_c, v_s",
+            default Value(0.1), neutral None, typical 0.1, bounds 1e-9, 1e6;
+        stribeck_exponent: One, "shape of the fall, δ",
+            default Value(2.0), neutral None, typical 2.0, bounds 0.3, 5.0;
+        viscous: Damping, "friction per speed, F_v",
+            default Value(0.0), neutral Some(0.0), typical 0.05, bounds 0.0, 1e9;
+    }
+}
+
+/// Friction that holds a resting body rigidly and opposes a sliding one.
+///
+/// F(v) = sgn(v)·(F_c + (F_s − F_c)·exp(−|v/v_s|^δ)) + F_v·v
+///
+/// At v = 0 the force is whatever holds the body, at most F_s; beyond that the body slides.
+/// Memory: stick or slip. Neutral: F_s = F_c leaves the Stribeck fall out.
+/// Source: Armstrong-Hélouvry, Dupont, Canudas de Wit, Automatica 30 (1994), §2; stick as in
+/// Karnopp, J. Dyn. Syst. Meas. Control 107 (1985), without his velocity window: the zero of the
+/// velocity is located inside the step instead.
+#[derive(Debug, Clone)]
+pub struct Coulomb<S> {
+    parameters: CoulombParameters<S>,
+    falls: bool,
+}
+
+/// Contact mode of [`Coulomb`].
+#[derive(Debug, Clone, Copy)]
+pub struct CoulombState<S> {
+    /// 0 sticks, ±1 slides in that direction.
+    mode: f64,
+    force: S,
+    statistics: Statistics,
+}
+
+/// A step of [`Coulomb`].
+#[derive(Debug, Clone, Copy)]
+pub struct CoulombTrial<S> {
+    mode: f64,
+    outcome: Outcome<S>,
+}
+
+impl<S: Scalar> CoulombState<S> {
+    /// The same state over another number type.
+    pub fn map<T: Scalar>(&self, convert: impl Fn(S) -> T) -> CoulombState<T> {
+        CoulombState { mode: self.mode, force: convert(self.force), statistics: self.statistics }
+    }
+}
+
+impl<S: Scalar> LawState<S> for CoulombState<S> {
+    const OUTPUTS: &'static [&'static str] = &["mode"];
+
+    fn output(&self, _index: usize) -> S {
+        S::constant(self.mode)
+    }
+
+    fn entries(&self) -> Vec<(&'static str, Entry)> {
+        vec![
+            ("mode", Entry::Number(self.mode)),
+            ("force", Entry::Number(self.force.re())),
+            ("breakaways", Entry::Number(self.statistics.breakaways as f64)),
+            ("sticks", Entry::Number(self.statistics.sticks as f64)),
+        ]
+    }
+
+    fn statistics(&self) -> Statistics {
+        self.statistics
+    }
+}
+
+impl<S: Scalar> Coulomb<S> {
+    /// Force and its slope by velocity while sliding in direction `mode`.
+    #[inline]
+    fn sliding(&self, mode: f64, velocity: S, channels: &Channels<S>) -> (S, S) {
+        let p = &self.parameters;
+        let viscous = p.viscous * channels.viscous_level;
+        if !self.falls {
+            return (p.coulomb * channels.level * mode + viscous * velocity, viscous);
+        }
+        let power = (velocity / p.stribeck_velocity).power_of_magnitude(p.stribeck_exponent);
+        let excess = (p.breakaway - p.coulomb) * (-power).exp();
+        let level = (p.coulomb + excess) * channels.level;
+        let steepness = if velocity.re() == 0.0 {
+            S::constant(0.0)
+        } else {
+            -(excess * channels.level * p.stribeck_exponent * power / velocity)
+        };
+        (level * mode + viscous * velocity, steepness * mode + viscous)
+    }
+}
+
+impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
+    type State = CoulombState<S>;
+    type Trial = CoulombTrial<S>;
+
+    const PARAMETERS: &'static [ParameterSpec] = CoulombParameters::<f64>::SPECS;
+    const OPTIONS: &'static [OptionSpec] = &[];
+    const SUMMARY: &'static str =
+        "dead zone with true stick; viscous friction and a Stribeck fall as options";
+    const SOURCE: &'static str =
+        "Armstrong-Hélouvry, Dupont, Canudas de Wit, Automatica 30 (1994); stick: Karnopp (1985)";
+
+    fn build(values: &[S], _choices: &[usize]) -> Self {
+        let parameters = CoulombParameters::from_values(values);
+        // A gradient by breakaway is asked for at F_s = F_c as well, hence the second condition.
+        let excess = parameters.breakaway - parameters.coulomb;
+        let falls = excess.re() != 0.0 || excess.derivative_is_nonzero();
+        Self { parameters, falls }
+    }
+
+    fn check(values: &[f64]) -> Result<()> {
+        let p = CoulombParameters::from_values(values);
+        if p.coulomb > p.breakaway {
+            return Err(Error::Order {
+                lesser: "coulomb".to_owned(),
+                lesser_value: p.coulomb,
+                relation: "not exceed",
+                greater: "breakaway".to_owned(),
+                greater_value: p.breakaway,
+            });
+        }
+        Ok(())
+    }
+
+    fn initial(&self) -> CoulombState<S> {
+        CoulombState { mode: 0.0, force: S::constant(0.0), statistics: Statistics::default() }
+    }
+
+    fn restore(&self, entries: &[(String, Entry)]) -> Result<CoulombState<S>> {
+        let mut read = EntryReader::new(entries);
+        let state = CoulombState {
+            mode: read.choice("mode", &[-1.0, 0.0, 1.0])?,
+            force: S::constant(read.number("force", false)?),
+            statistics: Statistics {
+                breakaways: read.count("breakaways")?,
+                sticks: read.count("sticks")?,
+                ..Statistics::default()
+            },
+        };
+        read.finish()?;
+        Ok(state)
+    }
+
+    fn greatest_stiffness(&self) -> f64 {
+        0.0
+    }
+
+    fn greatest_damping(&self) -> f64 {
+        self.parameters.viscous.re()
+    }
+
+    #[inline]
+    fn force(&self, state: &CoulombState<S>, velocity: S, channels: &Channels<S>) -> S {
+        if state.mode == 0.0 && velocity.re() == 0.0 {
+            return state.force;
+        }
+        let mode = if state.mode == 0.0 { sign(velocity.re()) } else { state.mode };
+        self.sliding(mode, velocity, channels).0
+    }
+
+    #[inline]
+    fn advance(
+        &self,
+        state: &CoulombState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> CoulombTrial<S> {
+        let moving = sign(motion.velocity.re());
+        let mode = if state.mode == 0.0 { moving } else { state.mode };
+        if mode == 0.0 {
+            let greatest = self.parameters.breakaway * channels.level;
+            let force = if channels.effort.re().abs() <= greatest.re() {
+                channels.effort
+            } else {
+                greatest * sign(channels.effort.re())
+            };
+            // Set-valued at rest; the viscous slope is what a host's Newton step can use.
+            let slope = self.parameters.viscous * channels.viscous_level;
+            return CoulombTrial { mode, outcome: Outcome { force, slope, damping: slope } };
+        }
+        let (force, slope) = self.sliding(mode, motion.velocity, channels);
+        CoulombTrial { mode, outcome: Outcome { force, slope, damping: slope } }
+    }
+
+    #[inline]
+    fn outcome(&self, trial: &CoulombTrial<S>) -> Outcome<S> {
+        trial.outcome
+    }
+
+    #[inline]
+    fn commit(&self, state: &mut CoulombState<S>, trial: &CoulombTrial<S>) {
+        if state.mode == 0.0 && trial.mode != 0.0 {
+            state.statistics.breakaways += 1;
+        }
+        state.mode = trial.mode;
+        state.force = trial.outcome.force;
+    }
+
+    #[inline]
+    fn holds(&self, state: &mut CoulombState<S>, channels: &Channels<S>) -> bool {
+        if state.mode != 0.0 {
+            return false;
+        }
+        if channels.effort.re().abs() <= (self.parameters.breakaway * channels.level).re() {
+            state.force = channels.effort;
+            return true;
+        }
+        state.mode = sign(channels.effort.re());
+        state.statistics.breakaways += 1;
+        false
+    }
+
+    #[inline]
+    fn pending(&self, state: &CoulombState<S>, velocity: S) -> Option<Event> {
+        (state.mode * velocity.re() < 0.0).then_some(Event::Reversal)
+    }
+
+    #[inline]
+    fn event(
+        &self,
+        state: &CoulombState<S>,
+        _trial: &CoulombTrial<S>,
+        motion: &Motion<S>,
+    ) -> Option<Event> {
+        (state.mode != 0.0 && state.mode * motion.velocity.re() <= 0.0).then_some(Event::Reversal)
+    }
+
+    #[inline]
+    fn margin(
+        &self,
+        state: &CoulombState<S>,
+        _trial: &CoulombTrial<S>,
+        motion: &Motion<S>,
+        _event: Event,
+    ) -> S {
+        motion.velocity * state.mode
+    }
+
+    fn switch(&self, state: &mut CoulombState<S>, _event: Event) {
+        state.mode = 0.0;
+        state.statistics.sticks += 1;
+    }
+
+    fn internal(&self, _state: &CoulombState<S>) -> [S; INTERNAL] {
+        [S::constant(0.0); INTERNAL]
+    }
+
+    fn rates(
+        &self,
+        state: &CoulombState<S>,
+        motion: &Motion<S>,
+        _internal: &[S; INTERNAL],
+        channels: &Channels<S>,
+    ) -> (S, [S; INTERNAL]) {
+        let trial = self.advance(state, motion, channels);
+        (trial.outcome.force, [S::constant(0.0); INTERNAL])
+    }
+
+    fn settle(
+        &self,
+        state: &CoulombState<S>,
+        motion: &Motion<S>,
+        _internal: &[S; INTERNAL],
+        channels: &Channels<S>,
+    ) -> CoulombTrial<S> {
+        self.advance(state, motion, channels)
+    }
+}

@@ -1,0 +1,6 @@
+//! Building blocks that several laws share.
+
+pub mod lag;
+pub mod memory;
+pub mod plastic;
+pub mod spring;

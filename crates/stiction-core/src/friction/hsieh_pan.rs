@@ -1,0 +1,763 @@
+//! The pre-sliding model of Hsieh and Pan: plastic module, nonlinear spring, damper and hook.
+
+use super::elements::lag::follow;
+use super::elements::memory::ReversePoint;
+use super::elements::plastic::{Creep, Plastic};
+use super::elements::spring::{Curve, SpringState, VirginCurve, Walk};
+use super::{
+    Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
+    Statistics,
+};
+use crate::error::{Error, Result};
+use crate::parameter::{OptionSpec, ParameterSpec};
+use crate::parameters;
+use crate::scalar::{Scalar, sign};
+
+/// 60 arc-seconds.
+const SIXTY_ARC_SECONDS: f64 = 2.908_882_086_657_216e-4;
+
+parameters! {
+    /// Parameters of [`HsiehPan`].
+    pub struct HsiehPanParameters {
+        initial_stiffness: Stiffness, "slope of the spring right after a reversal, k_0",
+            default Value(3000.0), neutral None, typical 3000.0, bounds 1e-9, 1e15;
+        final_stiffness: Stiffness, "slope of the spring far from a reversal, k_inf < k_0",
+            default Ratio { of: "initial_stiffness", factor: 0.27, otherwise: 810.0 },
+            neutral None, typical 800.0, bounds 1e-9, 1e15;
+        decay_distance: Position, "distance over which the slope falls, d_0",
+            default Value(SIXTY_ARC_SECONDS), neutral None, typical SIXTY_ARC_SECONDS,
+            bounds 1e-15, 1e6;
+        hardening_coefficient: Hardening, "c of the greatest work hardening f(s) = c·s^n",
+            default Value(1.6e-3), neutral Some(0.0), typical 1.6e-3, bounds 0.0, 1e9;
+        hardening_exponent: One, "n of f(s) = c·s^n, above 1 so that f'(0) = 0",
+            default Value(2.0), neutral None, typical 2.0, bounds 1.0001, 10.0;
+        creep_rate: Rate, "rate at which creep approaches its end, α",
+            default Value(2.0), neutral Some(0.0), typical 2.0, bounds 0.0, 1e6;
+        damping: Damping, "damper that acts while the hook sticks, C_s",
+            default Value(0.45), neutral Some(0.0), typical 0.45, bounds 0.0, 1e9;
+        breakaway: Effort, "force at which the hook breaks away when loaded slowly, F_s; inf never slips",
+            default Ratio { of: "coulomb", factor: 1.0, otherwise: f64::INFINITY },
+            neutral Some(f64::INFINITY), typical 0.5, bounds 1e-12, f64::INFINITY;
+        coulomb: Effort, "friction while sliding fast, F_c",
+            default Ratio { of: "breakaway", factor: 0.7, otherwise: f64::INFINITY },
+            neutral None, typical 0.35, bounds 0.0, f64::INFINITY;
+        stribeck_velocity: Velocity, "speed scale of the fall from break-away to F_c, v_s",
+            default Value(0.1), neutral None, typical 0.1, bounds 1e-9, 1e6;
+        stribeck_exponent: One, "shape of the fall, δ",
+            default Value(2.0), neutral None, typical 2.0, bounds 0.3, 5.0;
+        viscous: Damping, "friction per speed while sliding, F_v",
+            default Value(0.0), neutral Some(0.0), typical 0.05, bounds 0.0, 1e9;
+        slip_distance: Position, "distance over which a slide forgets its initial force, ℓ",
+            default Value(2e-5), neutral None, typical 2e-5, bounds 1e-12, 1e6;
+        loading_rate: EffortRate, "loading rate at which break-away has fallen to 1/e of F_s − F_c, r_0; inf: no dependence",
+            default Value(f64::INFINITY), neutral Some(f64::INFINITY), typical 5.0,
+            bounds 1e-9, f64::INFINITY;
+        loading_time: Time, "averaging time of the loading rate, τ",
+            default Value(0.1), neutral None, typical 0.1, bounds 1e-6, 1e3;
+    }
+}
+
+const OPTIONS: &[OptionSpec] = &[
+    OptionSpec {
+        name: "virgin_curve",
+        meaning: "first loading, before any reversal",
+        choices: &[
+            ("masing", "half-size branch: the first loop closes at its mirror point"),
+            ("same", "a full branch from the origin"),
+        ],
+    },
+    OptionSpec {
+        name: "damper",
+        meaning: "where the damper sits",
+        choices: &[
+            ("hook", "between body and hook, beside spring and plastic module"),
+            ("spring", "across the spring only; its force drives creep and break-away"),
+        ],
+    },
+    OptionSpec {
+        name: "after_slip",
+        meaning: "work hardening once the hook sticks again",
+        choices: &[
+            ("reset", "starts from zero: the junctions are new"),
+            ("keep", "goes on from where it was"),
+        ],
+    },
+];
+
+/// Pre-sliding friction that creeps, hardens, remembers reverse points, breaks away and slides.
+///
+/// While the hook sticks, x = x_hook + x_p + x_s and F = σ(x_s) + C_s·x'. The spring σ is
+/// [`Curve`] with reverse-point memory, the plastic module x_p is [`Plastic`], driven by σ. The
+/// hook breaks away when |σ| reaches F_break and then follows
+/// T = F_c + (F_b − F_c)·exp(−|v/v_s|^δ) + F_v·|v| over the distance ℓ, F_b being the level at
+/// which it broke away. It sticks again where the velocity, or the velocity of the hook, reaches
+/// zero.
+///
+/// At v = 0 a sticking contact relaxes by creep; a sliding one sticks. Memory: reverse points,
+/// hardening, latched break-away level, filtered force. A level multiplier L scales all forces of
+/// spring and hook at fixed displacement.
+/// Source: Hsieh, Pan, Wear 242 (2000), §2.2 and §3; the formulas of f, G and of the slide are
+/// reconstructions from the stated properties (see docs/theory/hsieh-pan.md).
+#[derive(Debug, Clone)]
+pub struct HsiehPan<S> {
+    parameters: HsiehPanParameters<S>,
+    curve: Curve<S>,
+    plastic: Plastic<S>,
+    damper_on_spring: bool,
+    keeps_hardening: bool,
+    /// Break-away depends on the loading rate.
+    rated: bool,
+}
+
+/// State of [`HsiehPan`]; forces are those at level 1.
+#[derive(Debug, Clone)]
+pub struct HsiehPanState<S> {
+    /// 0 sticks, ±1 slides in that direction.
+    mode: f64,
+    /// Spring; while sliding only its force is meaningful.
+    spring: SpringState<S>,
+    /// Force through the series: that of the spring, plus the damper's where it sits there.
+    series: S,
+    plastic: S,
+    hardening: S,
+    /// Level at which the slide began.
+    latched: S,
+    /// Series force behind a lag of τ.
+    filtered: S,
+    /// Break-away level at the end of the last step.
+    breakaway: S,
+    curve: Curve<S>,
+    statistics: Statistics,
+}
+
+/// A step of [`HsiehPan`].
+#[derive(Debug, Clone, Copy)]
+pub struct HsiehPanTrial<S> {
+    outcome: Outcome<S>,
+    series: S,
+    filtered: S,
+    breakaway: S,
+    mode: Mode<S>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Mode<S> {
+    Stick { walk: Walk<S>, plastic: S, hardening: S },
+    /// `pull` is T − s·σ: how far the force lags behind its sliding level.
+    Slip { pull: S },
+}
+
+impl<S: Scalar> HsiehPanState<S> {
+    /// The same state over another number type.
+    pub fn map<T: Scalar>(&self, convert: impl Fn(S) -> T) -> HsiehPanState<T> {
+        HsiehPanState {
+            mode: self.mode,
+            spring: self.spring.map(&convert),
+            series: convert(self.series),
+            plastic: convert(self.plastic),
+            hardening: convert(self.hardening),
+            latched: convert(self.latched),
+            filtered: convert(self.filtered),
+            breakaway: convert(self.breakaway),
+            curve: self.curve.map(&convert),
+            statistics: self.statistics,
+        }
+    }
+}
+
+impl<S: Scalar> LawState<S> for HsiehPanState<S> {
+    const OUTPUTS: &'static [&'static str] =
+        &["plastic", "hardening", "spring", "spring_force", "mode", "breakaway_level"];
+
+    fn output(&self, index: usize) -> S {
+        match index {
+            0 => self.plastic,
+            1 => self.hardening,
+            2 if self.mode == 0.0 => self.spring.position,
+            2 => self.curve.virgin_inverse(self.series),
+            3 => self.series,
+            4 => S::constant(self.mode),
+            _ => self.breakaway,
+        }
+    }
+
+    fn entries(&self) -> Vec<(&'static str, Entry)> {
+        let number = |x: S| Entry::Number(x.re());
+        let count = |n: u64| Entry::Number(n as f64);
+        let points = self.spring.memory.points();
+        vec![
+            ("mode", Entry::Number(self.mode)),
+            ("spring", number(self.spring.position)),
+            ("spring_force", number(self.spring.force)),
+            ("spring_slope", number(self.spring.slope)),
+            ("direction", Entry::Number(self.spring.direction)),
+            ("series_force", number(self.series)),
+            ("plastic", number(self.plastic)),
+            ("hardening", number(self.hardening)),
+            ("latched_breakaway", number(self.latched)),
+            ("filtered_force", number(self.filtered)),
+            ("breakaway_level", number(self.breakaway)),
+            (
+                "reverse_points",
+                Entry::Pairs(points.iter().map(|p| [p.position.re(), p.force.re()]).collect()),
+            ),
+            ("reversals", count(self.statistics.reversals)),
+            ("closings", count(self.statistics.closings)),
+            ("breakaways", count(self.statistics.breakaways)),
+            ("sticks", count(self.statistics.sticks)),
+            ("memory_peak", count(self.statistics.memory_peak)),
+        ]
+    }
+
+    fn statistics(&self) -> Statistics {
+        Statistics { memory_growths: self.spring.memory.growths(), ..self.statistics }
+    }
+
+    fn make_room(&mut self, steps: usize) {
+        self.spring.memory.make_room(steps);
+    }
+}
+
+impl<S: Scalar> HsiehPan<S> {
+    /// Sliding level T at this speed and its slope by speed, at level 1.
+    #[inline]
+    fn sliding_level(&self, latched: S, velocity: S, channels: &Channels<S>) -> (S, S) {
+        let p = &self.parameters;
+        let speed = velocity.abs();
+        let power = (velocity / p.stribeck_velocity).power_of_magnitude(p.stribeck_exponent);
+        let excess = (latched - p.coulomb) * (-power).exp();
+        let viscous = p.viscous * channels.viscous_level / channels.level;
+        let steepness = if speed.re() == 0.0 {
+            S::constant(0.0)
+        } else {
+            -(excess * p.stribeck_exponent * power / speed)
+        };
+        (p.coulomb + excess + viscous * speed, steepness + viscous)
+    }
+
+    /// Filtered force and break-away level after the series force went from `from` to `to`.
+    #[inline]
+    fn breakaway_after(&self, filtered: S, from: S, to: S, duration: S) -> (S, S) {
+        let p = &self.parameters;
+        if !self.rated {
+            return (filtered, p.breakaway);
+        }
+        let filtered = follow(filtered, from, to, duration / p.loading_time).value;
+        (filtered, self.breakaway_at((to - filtered).abs() / p.loading_time))
+    }
+
+    #[inline]
+    fn breakaway_at(&self, rate: S) -> S {
+        let p = &self.parameters;
+        p.coulomb + (p.breakaway - p.coulomb) * (-(rate / p.loading_rate)).exp()
+    }
+
+    /// A step of a sticking hook.
+    #[inline]
+    fn stick(
+        &self,
+        state: &HsiehPanState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> HsiehPanTrial<S> {
+        if self.damper_on_spring {
+            return self.stick_with_damper_on_spring(state, motion, channels);
+        }
+        let going = match sign(motion.displacement.re()) {
+            // A held contact relaxes: the creep takes the spring back.
+            0.0 => -sign(state.spring.force.re()),
+            direction => direction,
+        };
+        let creep = self.plastic.creep(
+            state.hardening,
+            state.spring.force,
+            state.spring.slope_towards(&self.curve, going),
+            motion.displacement,
+            motion.duration,
+        );
+        let walk = state.spring.walk(&self.curve, motion.displacement - creep.displacement);
+        let damping = self.parameters.damping;
+        let force = walk.end.force * channels.level + damping * motion.velocity;
+        let slope = walk.end.slope * channels.level * motion.duration
+            * (-(creep.share - 1.0))
+            + damping;
+        self.stuck(state, motion, walk, walk.end.force, creep, Outcome { force, slope, damping })
+    }
+
+    /// A step of a sticking hook whose damper sits across the spring: the force through the
+    /// series, S(x_s) + C_s·x_s', drives the creep, and creep lowers that force: one scalar root.
+    fn stick_with_damper_on_spring(
+        &self,
+        state: &HsiehPanState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> HsiehPanTrial<S> {
+        let damper = self.parameters.damping;
+        let dt = motion.duration;
+        let per_time =
+            if dt.re() > 0.0 { S::constant(1.0) / dt } else { S::constant(0.0) };
+        let series = |creep: S| {
+            let walk = state.spring.walk(&self.curve, motion.displacement - creep);
+            (walk, walk.end.force + damper * (motion.velocity - creep * per_time))
+        };
+        let (_, uncrept) = series(S::constant(0.0));
+        let s = sign(uncrept.re());
+        let approached = -((-(self.plastic.rate * dt)).exp_m1());
+        let excess = |force: S| (self.plastic.limit(force) - state.hardening) * approached;
+        let mut gained = S::constant(0.0);
+        let mut gradient = S::constant(0.0);
+        let mut most = excess(uncrept).re();
+        if most > 0.0 {
+            let mut least = 0.0;
+            for _ in 0..40 {
+                let (walk, force) = series(gained * s);
+                let miss = gained - excess(force);
+                gradient = self.plastic.exponent * self.plastic.limit(force) / (force * s)
+                    * approached;
+                if force.re() == 0.0 {
+                    gradient = S::constant(0.0);
+                }
+                let rise = gradient * (walk.end.slope + damper * per_time) + 1.0;
+                if miss.re() > 0.0 {
+                    most = most.min(gained.re());
+                } else {
+                    least = gained.re().max(least);
+                }
+                let next = gained - miss / rise;
+                let settled = miss.re().abs() <= 4.0 * f64::EPSILON * most;
+                gained = if next.re() < least || next.re() > most {
+                    S::constant(0.5 * (least + most))
+                } else {
+                    next
+                };
+                if settled {
+                    break;
+                }
+            }
+        }
+        let creep = Creep {
+            hardening: gained,
+            displacement: gained * s,
+            share: S::constant(0.0),
+        };
+        let (walk, force) = series(creep.displacement);
+        let softened = gradient * (walk.end.slope + damper * per_time) + 1.0;
+        let damping = damper / softened * channels.level;
+        let slope = walk.end.slope * dt / softened * channels.level + damping;
+        let outcome = Outcome { force: force * channels.level, slope, damping };
+        self.stuck(state, motion, walk, force, creep, outcome)
+    }
+
+    #[inline]
+    fn stuck(
+        &self,
+        state: &HsiehPanState<S>,
+        motion: &Motion<S>,
+        walk: Walk<S>,
+        series: S,
+        creep: Creep<S>,
+        outcome: Outcome<S>,
+    ) -> HsiehPanTrial<S> {
+        let (filtered, breakaway) =
+            self.breakaway_after(state.filtered, state.series, series, motion.duration);
+        HsiehPanTrial {
+            outcome,
+            series,
+            filtered,
+            breakaway,
+            mode: Mode::Stick {
+                walk,
+                plastic: state.plastic + creep.displacement,
+                hardening: state.hardening + creep.hardening,
+            },
+        }
+    }
+
+    /// A step of a sliding hook: the force follows the sliding level over the distance ℓ.
+    fn slip(
+        &self,
+        state: &HsiehPanState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> HsiehPanTrial<S> {
+        let s = state.mode;
+        let (to, steepness) = self.sliding_level(state.latched, motion.velocity, channels);
+        let (from, from_steepness) = if motion.start_velocity.re() == motion.velocity.re() {
+            (to, steepness)
+        } else {
+            self.sliding_level(state.latched, motion.start_velocity, channels)
+        };
+        let distance = motion.displacement.abs();
+        let z = distance / self.parameters.slip_distance;
+        let followed = follow(state.series * s, from, to, z);
+        let sigma = followed.value;
+        let (filtered, breakaway) =
+            self.breakaway_after(state.filtered, state.series, sigma * s, motion.duration);
+        let turning = sign(motion.velocity.re());
+        let damping = steepness * followed.end_share * channels.level * (s * turning);
+        // Held velocity: start and end level move together, and the distance with them.
+        let held = steepness * followed.end_share
+            + from_steepness * (-(followed.end_share - 1.0) - followed.remainder);
+        let catching_up = (to - state.series * s) * followed.remainder * motion.duration
+            / self.parameters.slip_distance;
+        let slope = (held + catching_up) * channels.level * (s * turning);
+        HsiehPanTrial {
+            outcome: Outcome { force: sigma * channels.level * s, slope, damping },
+            series: sigma * s,
+            filtered,
+            breakaway,
+            mode: Mode::Slip { pull: to - sigma },
+        }
+    }
+}
+
+impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
+    type State = HsiehPanState<S>;
+    type Trial = HsiehPanTrial<S>;
+
+    const PARAMETERS: &'static [ParameterSpec] = HsiehPanParameters::<f64>::SPECS;
+    const OPTIONS: &'static [OptionSpec] = OPTIONS;
+    const SUMMARY: &'static str =
+        "pre-sliding with creep, work hardening and reverse-point memory; breaks away and slides";
+    const SOURCE: &'static str = "Hsieh, Pan, Wear 242 (2000) 1-17; partly reconstructed";
+
+    fn build(values: &[S], choices: &[usize]) -> Self {
+        let p = HsiehPanParameters::from_values(values);
+        let choice = |k: usize| choices.get(k).copied().unwrap_or(0);
+        let virgin = if choice(0) == 0 { VirginCurve::Masing } else { VirginCurve::Same };
+        Self {
+            curve: Curve::new(p.initial_stiffness, p.final_stiffness, p.decay_distance, virgin),
+            plastic: Plastic {
+                coefficient: p.hardening_coefficient,
+                exponent: p.hardening_exponent,
+                rate: p.creep_rate,
+            },
+            damper_on_spring: choice(1) == 1,
+            keeps_hardening: choice(2) == 1,
+            rated: p.loading_rate.re().is_finite() && p.breakaway.re().is_finite(),
+            parameters: p,
+        }
+    }
+
+    fn check(values: &[f64]) -> Result<()> {
+        let p = HsiehPanParameters::from_values(values);
+        let order = |lesser: &str, lesser_value, relation, greater: &str, greater_value| {
+            Err(Error::Order {
+                lesser: lesser.to_owned(),
+                lesser_value,
+                relation,
+                greater: greater.to_owned(),
+                greater_value,
+            })
+        };
+        if p.final_stiffness >= p.initial_stiffness {
+            return order(
+                "final_stiffness",
+                p.final_stiffness,
+                "stay below",
+                "initial_stiffness",
+                p.initial_stiffness,
+            );
+        }
+        if p.coulomb > p.breakaway {
+            return order("coulomb", p.coulomb, "not exceed", "breakaway", p.breakaway);
+        }
+        Ok(())
+    }
+
+    fn initial(&self) -> HsiehPanState<S> {
+        let zero = S::constant(0.0);
+        HsiehPanState {
+            mode: 0.0,
+            spring: SpringState::relaxed(&self.curve),
+            series: zero,
+            plastic: zero,
+            hardening: zero,
+            latched: zero,
+            filtered: zero,
+            breakaway: self.parameters.breakaway,
+            curve: self.curve,
+            statistics: Statistics::default(),
+        }
+    }
+
+    fn restore(&self, entries: &[(String, Entry)]) -> Result<HsiehPanState<S>> {
+        let mut read = EntryReader::new(entries);
+        let mut state = self.initial();
+        let signs = [-1.0, 0.0, 1.0];
+        state.mode = read.choice("mode", &signs)?;
+        state.spring.position = S::constant(read.number("spring", false)?);
+        state.spring.force = S::constant(read.number("spring_force", false)?);
+        state.spring.slope = S::constant(read.number("spring_slope", false)?);
+        state.spring.direction = read.choice("direction", &signs)?;
+        state.series = S::constant(read.number("series_force", false)?);
+        state.plastic = S::constant(read.number("plastic", false)?);
+        state.hardening = S::constant(read.number("hardening", false)?);
+        state.latched = S::constant(read.number("latched_breakaway", false)?);
+        state.filtered = S::constant(read.number("filtered_force", false)?);
+        state.breakaway = S::constant(read.number("breakaway_level", true)?);
+        let rows = read.pairs("reverse_points")?;
+        check_nesting(rows, state.spring.position.re(), state.spring.direction)?;
+        state.spring.memory.restore(rows.iter().map(|row| ReversePoint {
+            position: S::constant(row[0]),
+            force: S::constant(row[1]),
+        }));
+        state.statistics = Statistics {
+            reversals: read.count("reversals")?,
+            closings: read.count("closings")?,
+            breakaways: read.count("breakaways")?,
+            sticks: read.count("sticks")?,
+            memory_peak: read.count("memory_peak")?,
+            memory_growths: 0,
+        };
+        read.finish()?;
+        Ok(state)
+    }
+
+    fn greatest_stiffness(&self) -> f64 {
+        self.parameters.initial_stiffness.re()
+    }
+
+    fn greatest_damping(&self) -> f64 {
+        self.parameters.damping.re().max(self.parameters.viscous.re())
+    }
+
+    #[inline]
+    fn force(&self, state: &HsiehPanState<S>, velocity: S, channels: &Channels<S>) -> S {
+        if state.mode == 0.0 && !self.damper_on_spring {
+            return state.series * channels.level + self.parameters.damping * velocity;
+        }
+        state.series * channels.level
+    }
+
+    #[inline]
+    fn advance(
+        &self,
+        state: &HsiehPanState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> HsiehPanTrial<S> {
+        if state.mode == 0.0 {
+            self.stick(state, motion, channels)
+        } else {
+            self.slip(state, motion, channels)
+        }
+    }
+
+    #[inline]
+    fn outcome(&self, trial: &HsiehPanTrial<S>) -> Outcome<S> {
+        trial.outcome
+    }
+
+    #[inline]
+    fn commit(&self, state: &mut HsiehPanState<S>, trial: &HsiehPanTrial<S>) {
+        state.series = trial.series;
+        state.filtered = trial.filtered;
+        state.breakaway = trial.breakaway;
+        match &trial.mode {
+            Mode::Stick { walk, plastic, hardening } => {
+                state.spring.accept(walk);
+                state.plastic = *plastic;
+                state.hardening = *hardening;
+                if walk.reversed || walk.closings > 0 {
+                    state.statistics.reversals += u64::from(walk.reversed);
+                    state.statistics.closings += u64::from(walk.closings);
+                    let held = state.spring.memory.points().len() as u64;
+                    state.statistics.memory_peak = state.statistics.memory_peak.max(held);
+                }
+            }
+            Mode::Slip { .. } => state.spring.force = trial.series,
+        }
+    }
+
+    #[inline]
+    fn pending(&self, state: &HsiehPanState<S>, velocity: S) -> Option<Event> {
+        (state.mode * velocity.re() < 0.0).then_some(Event::Reversal)
+    }
+
+    #[inline]
+    fn event(
+        &self,
+        state: &HsiehPanState<S>,
+        trial: &HsiehPanTrial<S>,
+        motion: &Motion<S>,
+    ) -> Option<Event> {
+        match trial.mode {
+            Mode::Stick { .. } => {
+                let reached = trial.series.re().abs() >= trial.breakaway.re();
+                // Only motion that loads the spring further breaks it away; without that
+                // condition a falling level would start a slide that runs backwards.
+                (reached && motion.velocity.re() * trial.series.re() > 0.0)
+                    .then_some(Event::BreakAway)
+            }
+            Mode::Slip { .. } => {
+                if self.margin(state, trial, motion, Event::HookReturn).re() <= 0.0 {
+                    Some(Event::HookReturn)
+                } else if state.mode * motion.velocity.re() <= 0.0 {
+                    Some(Event::Reversal)
+                } else {
+                    None
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn margin(
+        &self,
+        state: &HsiehPanState<S>,
+        trial: &HsiehPanTrial<S>,
+        motion: &Motion<S>,
+        event: Event,
+    ) -> S {
+        match (event, trial.mode) {
+            (Event::Reversal, _) => motion.velocity * state.mode,
+            (Event::HookReturn, Mode::Slip { pull }) => {
+                // x_hook' = x' − x_s' with σ' = (T − σ)·x'/ℓ: the hook turns back where the pull
+                // exceeds ℓ times the stiffness. A force at its break-away level cannot stick.
+                let reach = self.parameters.slip_distance;
+                let least = reach * self.parameters.final_stiffness - pull;
+                let held_down = trial.breakaway.re() - trial.series.re().abs();
+                if least.re() > 0.0 || held_down <= 0.0 {
+                    return S::constant(least.re().abs().max(f64::MIN_POSITIVE));
+                }
+                let at = self.curve.virgin_inverse(trial.series);
+                reach * self.curve.virgin(at).slope - pull
+            }
+            _ => trial.breakaway - trial.series.abs(),
+        }
+    }
+
+    fn switch(&self, state: &mut HsiehPanState<S>, event: Event) {
+        if event == Event::BreakAway {
+            state.mode = sign(state.series.re());
+            // Latched: a level that went on following the loading rate would let it chatter.
+            state.latched = state.breakaway;
+            state.spring.place_on_virgin(&self.curve, state.series);
+            state.statistics.breakaways += 1;
+        } else {
+            state.mode = 0.0;
+            state.spring.place_on_virgin(&self.curve, state.series);
+            if !self.keeps_hardening {
+                state.hardening = S::constant(0.0);
+            }
+            state.statistics.sticks += 1;
+        }
+    }
+
+    fn internal(&self, state: &HsiehPanState<S>) -> [S; INTERNAL] {
+        [state.plastic, state.hardening, state.filtered]
+    }
+
+    fn rates(
+        &self,
+        state: &HsiehPanState<S>,
+        motion: &Motion<S>,
+        internal: &[S; INTERNAL],
+        channels: &Channels<S>,
+    ) -> (S, [S; INTERNAL]) {
+        let zero = S::constant(0.0);
+        if state.mode != 0.0 {
+            // The relaxation over ℓ is stiff and its solution known: no rate is needed.
+            return (self.slip(state, motion, channels).outcome.force, [zero; INTERNAL]);
+        }
+        let [plastic, hardening, filtered] = *internal;
+        let walk = state.spring.walk(&self.curve, motion.displacement - (plastic - state.plastic));
+        let (series, creep) =
+            self.series_force(walk.end.force, hardening, motion.velocity);
+        let extra = if self.damper_on_spring {
+            zero
+        } else {
+            self.parameters.damping * motion.velocity
+        };
+        let lag = (series - filtered) / self.parameters.loading_time;
+        let lag = if self.rated { lag } else { zero };
+        (series * channels.level + extra, [creep * sign(series.re()), creep, lag])
+    }
+
+    fn settle(
+        &self,
+        state: &HsiehPanState<S>,
+        motion: &Motion<S>,
+        internal: &[S; INTERNAL],
+        channels: &Channels<S>,
+    ) -> HsiehPanTrial<S> {
+        if state.mode != 0.0 {
+            return self.slip(state, motion, channels);
+        }
+        let [plastic, hardening, filtered] = *internal;
+        let walk = state.spring.walk(&self.curve, motion.displacement - (plastic - state.plastic));
+        let (force, _) = self.rates(state, motion, internal, channels);
+        let (series, _) = self.series_force(walk.end.force, hardening, motion.velocity);
+        let breakaway = if self.rated {
+            self.breakaway_at((series - filtered).abs() / self.parameters.loading_time)
+        } else {
+            self.parameters.breakaway
+        };
+        let damping = self.parameters.damping;
+        let slope = walk.end.slope * channels.level * motion.duration + damping;
+        HsiehPanTrial {
+            outcome: Outcome { force, slope, damping },
+            series,
+            filtered,
+            breakaway,
+            mode: Mode::Stick { walk, plastic, hardening },
+        }
+    }
+}
+
+impl<S: Scalar> HsiehPan<S> {
+    /// Force through the series and creep rate at an instant.
+    fn series_force(&self, spring: S, hardening: S, velocity: S) -> (S, S) {
+        if !self.damper_on_spring {
+            return (spring, self.plastic.hardening_rate(hardening, spring));
+        }
+        // T = S + C·(v − s·h'(T)): the right side falls as |T| grows, so bisection is safe.
+        let damper = self.parameters.damping;
+        let uncrept = spring + damper * velocity;
+        let s = sign(uncrept.re());
+        let rate = |t: S| self.plastic.hardening_rate(hardening, t);
+        if rate(uncrept).re() == 0.0 {
+            return (uncrept, S::constant(0.0));
+        }
+        let (mut low, mut high) = (0.0, uncrept.re().abs());
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            let t = S::constant(middle * s);
+            if (uncrept - damper * rate(t) * s).re() * s > middle {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        // One Newton step in the full number type carries the derivatives.
+        let t = S::constant(0.5 * (low + high) * s);
+        let steep =
+            self.plastic.exponent * self.plastic.limit(t) / (t * s) * self.plastic.rate * damper;
+        let t = t - (t - uncrept + damper * rate(t) * s) / (steep + 1.0);
+        (t, rate(t))
+    }
+}
+
+/// Reverse points must alternate and nest, or the walk would run behind its anchor.
+fn check_nesting(rows: &[[f64; 2]], position: f64, direction: f64) -> Result<()> {
+    let bad = |problem: &str| {
+        Err(Error::State { name: "reverse_points".to_owned(), problem: problem.to_owned() })
+    };
+    let chain: Vec<f64> = rows.iter().map(|row| row[0]).chain([position]).collect();
+    for triple in chain.windows(3) {
+        let inside = triple[2] >= triple[0].min(triple[1]) && triple[2] <= triple[0].max(triple[1]);
+        if !inside {
+            return bad("does not nest: every point lies between the two before it");
+        }
+    }
+    if let [.., last, end] = chain[..]
+        && (end - last) * direction < 0.0
+    {
+        return bad("disagrees with 'direction'");
+    }
+    if rows.is_empty() && position * direction < 0.0 {
+        return bad("is empty although the spring is not on its virgin curve");
+    }
+    Ok(())
+}

@@ -1,0 +1,21 @@
+//! Pre-sliding friction laws, the motors that carry them, and exact parameter derivatives.
+//!
+//! Pure numerics: no input, no output, no unsafe code. Every model is written once over
+//! [`scalar::Scalar`], so that the same code yields values and derivatives.
+
+#![forbid(unsafe_code)]
+
+#[macro_use]
+pub mod friction;
+
+pub mod body;
+pub mod drive;
+pub mod effects;
+pub mod error;
+pub mod integrate;
+pub mod model;
+pub mod motor;
+pub mod parameter;
+pub mod scalar;
+pub mod sensitivity;
+pub mod sensor;

@@ -1,0 +1,241 @@
+//! A friction law with its parameters and state: what `FrictionModel` is in Python.
+
+use crate::error::{Error, Result};
+use crate::friction::{
+    AnyState, AnyTrial, Channels, Entry, Law, LawRecord, LawState, Outcome, Statistics, law_record,
+};
+use crate::integrate::{Held, through_events};
+use crate::parameter::resolve;
+use crate::scalar::{COLUMNS, Dual, Scalar};
+
+/// Samples between two checks that the next reversals find room.
+pub const CHUNK: usize = 128;
+/// Commits that events may add to a chunk.
+const EVENT_ROOM: usize = 32;
+
+/// Which law, with every parameter and option decided.
+#[derive(Debug, Clone)]
+pub struct LawSpec {
+    /// Catalogue entry.
+    pub record: &'static LawRecord,
+    /// Values in the order of the record's parameters.
+    pub values: Vec<f64>,
+    /// Index of the choice for each of the record's options.
+    pub choices: Vec<usize>,
+}
+
+impl PartialEq for LawSpec {
+    fn eq(&self, other: &Self) -> bool {
+        self.record.name == other.record.name
+            && self.values == other.values
+            && self.choices == other.choices
+    }
+}
+
+impl LawSpec {
+    /// The law called `name`; what is not stated takes its default.
+    pub fn new(name: &str, stated: &[(String, f64)], options: &[(String, String)]) -> Result<Self> {
+        let record = law_record(name)?;
+        for (option, _) in options {
+            if !record.options.iter().any(|known| known.name == option) {
+                let words = record.parameters.iter().map(|p| p.name);
+                let words: Vec<&str> =
+                    words.chain(record.options.iter().map(|o| o.name)).collect();
+                return Err(Error::unknown(format!("option of {name}"), option, words));
+            }
+        }
+        let choices = record
+            .options
+            .iter()
+            .map(|option| match options.iter().find(|(given, _)| given == option.name) {
+                None => Ok(0),
+                Some((_, word)) => {
+                    option.choices.iter().position(|(known, _)| known == word).ok_or_else(|| {
+                        Error::unknown(
+                            format!("value of option {} of {name}", option.name),
+                            word,
+                            option.choices.iter().map(|(known, _)| *known),
+                        )
+                    })
+                }
+            })
+            .collect::<Result<Vec<usize>>>()?;
+        let values = resolve(name, record.parameters, stated)?;
+        Law::<f64>::check(name, &values)?;
+        Ok(Self { record, values, choices })
+    }
+
+    /// The law over some number type, from values of that type.
+    pub fn law<S: Scalar>(&self, values: &[S]) -> Law<S> {
+        Law::build(self.record.name, values, &self.choices)
+            .expect("the record's own name is in the list")
+    }
+
+    /// The law with plain values.
+    pub fn plain(&self) -> Law<f64> {
+        self.law(&self.values)
+    }
+
+    /// Names and words of the options.
+    pub fn options(&self) -> impl Iterator<Item = (&'static str, &'static str)> + '_ {
+        self.record
+            .options
+            .iter()
+            .zip(&self.choices)
+            .map(|(option, choice)| (option.name, option.choices[*choice].0))
+    }
+}
+
+/// A friction law, its parameters and its state.
+#[derive(Debug, Clone)]
+pub struct FrictionModel {
+    spec: LawSpec,
+    law: Law<f64>,
+    state: AnyState<f64>,
+    /// What the last `trial` would lead to.
+    proposed: Option<Proposed>,
+}
+
+/// A step not yet accepted.
+#[derive(Debug, Clone)]
+enum Proposed {
+    /// Within one contact mode: what would change.
+    Step(AnyTrial<f64>),
+    /// Through a change of mode: the state after it.
+    State(Box<AnyState<f64>>),
+}
+
+impl FrictionModel {
+    /// A contact that was never moved.
+    pub fn new(spec: LawSpec) -> Self {
+        let law = spec.plain();
+        let state = law.initial();
+        Self { spec, law, state, proposed: None }
+    }
+
+    /// Law, parameters and options.
+    pub fn spec(&self) -> &LawSpec {
+        &self.spec
+    }
+
+    /// The law itself.
+    pub fn law(&self) -> &Law<f64> {
+        &self.law
+    }
+
+    /// The present state.
+    pub fn state(&self) -> &AnyState<f64> {
+        &self.state
+    }
+
+    /// One sample at a held velocity; the friction at its end.
+    #[inline]
+    pub fn step(&mut self, velocity: f64, dt: f64, channels: &Channels<f64>) -> f64 {
+        self.proposed = None;
+        with_law_and_state!(&self.law, &mut self.state, |law, state| {
+            state.make_room(EVENT_ROOM);
+            let mut held = Held::new(velocity, *channels);
+            through_events(&mut held, law, state, dt);
+            held.outcome.force
+        })
+    }
+
+    /// Samples at held velocities; the friction at the end of each.
+    ///
+    /// `channels` yields what else reaches the contact at a sample.
+    pub fn simulate(
+        &mut self,
+        velocity: &[f64],
+        dt: f64,
+        channels: impl Fn(usize) -> Channels<f64>,
+        friction: &mut [f64],
+    ) {
+        self.proposed = None;
+        with_law_and_state!(&self.law, &mut self.state, |law, state| {
+            let chunks = velocity.chunks(CHUNK).zip(friction.chunks_mut(CHUNK));
+            for (chunk, (velocity, friction)) in chunks.enumerate() {
+                state.make_room(CHUNK + EVENT_ROOM);
+                for (k, (v, f)) in velocity.iter().zip(friction).enumerate() {
+                    let mut held = Held::new(*v, channels(chunk * CHUNK + k));
+                    through_events(&mut held, law, state, dt);
+                    *f = held.outcome.force;
+                }
+            }
+        });
+    }
+
+    /// Friction and ∂friction/∂velocity of a sample, leaving the state as it is.
+    pub fn trial(&mut self, velocity: f64, dt: f64, channels: &Channels<f64>) -> (f64, f64) {
+        let mut held = Held::new(velocity, *channels);
+        if let Some((trial, outcome)) = self.law.quiet_step(&self.state, &held, dt) {
+            self.proposed = Some(Proposed::Step(trial));
+            return (outcome.force, outcome.slope);
+        }
+        let mut next = self.state.clone();
+        with_law_and_state!(&self.law, &mut next, |law, state| {
+            through_events(&mut held, law, state, dt);
+        });
+        self.proposed = Some(Proposed::State(Box::new(next)));
+        (held.outcome.force, self.slope_through_events(velocity, dt, channels))
+    }
+
+    /// The slope of a step that changes mode, by a dual velocity: rare, so its cost is no matter.
+    fn slope_through_events(&self, velocity: f64, dt: f64, channels: &Channels<f64>) -> f64 {
+        let values: Vec<Dual> = self.spec.values.iter().map(|v| Dual::constant(*v)).collect();
+        let law = self.spec.law(&values);
+        let mut state = self.state.lift::<Dual>();
+        let lifted = Channels {
+            effort: Dual::constant(channels.effort),
+            load: Dual::constant(channels.load),
+            level: Dual::constant(channels.level),
+            viscous_level: Dual::constant(channels.viscous_level),
+            temperature: channels.temperature,
+        };
+        let outcome: Outcome<Dual> = with_law_and_state!(&law, &mut state, |law, state| {
+            let mut held = Held::new(Dual::variable(velocity, 0), lifted);
+            through_events(&mut held, law, state, Dual::constant(dt));
+            held.outcome
+        });
+        const { assert!(COLUMNS > 0) };
+        Scalar::derivative(outcome.force, 0)
+    }
+
+    /// Accepts the last trial; false when there was none since the state last changed.
+    pub fn commit(&mut self) -> bool {
+        match self.proposed.take() {
+            Some(Proposed::Step(trial)) => self.law.commit(&mut self.state, &trial),
+            Some(Proposed::State(next)) => self.state = *next,
+            None => return false,
+        }
+        true
+    }
+
+    /// Back to a contact that was never moved.
+    pub fn reset(&mut self) {
+        self.proposed = None;
+        self.state = self.law.initial();
+    }
+
+    /// The state as named entries.
+    pub fn entries(&self) -> Vec<(&'static str, Entry)> {
+        with_state!(&self.state, |state| state.entries())
+    }
+
+    /// Sets the state from named entries.
+    pub fn restore(&mut self, entries: &[(String, Entry)]) -> Result<()> {
+        self.state = self.law.restore(entries)?;
+        self.proposed = None;
+        Ok(())
+    }
+
+    /// Branch counters.
+    pub fn statistics(&self) -> Statistics {
+        with_state!(&self.state, |state| state.statistics())
+    }
+
+    /// Greatest ∂force/∂position.
+    pub fn greatest_stiffness(&self) -> f64 {
+        use crate::friction::FrictionLaw;
+        with_law!(&self.law, |law| law.greatest_stiffness())
+    }
+}

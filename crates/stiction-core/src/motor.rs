@@ -1,0 +1,429 @@
+//! A motor: machine, friction and the way they run together.
+
+use crate::body::Body;
+use crate::drive::Drive;
+use crate::effects::{AnyEffect, EffectRecord, Effects, effect_record};
+use crate::error::{Error, Result};
+use crate::friction::{AnyState, Entry, Law, LawState, Statistics};
+use crate::integrate::{Integrator, Machine, Run, sample, substeps};
+use crate::model::{CHUNK, LawSpec};
+use crate::parameter::resolve;
+use crate::scalar::Scalar;
+use crate::sensor::Sensor;
+
+/// An effect with every parameter decided.
+#[derive(Debug, Clone)]
+pub struct EffectSpec {
+    /// Catalogue entry.
+    pub record: &'static EffectRecord,
+    /// Values in the order of the record's parameters.
+    pub values: Vec<f64>,
+}
+
+impl PartialEq for EffectSpec {
+    fn eq(&self, other: &Self) -> bool {
+        self.record.name == other.record.name && self.values == other.values
+    }
+}
+
+impl EffectSpec {
+    /// The effect called `name`; what is not stated takes its default, gains 0.
+    pub fn new(name: &str, stated: &[(String, f64)]) -> Result<Self> {
+        let record = effect_record(name)?;
+        Ok(Self { record, values: resolve(name, record.parameters, stated)? })
+    }
+}
+
+/// Everything that defines a motor, in plain numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotorSpec {
+    /// Inertia (mass).
+    pub inertia: f64,
+    /// Effort per unit of input.
+    pub gain: f64,
+    /// Greatest magnitude of the input that gets through.
+    pub input_limit: f64,
+    /// Amplitude of the pendulum torque.
+    pub gravity_amplitude: f64,
+    /// Position at which the pendulum hangs.
+    pub gravity_zero: f64,
+    /// Constant weight against positive motion.
+    pub weight: f64,
+    /// Size of a sensor count, 0 for none.
+    pub count: f64,
+    /// Friction law.
+    pub friction: LawSpec,
+    /// Effects.
+    pub effects: Vec<EffectSpec>,
+    /// Which integrator runs it.
+    pub integrator: Integrator,
+}
+
+impl MotorSpec {
+    /// A motor with inertia, gain and friction alone.
+    pub fn new(inertia: f64, gain: f64, friction: LawSpec) -> Self {
+        Self {
+            inertia,
+            gain,
+            input_limit: f64::INFINITY,
+            gravity_amplitude: 0.0,
+            gravity_zero: 0.0,
+            weight: 0.0,
+            count: 0.0,
+            friction,
+            effects: Vec::new(),
+            integrator: Integrator::Fast,
+        }
+    }
+
+    /// Refuses values that no motor has.
+    pub fn check(&self) -> Result<()> {
+        let bounded = [
+            ("inertia", self.inertia, 1e-15, 1e15),
+            ("gain", self.gain, -1e12, 1e12),
+            ("input_limit", self.input_limit, 0.0, f64::INFINITY),
+            ("gravity_amplitude", self.gravity_amplitude, -1e12, 1e12),
+            ("gravity_zero", self.gravity_zero, -1e12, 1e12),
+            ("weight", self.weight, -1e12, 1e12),
+            ("count", self.count, 0.0, 1e6),
+        ];
+        for (name, given, lower, upper) in bounded {
+            if given.is_nan() {
+                return Err(Error::NotFinite { name: name.to_owned(), given });
+            }
+            if given < lower || given > upper {
+                let unit = String::new();
+                return Err(Error::OutOfBounds { name: name.to_owned(), given, lower, upper, unit });
+            }
+        }
+        Ok(())
+    }
+
+    /// Paths and values of all parameters: `body.inertia`, `friction.coulomb`,
+    /// `effects.cogging.cosine` … in a fixed order.
+    pub fn parameters(&self) -> Vec<(String, f64)> {
+        let mut list = vec![
+            ("body.inertia".to_owned(), self.inertia),
+            ("drive.gain".to_owned(), self.gain),
+            ("body.gravity_amplitude".to_owned(), self.gravity_amplitude),
+            ("body.gravity_zero_rad".to_owned(), self.gravity_zero),
+            ("body.weight_n".to_owned(), self.weight),
+        ];
+        let friction = self.friction.record.parameters.iter().zip(&self.friction.values);
+        list.extend(friction.map(|(spec, v)| (format!("friction.{}", spec.name), *v)));
+        for effect in &self.effects {
+            let name = effect.record.name;
+            let values = effect.record.parameters.iter().zip(&effect.values);
+            list.extend(values.map(|(spec, v)| (format!("effects.{name}.{}", spec.name), *v)));
+        }
+        list
+    }
+
+    /// Machine and law over some number type; `values` in the order of [`Self::parameters`].
+    pub fn build<S: Scalar>(&self, values: &[S]) -> (Machine<S>, Law<S>) {
+        let (first, rest) = values.split_at(5);
+        let (friction, mut rest) = rest.split_at(self.friction.values.len());
+        let effects = self.effects.iter().map(|effect| {
+            let own;
+            (own, rest) = rest.split_at(effect.values.len());
+            AnyEffect::build(effect.record.name, own)
+                .expect("the record's own name is in the list")
+        });
+        let effects = Effects::new(effects);
+        let machine = Machine::new(
+            Drive { gain: first[1], limit: self.input_limit },
+            Body::new(first[0], first[2], first[3], first[4]),
+            effects,
+            Sensor { count: self.count },
+        );
+        (machine, self.friction.law(friction))
+    }
+}
+
+/// What a trajectory can show beside the law's own states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Column {
+    /// Position.
+    Position,
+    /// Velocity.
+    Velocity,
+    /// Friction.
+    Friction,
+    /// What the sensor reads.
+    Measured,
+    /// A state of the law, by its index.
+    Law(usize),
+}
+
+impl Column {
+    /// Names of the columns of a motor with this law, in the order of a trajectory.
+    pub fn names(law: &LawSpec) -> Vec<&'static str> {
+        let mut names = vec!["position", "velocity", "friction", "measured"];
+        names.extend(law.record.outputs);
+        names
+    }
+
+    /// The column called `name`.
+    pub fn named(law: &LawSpec, name: &str) -> Result<Self> {
+        let names = Self::names(law);
+        let index = names.iter().position(|known| *known == name);
+        let index = index.ok_or_else(|| Error::unknown("output", name, names))?;
+        Ok(match index {
+            0 => Self::Position,
+            1 => Self::Velocity,
+            2 => Self::Friction,
+            3 => Self::Measured,
+            own => Self::Law(own - 4),
+        })
+    }
+}
+
+/// A number for every sample, or one for all.
+#[derive(Debug, Clone, Copy)]
+pub enum PerSample<'a> {
+    /// The same for all.
+    Same(f64),
+    /// One each.
+    Each(&'a [f64]),
+}
+
+impl PerSample<'_> {
+    /// The number at a sample.
+    #[inline]
+    pub fn at(&self, k: usize) -> f64 {
+        match self {
+            Self::Same(value) => *value,
+            Self::Each(values) => values[k],
+        }
+    }
+}
+
+/// A motor over some number type, with its running state.
+#[derive(Debug, Clone)]
+pub struct Running<S: Scalar> {
+    /// Everything but friction.
+    pub machine: Machine<S>,
+    /// Friction law.
+    pub law: Law<S>,
+    /// Friction state.
+    pub state: AnyState<S>,
+    /// Body.
+    pub run: Run<S>,
+    /// Integrator.
+    pub integrator: Integrator,
+}
+
+impl<S: Scalar> Running<S> {
+    /// At rest at 0, never moved.
+    pub fn new(spec: &MotorSpec, values: &[S]) -> Self {
+        let (machine, law) = spec.build(values);
+        let state = law.initial();
+        let zero = S::constant(0.0);
+        let run = machine.start(zero, zero);
+        Self { machine, law, state, run, integrator: spec.integrator }
+    }
+
+    /// One sample.
+    #[inline]
+    pub fn step(&mut self, input: f64, load: f64, dt: f64) {
+        with_law_and_state!(&self.law, &mut self.state, |law, state| {
+            let parts = substeps(&self.machine, law, dt);
+            state.make_room(parts as usize + CHUNK / 4);
+            sample(
+                &self.machine,
+                law,
+                state,
+                &mut self.run,
+                S::constant(input),
+                S::constant(load),
+                dt,
+                parts,
+                self.integrator,
+            );
+        });
+    }
+
+    /// Samples; `row` sees the body, the machine and one state of the law after each.
+    pub fn simulate(
+        &mut self,
+        inputs: &[f64],
+        load: PerSample<'_>,
+        dt: PerSample<'_>,
+        mut row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
+    ) {
+        with_law_and_state!(&self.law, &mut self.state, |law, state| {
+            let mut known = f64::NAN;
+            let mut parts = 1;
+            for (chunk, inputs) in inputs.chunks(CHUNK).enumerate() {
+                let mut room = 0;
+                for (k, input) in inputs.iter().enumerate() {
+                    let index = chunk * CHUNK + k;
+                    let dt = dt.at(index);
+                    if dt != known {
+                        parts = substeps(&self.machine, law, dt);
+                        known = dt;
+                    }
+                    if room < parts as usize {
+                        // Once a chunk where samples are not divided, never inside a step.
+                        room = CHUNK.max(parts as usize);
+                        state.make_room(room + CHUNK / 4);
+                    }
+                    room -= parts as usize;
+                    sample(
+                        &self.machine,
+                        law,
+                        state,
+                        &mut self.run,
+                        S::constant(*input),
+                        S::constant(load.at(index)),
+                        dt,
+                        parts,
+                        self.integrator,
+                    );
+                    let seen = &*state;
+                    row(index, &self.run, &self.machine, &|column| seen.output(column));
+                }
+            }
+        });
+    }
+}
+
+/// A motor in plain numbers: what `Motor` is in Python.
+#[derive(Debug, Clone)]
+pub struct Motor {
+    spec: MotorSpec,
+    running: Running<f64>,
+}
+
+impl Motor {
+    /// At rest at 0, never moved.
+    pub fn new(spec: MotorSpec) -> Result<Self> {
+        spec.check()?;
+        let values: Vec<f64> = spec.parameters().into_iter().map(|(_, value)| value).collect();
+        let running = Running::new(&spec, &values);
+        Ok(Self { spec, running })
+    }
+
+    /// What defines it.
+    pub fn spec(&self) -> &MotorSpec {
+        &self.spec
+    }
+
+    /// Its parts and state.
+    pub fn running(&self) -> &Running<f64> {
+        &self.running
+    }
+
+    /// One sample; position and velocity at its end.
+    #[inline]
+    pub fn step(&mut self, input: f64, load: f64, dt: f64) -> (f64, f64) {
+        self.running.step(input, load, dt);
+        (self.running.run.position, self.running.run.velocity)
+    }
+
+    /// Samples; fills the columns asked for, each as long as `inputs`.
+    pub fn simulate(
+        &mut self,
+        inputs: &[f64],
+        load: PerSample<'_>,
+        dt: PerSample<'_>,
+        columns: &mut [(Column, &mut [f64])],
+    ) -> Result<()> {
+        for (name, each) in [("load", load), ("dt", dt)] {
+            if let PerSample::Each(values) = each
+                && values.len() != inputs.len()
+            {
+                return Err(Error::Length {
+                    name: name.to_owned(),
+                    given: values.len(),
+                    wanted: inputs.len(),
+                });
+            }
+        }
+        for (_, values) in columns.iter() {
+            if values.len() != inputs.len() {
+                return Err(Error::Length {
+                    name: "out".to_owned(),
+                    given: values.len(),
+                    wanted: inputs.len(),
+                });
+            }
+        }
+        self.running.simulate(inputs, load, dt, |k, run, machine, output| {
+            for (column, values) in columns.iter_mut() {
+                values[k] = match column {
+                    Column::Position => run.position,
+                    Column::Velocity => run.velocity,
+                    Column::Friction => run.friction,
+                    Column::Measured => {
+                        machine.sensor.read(machine.effects.sensor(run.position))
+                    }
+                    Column::Law(index) => output(*index),
+                };
+            }
+        });
+        Ok(())
+    }
+
+    /// Back to rest, or to this position and velocity, with friction never moved.
+    pub fn reset(&mut self, position: f64, velocity: f64) {
+        self.running.state = self.running.law.initial();
+        self.running.run = self.running.machine.start(position, velocity);
+    }
+
+    /// Replaces the friction state, from another model of the same law and parameters.
+    pub fn set_friction_state(&mut self, state: AnyState<f64>) {
+        self.running.state = state;
+    }
+
+    /// Body and friction state as named entries.
+    pub fn entries(&self) -> Vec<(&'static str, Entry)> {
+        let run = &self.running.run;
+        let number = Entry::Number;
+        let mut entries = vec![
+            ("position", number(run.position)),
+            ("velocity", number(run.velocity)),
+            ("time", number(run.time)),
+            ("friction", number(run.friction)),
+            ("second_position", number(run.second_position)),
+            ("second_velocity", number(run.second_velocity)),
+            ("relaxed", number(run.relaxed)),
+        ];
+        entries.extend(with_state!(&self.running.state, |state| state.entries()));
+        entries
+    }
+
+    /// Sets body and friction state from named entries.
+    pub fn restore(&mut self, entries: &[(String, Entry)]) -> Result<()> {
+        let (body, law): (Vec<_>, Vec<_>) =
+            entries.iter().cloned().partition(|(name, _)| BODY.contains(&name.as_str()));
+        let mut read = crate::friction::EntryReader::new(&body);
+        let mut run = self.running.run;
+        run.position = read.number("position", false)?;
+        run.velocity = read.number("velocity", false)?;
+        run.time = read.number("time", false)?;
+        run.friction = read.number("friction", false)?;
+        run.second_position = read.number("second_position", false)?;
+        run.second_velocity = read.number("second_velocity", false)?;
+        run.relaxed = read.number("relaxed", false)?;
+        self.running.state = self.running.law.restore(&law)?;
+        self.running.machine.refresh(&mut run);
+        self.running.run = run;
+        Ok(())
+    }
+
+    /// Branch counters.
+    pub fn statistics(&self) -> Statistics {
+        with_state!(&self.running.state, |state| state.statistics())
+    }
+}
+
+const BODY: [&str; 7] = [
+    "position",
+    "velocity",
+    "time",
+    "friction",
+    "second_position",
+    "second_velocity",
+    "relaxed",
+];

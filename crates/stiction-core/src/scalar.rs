@@ -1,0 +1,231 @@
+//! The number type every model is written over: `f64` for values, [`Dual`] for values with exact
+//! derivatives. This is the only file that names the dual-number library.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use num_dual::{DualNum, DualSVec64};
+
+/// Derivative columns carried by one [`Dual`]: one pass of the model yields this many.
+pub const COLUMNS: usize = 8;
+
+/// A value with its derivatives with respect to [`COLUMNS`] seeded parameters.
+pub type Dual = DualSVec64<COLUMNS>;
+
+/// A real number or a dual number; branches are decided on the real part alone.
+pub trait Scalar:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+{
+    /// A number that depends on no parameter.
+    fn constant(value: f64) -> Self;
+    /// The parameter that owns derivative column `column`.
+    fn variable(value: f64, column: usize) -> Self;
+    /// The value without its derivatives.
+    fn re(self) -> f64;
+    /// The derivative in column `column` (0 for `f64`).
+    fn derivative(self, column: usize) -> f64;
+    /// Chain rule: a function of `self` with the given value and slope.
+    fn chain(self, value: f64, slope: f64) -> Self;
+
+    /// e^x.
+    #[inline]
+    fn exp(self) -> Self {
+        let e = self.re().exp();
+        self.chain(e, e)
+    }
+    /// e^x − 1, accurate near 0.
+    #[inline]
+    fn exp_m1(self) -> Self {
+        let e = self.re().exp_m1();
+        self.chain(e, e + 1.0)
+    }
+    /// Sine.
+    #[inline]
+    fn sin(self) -> Self {
+        let (s, c) = self.re().sin_cos();
+        self.chain(s, c)
+    }
+    /// Cosine.
+    #[inline]
+    fn cos(self) -> Self {
+        let (s, c) = self.re().sin_cos();
+        self.chain(c, -s)
+    }
+    /// √x with derivative 0 at 0, where the true one is infinite and would turn into NaN.
+    #[inline]
+    fn sqrt(self) -> Self {
+        let r = self.re().sqrt();
+        self.chain(r, if r > 0.0 { 0.5 / r } else { 0.0 })
+    }
+    /// |x| with derivative 0 at the kink.
+    #[inline]
+    fn abs(self) -> Self {
+        let x = self.re();
+        let slope = if x > 0.0 {
+            1.0
+        } else if x < 0.0 {
+            -1.0
+        } else {
+            0.0
+        };
+        self.chain(x.abs(), slope)
+    }
+    /// |x|^a for a > 0, with all derivatives 0 at x = 0 (dual libraries give NaN there).
+    #[inline]
+    fn power_of_magnitude(self, exponent: Self) -> Self {
+        let (x, a) = (self.re(), exponent.re());
+        let m = x.abs();
+        if m == 0.0 {
+            return Self::constant(0.0);
+        }
+        let value = if a == 2.0 {
+            m * m
+        } else if a == 1.0 {
+            m
+        } else {
+            m.powf(a)
+        };
+        let in_base = self.chain(value, a * value / x);
+        in_base + (exponent - a) * (value * m.ln())
+    }
+    /// True when the number depends on a seeded parameter.
+    fn derivative_is_nonzero(self) -> bool {
+        (0..COLUMNS).any(|k| self.derivative(k) != 0.0)
+    }
+    /// True when the value and every derivative are finite.
+    fn is_finite(self) -> bool {
+        self.re().is_finite() && (0..COLUMNS).all(|k| self.derivative(k).is_finite())
+    }
+}
+
+impl Scalar for f64 {
+    #[inline]
+    fn constant(value: f64) -> Self {
+        value
+    }
+    #[inline]
+    fn variable(value: f64, _column: usize) -> Self {
+        value
+    }
+    #[inline]
+    fn re(self) -> f64 {
+        self
+    }
+    #[inline]
+    fn derivative(self, _column: usize) -> f64 {
+        0.0
+    }
+    #[inline]
+    fn chain(self, value: f64, _slope: f64) -> Self {
+        value
+    }
+    #[inline]
+    fn power_of_magnitude(self, exponent: Self) -> Self {
+        let m = f64::abs(self);
+        if exponent == 2.0 {
+            m * m
+        } else if exponent == 1.0 || m == 0.0 {
+            m
+        } else {
+            m.powf(exponent)
+        }
+    }
+}
+
+impl Scalar for Dual {
+    #[inline]
+    fn constant(value: f64) -> Self {
+        Self::from_re(value)
+    }
+    #[inline]
+    fn variable(value: f64, column: usize) -> Self {
+        Self::from_re(value).derivative(column)
+    }
+    #[inline]
+    fn re(self) -> f64 {
+        self.re
+    }
+    #[inline]
+    fn derivative(self, column: usize) -> f64 {
+        self.eps.0.map_or(0.0, |eps| eps[column])
+    }
+    #[inline]
+    fn chain(self, value: f64, slope: f64) -> Self {
+        let mut scaled = <Self as DualNum>::scale(self, &slope);
+        scaled.re = value;
+        scaled
+    }
+}
+
+/// The sign of a real number as −1, 0 or 1.
+#[inline]
+pub fn sign(x: f64) -> f64 {
+    if x > 0.0 {
+        1.0
+    } else if x < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_are_finite_at_exact_zeros() {
+        let zero = Dual::variable(0.0, 0);
+        for exponent in [1.0, 1.5, 2.0, 3.0] {
+            assert!(zero.power_of_magnitude(Dual::variable(exponent, 1)).is_finite());
+        }
+        assert!(zero.sqrt().is_finite() && zero.abs().is_finite());
+    }
+
+    #[test]
+    fn power_of_magnitude_differentiates_base_and_exponent() {
+        for (x, a) in [(0.3, 2.0), (-0.7, 2.0), (1.9, 1.0), (-2.5, 1.4), (0.02, 3.3)] {
+            let y = Dual::variable(x, 0).power_of_magnitude(Dual::variable(a, 1));
+            let f = |x: f64, a: f64| x.abs().powf(a);
+            let step = 1e-6;
+            let in_base = (f(x + step, a) - f(x - step, a)) / (2.0 * step);
+            let in_exponent = (f(x, a + step) - f(x, a - step)) / (2.0 * step);
+            assert!((y.derivative(0) - in_base).abs() < 1e-7 * (1.0 + in_base.abs()));
+            assert!((y.derivative(1) - in_exponent).abs() < 1e-7 * (1.0 + in_exponent.abs()));
+            assert!((y.re() - Scalar::power_of_magnitude(x, a)).abs() <= f64::EPSILON);
+        }
+    }
+
+    #[test]
+    fn functions_agree_with_central_differences() {
+        let functions: [(fn(Dual) -> Dual, fn(f64) -> f64); 5] = [
+            (|x| Scalar::exp(x), f64::exp),
+            (|x| Scalar::exp_m1(x), f64::exp_m1),
+            (|x| Scalar::sin(x), f64::sin),
+            (|x| Scalar::cos(x), f64::cos),
+            (|x| Scalar::sqrt(x), f64::sqrt),
+        ];
+        for (dual, real) in functions {
+            let y = dual(Dual::variable(0.8, 3));
+            let slope = (real(0.8 + 1e-6) - real(0.8 - 1e-6)) / 2e-6;
+            assert_eq!(y.re(), real(0.8));
+            assert!((y.derivative(3) - slope).abs() < 1e-8);
+        }
+    }
+}

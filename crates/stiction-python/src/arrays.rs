@@ -1,0 +1,158 @@
+//! Arrays from Python: C-contiguous float64 is borrowed, anything else is converted.
+
+use numpy::{
+    PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods,
+};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyDict;
+use stiction_core::motor::PerSample;
+
+use crate::error::{duration, input_error};
+
+static ASARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+
+/// A C-contiguous float64 array of at least one dimension and one element, all of it finite.
+pub fn samples<'py>(
+    name: &str,
+    values: &Bound<'py, PyAny>,
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let py = values.py();
+    let array = match values.cast::<PyArrayDyn<f64>>() {
+        Ok(array) if array.is_c_contiguous() => array.clone(),
+        _ => {
+            let options = PyDict::new(py);
+            options.set_item("dtype", "float64")?;
+            options.set_item("order", "C")?;
+            let converted = ASARRAY
+                .import(py, "numpy", "asarray")?
+                .call((values,), Some(&options))
+                .map_err(|error| {
+                    let reason = error.value(py).to_string();
+                    input_error(py, format!("{name} is not an array of numbers: {reason}"))
+                })?;
+            converted.cast_into::<PyArrayDyn<f64>>()?
+        }
+    };
+    if array.ndim() == 0 {
+        return Err(input_error(
+            py,
+            format!("{name} is a single number; give an array of shape (n,), or use step"),
+        ));
+    }
+    if array.len() == 0 {
+        return Err(input_error(py, format!("{name} is empty; give at least one sample")));
+    }
+    let array = array.readonly();
+    if let Some(bad) = array.as_slice()?.iter().position(|x| !x.is_finite()) {
+        let given = array.as_slice()?[bad];
+        return Err(input_error(
+            py,
+            format!("{name}[{bad}] = {given} is not a finite number; repair or drop the sample"),
+        ));
+    }
+    Ok(array)
+}
+
+/// A one-dimensional [`samples`].
+pub fn one_row<'py>(
+    name: &str,
+    values: &Bound<'py, PyAny>,
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let array = samples(name, values)?;
+    if array.ndim() != 1 {
+        return Err(input_error(
+            values.py(),
+            format!("{name} has {} dimensions; give an array of shape (n,)", array.ndim()),
+        ));
+    }
+    Ok(array)
+}
+
+/// One number for all samples or one for each.
+pub enum Each<'py> {
+    /// The same for all.
+    Same(f64),
+    /// One for each.
+    Array(PyReadonlyArrayDyn<'py, f64>),
+}
+
+impl<'py> Each<'py> {
+    /// Reads a scalar, an array of this shape, or nothing.
+    pub fn read(
+        name: &str,
+        value: Option<&Bound<'py, PyAny>>,
+        neutral: f64,
+        shape: &[usize],
+    ) -> PyResult<Self> {
+        let Some(value) = value else { return Ok(Self::Same(neutral)) };
+        let py = value.py();
+        if let Ok(number) = value.extract::<f64>() {
+            return crate::error::finite(py, name, number).map(Self::Same);
+        }
+        let array = samples(name, value)?;
+        if array.shape() != shape {
+            return Err(input_error(
+                py,
+                format!(
+                    "{name} has shape {:?} where {shape:?} is needed; give one value a sample or \
+                     one number",
+                    array.shape()
+                ),
+            ));
+        }
+        Ok(Self::Array(array))
+    }
+
+    /// Reads steps: a positive number, or one positive number a sample.
+    pub fn steps(name: &str, value: &Bound<'py, PyAny>, shape: &[usize]) -> PyResult<Self> {
+        let each = Self::read(name, Some(value), f64::NAN, shape)?;
+        match &each {
+            Self::Same(step) => {
+                duration(value.py(), name, *step)?;
+            }
+            Self::Array(steps) => {
+                for step in steps.as_slice()? {
+                    duration(value.py(), name, *step)?;
+                }
+            }
+        }
+        Ok(each)
+    }
+
+    /// The form that the core takes, usable without the interpreter.
+    pub fn per_sample(&self) -> PyResult<PerSample<'_>> {
+        Ok(match self {
+            Self::Same(value) => PerSample::Same(*value),
+            Self::Array(array) => PerSample::Each(array.as_slice()?),
+        })
+    }
+}
+
+/// A writable C-contiguous float64 array of this length to fill.
+pub fn target<'py>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+    length: usize,
+) -> PyResult<PyReadwriteArrayDyn<'py, f64>> {
+    let py = value.py();
+    let wrong = |what: String| {
+        input_error(
+            py,
+            format!(
+                "out['{name}'] {what}; give a writable C-contiguous float64 array of shape \
+                 ({length},)"
+            ),
+        )
+    };
+    let array = value
+        .cast::<PyArrayDyn<f64>>()
+        .map_err(|_| wrong("is not a float64 array".to_owned()))?;
+    if array.shape() != [length] {
+        return Err(wrong(format!("has shape {:?}", array.shape())));
+    }
+    if !array.is_c_contiguous() {
+        return Err(wrong("is not C-contiguous".to_owned()));
+    }
+    array.try_readwrite().map_err(|_| wrong("is read-only or given twice".to_owned()))
+}

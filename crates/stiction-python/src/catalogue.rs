@@ -1,0 +1,78 @@
+//! The catalogue of laws and effects as plain dicts; `stiction.catalogue` makes records of them.
+
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use stiction_core::effects::EFFECTS;
+use stiction_core::friction::LAWS;
+use stiction_core::parameter::{Default, MotionKind, ParameterSpec};
+
+fn parameters<'py>(py: Python<'py>, specs: &[ParameterSpec]) -> PyResult<Bound<'py, PyList>> {
+    let list = PyList::empty(py);
+    for spec in specs {
+        let dict = PyDict::new(py);
+        dict.set_item("name", spec.name)?;
+        dict.set_item("meaning", spec.meaning)?;
+        dict.set_item("unit", spec.quantity.unit(MotionKind::Rotary))?;
+        dict.set_item("linear_unit", spec.quantity.unit(MotionKind::Linear))?;
+        let (default, rule) = match spec.default {
+            Default::Value(value) => (value, None),
+            Default::Ratio { of, factor, otherwise } => {
+                (otherwise, Some(format!("{factor}·{of} where {of} is stated")))
+            }
+        };
+        dict.set_item("default", default)?;
+        dict.set_item("default_rule", rule)?;
+        dict.set_item("neutral", spec.neutral)?;
+        dict.set_item("typical", spec.typical)?;
+        dict.set_item("bounds", spec.bounds)?;
+        list.append(dict)?;
+    }
+    Ok(list)
+}
+
+/// Every law of the catalogue.
+#[pyfunction]
+pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
+    let list = PyList::empty(py);
+    for law in LAWS {
+        let dict = PyDict::new(py);
+        dict.set_item("name", law.name)?;
+        dict.set_item("summary", law.summary)?;
+        dict.set_item("source", law.source)?;
+        dict.set_item("parameters", parameters(py, law.parameters)?)?;
+        let options = PyList::empty(py);
+        for option in law.options {
+            let entry = PyDict::new(py);
+            entry.set_item("name", option.name)?;
+            entry.set_item("meaning", option.meaning)?;
+            entry.set_item("choices", option.choices.to_vec())?;
+            options.append(entry)?;
+        }
+        dict.set_item("options", options)?;
+        dict.set_item("outputs", law.outputs.to_vec())?;
+        list.append(dict)?;
+    }
+    Ok(list)
+}
+
+/// Every effect of the catalogue.
+#[pyfunction]
+pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
+    let list = PyList::empty(py);
+    for effect in EFFECTS {
+        let dict = PyDict::new(py);
+        dict.set_item("name", effect.name)?;
+        dict.set_item("summary", effect.facts.summary)?;
+        dict.set_item("family", effect.facts.class)?;
+        dict.set_item("coordinate", effect.facts.coordinate)?;
+        dict.set_item("channels", effect.facts.channels.to_vec())?;
+        dict.set_item("look_alikes", effect.facts.look_alikes.to_vec())?;
+        dict.set_item("experiment", effect.facts.experiment)?;
+        dict.set_item("gains", effect.facts.gains.to_vec())?;
+        let hooks: Vec<&str> = effect.hooks.iter().map(|hook| hook.word()).collect();
+        dict.set_item("hooks", hooks)?;
+        dict.set_item("parameters", parameters(py, effect.parameters)?)?;
+        list.append(dict)?;
+    }
+    Ok(list)
+}

@@ -1,0 +1,50 @@
+//! Errors of the core as `stiction.errors.InputError`.
+
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyType;
+
+static INPUT_ERROR: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+
+/// An `InputError` with this sentence.
+pub fn input_error(py: Python<'_>, sentence: impl Into<String>) -> PyErr {
+    match INPUT_ERROR.import(py, "stiction.errors", "InputError") {
+        Ok(class) => PyErr::from_type(class.clone(), (sentence.into(),)),
+        Err(error) => error,
+    }
+}
+
+/// The Python form of the core's results.
+pub trait IntoPython<T> {
+    /// Turns a core error into an `InputError`.
+    fn or_input_error(self, py: Python<'_>) -> PyResult<T>;
+}
+
+impl<T> IntoPython<T> for stiction_core::error::Result<T> {
+    fn or_input_error(self, py: Python<'_>) -> PyResult<T> {
+        self.map_err(|error| input_error(py, error.to_string()))
+    }
+}
+
+/// Refuses a number that is not finite.
+#[inline]
+pub fn finite(py: Python<'_>, name: &str, value: f64) -> PyResult<f64> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(input_error(py, format!("{name} = {value} is not a finite number; give a finite one")))
+    }
+}
+
+/// Refuses a step that is not a positive time.
+#[inline]
+pub fn duration(py: Python<'_>, name: &str, value: f64) -> PyResult<f64> {
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(input_error(
+            py,
+            format!("{name} = {value} is not a step: allowed is a positive number of seconds"),
+        ))
+    }
+}

@@ -1,0 +1,45 @@
+//! Python binding of stiction-core: module `stiction._native`.
+
+mod arrays;
+mod catalogue;
+mod error;
+mod friction_model;
+mod motor;
+mod state;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::catalogue::{effects, laws};
+    #[pymodule_export]
+    use super::friction_model::FrictionModel;
+    #[pymodule_export]
+    use super::motor::Motor;
+
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)] // Python's own name for it
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+
+    use pyo3::prelude::*;
+
+    /// Two floats in, one out: what any method costs before it does anything.
+    #[pyclass(frozen, module = "stiction._native")]
+    pub(super) struct Nothing;
+
+    #[pymethods]
+    impl Nothing {
+        #[new]
+        fn new() -> Self {
+            Self
+        }
+
+        /// Returns its first argument.
+        #[pyo3(text_signature = "($self, velocity, dt)")]
+        fn step(&self, velocity: f64, dt: f64) -> f64 {
+            let _ = dt;
+            velocity
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! `Motor`: a machine with friction, advanced sample by sample or over arrays.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use numpy::{PyArray1, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use stiction_core::integrate::Integrator;
+use stiction_core::motor::{Column, EffectSpec, Motor as Core, MotorSpec};
+use stiction_core::sensitivity::sensitivity;
+
+use crate::arrays::{Each, one_row, target};
+use crate::error::{IntoPython, duration, finite, input_error};
+use crate::friction_model::FrictionModel;
+use crate::state::{from_dict, keywords, to_dict};
+
+/// Base of ``stiction.Motor``: everything that needs no Python.
+#[pyclass(frozen, subclass, module = "stiction._native")]
+pub struct Motor {
+    core: Mutex<Core>,
+}
+
+impl Motor {
+    #[inline]
+    fn lock(&self) -> MutexGuard<'_, Core> {
+        self.core.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl Motor {
+    #[new]
+    #[pyo3(signature = (
+        inertia, torque_constant=1.0, friction=None, *, effects=None, gravity_amplitude=0.0,
+        gravity_zero=0.0, weight=0.0, input_limit=f64::INFINITY, count=0.0, integrator="fast",
+    ))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn new(
+        py: Python<'_>,
+        inertia: f64,
+        torque_constant: f64,
+        friction: Option<&Bound<'_, FrictionModel>>,
+        effects: Option<&Bound<'_, PyDict>>,
+        gravity_amplitude: f64,
+        gravity_zero: f64,
+        weight: f64,
+        input_limit: f64,
+        count: f64,
+        integrator: &str,
+    ) -> PyResult<Self> {
+        let Some(friction) = friction else {
+            return Err(input_error(
+                py,
+                "friction is missing; give a FrictionModel, for instance \
+                 FrictionModel('coulomb', coulomb=0.35)",
+            ));
+        };
+        let (law, state) = {
+            let core = friction.get().lock();
+            (core.spec().clone(), core.state().clone())
+        };
+        let integrator = match integrator {
+            "fast" => Integrator::Fast,
+            "reference" => Integrator::Reference,
+            other => {
+                return Err(input_error(
+                    py,
+                    format!("integrator '{other}' is unknown; known: fast, reference"),
+                ));
+            }
+        };
+        let mut list = Vec::new();
+        for (name, values) in effects.into_iter().flatten() {
+            let name: String = name
+                .extract()
+                .map_err(|_| input_error(py, format!("effect name {name} is not a word")))?;
+            let values = values.cast::<PyDict>().map_err(|_| {
+                input_error(py, format!("parameters of effect {name} are not a dict"))
+            })?;
+            let (numbers, words) = keywords(&name, Some(values))?;
+            if let Some((option, _)) = words.first() {
+                return Err(input_error(
+                    py,
+                    format!("{option} of effect {name} is a word; allowed is a number"),
+                ));
+            }
+            list.push(EffectSpec::new(&name, &numbers).or_input_error(py)?);
+        }
+        let spec = MotorSpec {
+            input_limit,
+            gravity_amplitude,
+            gravity_zero,
+            weight,
+            count,
+            effects: list,
+            integrator,
+            ..MotorSpec::new(inertia, torque_constant, law)
+        };
+        let mut core = Core::new(spec).or_input_error(py)?;
+        core.set_friction_state(state);
+        Ok(Self { core: Mutex::new(core) })
+    }
+
+    /// One sample with held current; position and velocity at its end.
+    #[pyo3(signature = (current, dt, *, load=0.0))]
+    fn step(&self, py: Python<'_>, current: f64, dt: f64, load: f64) -> PyResult<(f64, f64)> {
+        let current = finite(py, "current", current)?;
+        let dt = duration(py, "dt", dt)?;
+        let load = finite(py, "load", load)?;
+        Ok(self.lock().step(current, load, dt))
+    }
+
+    /// Samples with held inputs; the arrays asked for, by name.
+    #[pyo3(signature = (current, dt, *, load=None, outputs=None, out=None))]
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        load: Option<&Bound<'py, PyAny>>,
+        outputs: Option<Vec<String>>,
+        out: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let current = one_row("current", current)?;
+        let shape = current.shape().to_vec();
+        let n = shape[0];
+        let dt = Each::steps("dt", dt, &shape)?;
+        let load = Each::read("load", load, 0.0, &shape)?;
+        let law = self.lock().spec().friction.clone();
+        let names: Vec<String> = match (outputs, out) {
+            (Some(names), _) => names,
+            (None, Some(out)) if !out.is_empty() => {
+                out.keys().iter().map(|key| key.extract()).collect::<PyResult<_>>()?
+            }
+            _ => Column::names(&law).iter().map(|name| (*name).to_owned()).collect(),
+        };
+        let result = PyDict::new(py);
+        let mut arrays: Vec<(Column, PyReadwriteArrayDyn<'py, f64>)> = Vec::new();
+        for name in &names {
+            let column = Column::named(&law, name).or_input_error(py)?;
+            if result.contains(name)? {
+                return Err(input_error(py, format!("output '{name}' is asked for twice")));
+            }
+            let array = match out.map(|out| out.get_item(name)).transpose()?.flatten() {
+                Some(array) => array,
+                None => PyArray1::<f64>::zeros(py, n, false).into_any(),
+            };
+            result.set_item(name, &array)?;
+            arrays.push((column, target(name, &array, n)?));
+        }
+        let current = current.as_slice()?;
+        let (dt, load) = (dt.per_sample()?, load.per_sample()?);
+        let mut columns = Vec::with_capacity(arrays.len());
+        for (column, array) in &mut arrays {
+            columns.push((*column, array.as_slice_mut()?));
+        }
+        py.detach(|| self.lock().simulate(current, load, dt, &mut columns)).or_input_error(py)?;
+        Ok(result)
+    }
+
+    /// Exact derivatives of position and velocity by parameters, from the present state.
+    ///
+    /// Returns two arrays of shape (parameters, n); the motor is left as it was.
+    #[pyo3(signature = (current, dt, parameters, *, load=None))]
+    #[allow(clippy::type_complexity)]
+    fn sensitivity<'py>(
+        &self,
+        py: Python<'py>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        parameters: Vec<String>,
+        load: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Bound<'py, numpy::PyArray2<f64>>, Bound<'py, numpy::PyArray2<f64>>)> {
+        let current = one_row("current", current)?;
+        let shape = current.shape().to_vec();
+        let dt = Each::steps("dt", dt, &shape)?;
+        let load = Each::read("load", load, 0.0, &shape)?;
+        let current = current.as_slice()?;
+        let (dt, load) = (dt.per_sample()?, load.per_sample()?);
+        let result = py.detach(|| {
+            let core = self.lock().clone();
+            let running = core.running();
+            let start = (&running.run, &running.state);
+            sensitivity(core.spec(), start, current, load, dt, &parameters)
+        });
+        let result = result.or_input_error(py)?;
+        Ok((
+            numpy::PyArray2::from_vec2(py, &result.position)?,
+            numpy::PyArray2::from_vec2(py, &result.velocity)?,
+        ))
+    }
+
+    /// Paths and values of all parameters.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (path, value) in self.lock().spec().parameters() {
+            dict.set_item(path, value)?;
+        }
+        Ok(dict)
+    }
+
+    /// Keywords that rebuild the motor, but for friction.
+    fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let spec = self.lock().spec().clone();
+        let effects = PyDict::new(py);
+        for effect in &spec.effects {
+            let values = PyDict::new(py);
+            for (parameter, value) in effect.record.parameters.iter().zip(&effect.values) {
+                values.set_item(parameter.name, value)?;
+            }
+            effects.set_item(effect.record.name, values)?;
+        }
+        let dict = PyDict::new(py);
+        dict.set_item("inertia", spec.inertia)?;
+        dict.set_item("torque_constant", spec.gain)?;
+        dict.set_item("effects", effects)?;
+        dict.set_item("gravity_amplitude", spec.gravity_amplitude)?;
+        dict.set_item("gravity_zero", spec.gravity_zero)?;
+        dict.set_item("weight", spec.weight)?;
+        dict.set_item("input_limit", spec.input_limit)?;
+        dict.set_item("count", spec.count)?;
+        let integrator = match spec.integrator {
+            Integrator::Fast => "fast",
+            Integrator::Reference => "reference",
+        };
+        dict.set_item("integrator", integrator)?;
+        Ok(dict)
+    }
+
+    /// Law, parameters and options of the friction: what ``FrictionModel`` takes.
+    fn friction_settings<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(&'static str, Bound<'py, PyDict>)> {
+        let spec = self.lock().spec().friction.clone();
+        let dict = PyDict::new(py);
+        for (parameter, value) in spec.record.parameters.iter().zip(&spec.values) {
+            dict.set_item(parameter.name, value)?;
+        }
+        for (name, word) in spec.options() {
+            dict.set_item(name, word)?;
+        }
+        Ok((spec.record.name, dict))
+    }
+
+    /// Names of the columns that a trajectory can show.
+    #[getter]
+    fn output_names(&self) -> Vec<&'static str> {
+        Column::names(&self.lock().spec().friction)
+    }
+
+    /// Back to rest at this position (or in motion at this velocity), friction never moved.
+    #[pyo3(signature = (position=0.0, velocity=0.0))]
+    fn reset(&self, py: Python<'_>, position: f64, velocity: f64) -> PyResult<()> {
+        let position = finite(py, "position", position)?;
+        let velocity = finite(py, "velocity", velocity)?;
+        self.lock().reset(position, velocity);
+        Ok(())
+    }
+
+    /// State of body and friction as a dict of floats and arrays; assign one to continue from it.
+    #[getter]
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let entries = self.lock().entries();
+        to_dict(py, entries)
+    }
+
+    #[setter]
+    fn set_state(&self, state: &Bound<'_, PyDict>) -> PyResult<()> {
+        let entries = from_dict(state)?;
+        self.lock().restore(&entries).or_input_error(state.py())
+    }
+
+    /// How often each branch was taken: reversals, closings, break-aways, sticks, memory.
+    #[getter]
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let counted = self.lock().statistics();
+        let dict = PyDict::new(py);
+        dict.set_item("reversals", counted.reversals)?;
+        dict.set_item("closings", counted.closings)?;
+        dict.set_item("breakaways", counted.breakaways)?;
+        dict.set_item("sticks", counted.sticks)?;
+        dict.set_item("memory_peak", counted.memory_peak)?;
+        dict.set_item("memory_growths", counted.memory_growths)?;
+        Ok(dict)
+    }
+}

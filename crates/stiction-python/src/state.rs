@@ -1,0 +1,98 @@
+//! States as dicts of floats and arrays.
+
+use numpy::{PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use stiction_core::friction::Entry;
+
+use crate::arrays::samples;
+use crate::error::input_error;
+
+/// A state as a dict.
+pub fn to_dict<'py>(
+    py: Python<'py>,
+    entries: Vec<(&'static str, Entry)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (name, entry) in entries {
+        match entry {
+            Entry::Number(x) => dict.set_item(name, x)?,
+            Entry::Pairs(rows) => {
+                let array = PyArray2::zeros(py, [rows.len(), 2], false);
+                {
+                    let mut filled = array.readwrite();
+                    let flat = filled.as_slice_mut()?;
+                    for (target, row) in flat.chunks_exact_mut(2).zip(rows) {
+                        target.copy_from_slice(&row);
+                    }
+                }
+                dict.set_item(name, array)?;
+            }
+        }
+    }
+    Ok(dict)
+}
+
+/// The entries of a state given as a dict.
+pub fn from_dict(state: &Bound<'_, PyDict>) -> PyResult<Vec<(String, Entry)>> {
+    state
+        .iter()
+        .map(|(name, value)| {
+            let py = name.py();
+            let name: String = name
+                .extract()
+                .map_err(|_| input_error(py, format!("state key {name} is not a word")))?;
+            if let Ok(number) = value.extract::<f64>() {
+                return Ok((name, Entry::Number(number)));
+            }
+            let shape: Vec<usize> = value
+                .getattr("shape")
+                .and_then(|shape| shape.extract())
+                .map_err(|_| {
+                    input_error(py, format!("state entry '{name}' is neither number nor array"))
+                })?;
+            if shape.len() != 2 || shape[1] != 2 {
+                return Err(input_error(
+                    py,
+                    format!("state entry '{name}' has shape {shape:?}; allowed is (n, 2)"),
+                ));
+            }
+            if shape[0] == 0 {
+                return Ok((name, Entry::Pairs(Vec::new())));
+            }
+            let rows = samples(&name, &value)?;
+            let pairs = rows.as_slice()?.chunks_exact(2).map(|row| [row[0], row[1]]).collect();
+            Ok((name, Entry::Pairs(pairs)))
+        })
+        .collect()
+}
+
+/// Parameters (numbers) and options (words) given as keywords.
+#[allow(clippy::type_complexity)]
+pub fn keywords(
+    owner: &str,
+    given: Option<&Bound<'_, PyDict>>,
+) -> PyResult<(Vec<(String, f64)>, Vec<(String, String)>)> {
+    let (mut numbers, mut words) = (Vec::new(), Vec::new());
+    for (name, value) in given.into_iter().flatten() {
+        let py = name.py();
+        let name: String = name
+            .extract()
+            .map_err(|_| input_error(py, format!("keyword {name} of {owner} is not a word")))?;
+        if let Ok(word) = value.extract::<String>() {
+            words.push((name, word));
+        } else if let Ok(number) = value.extract::<f64>() {
+            numbers.push((name, number));
+        } else {
+            let kind = value.get_type().name()?;
+            return Err(input_error(
+                py,
+                format!(
+                    "{name} of {owner} is a {kind}; allowed is a number for a parameter, a word \
+                     for an option"
+                ),
+            ));
+        }
+    }
+    Ok((numbers, words))
+}

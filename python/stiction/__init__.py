@@ -1,0 +1,53 @@
+"""Simulates machines that stick, creep and slip, and shows what a simulation gets wrong.
+
+>>> import stiction as st
+>>> motor = st.Motor(inertia=0.0076, friction=st.FrictionModel("hsieh_pan"))
+>>> position, velocity = motor.step(0.2, 1e-4)
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from ._native import FrictionModel, __version__
+from .errors import InputError
+from .motor import Motor
+from .trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from .catalogue import effects, laws
+    from .plant import Plant
+    from .recording import Recording
+
+__all__ = [
+    "FrictionModel",
+    "InputError",
+    "Motor",
+    "Plant",
+    "Recording",
+    "Trajectory",
+    "__version__",
+    "effects",
+    "laws",
+]
+
+# Imported on first use, so that `import stiction` costs little more than numpy.
+_LAZY = {
+    "Plant": "plant",
+    "Recording": "recording",
+    "effects": "catalogue",
+    "laws": "catalogue",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LAZY:
+        value = getattr(import_module(f".{_LAZY[name]}", __name__), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,115 @@
+"""What the compiled module holds; checked against the binary by stubtest."""
+
+from collections.abc import Sequence
+from typing import Any, Final, final
+
+import numpy as np
+import numpy.typing as npt
+
+_Floats = npt.NDArray[np.float64]
+
+__version__: Final[str]
+
+def laws() -> list[dict[str, Any]]: ...
+def effects() -> list[dict[str, Any]]: ...
+
+@final
+class FrictionModel:
+    def __new__(cls, law: str, /, **keywords: float | str) -> FrictionModel: ...
+    def step(
+        self,
+        velocity: float,
+        dt: float,
+        *,
+        load: float = 0.0,
+        effort: float = 0.0,
+        temperature: float | None = None,
+    ) -> float: ...
+    def simulate(
+        self,
+        velocity: npt.ArrayLike,
+        dt: float,
+        *,
+        load: npt.ArrayLike | None = None,
+        effort: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+    ) -> _Floats: ...
+    def trial(
+        self,
+        velocity: float,
+        dt: float,
+        *,
+        load: float = 0.0,
+        effort: float = 0.0,
+        temperature: float | None = None,
+    ) -> tuple[float, float]: ...
+    def commit(self) -> None: ...
+    def reset(self) -> None: ...
+    def copy(self) -> FrictionModel: ...
+    def __copy__(self) -> FrictionModel: ...
+    def __deepcopy__(self, _memo: Any, /) -> FrictionModel: ...
+    @property
+    def law(self) -> str: ...
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    @property
+    def options(self) -> dict[str, str]: ...
+    @property
+    def state(self) -> dict[str, Any]: ...
+    @state.setter
+    def state(self, value: dict[str, Any]) -> None: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+class Motor:
+    def __new__(
+        cls,
+        inertia: float,
+        torque_constant: float = 1.0,
+        friction: FrictionModel | None = None,
+        *,
+        effects: dict[str, dict[str, float]] | None = None,
+        gravity_amplitude: float = 0.0,
+        gravity_zero: float = 0.0,
+        weight: float = 0.0,
+        input_limit: float = ...,
+        count: float = 0.0,
+        integrator: str = "fast",
+    ) -> Motor: ...
+    def step(self, current: float, dt: float, *, load: float = 0.0) -> tuple[float, float]: ...
+    def run(
+        self,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        *,
+        load: npt.ArrayLike | None = None,
+        outputs: Sequence[str] | None = None,
+        out: dict[str, _Floats] | None = None,
+    ) -> dict[str, _Floats]: ...
+    def sensitivity(
+        self,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        parameters: Sequence[str],
+        *,
+        load: npt.ArrayLike | None = None,
+    ) -> tuple[_Floats, _Floats]: ...
+    def settings(self) -> dict[str, Any]: ...
+    def friction_settings(self) -> tuple[str, dict[str, Any]]: ...
+    def reset(self, position: float = 0.0, velocity: float = 0.0) -> None: ...
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    @property
+    def output_names(self) -> list[str]: ...
+    @property
+    def state(self) -> dict[str, Any]: ...
+    @state.setter
+    def state(self, value: dict[str, Any]) -> None: ...
+    @property
+    def statistics(self) -> dict[str, int]: ...
+
+@final
+class Nothing:
+    def __new__(cls) -> Nothing: ...
+    def step(self, velocity: float, dt: float) -> float: ...

@@ -1,0 +1,119 @@
+"""The catalogue of laws and effects as records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from . import _native
+
+__all__ = ["EffectRecord", "LawRecord", "OptionRecord", "ParameterRecord", "effects", "laws"]
+
+
+@dataclass(frozen=True)
+class ParameterRecord:
+    """One parameter: name, meaning, units (rotary and linear), default, bounds.
+
+    ``default_rule`` says where the default follows another parameter; ``neutral`` is the value
+    at which the parameter does nothing, where there is one.
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    linear_unit: str
+    default: float
+    default_rule: str | None
+    neutral: float | None
+    typical: float
+    bounds: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class OptionRecord:
+    """A choice between named behaviours; the first is the default."""
+
+    name: str
+    meaning: str
+    choices: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class LawRecord:
+    """A friction law."""
+
+    name: str
+    summary: str
+    source: str
+    parameters: tuple[ParameterRecord, ...]
+    options: tuple[OptionRecord, ...]
+    outputs: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The record as plain dicts and lists."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class EffectRecord:
+    """An effect that a plant may have beside its law."""
+
+    name: str
+    summary: str
+    family: str
+    coordinate: str
+    channels: tuple[str, ...]
+    look_alikes: tuple[str, ...]
+    experiment: str
+    gains: tuple[str, ...]
+    hooks: tuple[str, ...]
+    parameters: tuple[ParameterRecord, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The record as plain dicts and lists."""
+        return asdict(self)
+
+
+def _parameters(entries: list[dict[str, Any]]) -> tuple[ParameterRecord, ...]:
+    return tuple(ParameterRecord(**entry) for entry in entries)
+
+
+def _laws() -> Iterator[LawRecord]:
+    for entry in _native.laws():
+        options = tuple(
+            OptionRecord(o["name"], o["meaning"], tuple(tuple(c) for c in o["choices"]))
+            for o in entry["options"]
+        )
+        yield LawRecord(
+            name=entry["name"],
+            summary=entry["summary"],
+            source=entry["source"],
+            parameters=_parameters(entry["parameters"]),
+            options=options,
+            outputs=tuple(entry["outputs"]),
+        )
+
+
+def laws() -> tuple[LawRecord, ...]:
+    """Every friction law of the catalogue."""
+    return tuple(_laws())
+
+
+def effects() -> tuple[EffectRecord, ...]:
+    """Every effect of the catalogue."""
+    return tuple(
+        EffectRecord(
+            name=entry["name"],
+            summary=entry["summary"],
+            family=entry["family"],
+            coordinate=entry["coordinate"],
+            channels=tuple(entry["channels"]),
+            look_alikes=tuple(entry["look_alikes"]),
+            experiment=entry["experiment"],
+            gains=tuple(entry["gains"]),
+            hooks=tuple(entry["hooks"]),
+            parameters=_parameters(entry["parameters"]),
+        )
+        for entry in _native.effects()
+    )

@@ -1,0 +1,13 @@
+"""What the package raises when the request itself cannot be read."""
+
+from __future__ import annotations
+
+__all__ = ["InputError"]
+
+
+class InputError(ValueError):
+    """Something that was given (a file, a column, a value) cannot be used as it stands.
+
+    The message is one plain sentence: where the fault is, what was given, what is allowed and
+    what to do about it.  The command line prints that sentence alone and exits with status 2.
+    """

@@ -1,0 +1,155 @@
+"""A motor (or any single-axis machine) with friction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from ._native import FrictionModel
+from .errors import InputError
+from .trajectory import FloatArray, Trajectory
+
+__all__ = ["Motor"]
+
+
+class Motor(_native.Motor):
+    """A body driven by an input and resisted by friction: J·x'' = k·u + load − F.
+
+    Parameters
+    ----------
+    inertia : float
+        kg·m² (rotary) or kg (linear).
+    torque_constant : float
+        Effort per unit of input (current, voltage, effort), N·m/A and so on.
+    friction : FrictionModel
+        Copied with its state; the motor owns the copy.
+    effects : dict of str to dict of str to float, optional
+        Effects by name with their parameters, see ``stiction.effects()``.
+    gravity_amplitude, gravity_zero : float
+        Pendulum torque ``gravity_amplitude * sin(x - gravity_zero)`` that pulls back to
+        ``gravity_zero``; N·m and rad.
+    weight : float
+        Constant force against positive motion, N.
+    input_limit : float
+        Greatest magnitude of the input that gets through.
+    count : float
+        Size of a sensor count for the output ``measured``; 0 for none.
+    integrator : {"fast", "reference"}
+        Velocity Verlet with one evaluation of friction a step, or Runge-Kutta of fourth order.
+        Both divide a sample that is too long for the stiffness of the machine.
+
+    Raises
+    ------
+    InputError
+        A value out of bounds, an unknown effect, a missing friction.
+    """
+
+    def simulate(
+        self,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        *,
+        load: npt.ArrayLike | None = None,
+        outputs: Sequence[str] | None = None,
+        out: dict[str, FloatArray] | None = None,
+    ) -> Trajectory:
+        """Simulate samples of held input.
+
+        Parameters
+        ----------
+        current : array_like, shape (n,)
+            Input of each sample, held over it.
+        dt : float or array_like, shape (n,)
+            Duration of a sample in s, or of each.
+        load : float or array_like, shape (n,), optional
+            External effort, positive along +x.
+        outputs : sequence of str, optional
+            Which columns to compute; all of ``output_names`` without it.
+        out : dict of str to numpy.ndarray, optional
+            Arrays to fill again: C-contiguous float64 of shape (n,). Where ``outputs`` is not
+            given, its keys say which columns to compute.
+
+        Returns
+        -------
+        Trajectory
+            Entry k is the state after input k, as the k-th ``step`` returns it.
+
+        Raises
+        ------
+        InputError
+            Wrong shapes, values that are not finite, unknown outputs.
+        """
+        if isinstance(outputs, str):
+            raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
+        names = None if outputs is None else list(outputs)
+        start = float(self.state["time"])
+        columns = self.run(current, dt, load=load, outputs=names, out=out)
+        length = len(next(iter(columns.values()))) if columns else np.size(current)
+        steps: float | FloatArray
+        steps = float(np.asarray(dt)) if np.ndim(dt) == 0 else np.array(dt, dtype=np.float64)
+        return Trajectory(columns, steps, length, start=start, statistics=self.statistics)
+
+    @property
+    def friction(self) -> FrictionModel:
+        """A copy of the friction law in its present state."""
+        law, keywords = self.friction_settings()
+        model = FrictionModel(law, **keywords)
+        model.state = {name: self.state[name] for name in model.state}
+        return model
+
+    def copy(self) -> Self:
+        """An independent copy, state included."""
+        law, keywords = self.friction_settings()
+        other = type(self)(friction=FrictionModel(law, **keywords), **self.settings())
+        other.state = self.state
+        return other
+
+    def __copy__(self) -> Self:
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self.copy()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        from ._rebuild import motor
+
+        return motor, (self.settings(), *self.friction_settings(), self.state)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Motor):
+            return NotImplemented
+        return (
+            self.settings() == other.settings()
+            and self.friction_settings() == other.friction_settings()
+            and _same_state(self.state, other.state)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        neutral = {
+            "effects": {},
+            "gravity_amplitude": 0.0,
+            "gravity_zero": 0.0,
+            "weight": 0.0,
+            "input_limit": float("inf"),
+            "count": 0.0,
+            "integrator": "fast",
+        }
+        shown = ", ".join(
+            f"{name}={value!r}"
+            for name, value in self.settings().items()
+            if name not in neutral or value != neutral[name]
+        )
+        law, keywords = self.friction_settings()
+        return f"Motor({shown}, friction={FrictionModel(law, **keywords)!r})"
+
+
+def _same_state(one: dict[str, Any], other: dict[str, Any]) -> bool:
+    return one.keys() == other.keys() and all(
+        np.array_equal(one[name], other[name]) for name in one
+    )

@@ -1,0 +1,76 @@
+"""The file formats that recordings are read from.
+
+A new format is one file with a ``FORMAT`` in it and one line in ``FORMATS``.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from ...errors import InputError
+from ..table import Table
+from ..wording import nearest
+from . import delimited, json_records, mat, npz
+from .format import Format
+
+__all__ = ["FORMATS", "Format", "read_table"]
+
+FORMATS: tuple[Format, ...] = (
+    delimited.FORMAT,
+    mat.FORMAT,
+    npz.FORMAT,
+    json_records.FORMAT,
+)
+
+
+def read_table(path: str | os.PathLike[str]) -> Table:
+    """Read every column of a file, without units or meaning.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file; its ending chooses the format.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    InputError
+        If the file is missing, empty, a folder, of an unknown kind, or not what its ending says.
+    """
+    file = Path(path)
+    if file.is_dir():
+        raise InputError(f"{file}: this is a folder; name a file in it")
+    if not file.exists():
+        raise InputError(f"{file}: there is no such file{_near_by(file)}")
+    chosen = _format_of(file)
+    try:
+        if file.stat().st_size == 0:
+            raise InputError(f"{file}: the file is empty; record it again or name another")
+        return chosen.read(file)
+    except OSError as error:
+        reason = error.strerror or "the system refuses"
+        raise InputError(
+            f"{file}: the file cannot be read ({reason}); check its rights and the disk"
+        ) from error
+
+
+def _format_of(file: Path) -> Format:
+    suffix = file.suffix.casefold()
+    for known in FORMATS:
+        if suffix in known.suffixes:
+            return known
+    kinds = "; ".join(f"{known.name} ({' '.join(known.suffixes)})" for known in FORMATS)
+    given = f"the ending '{file.suffix}' is not known" if suffix else "the file has no ending"
+    raise InputError(f"{file}: {given}; the kinds read here are {kinds}")
+
+
+def _near_by(file: Path) -> str:
+    folder = file.parent
+    if not folder.is_dir():
+        return f", and no folder '{folder}'; check the path"
+    near = nearest(file.name, (entry.name for entry in folder.iterdir()))
+    return f" (did you mean '{near}'?)" if near else "; check the path"

@@ -1,0 +1,77 @@
+"""JSON: a list of records, or an object whose one list of records is the table."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import InputError
+from ..table import CELLS_KEPT, Cell, Table
+from ..wording import counted, listed
+from .format import Format
+
+_SHAPE = 'write [{"time_s": 0.0, ...}, ...], or an object that holds one such list'
+
+
+def read(path: Path) -> Table:
+    """Read a JSON file of records; true and false count as 1 and 0, null as missing."""
+    records = _records(path, _content(path))
+    names = list(dict.fromkeys(name for record in records for name in record))
+    columns = {name: np.full(len(records), np.nan) for name in names}
+    cells: list[Cell] = []
+    kept = dict.fromkeys(names, 0)
+    for row, record in enumerate(records):
+        for name, value in record.items():
+            if isinstance(value, (int, float)):
+                columns[name][row] = _double(value)
+            elif value is not None and kept[name] < CELLS_KEPT:
+                cells.append(Cell(row, name, value if isinstance(value, str) else str(value)))
+                kept[name] += 1
+    return Table(path, columns, tuple(cells))
+
+
+FORMAT = Format("JSON", (".json",), read)
+
+
+def _content(path: Path) -> Any:
+    try:
+        return json.loads(path.read_bytes())
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: the text is not UTF-8; save it as UTF-8") from error
+    except json.JSONDecodeError as error:
+        raise InputError(
+            f"{path}: line {error.lineno} is not JSON ({error.msg}); was the file cut off?"
+        ) from error
+    except ValueError as error:  # an integer of thousands of digits
+        raise InputError(f"{path}: the JSON cannot be read ({error})") from error
+    except RecursionError as error:
+        raise InputError(f"{path}: the JSON is nested too deeply; {_SHAPE}") from error
+
+
+def _records(path: Path, content: Any) -> list[dict[str, Any]]:
+    if _is_table(content):
+        return list(content)
+    if isinstance(content, dict):
+        tables = [name for name, value in content.items() if _is_table(value)]
+        if len(tables) == 1:
+            return list(content[tables[0]])
+        if tables:
+            raise InputError(
+                f"{path}: the object holds {counted(len(tables), 'list')} of records "
+                f"({listed(tables)}), and it may hold one; save the others apart"
+            )
+    raise InputError(f"{path}: there is no list of records in this file; {_SHAPE}")
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
+
+
+def _double(value: float) -> float:
+    try:
+        return float(value)
+    except OverflowError:  # JSON has no largest integer
+        return float("inf") if value > 0 else float("-inf")

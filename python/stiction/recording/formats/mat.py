@@ -1,0 +1,106 @@
+"""MATLAB files: every vector is a column, the fields of a struct under dotted names.
+
+Files of version 7.3 are HDF5 and are read through h5py, an optional extra.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import InputError
+from ..table import Table, table_of_arrays, vector
+from ..units import FloatArray
+from .format import Format
+
+_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+# MATLAB puts its own text header before the HDF5 part; other writers may not.
+_HDF5_OFFSETS = (0, 512)
+
+_Found = dict[str, FloatArray | str]
+
+
+def read(path: Path) -> Table:
+    """Read a MAT file of any version (see the module's text)."""
+    with path.open("rb") as file:
+        start = file.read(_HDF5_OFFSETS[-1] + len(_HDF5_SIGNATURE))
+    found: _Found = {}
+    if any(start[offset:].startswith(_HDF5_SIGNATURE) for offset in _HDF5_OFFSETS):
+        _read_hdf5(path, found)
+    else:
+        _read_classic(path, found)
+    return table_of_arrays(path, found, "variable")
+
+
+FORMAT = Format("MAT", (".mat",), read)
+
+
+def _unreadable(path: Path, error: Exception) -> InputError:
+    reason = " ".join(str(error).split()) or type(error).__name__
+    return InputError(
+        f"{path}: this cannot be read as a MAT file ({reason[:120]}); "
+        "save it again from MATLAB, or correct the file's ending"
+    )
+
+
+def _read_classic(path: Path, found: _Found) -> None:
+    import scipy.io  # type: ignore[import-untyped]
+
+    try:
+        variables = scipy.io.loadmat(str(path), appendmat=False)
+    except Exception as error:  # a damaged file makes the reader fail in ways it does not list
+        if isinstance(error, OSError) and error.errno is not None:
+            raise  # the disk's fault, not the file's
+        raise _unreadable(path, error) from error
+    for name, value in variables.items():
+        if not name.startswith("__"):
+            _add_classic(name, value, found)
+
+
+def _add_classic(name: str, value: Any, found: _Found) -> None:
+    if not isinstance(value, np.ndarray):
+        found[name] = "is stored as a sparse matrix or an object; save it as a plain vector"
+    elif type(value).__name__ == "MatlabOpaque" or type(value).__name__ == "MatlabFunction":
+        found[name] = "is a MATLAB object; save its contents as plain vectors"
+    elif value.dtype.names is None:
+        found[name] = vector(value)
+    elif value.size != 1:
+        found[name] = f"is an array of {value.size} structs, and only a single struct is read"
+    else:
+        for field in value.dtype.names:
+            _add_classic(f"{name}.{field}", value.flat[0][field], found)
+
+
+def _read_hdf5(path: Path, found: _Found) -> None:
+    try:
+        import h5py  # type: ignore[import-untyped]
+    except ImportError as error:
+        raise InputError(
+            f"{path}: this MAT file has version 7.3, which is read through h5py; install it "
+            "with pip install 'stiction[mat73]', or save the file with -v7 in MATLAB"
+        ) from error
+    try:
+        with h5py.File(path, "r") as file:
+            _add_hdf5("", file, found, h5py)
+    except Exception as error:  # h5py reports damage as OSError, RuntimeError or KeyError
+        raise _unreadable(path, error) from error
+
+
+def _add_hdf5(name: str, node: Any, found: _Found, h5py: Any) -> None:
+    if isinstance(node, h5py.Group):
+        for key, child in node.items():
+            # #refs# and #subsystem# hold what cells and objects point to.
+            if not key.startswith("#"):
+                _add_hdf5(f"{name}.{key}" if name else key, child, found, h5py)
+        return
+    kind = node.attrs.get("MATLAB_class", b"double")
+    if kind == b"char":
+        found[name] = "holds text or cells, not numbers"
+    elif "MATLAB_empty" in node.attrs:
+        found[name] = "is empty"
+    elif node.dtype.names is not None:
+        found[name] = "holds complex numbers"
+    else:
+        found[name] = vector(node[()])

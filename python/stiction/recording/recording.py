@@ -1,0 +1,308 @@
+"""A recording of a machine: channels in SI values over one clock."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import InputError
+from .columns import ROLES, Columns
+from .formats import read_table
+from .mapping import read_channels
+from .rendering import as_html, as_text
+from .repair import Place, Repair, check_lengths, mend
+from .units import FloatArray, Motion
+from .wording import did_you_mean
+
+SPLIT_ROLES: Final = ("train", "select", "test")
+"""What a recording may be used for."""
+
+_MAIN: Final = ("time", "input", "position")
+_OPTIONAL: Final = tuple(role for role in ROLES if role not in _MAIN)
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Recording:
+    """What was measured on a machine, in SI values.
+
+    Row k is the state at ``time[k]``; the input of row k holds from there to row k + 1.
+
+    Parameters
+    ----------
+    time : array_like, shape (rows,)
+        Seconds, increasing; at least 200 rows.
+    input : array_like, shape (rows,), or None
+        A, V, N·m or N.  None where the motion is prescribed; then give ``effort``.
+    position : array_like, shape (rows,), or None
+        rad or m.  None for a recording of the input alone.
+    role : {"train", "select", "test"}, optional
+        What the recording may be used for; without it the split is made later.
+    kind : str
+        Free words; recordings of one kind are alike.
+    start_s : float
+        When the recording starts on the clock of the session, in seconds.
+    **channels : array_like, shape (rows,)
+        Any of ``effort`` (N·m or N, positive along positive motion), ``velocity``,
+        ``reference``, ``load``, ``temperature`` (degC), ``normal_force``,
+        ``friction_coefficient``.
+
+    Attributes
+    ----------
+    quality : tuple of Repair
+        What was mended, how often and where first.
+    faults : tuple of str
+        Why the recording is unusable; empty unless it was loaded with ``keep_faulty``.
+    notes : tuple of str
+        The repairs and all else that was decided on the way, in sentences.
+    units : mapping of str to str
+        SI unit of each channel, "" where nothing tells.
+    motion : {"rotary", "linear"} or None
+        As stated, or told by the units.
+    path : Path or None
+        The file.
+
+    Raises
+    ------
+    InputError
+        If lengths differ, rows are fewer than 200, the clock runs backward, or 5 % of a
+        channel's cells or more are missing.
+
+    Notes
+    -----
+    Arrays are copied and cannot be written to.
+    """
+
+    time: FloatArray
+    input: FloatArray | None
+    position: FloatArray | None
+    role: str | None
+    kind: str
+    start_s: float
+    quality: tuple[Repair, ...]
+    faults: tuple[str, ...]
+    notes: tuple[str, ...]
+    motion: Motion | None
+    path: Path | None
+
+    def __init__(
+        self,
+        time: npt.ArrayLike,
+        input: npt.ArrayLike | None,
+        position: npt.ArrayLike | None,
+        *,
+        role: str | None = None,
+        kind: str = "",
+        start_s: float = 0.0,
+        **channels: npt.ArrayLike,
+    ) -> None:
+        for name in channels:
+            if name not in _OPTIONAL:
+                raise InputError(
+                    f"Recording: there is no channel '{name}'{did_you_mean(name, _OPTIONAL)}; "
+                    f"the channels are {', '.join(_OPTIONAL)}"
+                )
+        given: dict[str, Any] = {"time": time, "input": input, "position": position, **channels}
+        values = {
+            name: _flat(name, array)
+            for name, array in given.items()
+            if array is not None or name == "time"
+        }
+        check_lengths("Recording", {name: len(array) for name, array in values.items()})
+        self._fill(
+            values,
+            source="Recording",
+            place=lambda row: f"index {row}",
+            labels=_labels(role, kind, start_s),
+        )
+
+    @classmethod
+    def load(
+        cls,
+        path: str | os.PathLike[str],
+        columns: Mapping[str, Any] | Columns | None = None,
+        *,
+        motion: Motion | None = None,
+        drive: str | None = None,
+        count_size: float | None = None,
+        role: str | None = None,
+        kind: str = "",
+        start_s: float = 0.0,
+        keep_faulty: bool = False,
+    ) -> Recording:
+        """Read a recording from a CSV, MAT, NPZ or JSON file.
+
+        Parameters
+        ----------
+        path : str or path-like
+        columns : mapping of role to column, optional
+            As ``[columns]`` of session.toml: each a name, or a table of name, unit, scale and
+            offset.  Roles left out are looked for under their canonical names (``time_s``).
+        motion : {"rotary", "linear"}, optional
+            Without it the units tell.
+        drive : {"current_a", "voltage_v", "torque_nm", "force_n", "prescribed_motion"}, optional
+            Which canonical column is the input; with "prescribed_motion" ``torque_nm`` and
+            ``force_n`` are the measured effort.
+        count_size : float, optional
+            Size of one sensor count in rad or m, for columns in ``count``.
+        role, kind, start_s
+            As for `Recording`.
+        keep_faulty : bool
+            Load a recording with too many missing cells too, and say so in ``faults``.
+
+        Raises
+        ------
+        InputError
+            If the file or a column cannot be used; the message is one sentence that says where
+            and what to do.
+        """
+        labels = _labels(role, kind, start_s)
+        mapped = Columns.parse(columns)
+        table = read_table(path)
+        channels = read_channels(table, mapped, drive=drive, motion=motion, count_size=count_size)
+        recording = cls.__new__(cls)
+        recording._fill(
+            channels.values,
+            source=str(table.path),
+            place=table.place,
+            labels=labels,
+            units=channels.units,
+            motion=channels.motion,
+            notes=channels.notes,
+            path=table.path,
+            keep_faulty=keep_faulty,
+        )
+        return recording
+
+    def _fill(
+        self,
+        values: Mapping[str, FloatArray],
+        *,
+        source: str,
+        place: Place,
+        labels: Mapping[str, Any],
+        units: Mapping[str, str] | None = None,
+        motion: Motion | None = None,
+        notes: tuple[str, ...] = (),
+        path: Path | None = None,
+        keep_faulty: bool = False,
+    ) -> None:
+        _check_channels(source, values)
+        mended = mend(values, source=source, place=place, keep_faulty=keep_faulty)
+        arrays = dict(mended.values)
+        for array in arrays.values():
+            array.flags.writeable = False
+        state = {
+            **labels,
+            **{name: arrays.pop(name, None) for name in _MAIN},
+            "_channels": arrays,
+            "_units": dict.fromkeys(values, "") | {"time": "s"} | dict(units or {}),
+            "quality": mended.repairs,
+            "faults": mended.faults,
+            "notes": (*mended.faults, *(str(repair) for repair in mended.repairs), *notes),
+            "motion": motion,
+            "path": path,
+        }
+        for name, value in state.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def channels(self) -> Mapping[str, FloatArray]:
+        """Every channel besides time, input and position, by name."""
+        return MappingProxyType(self.__dict__["_channels"])
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """SI unit of every channel, "" where nothing tells it."""
+        return MappingProxyType(self.__dict__["_units"])
+
+    @property
+    def effort(self) -> FloatArray | None:
+        """Measured effort, shape (rows,), N·m or N: stands in place of input where None."""
+        return self.channels.get("effort")
+
+    @property
+    def dt(self) -> float:
+        """Median time step, s."""
+        return float(np.median(np.diff(self.time)))
+
+    @property
+    def duration(self) -> float:
+        """Time from the first to the last row, s."""
+        return float(self.time[-1] - self.time[0])
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __repr__(self) -> str:
+        return as_text(self)
+
+    def _repr_html_(self) -> str:
+        return as_html(self)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        # Copies and pickles come back with writeable arrays.
+        self.__dict__.update(state)
+        for array in (self.time, self.input, self.position, *self.channels.values()):
+            if array is not None:
+                array.flags.writeable = False
+
+
+def _flat(name: str, given: npt.ArrayLike) -> FloatArray:
+    """A new flat array of doubles."""
+    try:
+        array = np.asarray(given)
+        if array.dtype.kind not in "biuf":
+            raise TypeError(f"the type is {array.dtype}")
+        flat = np.array(array, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"Recording: {name} cannot be read as real numbers ({error}); "
+            "give a flat array of floats"
+        ) from error
+    if flat.ndim != 1:
+        raise InputError(
+            f"Recording: {name} has the shape {flat.shape}; give a flat array, one value a row"
+        )
+    return flat
+
+
+def _labels(role: str | None, kind: str, start_s: float) -> dict[str, Any]:
+    if role is not None and role not in SPLIT_ROLES:
+        raise InputError(
+            f"Recording: the role is {role!r}{did_you_mean(str(role), SPLIT_ROLES)}; "
+            f"give {', '.join(SPLIT_ROLES)}, or none"
+        )
+    if not isinstance(kind, str):
+        raise InputError(f"Recording: the kind is {kind!r}; give text")
+    if (
+        isinstance(start_s, bool)
+        or not isinstance(start_s, (int, float, np.number))
+        or not math.isfinite(start_s)
+    ):
+        raise InputError(f"Recording: start_s is {start_s!r}; give a finite number of seconds")
+    return {"role": role, "kind": kind, "start_s": float(start_s)}
+
+
+def _check_channels(source: str, values: Mapping[str, FloatArray]) -> None:
+    if "input" in values and "effort" in values:
+        raise InputError(
+            f"{source}: both input and effort are given; give the input of a driven machine, or "
+            "the measured effort of one that is moved, and not both"
+        )
+    if "input" not in values and "effort" not in values:
+        raise InputError(
+            f"{source}: neither input nor effort is given; give the input of a driven machine, "
+            "or the measured effort of one that is moved"
+        )
+    if "input" not in values and not {"position", "velocity"} & set(values):
+        raise InputError(
+            f"{source}: an effort is given without the motion it belongs to; give position as well"
+        )

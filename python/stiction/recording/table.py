@@ -1,0 +1,143 @@
+"""What a file reader hands over: named columns of numbers, as they stand in the file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import InputError
+from .units import FloatArray
+from .wording import counted, did_you_mean, listed
+
+# Of each column, this many cells that are not numbers are kept; one is enough for an error.
+CELLS_KEPT = 20
+
+_MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "null", "none"})
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell that holds text where a number belongs: 0-based row, column name, the text."""
+
+    row: int
+    column: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Table:
+    """Named columns of one file.
+
+    Columns of text formats have equal lengths; the variables of MAT and NPZ files need not.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    columns : dict of str to ndarray, shape (rows,), float64
+        In the order of the file.  Cells that are missing or hold text are NaN.
+    cells : tuple of Cell
+        Cells holding text, the first 20 of each column, by row.
+    unusable : dict of str to str
+        What else the file holds, and why it cannot be a column ("is a scalar").
+    lines : ndarray of int, shape (rows,), optional
+        1-based line number of each row, for formats that have lines.
+    """
+
+    path: Path
+    columns: dict[str, FloatArray]
+    cells: tuple[Cell, ...] = ()
+    unusable: dict[str, str] = field(default_factory=dict)
+    lines: npt.NDArray[np.int64] | None = None
+
+    def place(self, row: int) -> str:
+        """How a reader finds a 0-based row again: ``"line 19"``, or ``"row 17"`` (1-based)."""
+        return f"row {row + 1}" if self.lines is None else f"line {self.lines[row]}"
+
+    def find(self, name: str, field_name: str) -> FloatArray:
+        """One column, as numbers.
+
+        Parameters
+        ----------
+        name : str
+            The column's name, exactly as it stands in the file.
+        field_name : str
+            The field that asks for it, for the error sentence.
+
+        Returns
+        -------
+        ndarray, shape (rows,), float64
+
+        Raises
+        ------
+        InputError
+            If the file has no such column, or it is no vector, or a cell of it holds text.
+        """
+        if name in self.unusable:
+            raise InputError(
+                f"{self.path}: '{name}', asked for as {field_name}, {self.unusable[name]}; "
+                f"the columns here are {listed(self.columns)}"
+            )
+        if name not in self.columns:
+            raise InputError(
+                f"{self.path}: there is no column '{name}', asked for as {field_name}"
+                f"{did_you_mean(name, self.columns)}; the columns here are {listed(self.columns)}"
+            )
+        for cell in self.cells:
+            if cell.column == name:
+                raise InputError(
+                    f"{self.path}: {self.place(cell.row)}, column '{name}' holds "
+                    f"{shown(cell.text)}, which is not a number; correct the cell, or empty it "
+                    "to have it filled from its neighbours"
+                )
+        return self.columns[name]
+
+
+def shown(text: str) -> str:
+    """Foreign text, quoted and short enough to stand in one sentence."""
+    return repr(text if len(text) <= 40 else text[:37] + "...")
+
+
+def is_missing(text: str) -> bool:
+    """Whether a cell's text says that there is no value."""
+    return text.strip().casefold() in _MISSING
+
+
+def vector(array: npt.NDArray[np.generic]) -> FloatArray | str:
+    """A stored array as a column, or the reason why it cannot be one."""
+    if array.dtype.kind in "USO":
+        return "holds text or cells, not numbers"
+    if array.dtype.kind == "c":
+        return "holds complex numbers"
+    if array.dtype.kind not in "biuf":
+        return "does not hold numbers"
+    if array.size == 0:
+        return "is empty"
+    if array.size == 1:
+        return "is a scalar"
+    if sum(length > 1 for length in array.shape) > 1:
+        shape = " x ".join(str(length) for length in array.shape)
+        return f"is a {shape} matrix, and a column must be a vector (save its columns apart)"
+    return np.ascontiguousarray(array.ravel(), dtype=np.float64)
+
+
+def table_of_arrays(path: Path, arrays: dict[str, FloatArray | str], what: str) -> Table:
+    """A table from named vectors, with the reasons that stand in place of the unusable ones.
+
+    Raises
+    ------
+    InputError
+        If there is no vector among them.
+    """
+    columns = {name: array for name, array in arrays.items() if not isinstance(array, str)}
+    unusable = {name: reason for name, reason in arrays.items() if isinstance(reason, str)}
+    if not columns:
+        held = listed(f"{name} {reason}" for name, reason in unusable.items())
+        raise InputError(
+            f"{path}: none of its {counted(len(unusable), what)} is a vector of numbers "
+            f"({held}); save time, input and position as vectors"
+        )
+    return Table(path, columns, unusable=unusable)

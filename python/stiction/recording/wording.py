@@ -1,0 +1,40 @@
+"""Pieces of the sentences that errors and notes are made of."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+# Below this similarity a suggestion misleads more often than it helps.
+_ALIKE = 0.55
+# A longer list than this hides what the reader looks for.
+_LISTED = 24
+
+
+def listed(words: Iterable[str]) -> str:
+    """Words joined by commas, at most 24 of them, or "nothing"."""
+    all_words = list(words)
+    text = ", ".join(all_words[:_LISTED])
+    if len(all_words) > _LISTED:
+        text += f" and {len(all_words) - _LISTED} more"
+    return text or "nothing"
+
+
+def nearest(word: str, words: Iterable[str]) -> str | None:
+    """The one of ``words`` that looks most like ``word``, whatever the case, or None."""
+    by_fold: dict[str, str] = {}
+    for candidate in words:
+        by_fold.setdefault(candidate.casefold(), candidate)
+    hits = difflib.get_close_matches(word.casefold(), by_fold, n=1, cutoff=_ALIKE)
+    return by_fold[hits[0]] if hits else None
+
+
+def did_you_mean(word: str, words: Iterable[str]) -> str:
+    """``" (did you mean 'x'?)"``, or nothing where no word is near."""
+    near = nearest(word, words)
+    return f" (did you mean '{near}'?)" if near is not None else ""
+
+
+def counted(number: int, singular: str, plural: str | None = None) -> str:
+    """``"1 row"``, ``"3 rows"``."""
+    return f"{number} {singular if number == 1 else plural or singular + 's'}"

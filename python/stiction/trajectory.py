@@ -1,0 +1,172 @@
+"""What a simulation returns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["FloatArray", "Trajectory"]
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+class Trajectory:
+    """Columns of a simulation, each of shape (n,); read them as attributes or by name.
+
+    Entry k is the state after input k, at ``time[k]``, the end of sample k.
+
+    Attributes
+    ----------
+    time : numpy.ndarray, shape (n,)
+        Seconds since the motor's last reset; computed on access.
+    position, velocity, friction, measured, … : numpy.ndarray, shape (n,)
+        The columns that were asked for. rad or m, rad/s or m/s, N·m or N; the law's own states
+        under their names.
+    statistics : Mapping
+        How often each branch was taken since the last reset.
+    success : bool
+        Whether every value is finite.
+    message : str
+        What happened, in words.
+    """
+
+    def __init__(
+        self,
+        columns: Mapping[str, FloatArray],
+        dt: float | FloatArray,
+        length: int,
+        *,
+        start: float = 0.0,
+        statistics: Mapping[str, int] | None = None,
+    ) -> None:
+        self._columns = MappingProxyType(dict(columns))
+        self._dt = dt
+        self._length = length
+        self._start = start
+        self.statistics = MappingProxyType(dict(statistics or {}))
+
+    @property
+    def columns(self) -> Mapping[str, FloatArray]:
+        """The columns by name."""
+        return self._columns
+
+    @property
+    def dt(self) -> float | FloatArray:
+        """Duration of a sample in s, or of each."""
+        return self._dt
+
+    @property
+    def time(self) -> FloatArray:
+        """Time at the end of each sample in s."""
+        if isinstance(self._dt, np.ndarray):
+            return np.asarray(self._start + np.cumsum(self._dt), dtype=np.float64)
+        return np.asarray(self._start + self._dt * np.arange(1, self._length + 1), dtype=np.float64)
+
+    @property
+    def success(self) -> bool:
+        """Whether every value is finite."""
+        return all(bool(np.isfinite(values).all()) for values in self._columns.values())
+
+    @property
+    def message(self) -> str:
+        """What happened, in words."""
+        if not self.success:
+            return "the motion ran away: some values are not finite; check units and inertia"
+        counted = self.statistics
+        slides = counted.get("breakaways", 0)
+        return f"{self._length} samples, {slides} break-aways, {counted.get('sticks', 0)} stops"
+
+    def __getattr__(self, name: str) -> FloatArray:
+        try:
+            return self.__dict__["_columns"][name]  # type: ignore[no-any-return]
+        except KeyError:
+            have = ", ".join(self.__dict__.get("_columns", ()))
+            raise AttributeError(f"trajectory has no column '{name}'; it has {have}") from None
+
+    def __getitem__(self, name: str) -> FloatArray:
+        try:
+            return self._columns[name]
+        except KeyError:
+            have = ", ".join(self._columns)
+            raise InputError(f"column '{name}' is not in the trajectory; it has {have}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return self._length
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._columns]
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {
+            "columns": dict(self._columns),
+            "dt": self._dt,
+            "length": self._length,
+            "start": self._start,
+            "statistics": dict(self.statistics),
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(**state)  # type: ignore[misc]
+
+    def __repr__(self) -> str:
+        span = self.time[-1] - self._start if self._length else 0.0
+        return f"Trajectory({self._length} samples, {span:.6g} s: {', '.join(self._columns)})"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><th>{name}</th><td>{values[0]:.6g}</td><td>{values.min():.6g}</td>"
+            f"<td>{values.max():.6g}</td><td>{values[-1]:.6g}</td></tr>"
+            for name, values in self._columns.items()
+        )
+        return (
+            f"<p>{self.message}</p><table><tr><th>column</th><th>first</th><th>least</th>"
+            f"<th>greatest</th><th>last</th></tr>{rows}</table>"
+        )
+
+    def to_frame(self) -> Any:
+        """A pandas DataFrame indexed by time (pandas is an extra: ``stiction[pandas]``)."""
+        try:
+            import pandas as pd
+        except ImportError:
+            raise InputError(
+                "to_frame needs pandas; install it with: pip install 'stiction[pandas]'"
+            ) from None
+        return pd.DataFrame(dict(self._columns), index=pd.Index(self.time, name="time_s"))
+
+    def save(self, path: str | Path) -> Path:
+        """Write time and columns as NPZ (or CSV, by the name's ending); returns the path."""
+        path = Path(path)
+        table = {"time_s": self.time, **self._columns}
+        if path.suffix == ".npz":
+            np.savez_compressed(path, **table)  # type: ignore[arg-type]
+        elif path.suffix == ".csv":
+            np.savetxt(
+                path,
+                np.column_stack(list(table.values())),
+                delimiter=",",
+                header=",".join(table),
+                comments="",
+                fmt="%.17g",
+            )
+        else:
+            raise InputError(f"{path}: ending '{path.suffix}' is not known; use .npz or .csv")
+        return path
+
+    def plot(self) -> Figure:
+        """A figure of position, velocity and friction over time."""
+        from . import plot
+
+        return plot.trajectory(self)
