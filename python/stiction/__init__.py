@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .catalogue import effects, laws
     from .plant import Plant
     from .recording import Recording
+    from .session import Session, load
 
 __all__ = [
     "FrictionModel",
@@ -26,18 +27,22 @@ __all__ = [
     "Motor",
     "Plant",
     "Recording",
+    "Session",
     "Trajectory",
     "__version__",
     "effects",
     "laws",
+    "load",
 ]
 
 # Imported on first use, so that `import stiction` costs little more than numpy.
 _LAZY = {
     "Plant": "plant",
     "Recording": "recording",
+    "Session": "session",
     "effects": "catalogue",
     "laws": "catalogue",
+    "load": "session",
 }
 
 

@@ -87,6 +87,14 @@ class Motor:
         outputs: Sequence[str] | None = None,
         out: dict[str, _Floats] | None = None,
     ) -> dict[str, _Floats]: ...
+    def follow(
+        self,
+        position: npt.ArrayLike,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        *,
+        load: npt.ArrayLike | None = None,
+    ) -> tuple[_Floats, _Floats, _Floats]: ...
     def sensitivity(
         self,
         current: npt.ArrayLike,

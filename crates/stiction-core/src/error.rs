@@ -19,7 +19,9 @@ pub enum Error {
         known: String,
     },
     /// A number outside its bounds.
-    #[error("{name} = {given} is out of bounds: allowed is {lower} to {upper}{unit}; change {name}")]
+    #[error(
+        "{name} = {given} is out of bounds: allowed is {lower} to {upper}{unit}; change {name}"
+    )]
     OutOfBounds {
         /// Path of the parameter, `friction.coulomb`.
         name: String,
@@ -41,7 +43,9 @@ pub enum Error {
         given: f64,
     },
     /// Two parameters in the wrong order.
-    #[error("{lesser} = {lesser_value} must {relation} {greater} = {greater_value}; change one of them")]
+    #[error(
+        "{lesser} = {lesser_value} must {relation} {greater} = {greater_value}; change one of them"
+    )]
     Order {
         /// Name of the parameter that must be the lesser.
         lesser: String,

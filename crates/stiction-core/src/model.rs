@@ -39,8 +39,7 @@ impl LawSpec {
         for (option, _) in options {
             if !record.options.iter().any(|known| known.name == option) {
                 let words = record.parameters.iter().map(|p| p.name);
-                let words: Vec<&str> =
-                    words.chain(record.options.iter().map(|o| o.name)).collect();
+                let words: Vec<&str> = words.chain(record.options.iter().map(|o| o.name)).collect();
                 return Err(Error::unknown(format!("option of {name}"), option, words));
             }
         }
@@ -197,7 +196,7 @@ impl FrictionModel {
             held.outcome
         });
         const { assert!(COLUMNS > 0) };
-        Scalar::derivative(outcome.force, 0)
+        Scalar::partial(outcome.force, 0)
     }
 
     /// Accepts the last trial; false when there was none since the state last changed.

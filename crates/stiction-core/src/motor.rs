@@ -5,7 +5,7 @@ use crate::drive::Drive;
 use crate::effects::{AnyEffect, EffectRecord, Effects, effect_record};
 use crate::error::{Error, Result};
 use crate::friction::{AnyState, Entry, Law, LawState, Statistics};
-use crate::integrate::{Integrator, Machine, Run, sample, substeps};
+use crate::integrate::{Along, Integrator, Machine, Run, sample, substeps, through_events};
 use crate::model::{CHUNK, LawSpec};
 use crate::parameter::resolve;
 use crate::scalar::Scalar;
@@ -93,7 +93,13 @@ impl MotorSpec {
             }
             if given < lower || given > upper {
                 let unit = String::new();
-                return Err(Error::OutOfBounds { name: name.to_owned(), given, lower, upper, unit });
+                return Err(Error::OutOfBounds {
+                    name: name.to_owned(),
+                    given,
+                    lower,
+                    upper,
+                    unit,
+                });
             }
         }
         Ok(())
@@ -126,8 +132,7 @@ impl MotorSpec {
         let effects = self.effects.iter().map(|effect| {
             let own;
             (own, rest) = rest.split_at(effect.values.len());
-            AnyEffect::build(effect.record.name, own)
-                .expect("the record's own name is in the list")
+            AnyEffect::build(effect.record.name, own).expect("the record's own name is in the list")
         });
         let effects = Effects::new(effects);
         let machine = Machine::new(
@@ -288,6 +293,66 @@ impl<S: Scalar> Running<S> {
     }
 }
 
+/// Efforts along a motion that was measured or prescribed.
+#[derive(Debug, Clone, Copy)]
+pub struct Efforts<S> {
+    /// Effort of the drive for the held input.
+    pub driven: S,
+    /// Gravity and added efforts.
+    pub ambient: S,
+    /// Friction.
+    pub friction: S,
+}
+
+impl<S: Scalar> Running<S> {
+    /// Moves the contact along given positions, one more than there are inputs, and reports the
+    /// efforts at the end of each sample. The inertia term is the caller's: it needs the
+    /// acceleration, which no difference of neighbouring samples gives.
+    pub fn follow(
+        &mut self,
+        positions: &[f64],
+        inputs: PerSample<'_>,
+        load: PerSample<'_>,
+        dt: PerSample<'_>,
+        mut row: impl FnMut(usize, Efforts<S>),
+    ) {
+        with_law_and_state!(&self.law, &mut self.state, |law, state| {
+            // Velocity at a stamp is the slope between its neighbours, so that what depends on
+            // velocity is not half a sample late; at the first stamp there is only one side.
+            let last = positions.len() - 1;
+            let slope = |k: usize| {
+                let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+                let span: f64 = (before..after).map(|j| dt.at(j)).sum();
+                S::constant((positions[after] - positions[before]) / span)
+            };
+            let mut velocity = slope(0);
+            for (k, pair) in positions.windows(2).enumerate() {
+                if k % CHUNK == 0 {
+                    state.make_room(CHUNK + CHUNK / 4);
+                }
+                let span = S::constant(dt.at(k));
+                let load = S::constant(load.at(k));
+                let before = velocity;
+                velocity = slope(k + 1);
+                self.run.position = S::constant(pair[1]);
+                self.run.velocity = velocity;
+                self.run.time += span;
+                self.run.second_position = self.run.position;
+                self.run.second_velocity = velocity;
+                let at = self.run.situation();
+                let (effort, driven, ambient) =
+                    self.machine.efforts(&at, S::constant(inputs.at(k)), load);
+                let channels = self.machine.channels(&at, effort, load);
+                let displacement = S::constant(pair[1] - pair[0]);
+                let mut held = Along::new(displacement, span, (before, velocity), channels);
+                through_events(&mut held, law, state, span);
+                self.run.friction = held.outcome.force;
+                row(k, Efforts { driven, ambient, friction: held.outcome.force });
+            }
+        });
+    }
+}
+
 /// A motor in plain numbers: what `Motor` is in Python.
 #[derive(Debug, Clone)]
 pub struct Motor {
@@ -355,12 +420,43 @@ impl Motor {
                     Column::Position => run.position,
                     Column::Velocity => run.velocity,
                     Column::Friction => run.friction,
-                    Column::Measured => {
-                        machine.sensor.read(machine.effects.sensor(run.position))
-                    }
+                    Column::Measured => machine.sensor.read(machine.effects.sensor(run.position)),
                     Column::Law(index) => output(*index),
                 };
             }
+        });
+        Ok(())
+    }
+
+    /// Efforts along given positions, one more than there are samples: of the drive, of gravity and
+    /// added efforts, and friction, each as long as there are samples.
+    pub fn follow(
+        &mut self,
+        positions: &[f64],
+        inputs: PerSample<'_>,
+        load: PerSample<'_>,
+        dt: PerSample<'_>,
+        efforts: [&mut [f64]; 3],
+    ) -> Result<()> {
+        let wanted = positions.len().saturating_sub(1);
+        for (name, each) in [("input", inputs), ("load", load), ("dt", dt)] {
+            if let PerSample::Each(values) = each
+                && values.len() != wanted
+            {
+                return Err(Error::Length { name: name.to_owned(), given: values.len(), wanted });
+            }
+        }
+        let [driven, ambient, friction] = efforts;
+        for array in [&driven, &ambient, &friction] {
+            if array.len() != wanted {
+                let name = "out".to_owned();
+                return Err(Error::Length { name, given: array.len(), wanted });
+            }
+        }
+        self.running.follow(positions, inputs, load, dt, |k, efforts| {
+            driven[k] = efforts.driven;
+            ambient[k] = efforts.ambient;
+            friction[k] = efforts.friction;
         });
         Ok(())
     }
@@ -418,12 +514,5 @@ impl Motor {
     }
 }
 
-const BODY: [&str; 7] = [
-    "position",
-    "velocity",
-    "time",
-    "friction",
-    "second_position",
-    "second_velocity",
-    "relaxed",
-];
+const BODY: [&str; 7] =
+    ["position", "velocity", "time", "friction", "second_position", "second_velocity", "relaxed"];

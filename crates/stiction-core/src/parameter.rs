@@ -106,11 +106,9 @@ impl ParameterSpec {
                 upper,
                 unit: match self.quantity {
                     Quantity::One => String::new(),
-                    q => format!(
-                        " {} ({})",
-                        q.unit(MotionKind::Rotary),
-                        q.unit(MotionKind::Linear)
-                    ),
+                    q => {
+                        format!(" {} ({})", q.unit(MotionKind::Rotary), q.unit(MotionKind::Linear))
+                    }
                 },
             });
         }

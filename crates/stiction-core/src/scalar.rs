@@ -39,7 +39,7 @@ pub trait Scalar:
     /// The value without its derivatives.
     fn re(self) -> f64;
     /// The derivative in column `column` (0 for `f64`).
-    fn derivative(self, column: usize) -> f64;
+    fn partial(self, column: usize) -> f64;
     /// Chain rule: a function of `self` with the given value and slope.
     fn chain(self, value: f64, slope: f64) -> Self;
 
@@ -106,11 +106,11 @@ pub trait Scalar:
     }
     /// True when the number depends on a seeded parameter.
     fn derivative_is_nonzero(self) -> bool {
-        (0..COLUMNS).any(|k| self.derivative(k) != 0.0)
+        (0..COLUMNS).any(|k| self.partial(k) != 0.0)
     }
     /// True when the value and every derivative are finite.
     fn is_finite(self) -> bool {
-        self.re().is_finite() && (0..COLUMNS).all(|k| self.derivative(k).is_finite())
+        self.re().is_finite() && (0..COLUMNS).all(|k| self.partial(k).is_finite())
     }
 }
 
@@ -128,7 +128,7 @@ impl Scalar for f64 {
         self
     }
     #[inline]
-    fn derivative(self, _column: usize) -> f64 {
+    fn partial(self, _column: usize) -> f64 {
         0.0
     }
     #[inline]
@@ -162,7 +162,7 @@ impl Scalar for Dual {
         self.re
     }
     #[inline]
-    fn derivative(self, column: usize) -> f64 {
+    fn partial(self, column: usize) -> f64 {
         self.eps.0.map_or(0.0, |eps| eps[column])
     }
     #[inline]
@@ -206,15 +206,16 @@ mod tests {
             let step = 1e-6;
             let in_base = (f(x + step, a) - f(x - step, a)) / (2.0 * step);
             let in_exponent = (f(x, a + step) - f(x, a - step)) / (2.0 * step);
-            assert!((y.derivative(0) - in_base).abs() < 1e-7 * (1.0 + in_base.abs()));
-            assert!((y.derivative(1) - in_exponent).abs() < 1e-7 * (1.0 + in_exponent.abs()));
+            assert!((y.partial(0) - in_base).abs() < 1e-7 * (1.0 + in_base.abs()));
+            assert!((y.partial(1) - in_exponent).abs() < 1e-7 * (1.0 + in_exponent.abs()));
             assert!((y.re() - Scalar::power_of_magnitude(x, a)).abs() <= f64::EPSILON);
         }
     }
 
     #[test]
     fn functions_agree_with_central_differences() {
-        let functions: [(fn(Dual) -> Dual, fn(f64) -> f64); 5] = [
+        type Pair = (fn(Dual) -> Dual, fn(f64) -> f64);
+        let functions: [Pair; 5] = [
             (|x| Scalar::exp(x), f64::exp),
             (|x| Scalar::exp_m1(x), f64::exp_m1),
             (|x| Scalar::sin(x), f64::sin),
@@ -225,7 +226,7 @@ mod tests {
             let y = dual(Dual::variable(0.8, 3));
             let slope = (real(0.8 + 1e-6) - real(0.8 - 1e-6)) / 2e-6;
             assert_eq!(y.re(), real(0.8));
-            assert!((y.derivative(3) - slope).abs() < 1e-8);
+            assert!((y.partial(3) - slope).abs() < 1e-8);
         }
     }
 }

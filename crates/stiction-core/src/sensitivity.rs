@@ -51,8 +51,8 @@ pub fn sensitivity(
         running.simulate(inputs, load, dt, |k, run, _, _| {
             for column in 0..seeded.len() {
                 let target = pass * COLUMNS + column;
-                result.position[target][k] = Scalar::derivative(run.position, column);
-                result.velocity[target][k] = Scalar::derivative(run.velocity, column);
+                result.position[target][k] = Scalar::partial(run.position, column);
+                result.velocity[target][k] = Scalar::partial(run.velocity, column);
             }
         });
     }

@@ -145,9 +145,8 @@ pub fn target<'py>(
             ),
         )
     };
-    let array = value
-        .cast::<PyArrayDyn<f64>>()
-        .map_err(|_| wrong("is not a float64 array".to_owned()))?;
+    let array =
+        value.cast::<PyArrayDyn<f64>>().map_err(|_| wrong("is not a float64 array".to_owned()))?;
     if array.shape() != [length] {
         return Err(wrong(format!("has shape {:?}", array.shape())));
     }

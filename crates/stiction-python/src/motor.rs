@@ -158,6 +158,39 @@ impl Motor {
         Ok(result)
     }
 
+    /// Efforts along given positions (shape (n + 1,)): of the drive for held inputs (shape (n,)), of
+    /// gravity and added efforts, and friction; each of shape (n,), at the end of each sample.
+    #[pyo3(signature = (position, current, dt, *, load=None))]
+    #[allow(clippy::type_complexity)]
+    fn follow<'py>(
+        &self,
+        py: Python<'py>,
+        position: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        load: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)>
+    {
+        let position = one_row("position", position)?;
+        let n = position.len() - 1;
+        if n == 0 {
+            return Err(input_error(py, "position has 1 value; give at least two"));
+        }
+        let current = Each::read("current", Some(current), 0.0, &[n])?;
+        let dt = Each::steps("dt", dt, &[n])?;
+        let load = Each::read("load", load, 0.0, &[n])?;
+        let mut efforts = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
+        {
+            let position = position.as_slice()?;
+            let (current, dt, load) = (current.per_sample()?, dt.per_sample()?, load.per_sample()?);
+            let arrays = efforts.each_mut().map(Vec::as_mut_slice);
+            py.detach(|| self.lock().follow(position, current, load, dt, arrays))
+                .or_input_error(py)?;
+        }
+        let [driven, ambient, friction] = efforts.map(|values| PyArray1::from_vec(py, values));
+        Ok((driven, ambient, friction))
+    }
+
     /// Exact derivatives of position and velocity by parameters, from the present state.
     ///
     /// Returns two arrays of shape (parameters, n); the motor is left as it was.

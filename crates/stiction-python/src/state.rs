@@ -45,10 +45,8 @@ pub fn from_dict(state: &Bound<'_, PyDict>) -> PyResult<Vec<(String, Entry)>> {
             if let Ok(number) = value.extract::<f64>() {
                 return Ok((name, Entry::Number(number)));
             }
-            let shape: Vec<usize> = value
-                .getattr("shape")
-                .and_then(|shape| shape.extract())
-                .map_err(|_| {
+            let shape: Vec<usize> =
+                value.getattr("shape").and_then(|shape| shape.extract()).map_err(|_| {
                     input_error(py, format!("state entry '{name}' is neither number nor array"))
                 })?;
             if shape.len() != 2 || shape[1] != 2 {

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from ..errors import InputError
 from .units import find_unit
-from .wording import did_you_mean, listed
+from ..wording import did_you_mean, listed
 
 ROLES: Final[dict[str, tuple[str, ...]]] = {
     "time": ("time",),

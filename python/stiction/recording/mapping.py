@@ -24,7 +24,7 @@ from .units import (
     to_si,
     unit_names,
 )
-from .wording import listed
+from ..wording import listed
 
 PRESCRIBED: Final = "prescribed_motion"
 DRIVES: Final = ("current_a", "voltage_v", "torque_nm", "force_n", PRESCRIBED)

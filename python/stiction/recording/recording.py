@@ -20,7 +20,7 @@ from .mapping import read_channels
 from .rendering import as_html, as_text
 from .repair import Place, Repair, check_lengths, mend
 from .units import FloatArray, Motion
-from .wording import did_you_mean
+from ..wording import did_you_mean
 
 SPLIT_ROLES: Final = ("train", "select", "test")
 """What a recording may be used for."""

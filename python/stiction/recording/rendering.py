@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .wording import counted
+from ..wording import counted
 
 if TYPE_CHECKING:
     from .recording import Recording

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from .units import FloatArray
-from .wording import counted
+from ..wording import counted
 
 BAD_SHARE: Final = 0.05
 """Repairs stay under this share of a channel's cells."""

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from .units import FloatArray
-from .wording import counted, did_you_mean, listed
+from ..wording import counted, did_you_mean, listed
 
 # Of each column, this many cells that are not numbers are kept; one is enough for an error.
 CELLS_KEPT = 20

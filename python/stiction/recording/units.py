@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
-from .wording import did_you_mean, listed
+from ..wording import did_you_mean, listed
 
 FloatArray = npt.NDArray[np.float64]
 Motion = Literal["rotary", "linear"]

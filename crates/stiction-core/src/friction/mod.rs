@@ -154,8 +154,12 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     /// Friction at the present state.
     fn force(&self, state: &Self::State, velocity: S, channels: &Channels<S>) -> S;
     /// Evaluates a step inside the present contact mode.
-    fn advance(&self, state: &Self::State, motion: &Motion<S>, channels: &Channels<S>)
-    -> Self::Trial;
+    fn advance(
+        &self,
+        state: &Self::State,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> Self::Trial;
     /// Friction, slope and damping of a step.
     fn outcome(&self, trial: &Self::Trial) -> Outcome<S>;
     /// Accepts a step.
@@ -168,11 +172,15 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     /// The event that is due before any motion at this velocity.
     fn pending(&self, state: &Self::State, velocity: S) -> Option<Event>;
     /// The event that a step with this velocity at its end runs past.
-    fn event(&self, state: &Self::State, trial: &Self::Trial, motion: &Motion<S>)
-    -> Option<Event>;
+    fn event(&self, state: &Self::State, trial: &Self::Trial, motion: &Motion<S>) -> Option<Event>;
     /// Positive before the event, zero at it, negative past it.
-    fn margin(&self, state: &Self::State, trial: &Self::Trial, motion: &Motion<S>, event: Event)
-    -> S;
+    fn margin(
+        &self,
+        state: &Self::State,
+        trial: &Self::Trial,
+        motion: &Motion<S>,
+        event: Event,
+    ) -> S;
     /// Changes mode at an event.
     fn switch(&self, state: &mut Self::State, event: Event);
 

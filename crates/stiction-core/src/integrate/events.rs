@@ -1,6 +1,7 @@
 //! The loop that every step goes through, and the location of events inside it.
 
-use crate::friction::{Channels, Event, FrictionLaw, Motion, Outcome};
+use super::contact::Held;
+use crate::friction::{Event, FrictionLaw, Motion};
 use crate::scalar::Scalar;
 
 /// Mode changes allowed within one step before the rest is taken in the present mode: a guard
@@ -47,8 +48,7 @@ pub fn through_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
         }
         let attempt = stepper.attempt(law, state, left);
         let (trial, motion) = stepper.contact(&attempt);
-        let event =
-            if passed < MOST_EVENTS { law.event(state, trial, motion) } else { None };
+        let event = if passed < MOST_EVENTS { law.event(state, trial, motion) } else { None };
         let Some(event) = event else {
             stepper.accept(law, state, &attempt, false);
             return passed;
@@ -169,56 +169,6 @@ fn locate<S: Scalar>(span: S, mut margin: impl FnMut(S) -> S) -> S {
     at.chain(inside, 1.0)
 }
 
-/// A contact that is moved at a held velocity: what `FrictionModel.step` does.
-#[derive(Debug, Clone, Copy)]
-pub struct Held<S> {
-    /// Velocity.
-    pub velocity: S,
-    /// What else reaches the contact.
-    pub channels: Channels<S>,
-    /// Friction at the end.
-    pub outcome: Outcome<S>,
-}
-
-impl<S: Scalar> Held<S> {
-    /// A held velocity.
-    pub fn new(velocity: S, channels: Channels<S>) -> Self {
-        let zero = S::constant(0.0);
-        Self { velocity, channels, outcome: Outcome { force: zero, slope: zero, damping: zero } }
-    }
-}
-
-impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Held<S> {
-    type Attempt = (L::Trial, Motion<S>);
-
-    #[inline]
-    fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt {
-        let motion = Motion::held(self.velocity, span);
-        (law.advance(state, &motion, &self.channels), motion)
-    }
-
-    #[inline]
-    fn contact<'a>(&self, attempt: &'a Self::Attempt) -> (&'a L::Trial, &'a Motion<S>) {
-        (&attempt.0, &attempt.1)
-    }
-
-    #[inline]
-    fn accept(&mut self, law: &L, state: &mut L::State, attempt: &Self::Attempt, _stopped: bool) {
-        law.commit(state, &attempt.0);
-        self.outcome = law.outcome(&attempt.0);
-    }
-
-    #[inline]
-    fn velocity(&self) -> S {
-        self.velocity
-    }
-
-    #[inline]
-    fn hold(&mut self, _law: &L, _state: &mut L::State, _span: S) -> bool {
-        false
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -231,7 +181,7 @@ mod tests {
         let at = locate(Dual::constant(1.0), |t| a - t * t * t);
         assert!((at.re() - 0.3_f64.cbrt()).abs() < 1e-15);
         let exact = 1.0 / (3.0 * 0.3_f64.cbrt().powi(2));
-        assert!((at.derivative(2) - exact).abs() < 1e-9 * exact);
+        assert!((at.partial(2) - exact).abs() < 1e-9 * exact);
     }
 
     #[test]

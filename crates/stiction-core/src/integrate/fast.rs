@@ -70,11 +70,10 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Fast<'_, S> {
             start_velocity: run.velocity,
             velocity: predicted,
         };
-        let trial =
-            law.advance(state, &motion, &machine.channels(&end, effort_then, self.load));
+        let trial = law.advance(state, &motion, &machine.channels(&end, effort_then, self.load));
         let outcome = law.outcome(&trial);
-        let gathered = effort - friction + effort_then - outcome.force
-            + outcome.damping * predicted;
+        let gathered =
+            effort - friction + effort_then - outcome.force + outcome.damping * predicted;
         next.velocity = (machine.inertia * run.velocity + half * gathered)
             / (machine.inertia + half * outcome.damping);
         next.friction = outcome.force + outcome.damping * (next.velocity - predicted);

@@ -50,8 +50,7 @@ impl<S: Scalar> Machine<S> {
     pub fn new(drive: Drive<S>, body: Body<S>, effects: Effects<S>, sensor: Sensor) -> Self {
         let relaxation = effects.relaxation().filter(|r| r.coefficient.re() != 0.0);
         let second_mass = effects.second_mass().filter(|m| m.share.re() != 0.0);
-        let inertia =
-            second_mass.map_or(body.inertia, |m| body.inertia * (-(m.share - 1.0)));
+        let inertia = second_mass.map_or(body.inertia, |m| body.inertia * (-(m.share - 1.0)));
         Self { drive, body, effects, sensor, relaxation, second_mass, inertia }
     }
 
@@ -79,9 +78,7 @@ impl<S: Scalar> Machine<S> {
 
     /// Least inertia that a spring acts on.
     pub(super) fn lightest_inertia(&self) -> f64 {
-        let other = self.second_mass.map_or(f64::INFINITY, |m| {
-            (self.body.inertia * m.share).re()
-        });
+        let other = self.second_mass.map_or(f64::INFINITY, |m| (self.body.inertia * m.share).re());
         self.inertia.re().min(other)
     }
 
@@ -116,9 +113,17 @@ impl<S: Scalar> Machine<S> {
         self.drive.effort(self.effects.input(input, at))
     }
 
+    /// All effort but friction and shaft, then the drive's share and the rest of it.
+    #[inline]
+    pub fn efforts(&self, at: &Situation<S>, input: S, load: S) -> (S, S, S) {
+        let driven = self.driven(input, at);
+        let ambient = self.body.gravity(at.position) + self.effects.effort(at);
+        (driven + load + ambient, driven, ambient)
+    }
+
     /// What reaches the contact.
     #[inline]
-    pub(super) fn channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
+    pub fn channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
         let (level, viscous_level) = self.effects.levels(at);
         Channels { effort, load, level, viscous_level, temperature: None }
     }
@@ -174,9 +179,7 @@ pub(super) fn hold<S: Scalar, L: crate::friction::FrictionLaw<S>>(
     let at = run.situation();
     let effort = machine.driven(input, &at) + load + run.ambient;
     // A shaft still swings on a held motor: only a machine of one mass stands still as a whole.
-    if machine.second_mass.is_some()
-        || !law.holds(state, &machine.channels(&at, effort, load))
-    {
+    if machine.second_mass.is_some() || !law.holds(state, &machine.channels(&at, effort, load)) {
         return false;
     }
     run.friction = effort;

@@ -5,12 +5,14 @@
 //! attempted in the new mode. Held velocities, the fast integrator and the reference integrator
 //! all go through the same loop.
 
+mod contact;
 mod events;
 mod fast;
 mod machine;
 mod reference;
 
-pub use events::{Held, Stepper, quiet, through_events};
+pub use contact::{Along, Held};
+pub use events::{Stepper, quiet, through_events};
 pub use machine::{Machine, Run};
 
 use crate::friction::FrictionLaw;

@@ -30,17 +30,11 @@ impl<S: Scalar> Reference<'_, S> {
     }
 
     fn situation(&self, y: &[S; SIZE], span: S) -> Situation<S> {
-        Situation {
-            position: self.run.position + y[0],
-            velocity: y[1],
-            time: self.run.time + span,
-        }
+        Situation { position: self.run.position + y[0], velocity: y[1], time: self.run.time + span }
     }
 
     fn effort(&self, at: &Situation<S>, y: &[S; SIZE]) -> S {
-        self.machine.driven(self.input, at)
-            + self.load
-            + self.machine.ambient(at, y[2], y[3])
+        self.machine.driven(self.input, at) + self.load + self.machine.ambient(at, y[2], y[3])
     }
 
     fn rates<L: FrictionLaw<S>>(
@@ -58,9 +52,9 @@ impl<S: Scalar> Reference<'_, S> {
         let motion = self.motion(y, span, self.run.friction);
         let (friction, inner) = law.rates(state, &motion, &internal, &channels);
         let zero = S::constant(0.0);
-        let second = machine.second_mass.map_or(zero, |m| {
-            -(machine.shaft(&at, y[2], y[3]) / (machine.body.inertia * m.share))
-        });
+        let second = machine
+            .second_mass
+            .map_or(zero, |m| -(machine.shaft(&at, y[2], y[3]) / (machine.body.inertia * m.share)));
         let relaxing =
             machine.relaxation.map_or(zero, |module| module.hardening_rate(y[4], friction));
         [

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ...errors import InputError
 from ..table import Table
-from ..wording import nearest
+from ...wording import nearest
 from . import delimited, json_records, mat, npz
 from .format import Format
 

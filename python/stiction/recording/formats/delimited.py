@@ -16,7 +16,7 @@ import numpy as np
 from ...errors import InputError
 from ..table import CELLS_KEPT, Cell, Table, is_missing
 from ..units import FloatArray
-from ..wording import counted
+from ...wording import counted
 from .format import Format
 
 _BLANKS = " "

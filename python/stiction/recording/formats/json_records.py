@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import InputError
 from ..table import CELLS_KEPT, Cell, Table
-from ..wording import counted, listed
+from ...wording import counted, listed
 from .format import Format
 
 _SHAPE = 'write [{"time_s": 0.0, ...}, ...], or an object that holds one such list'

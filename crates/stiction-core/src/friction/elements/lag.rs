@@ -23,7 +23,11 @@ pub fn follow<S: Scalar>(y: S, from: S, to: S, z: S) -> Followed<S> {
     // (1 − e^(−z))/z loses digits below 1e-5; the series error there is under z²/6 ≈ 2e-11.
     let mean_share = if z.re() < 1e-5 { -(z * 0.5 - 1.0) } else { gone / z };
     let end_share = -(mean_share - 1.0);
-    Followed { value: from + (to - from) * end_share + (y - from) * remainder, end_share, remainder }
+    Followed {
+        value: from + (to - from) * end_share + (y - from) * remainder,
+        end_share,
+        remainder,
+    }
 }
 
 #[cfg(test)]

@@ -73,11 +73,8 @@ impl<S: Scalar> Plastic<S> {
         let gone = -((-(rate * left)).exp_m1());
         // ∫(1 − e^(−λt))dt; below 1e-4 the difference loses digits and the series is exact to 1e-9.
         let z = rate * left;
-        let lagged = if z.re() < 1e-4 {
-            left * z * 0.5 * (-(z / 3.0 - 1.0))
-        } else {
-            left - gone / rate
-        };
+        let lagged =
+            if z.re() < 1e-4 { left * z * 0.5 * (-(z / 3.0 - 1.0)) } else { left - gone / rate };
         let gained = (start * gone + rise * lagged) * self.rate / rate;
         if gained.re() <= 0.0 {
             return none;

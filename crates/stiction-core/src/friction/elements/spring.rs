@@ -114,7 +114,7 @@ impl<S: Scalar> Curve<S> {
             }
         }
         let r = self.virgin(x);
-        x = x + (force * s - r.force) / r.slope;
+        x += (force * s - r.force) / r.slope;
         x * s
     }
 }
@@ -226,15 +226,7 @@ impl<S: Scalar> SpringState<S> {
             }
             None => curve.virgin(position),
         };
-        Walk {
-            position,
-            end,
-            direction,
-            wiped_out: points.len() - kept,
-            closings,
-            added,
-            reversed,
-        }
+        Walk { position, end, direction, wiped_out: points.len() - kept, closings, added, reversed }
     }
 
     /// Where the present branch closes its loop, and how many stored points that forgets.
@@ -338,8 +330,7 @@ mod tests {
     #[test]
     fn cycles_between_equal_levels_do_not_grow_the_memory() {
         let c = curve(VirginCurve::Masing);
-        let path: Vec<f64> =
-            (0..2000).map(|k| if k % 2 == 0 { 4e-4 } else { 1e-4 }).collect();
+        let path: Vec<f64> = (0..2000).map(|k| if k % 2 == 0 { 4e-4 } else { 1e-4 }).collect();
         let (spring, _) = drive(&c, &path);
         assert!(spring.memory.points().len() <= 2);
     }

@@ -1,0 +1,119 @@
+//! A contact alone, moved as its caller says: no body, no inertia.
+
+use super::events::Stepper;
+use crate::friction::{Channels, FrictionLaw, Motion, Outcome};
+use crate::scalar::Scalar;
+
+/// A contact that is moved at a held velocity: what `FrictionModel.step` does.
+#[derive(Debug, Clone, Copy)]
+pub struct Held<S> {
+    /// Velocity.
+    pub velocity: S,
+    /// What else reaches the contact.
+    pub channels: Channels<S>,
+    /// Friction at the end.
+    pub outcome: Outcome<S>,
+}
+
+impl<S: Scalar> Held<S> {
+    /// A held velocity.
+    pub fn new(velocity: S, channels: Channels<S>) -> Self {
+        let zero = S::constant(0.0);
+        Self { velocity, channels, outcome: Outcome { force: zero, slope: zero, damping: zero } }
+    }
+}
+
+impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Held<S> {
+    type Attempt = (L::Trial, Motion<S>);
+
+    #[inline]
+    fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt {
+        let motion = Motion::held(self.velocity, span);
+        (law.advance(state, &motion, &self.channels), motion)
+    }
+
+    #[inline]
+    fn contact<'a>(&self, attempt: &'a Self::Attempt) -> (&'a L::Trial, &'a Motion<S>) {
+        (&attempt.0, &attempt.1)
+    }
+
+    #[inline]
+    fn accept(&mut self, law: &L, state: &mut L::State, attempt: &Self::Attempt, _stopped: bool) {
+        law.commit(state, &attempt.0);
+        self.outcome = law.outcome(&attempt.0);
+    }
+
+    #[inline]
+    fn velocity(&self) -> S {
+        self.velocity
+    }
+
+    #[inline]
+    fn hold(&mut self, _law: &L, _state: &mut L::State, _span: S) -> bool {
+        false
+    }
+}
+
+/// A contact that is moved along a measured motion: the displacement of a sample is exact, the
+/// velocity changes linearly over it.
+#[derive(Debug, Clone, Copy)]
+pub struct Along<S> {
+    /// Displacement over the sample.
+    pub displacement: S,
+    /// Duration of the sample.
+    pub duration: S,
+    /// Velocity at its start and at its end.
+    pub velocities: (S, S),
+    /// What else reaches the contact.
+    pub channels: Channels<S>,
+    /// Share of the sample already passed.
+    pub passed: S,
+    /// Friction at the end.
+    pub outcome: Outcome<S>,
+}
+
+impl<S: Scalar> Along<S> {
+    /// A sample of this motion.
+    pub fn new(displacement: S, duration: S, velocities: (S, S), channels: Channels<S>) -> Self {
+        let zero = S::constant(0.0);
+        let outcome = Outcome { force: zero, slope: zero, damping: zero };
+        Self { displacement, duration, velocities, channels, passed: zero, outcome }
+    }
+
+    fn velocity_at(&self, share: S) -> S {
+        self.velocities.0 + (self.velocities.1 - self.velocities.0) * share
+    }
+}
+
+impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Along<S> {
+    type Attempt = (L::Trial, Motion<S>);
+
+    fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt {
+        let share = span / self.duration;
+        let motion = Motion {
+            displacement: self.displacement * share,
+            duration: span,
+            start_velocity: self.velocity_at(self.passed),
+            velocity: self.velocity_at(self.passed + share),
+        };
+        (law.advance(state, &motion, &self.channels), motion)
+    }
+
+    fn contact<'a>(&self, attempt: &'a Self::Attempt) -> (&'a L::Trial, &'a Motion<S>) {
+        (&attempt.0, &attempt.1)
+    }
+
+    fn accept(&mut self, law: &L, state: &mut L::State, attempt: &Self::Attempt, _stopped: bool) {
+        law.commit(state, &attempt.0);
+        self.outcome = law.outcome(&attempt.0);
+        self.passed += attempt.1.duration / self.duration;
+    }
+
+    fn velocity(&self) -> S {
+        self.velocity_at(self.passed)
+    }
+
+    fn hold(&mut self, _law: &L, _state: &mut L::State, _span: S) -> bool {
+        false
+    }
+}

@@ -1,0 +1,288 @@
+//! The one-place rule: whatever is in the lists behaves as everything in them must.
+#![allow(missing_docs)]
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use common::{Stream, drawn, motor, positions, run};
+use stiction_core::effects::{EFFECTS, neutral_values};
+use stiction_core::friction::{Channels, LAWS};
+use stiction_core::model::{FrictionModel, LawSpec};
+use stiction_core::motor::{Column, EffectSpec, Motor, MotorSpec, PerSample};
+use stiction_core::sensitivity::sensitivity;
+
+fn files(folder: &str) -> BTreeSet<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(folder);
+    std::fs::read_dir(path)
+        .unwrap()
+        .filter_map(|entry| {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            name.strip_suffix(".rs").map(str::to_owned).filter(|stem| stem != "mod")
+        })
+        .collect()
+}
+
+#[test]
+fn every_file_in_the_folders_is_in_its_list() {
+    assert_eq!(files("friction"), LAWS.iter().map(|law| law.name.to_owned()).collect());
+    assert_eq!(files("effects"), EFFECTS.iter().map(|e| e.name.to_owned()).collect());
+}
+
+#[test]
+fn parameters_are_documented_and_their_defaults_are_allowed() {
+    let laws = LAWS.iter().map(|law| (law.name, law.parameters));
+    for (name, parameters) in laws.chain(EFFECTS.iter().map(|e| (e.name, e.parameters))) {
+        for spec in parameters {
+            assert!(spec.meaning.len() > 3, "{name}.{} has no meaning", spec.name);
+            assert!(spec.check(spec.typical).is_ok(), "{name}.{}", spec.name);
+            if let Some(neutral) = spec.neutral {
+                assert!(spec.check(neutral).is_ok(), "{name}.{}", spec.name);
+            }
+        }
+    }
+    for law in LAWS {
+        assert!(LawSpec::new(law.name, &[], &[]).is_ok(), "{} lacks defaults", law.name);
+    }
+    for effect in EFFECTS {
+        assert!(EffectSpec::new(effect.name, &[]).is_ok(), "{} lacks defaults", effect.name);
+        for gain in effect.facts.gains {
+            let spec = effect.parameters.iter().find(|p| p.name == *gain);
+            assert_eq!(spec.and_then(|p| p.neutral), Some(0.0), "{}.{gain}", effect.name);
+        }
+        for other in effect.facts.look_alikes {
+            assert_ne!(other, &effect.name);
+        }
+    }
+}
+
+#[test]
+fn laws_stay_finite_over_their_bounds() {
+    let mut stream = Stream::new(3);
+    for law in LAWS {
+        for trial in 0..60 {
+            let parameters: Vec<(String, f64)> = law
+                .parameters
+                .iter()
+                .map(|spec| {
+                    let (low, high) = spec.bounds;
+                    let (low, high) = (low.max(spec.typical * 1e-5), high.min(spec.typical * 1e5));
+                    (spec.name.to_owned(), stream.log(low, high))
+                })
+                .collect();
+            let Ok(spec) = LawSpec::new(law.name, &parameters, &[]) else { continue };
+            let mut model = FrictionModel::new(spec.clone());
+            let dt = stream.log(1e-6, 1e-1);
+            let velocity: Vec<f64> = (0..200)
+                .map(|k| {
+                    let size = stream.log(1e-6, 1e1);
+                    if k % 7 == 0 { 0.0 } else { size * (stream.next() - 0.5) }
+                })
+                .collect();
+            let friction = run(&mut model, &velocity, dt);
+            assert!(friction.iter().all(|f| f.is_finite()), "{trial}: {spec:?}");
+        }
+    }
+}
+
+#[test]
+fn laws_oppose_motion() {
+    let mut stream = Stream::new(5);
+    for law in LAWS {
+        for _ in 0..20 {
+            let spec = drawn(law, &mut stream);
+            let speed = stream.log(0.01, 1.0);
+            for direction in [1.0, -1.0] {
+                let mut model = FrictionModel::new(spec.clone());
+                let friction = run(&mut model, &[direction * speed; 400], 1e-3);
+                assert!(friction[399] * direction > 0.0, "{spec:?}");
+            }
+            let mut model = FrictionModel::new(spec.clone());
+            let velocity: Vec<f64> =
+                (0..4000).map(|k| speed * (f64::from(k) * 0.01).sin()).collect();
+            let friction = run(&mut model, &velocity, 1e-3);
+            let power: f64 = friction.iter().zip(&velocity).map(|(f, v)| f * v).sum();
+            assert!(power > 0.0, "{spec:?}");
+        }
+    }
+}
+
+#[test]
+fn slope_is_the_derivative_of_the_force_by_the_velocity() {
+    let mut stream = Stream::new(7);
+    for law in LAWS {
+        for case in 0..60 {
+            let spec = drawn(law, &mut stream);
+            let mut model = FrictionModel::new(spec.clone());
+            let warm: Vec<f64> = (0..200).map(|k| 0.05 * (f64::from(k) * 0.02).sin()).collect();
+            run(&mut model, &warm, 1e-3);
+            let velocity = stream.between(-0.2, 0.2);
+            let dt = stream.log(1e-5, 1e-2);
+            let channels = Channels::default();
+            let at = |v: f64| model.clone().trial(v, dt, &channels).0;
+            let step = 1e-6 * velocity.abs().max(1e-3);
+            let chord = (at(velocity + step) - at(velocity - step)) / (2.0 * step);
+            let slope = model.trial(velocity, dt, &channels).1;
+            let tolerance = 2e-5 * (chord.abs() + slope.abs()) + 1e-7;
+            assert!(
+                (slope - chord).abs() < tolerance,
+                "{case} {velocity} {dt}: {slope} {chord} {spec:?}"
+            );
+        }
+    }
+}
+
+/// A run that rings, reverses, creeps and, where the law can, slides.
+fn excitation(samples: usize) -> Vec<f64> {
+    (0..samples)
+        .map(|k| {
+            let t = k as f64 * 1e-3;
+            0.5 * (7.0 * t).sin() + 0.4 * (23.0 * t).sin() + if t % 0.2 < 0.02 { 0.3 } else { 0.0 }
+        })
+        .collect()
+}
+
+#[test]
+fn neutral_effects_change_no_bit() {
+    let inputs = excitation(1500);
+    for law in LAWS {
+        let spec = LawSpec::new(law.name, &[("breakaway".to_owned(), 0.5)], &[])
+            .or_else(|_| LawSpec::new(law.name, &[], &[]))
+            .unwrap();
+        let plain = positions(&mut motor(0.0076, spec.clone()), &inputs, 1e-3);
+        for effect in EFFECTS {
+            let with = MotorSpec {
+                effects: vec![EffectSpec { record: effect, values: neutral_values(effect) }],
+                ..MotorSpec::new(0.0076, 1.0, spec.clone())
+            };
+            let with = positions(&mut Motor::new(with).unwrap(), &inputs, 1e-3);
+            assert_eq!(plain, with, "{} on {}", effect.name, law.name);
+        }
+    }
+}
+
+#[test]
+fn active_effects_change_the_motion() {
+    let inputs = excitation(1500);
+    for law in LAWS {
+        let spec = LawSpec::new(law.name, &[], &[]).unwrap();
+        let plain = positions(&mut motor(0.0076, spec.clone()), &inputs, 1e-3);
+        for effect in EFFECTS {
+            let values = effect.parameters.iter().map(|p| p.typical).collect();
+            let with = MotorSpec {
+                effects: vec![EffectSpec { record: effect, values }],
+                ..MotorSpec::new(0.0076, 1.0, spec.clone())
+            };
+            let with = positions(&mut Motor::new(with).unwrap(), &inputs, 1e-3);
+            assert_ne!(plain, with, "{} on {}", effect.name, law.name);
+            assert!(with.iter().all(|x| x.is_finite()), "{} on {}", effect.name, law.name);
+        }
+    }
+}
+
+fn end_state(
+    spec: &MotorSpec,
+    inputs: &[f64],
+    dt: f64,
+) -> (f64, f64, stiction_core::friction::Statistics) {
+    let mut motor = Motor::new(spec.clone()).unwrap();
+    let (mut x, mut v) = (vec![0.0; inputs.len()], vec![0.0; inputs.len()]);
+    let columns = &mut [(Column::Position, x.as_mut_slice()), (Column::Velocity, v.as_mut_slice())];
+    motor.simulate(inputs, PerSample::Same(0.0), PerSample::Same(dt), columns).unwrap();
+    (x[inputs.len() - 1], v[inputs.len() - 1], motor.statistics())
+}
+
+#[test]
+fn gradients_equal_central_differences_on_the_same_branches() {
+    let mut stream = Stream::new(11);
+    let mut compared = 0;
+    for law in LAWS {
+        for _ in 0..8 {
+            let spec = MotorSpec {
+                effects: EFFECTS
+                    .iter()
+                    .map(|e| EffectSpec {
+                        record: e,
+                        values: e.parameters.iter().map(|p| p.typical * 0.5).collect(),
+                    })
+                    .collect(),
+                gravity_amplitude: 0.1,
+                gravity_zero: 0.05,
+                ..MotorSpec::new(0.0076 * stream.log(0.5, 2.0), 1.0, drawn(law, &mut stream))
+            };
+            let inputs = excitation(150);
+            let dt = 5e-4;
+            let parameters = spec.parameters();
+            let paths: Vec<String> = parameters.iter().map(|(path, _)| path.clone()).collect();
+            let fresh = Motor::new(spec.clone()).unwrap();
+            let start = (&fresh.running().run, &fresh.running().state);
+            let exact = sensitivity(
+                &spec,
+                start,
+                &inputs,
+                PerSample::Same(0.0),
+                PerSample::Same(dt),
+                &paths,
+            )
+            .unwrap();
+            for (index, (path, value)) in parameters.iter().enumerate() {
+                let perturbed = |factor: f64| {
+                    let mut values: Vec<f64> = parameters.iter().map(|(_, v)| *v).collect();
+                    values[index] = value + factor;
+                    respec(&spec, &values)
+                };
+                if !value.is_finite() {
+                    continue;
+                }
+                // Two sizes: where they disagree the difference itself is not to be trusted.
+                let chord = |size: f64| {
+                    let up = end_state(&perturbed(size), &inputs, dt);
+                    let down = end_state(&perturbed(-size), &inputs, dt);
+                    (up.2 == down.2).then_some((up.0 - down.0) / (2.0 * size))
+                };
+                let scale = value.abs().max(1e-3);
+                let (Some(wide), Some(narrow)) = (chord(2e-5 * scale), chord(1e-5 * scale)) else {
+                    continue;
+                };
+                let position = end_state(&spec, &inputs, dt).0.abs();
+                let gradient = exact.position[index][inputs.len() - 1];
+                // Richardson: the error of the chord falls with the square of its size.
+                let chord = narrow + (narrow - wide) / 3.0;
+                let noise = (wide - narrow).abs();
+                // A difference of positions of this size has no more digits than that.
+                let digits = 16.0 * f64::EPSILON * position / (1e-5 * scale);
+                if noise > 1e-5 * chord.abs() || digits > 1e-5 * chord.abs() {
+                    continue;
+                }
+                assert!(
+                    (gradient - chord).abs() <= 1e-6 * chord.abs() + digits,
+                    "{} {path}: {gradient} against {chord} ± {noise}",
+                    law.name
+                );
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 100, "only {compared} comparisons ran on equal branches");
+}
+
+/// The same motor with other parameter values.
+fn respec(spec: &MotorSpec, values: &[f64]) -> MotorSpec {
+    let mut other = spec.clone();
+    other.inertia = values[0];
+    other.gain = values[1];
+    other.gravity_amplitude = values[2];
+    other.gravity_zero = values[3];
+    other.weight = values[4];
+    let mut rest = values[5..].iter().copied();
+    for value in &mut other.friction.values {
+        *value = rest.next().unwrap();
+    }
+    for effect in &mut other.effects {
+        for value in &mut effect.values {
+            *value = rest.next().unwrap();
+        }
+    }
+    other
+}

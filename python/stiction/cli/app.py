@@ -1,0 +1,26 @@
+"""The list of verbs."""
+
+from __future__ import annotations
+
+import cyclopts
+
+from .. import __version__
+from .catalogue import effects, laws
+from .demo import demo
+from .paper import paper
+from .simulate import simulate
+
+__all__ = ["build"]
+
+
+def build() -> cyclopts.App:
+    """The command ``stiction`` with all its verbs."""
+    app = cyclopts.App(
+        name="stiction",
+        help="Simulates machines that stick, creep and slip; shows what a simulation gets wrong.",
+        version=f"stiction {__version__}",
+        help_format="plaintext",
+    )
+    for verb in (demo, simulate, laws, effects, paper):
+        app.command(verb)
+    return app

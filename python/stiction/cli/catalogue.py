@@ -1,0 +1,103 @@
+"""``stiction laws`` and ``stiction effects``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Annotated, TypeVar
+
+from cyclopts import Parameter
+
+from .. import catalogue
+from ..catalogue import EffectRecord, LawRecord, ParameterRecord
+from ..errors import InputError
+from ..wording import did_you_mean, listed
+from .answer import answer
+
+__all__ = ["effects", "laws"]
+
+_Record = TypeVar("_Record", LawRecord, EffectRecord)
+
+
+def laws(name: str | None = None, *, json: Annotated[bool, Parameter(negative="")] = False) -> None:
+    """List the friction laws, or show one with its parameters and options.
+
+    Parameters
+    ----------
+    name
+        Law to show.
+    json
+        Print JSON.
+    """
+    records = catalogue.laws()
+    if name is None:
+        answer(_table(records), [record.to_dict() for record in records], as_json=json)
+        return
+    record = _find(name, records, "law")
+    lines = [
+        f"{record.name}: {record.summary}",
+        f"source: {record.source}",
+        "",
+        *_parameters(record.parameters),
+    ]
+    for option in record.options:
+        lines += ["", f"option {option.name}: {option.meaning}"]
+        for index, (word, meaning) in enumerate(option.choices):
+            lines.append(f"  {word:<10} {meaning}{' (default)' if index == 0 else ''}")
+    lines += ["", f"states a trajectory shows: {listed(record.outputs)}"]
+    answer("\n".join(lines), record.to_dict(), as_json=json)
+
+
+def effects(
+    name: str | None = None, *, json: Annotated[bool, Parameter(negative="")] = False
+) -> None:
+    """List the effects, or show one with its parameters, look-alikes and separating experiment.
+
+    Parameters
+    ----------
+    name
+        Effect to show.
+    json
+        Print JSON.
+    """
+    records = catalogue.effects()
+    if name is None:
+        answer(_table(records), [record.to_dict() for record in records], as_json=json)
+        return
+    record = _find(name, records, "effect")
+    lines = [
+        f"{record.name}: {record.summary}",
+        f"enters at: {listed(record.hooks)}",
+        f"shows in: {record.coordinate}",
+        f"looks like: {listed(record.look_alikes)}",
+        f"told apart by: {record.experiment}",
+        f"channels needed: {listed(record.channels) if record.channels else 'input and position'}",
+        "",
+        *_parameters(record.parameters),
+    ]
+    answer("\n".join(lines), record.to_dict(), as_json=json)
+
+
+def _table(records: Iterable[LawRecord | EffectRecord]) -> str:
+    records = list(records)
+    width = max(len(record.name) for record in records)
+    return "\n".join(f"{record.name:<{width}}  {record.summary}" for record in records)
+
+
+def _find(name: str, records: Sequence[_Record], what: str) -> _Record:
+    for record in records:
+        if record.name == name:
+            return record
+    names = [record.name for record in records]
+    raise InputError(
+        f"{what} '{name}' is unknown{did_you_mean(name, names)}; known are {listed(names)}"
+    )
+
+
+def _parameters(parameters: Iterable[ParameterRecord]) -> list[str]:
+    rows = [("parameter", "default", "unit (rotary; linear)", "bounds", "meaning")]
+    for p in parameters:
+        default = f"{p.default:g}" + (f" ({p.default_rule})" if p.default_rule else "")
+        unit = p.unit if p.unit == p.linear_unit else f"{p.unit}; {p.linear_unit}"
+        rows.append((p.name, default, unit, f"{p.bounds[0]:g} … {p.bounds[1]:g}", p.meaning))
+    widths = [max(len(row[k]) for row in rows) for k in range(4)]
+    return ["  ".join([*(f"{row[k]:<{widths[k]}}" for k in range(4)), row[4]]) for row in rows]

@@ -1,0 +1,135 @@
+"""Motion from a measured position: smoothing without a numerical derivative."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from .trajectory import FloatArray
+
+__all__ = ["Kernel", "count_of", "evenly", "held", "noise_of", "play", "smooth"]
+
+SMOOTHING_SHARE: Final = 0.1
+"""Support over which a position is smoothed before it drives friction, as a share of the kernel's:
+3 ms where that has 30 ms."""
+
+
+class Kernel:
+    """B-spline kernel of order 4 with its exact second difference.
+
+    The same kernel goes over input, inertia term and friction, so that what it removes it removes
+    from all of them: no derivative of a measured signal is ever formed. (Weak form: the inertia
+    term is the position times the second difference of the kernel.)
+
+    Parameters
+    ----------
+    support : float
+        Full width in s.
+    dt : float
+        Sample time in s.
+
+    Attributes
+    ----------
+    weights : numpy.ndarray, shape (2·half + 1,)
+        Sum 1.
+    """
+
+    def __init__(self, support: float, dt: float) -> None:
+        # Four box filters convolved make the cubic B-spline; at least one sample each.
+        length = max(1, round(support / dt / 4))
+        box = np.ones(length) / length
+        weights = box
+        for _ in range(3):
+            weights = np.convolve(weights, box)
+        if len(weights) % 2 == 0:
+            weights = np.convolve(weights, [0.5, 0.5])
+        self.weights: FloatArray = weights
+        self.dt = dt
+        self.support = len(weights) * dt
+        self._second = np.convolve(weights, [1.0, -2.0, 1.0]) / dt**2
+
+    @property
+    def roughness(self) -> float:
+        """2-norm of the second difference: what it makes of white noise of size 1."""
+        return float(np.linalg.norm(self._second))
+
+    @property
+    def half(self) -> int:
+        """Samples that a result has on either side of its centre, second difference included."""
+        return len(self.weights) // 2 + 1
+
+    def mean(self, values: FloatArray) -> FloatArray:
+        """Weighted mean about every sample that has the support; shape (n − 2·half,)."""
+        return np.convolve(values, self.weights, "valid")[1:-1]
+
+    def second_derivative(self, values: FloatArray) -> FloatArray:
+        """Second difference of the weighted mean over dt²; aligned with ``mean``."""
+        return np.convolve(values, self._second, "valid")
+
+
+def smooth(values: FloatArray, dt: float, support: float) -> FloatArray:
+    """Weighted mean over a short support; the ends are continued, so the length stays."""
+    weights = Kernel(support, dt).weights
+    half = len(weights) // 2
+    return np.convolve(np.pad(values, half, "edge"), weights, "valid")
+
+
+def noise_of(position: FloatArray) -> float:
+    """Size of the white noise on a position: what its third differences hold.
+
+    A motion that a machine can make hardly shows there: jerk·dt³ is far below a count.
+    """
+    third = np.diff(position, 3)
+    return float(np.sqrt(np.mean(third**2) / 20.0)) if len(third) else 0.0
+
+
+def count_of(position: FloatArray) -> float:
+    """Size of the steps that the readings are made of, 0 where they have no common step."""
+    steps = np.abs(np.diff(position))
+    scale = float(np.max(np.abs(position), initial=0.0))
+    steps = steps[steps > 1e-12 * max(scale, 1e-300)]
+    if len(steps) == 0:
+        return 0.0
+    count = float(np.min(steps))
+    whole = steps / count
+    fits = np.abs(whole - np.round(whole)) < 0.02 * np.maximum(1.0, np.minimum(whole, 10.0))
+    # Steps above some tens of counts fit anything: only the small ones tell.
+    small = whole < 20.0
+    return count if small.sum() > 20 and fits[small].mean() > 0.95 else 0.0
+
+
+def play(values: FloatArray, width: float) -> FloatArray:
+    """What a follower with a backlash of ``width`` does: motion inside it does not get through.
+
+    A sensor that flickers between two counts reports motion that never was; a friction law
+    driven by it would lose its force.
+    """
+    if width <= 0.0:
+        return values
+    followed = np.empty_like(values)
+    half = 0.5 * width
+    at = float(values[0])
+    for k, value in enumerate(values.tolist()):
+        at = min(max(at, value - half), value + half)
+        followed[k] = at
+    return followed
+
+
+def evenly(time: FloatArray) -> tuple[FloatArray, float]:
+    """Even stamps over the same span at about the median step, and that step.
+
+    The step divides the span exactly: a step wrong by 1e-5 is half a sample late after a minute.
+    """
+    span = float(time[-1] - time[0])
+    count = max(1, round(span / float(np.median(np.diff(time)))))
+    return np.linspace(time[0], time[-1], count + 1), span / count
+
+
+def held(stamps: FloatArray, time: FloatArray, values: FloatArray) -> FloatArray:
+    """Values at ``stamps`` of a signal that holds from each of ``time`` to the next."""
+    # A stamp that falls short of a sample by a little jitter belongs to it: taken to the letter,
+    # half of an even recording would be one sample late.
+    tolerance = 0.1 * float(np.median(np.diff(time)))
+    index = np.searchsorted(time, stamps + tolerance, side="right") - 1
+    return values[np.clip(index, 0, len(values) - 1)]

@@ -1,0 +1,367 @@
+"""The figures of the experiments, positions in arc-seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import singledispatch
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from ..errors import InputError
+from ..plot import (
+    ACCENT,
+    CYCLE,
+    FAINT,
+    INK,
+    MEASURED,
+    SIMULATED,
+    SMALL,
+    figure,
+    legend,
+    thinned,
+)
+from ..trajectory import FloatArray
+from .dynamic import PulseTrains, RampAndCut, RampAndHold
+from .loops import LoopAreas
+from .result import Result
+from .rig import ARC_SECOND
+from .static import DahlTest, HardeningCycles, NestedLoops, StaticTest
+from .stick_slip import StickSlip
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["draw", "static_comparison"]
+
+_POSITION = "position (arc-seconds)"
+_TORQUE = "torque (N·m)"
+_TIME = "time (s)"
+# Points of a path nearer than this share of the panel get one label together.
+_TOGETHER = 0.03
+# Samples of a force path that are drawn.
+_PATH_POINTS = 3000
+
+
+@singledispatch
+def draw(result: Result) -> Figure:
+    """The figure of an experiment."""
+    raise InputError(f"there is no figure for {type(result).__name__}")
+
+
+@draw.register
+def _ramp_and_cut(run: RampAndCut) -> Figure:
+    drawn, (torque, position, ring) = figure(
+        3, height=6.0, title=run.title, height_ratios=(1.0, 1.7, 1.7)
+    )
+    torque.sharex(position)
+    torque.tick_params(labelbottom=False)
+    torque.plot(*thinned(run.time, run.effort), color=MEASURED, linewidth=1.0)
+    torque.set_ylabel(_TORQUE)
+    _line(position, run.time, run.measured)
+    _target(position, run.target)
+    position.plot(
+        run.rest_time, run.rest_position / ARC_SECOND, "o", color=ACCENT, ms=4, label="rest"
+    )
+    position.set_ylabel(_POSITION)
+    position.set_xlabel(_TIME)
+    legend(position, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.1)
+    if run.cut_time.size and run.ring_time.size:
+        start = run.cut_time[0]
+        shown = (run.time > start - 0.02) & (run.time <= start + 0.16)
+        ring.plot(
+            1e3 * (run.time[shown] - start),
+            run.position[shown] / ARC_SECOND,
+            color=SIMULATED,
+            linewidth=1.1,
+        )
+        peaks = run.ring_time <= start + 0.16
+        ring.plot(
+            1e3 * (run.ring_time[peaks] - start),
+            run.ring_position[peaks] / ARC_SECOND,
+            ".",
+            color=ACCENT,
+            ms=5,
+            label="extremes",
+        )
+        ring.axvline(0.0, color=FAINT, linewidth=0.8)
+        legend(ring, loc="upper right")
+    ring.set_ylabel(_POSITION)
+    ring.set_xlabel("time after the first cut (ms)")
+    drawn.align_ylabels()
+    return drawn
+
+
+@draw.register
+def _ramp_and_hold(run: RampAndHold) -> Figure:
+    drawn, (torque, position) = figure(
+        2, height=4.2, title=run.title, sharex=True, height_ratios=(1.0, 2.0)
+    )
+    torque.plot(*thinned(run.time, run.effort), color=MEASURED, linewidth=1.2)
+    torque.set_ylabel(_TORQUE)
+    torque.set_ylim(bottom=0.0, top=1.15 * float(run.effort.max()))
+    _line(position, run.time, run.measured)
+    _target(position, run.target)
+    position.plot(
+        run.read_time, run.read_position / ARC_SECOND, "o", color=ACCENT, ms=4, label="read"
+    )
+    for time, read in zip(run.read_time[1:], run.read_position[1:] / ARC_SECOND, strict=True):
+        _note(position, f"{read:.2f}", time, read, (0, 6), ha="center")
+    position.margins(y=0.13)
+    position.set_ylabel(_POSITION)
+    position.set_xlabel(_TIME)
+    legend(position, loc="lower right")
+    drawn.align_ylabels()
+    return drawn
+
+
+@draw.register
+def _pulse_trains(run: PulseTrains) -> Figure:
+    drawn, (torque, position, rest) = figure(
+        3, height=6.0, title=run.title, sharex=True, height_ratios=(1.0, 1.7, 1.7)
+    )
+    torque.plot(*thinned(run.time, run.effort, 4000), color=MEASURED, linewidth=0.7)
+    torque.set_ylabel(_TORQUE)
+    torque.set_ylim(1.4 * min((*run.sizes, 0.0)), 1.3 * max((*run.sizes, 0.0)))
+    position.plot(
+        *thinned(run.time, run.measured / ARC_SECOND, 4000), color=SIMULATED, linewidth=0.6
+    )
+    position.set_ylabel(_POSITION)
+    rest.plot(
+        run.rest_time,
+        run.rest_position / ARC_SECOND,
+        "o",
+        color=ACCENT,
+        ms=2.8,
+        label="position after each pulse",
+    )
+    if run.rest_hardening.size:
+        rest.step(
+            run.rest_time,
+            run.rest_hardening / ARC_SECOND,
+            where="post",
+            color=CYCLE[2],
+            linewidth=1.3,
+            label="work hardening h",
+        )
+    rest.set_ylabel("at rest (arc-seconds)")
+    rest.set_xlabel(_TIME)
+    legend(rest, loc="lower right")
+    for panel in (torque, position, rest):
+        for end in run.rest_time[run.pulses - 1 :: run.pulses][:-1]:
+            panel.axvline(end, color=FAINT, linewidth=0.8, linestyle=(0, (3, 3)))
+    for index, size in enumerate(run.sizes):
+        at = run.rest_time[index * run.pulses] + 0.5 * (run.pulses - 1) * 0.1
+        _note(torque, f"{size:+g} N·m".replace("-", "−"), at, max(size, 0.0), (0, 3), ha="center")
+    drawn.align_ylabels()
+    return drawn
+
+
+@draw.register
+def _static_test(test: StaticTest) -> Figure:
+    drawn, (panel,) = figure(height=4.6, width=6.4, title=test.title)
+    _path(panel, test.effort, test.position)
+    _points(panel, test.letters, test.level, test.settled / ARC_SECOND)
+    return drawn
+
+
+def static_comparison(tests: Sequence[StaticTest]) -> Figure:
+    """The same static test driven in several ways, one above the other.
+
+    Parameters
+    ----------
+    tests : sequence of StaticTest
+        Of the same levels.
+
+    Returns
+    -------
+    Figure
+    """
+    name = f"case {tests[0].case}" if tests[0].case is not None else "levels of your own"
+    drawn, (panel,) = figure(height=4.6, width=6.4, title=f"Static test, {name}: ways to drive it")
+    labels = {
+        "force": "force-driven",
+        "ramp": "slow ramps, with inertia",
+        "staircase": "steps, with inertia (as in the paper)",
+    }
+    styles = {"force": "-", "ramp": (0, (4, 2.5)), "staircase": "-"}
+    markers = {"force": "o", "ramp": "x", "staircase": "s"}
+    for test, colour in zip(tests, CYCLE, strict=False):
+        at = np.concatenate([[0.0], test.settled]) / ARC_SECOND
+        panel.plot(
+            at,
+            np.concatenate([[0.0], test.level]),
+            linestyle=styles[test.driven],
+            marker=markers[test.driven],
+            ms=5,
+            linewidth=1.0,
+            color=colour,
+            fillstyle="none",
+            label=labels[test.driven],
+        )
+    panel.set_xlabel("position at the end of each level (arc-seconds)")
+    panel.set_ylabel(_TORQUE)
+    legend(panel, loc="upper left")
+    return drawn
+
+
+@draw.register
+def _hardening_cycles(run: HardeningCycles) -> Figure:
+    drawn, (loop, plastic) = figure(1, 2, height=3.7, title=run.title)
+    _path(loop, run.effort, run.position)
+    plastic.plot(
+        *thinned(run.time, run.states["plastic"] / ARC_SECOND),
+        color=SIMULATED,
+        linewidth=1.4,
+        label="permanent displacement",
+    )
+    plastic.plot(
+        *thinned(run.time, run.states["hardening"] / ARC_SECOND),
+        color=CYCLE[2],
+        linewidth=1.2,
+        linestyle=(0, (4, 2.5)),
+        label="work hardening h",
+    )
+    ends = run.settled_at
+    plastic.plot(run.time[ends], run.states["plastic"][ends] / ARC_SECOND, "o", color=ACCENT, ms=4)
+    plastic.set_ylim(0.0, 1.25 * float(run.states["hardening"].max()) / ARC_SECOND)
+    plastic.set_xlabel(_TIME)
+    plastic.set_ylabel("displacement (arc-seconds)")
+    legend(plastic, loc="lower right")
+    return drawn
+
+
+@draw.register
+def _nested_loops(run: NestedLoops) -> Figure:
+    drawn, (loop, memory) = figure(1, 2, height=4.2, title=run.title, width_ratios=(1.5, 1.0))
+    _path(loop, run.effort, run.position)
+    loop.set_xlabel("displacement of the spring (arc-seconds)")
+    _points(loop, run.letters, run.level, run.settled / ARC_SECOND)
+    memory.step(run.time, run.reverse_points, where="post", color=SIMULATED, linewidth=1.3)
+    for letter, at in zip(run.letters, run.settled_at, strict=True):
+        _note(memory, letter, run.time[at], run.reverse_points[at], (0, 5), ha="center")
+    memory.margins(y=0.12)
+    memory.yaxis.set_major_locator(MaxNLocator(integer=True))
+    memory.set_xlabel(_TIME)
+    memory.set_ylabel("reverse points kept")
+    return drawn
+
+
+@draw.register
+def _dahl_test(test: DahlTest) -> Figure:
+    drawn, (panel,) = figure(height=4.6, width=6.4, title=test.title)
+    _path(panel, test.effort, test.position)
+    _points(panel, test.letters, test.level, test.settled / ARC_SECOND)
+    return drawn
+
+
+@draw.register
+def _loop_areas(run: LoopAreas) -> Figure:
+    drawn, (loops, areas) = figure(1, 2, height=3.7, title=run.title)
+    for (x, force), distance, colour in zip(run.loops, run.distance, CYCLE * 9, strict=False):
+        middle = 0.5 * (force.max() + force.min())
+        loops.plot(
+            x / ARC_SECOND - 0.5 * distance / ARC_SECOND,
+            force - middle,
+            color=colour,
+            linewidth=1.1,
+        )
+    loops.set_xlabel("displacement from the middle (arc-seconds)")
+    loops.set_ylabel("torque from the middle (N·m)")
+    areas.plot(
+        run.distance / ARC_SECOND,
+        1e6 * run.formula,
+        "-",
+        color=MEASURED,
+        linewidth=1.2,
+        label="2∫G − D·G(D)",
+    )
+    for distance, area, colour in zip(run.distance, run.area, CYCLE * 9, strict=False):
+        areas.plot(distance / ARC_SECOND, 1e6 * area, "o", color=colour, ms=5)
+    areas.set_xscale("log")
+    areas.set_yscale("log")
+    areas.set_xlabel("distance D of the reverse points (arc-seconds)")
+    areas.set_ylabel("work lost in a loop (µJ)")
+    legend(areas, loc="upper left")
+    return drawn
+
+
+@draw.register
+def _stick_slip(run: StickSlip) -> Figure:
+    drawn, (position, torque) = figure(2, height=4.4, title=run.title, sharex=True)
+    position.plot(
+        *thinned(run.time, run.pull), color=MEASURED, linewidth=1.0, label="far end of the spring"
+    )
+    position.plot(*thinned(run.time, run.measured), color=SIMULATED, linewidth=1.3, label="rotor")
+    position.set_ylabel("position (rad)")
+    legend(position, loc="upper left")
+    torque.plot(*thinned(run.time, run.effort), color=ACCENT, linewidth=1.0)
+    torque.set_ylabel("torque of\nthe spring (N·m)")
+    torque.set_xlabel(_TIME)
+    drawn.align_ylabels()
+    return drawn
+
+
+def _line(panel: Axes, time: FloatArray, position: FloatArray) -> None:
+    panel.plot(*thinned(time, position / ARC_SECOND), color=SIMULATED, linewidth=1.0)
+
+
+def _target(panel: Axes, target: float) -> None:
+    panel.axhline(
+        target / ARC_SECOND, color=FAINT, linewidth=0.9, linestyle=(0, (3, 3)), label="target"
+    )
+
+
+def _path(panel: Axes, effort: FloatArray, position: FloatArray) -> None:
+    """Torque over position, with every turning point kept."""
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(effort))) != 0) + 1
+    even = np.linspace(0, len(effort) - 1, min(_PATH_POINTS, len(effort))).astype(np.int64)
+    kept = np.unique(np.concatenate([even, turns]))
+    panel.plot(
+        np.concatenate([[0.0], position[kept]]) / ARC_SECOND,
+        np.concatenate([[0.0], effort[kept]]),
+        color=SIMULATED,
+        linewidth=1.2,
+    )
+    panel.set_xlabel(_POSITION)
+    panel.set_ylabel(_TORQUE)
+
+
+def _points(panel: Axes, letters: Sequence[str], level: FloatArray, position: FloatArray) -> None:
+    """Mark the points of a path; points that coincide get one label."""
+    panel.plot(position, level, "o", color=ACCENT, ms=4, zorder=3)
+    panel.plot(0.0, 0.0, "o", color=ACCENT, ms=4, zorder=3)
+    _note(panel, "a", 0.0, 0.0, (6, -9))
+    before = np.concatenate([[0.0], level[:-1]])
+    width, height = float(np.ptp(position)), float(np.ptp(level))
+    groups: list[list[int]] = []
+    for index in range(len(letters)):
+        for group in groups:
+            near = abs(position[group[0]] - position[index]) < _TOGETHER * width
+            if near and abs(level[group[0]] - level[index]) < _TOGETHER * height:
+                group.append(index)
+                break
+        else:
+            groups.append([index])
+    for group in groups:
+        first = group[0]
+        above = level[first] > before[first]
+        text = ", ".join(letters[index] for index in group)
+        offset, side = ((-5, 4), "right") if above else ((6, -10), "left")
+        _note(panel, text, position[first], level[first], offset, ha=side)
+    panel.margins(0.07)
+
+
+def _note(
+    panel: Axes,
+    text: str,
+    x: float,
+    y: float,
+    offset: tuple[float, float],
+    ha: str = "left",
+) -> None:
+    panel.annotate(
+        text, (x, y), offset, textcoords="offset points", ha=ha, fontsize=SMALL, color=INK
+    )

@@ -1,0 +1,310 @@
+"""A plant: drive, body, friction, effects, sensor and controller, as a plant file describes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import plant_file
+from ._native import FrictionModel
+from .errors import InputError
+from .motor import Motor
+from .parameter import Parameter
+from .trajectory import Trajectory
+from .wording import did_you_mean, listed
+
+__all__ = ["Effect", "Friction", "Plant"]
+
+
+@dataclass(frozen=True)
+class Friction:
+    """A law with the parameters and options that the file states."""
+
+    law: str
+    parameters: Mapping[str, Parameter] = field(default_factory=dict)
+    options: Mapping[str, str] = field(default_factory=dict)
+
+    def model(self) -> FrictionModel:
+        """The friction model; what is not stated takes the catalogue's default."""
+        values = {name: parameter.value for name, parameter in self.parameters.items()}
+        return FrictionModel(self.law, **values, **self.options)
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect with the parameters that the file states."""
+
+    name: str
+    parameters: Mapping[str, Parameter] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Plant:
+    """A single-axis machine.
+
+    Attributes
+    ----------
+    motion : {"rotary", "linear"}
+        Whether positions are rad or m and efforts N·m or N.
+    drive : Mapping
+        ``input`` (name of the input column), ``gain`` (effort per unit of input), ``limit``
+        (greatest magnitude of the input); or ``kind = "prescribed_motion"``.
+    body : Mapping of str to Parameter
+        ``inertia``, ``gravity_amplitude``, ``gravity_zero_rad``, ``weight_n``.
+    friction : Friction
+    effects : tuple of Effect
+    sensor : Mapping of str to float
+        ``counts_per_rev`` or ``count_m``.
+    controller : Mapping
+        As in the file; empty where the loop is not described.
+    source : str
+        Where it was read, for messages.
+    """
+
+    friction: Friction
+    motion: str = "rotary"
+    drive: Mapping[str, Any] = field(default_factory=dict)
+    body: Mapping[str, Parameter] = field(default_factory=dict)
+    effects: tuple[Effect, ...] = ()
+    sensor: Mapping[str, float] = field(default_factory=dict)
+    controller: Mapping[str, Any] = field(default_factory=dict)
+    source: str = field(default="plant", compare=False)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Plant:
+        """Read a plant file.
+
+        Raises
+        ------
+        InputError
+            Missing file, not TOML, unknown or missing keys, wrong types, values out of bounds.
+        """
+        table, source = plant_file.read(Path(path))
+        return cls.from_dict(table, source=source)
+
+    @classmethod
+    def from_dict(cls, table: Mapping[str, Any], *, source: str = "plant") -> Plant:
+        """A plant from the tables of a plant file.
+
+        Raises
+        ------
+        InputError
+            As for ``load``.
+        """
+        parts = plant_file.parse(table, source)
+        plant = cls(
+            friction=Friction(
+                parts.law,
+                MappingProxyType(parts.friction),
+                MappingProxyType(parts.options),
+            ),
+            motion=parts.motion,
+            drive=MappingProxyType(parts.drive),
+            body=MappingProxyType(parts.body),
+            effects=tuple(Effect(name, MappingProxyType(p)) for name, p in parts.effects),
+            sensor=MappingProxyType(parts.sensor),
+            controller=MappingProxyType(parts.controller),
+            source=source,
+        )
+        plant._check()
+        return plant
+
+    def save(self, path: str | Path) -> Path:
+        """Write a plant file; returns the path."""
+        path = Path(path)
+        path.write_text(plant_file.render(self.to_dict()), encoding="utf-8")
+        return path
+
+    def to_dict(self) -> dict[str, Any]:
+        """The tables of a plant file."""
+
+        def plain(parameters: Mapping[str, Parameter]) -> dict[str, Any]:
+            return {name: parameter.to_toml() for name, parameter in parameters.items()}
+
+        table: dict[str, Any] = {"motion": {"kind": self.motion}}
+        if self.drive:
+            table["drive"] = dict(self.drive)
+        if self.body:
+            table["body"] = plain(self.body)
+        table["friction"] = {
+            "law": self.friction.law,
+            **self.friction.options,
+            **plain(self.friction.parameters),
+        }
+        if self.effects:
+            table["effects"] = [{"name": e.name, **plain(e.parameters)} for e in self.effects]
+        if self.sensor:
+            table["sensor"] = dict(self.sensor)
+        if self.controller:
+            table["controller"] = dict(self.controller)
+        return table
+
+    @property
+    def prescribed_motion(self) -> bool:
+        """Whether the machine is moved and the effort measured."""
+        return self.drive.get("kind") == "prescribed_motion"
+
+    @property
+    def effort_unit(self) -> str:
+        """Unit of effort."""
+        return "N·m" if self.motion == "rotary" else "N"
+
+    @property
+    def position_unit(self) -> str:
+        """Unit of position."""
+        return "rad" if self.motion == "rotary" else "m"
+
+    @property
+    def count(self) -> float:
+        """Size of a sensor count, 0 where none is stated."""
+        if "counts_per_rev" in self.sensor:
+            return float(2 * np.pi / self.sensor["counts_per_rev"])
+        return float(self.sensor.get("count_m", 0.0))
+
+    @property
+    def inertia(self) -> float:
+        """Inertia (mass).
+
+        Raises
+        ------
+        InputError
+            The file states none.
+        """
+        if "inertia" in self.body:
+            return self.body["inertia"].value
+        if self.prescribed_motion:
+            return 0.0
+        raise InputError(
+            f"{self.source}: [body] inertia is missing; state it (kg·m² or kg) to simulate"
+        )
+
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """Every stated parameter by its path, such as ``friction.coulomb``."""
+        paths = {f"body.{name}": p for name, p in self.body.items()}
+        paths |= {f"friction.{name}": p for name, p in self.friction.parameters.items()}
+        for effect in self.effects:
+            paths |= {f"effects.{effect.name}.{n}": p for n, p in effect.parameters.items()}
+        return MappingProxyType(paths)
+
+    def with_values(self, values: Mapping[str, float]) -> Plant:
+        """A copy with other values at these paths (or bare names, where unique).
+
+        Raises
+        ------
+        InputError
+            A path that the plant does not state.
+        """
+        stated = self.parameters
+        changed = dict(stated)
+        for name, value in values.items():
+            hits = [p for p in stated if p == name or p.rsplit(".", 1)[-1] == name]
+            if len(hits) != 1:
+                what = "is ambiguous" if hits else "is not stated"
+                raise InputError(
+                    f"{self.source}: parameter '{name}' {what}{did_you_mean(name, stated)}; "
+                    f"there are {listed(hits or stated)}"
+                )
+            changed[hits[0]] = replace(stated[hits[0]], value=float(value))
+
+        def part(prefix: str) -> Mapping[str, Parameter]:
+            own = {p.removeprefix(prefix): v for p, v in changed.items() if p.startswith(prefix)}
+            return MappingProxyType(own)
+
+        plant = replace(
+            self,
+            body=part("body."),
+            friction=replace(self.friction, parameters=part("friction.")),
+            effects=tuple(
+                replace(e, parameters=part(f"effects.{e.name}.")) for e in self.effects
+            ),
+        )
+        plant._check()
+        return plant
+
+    def motor(self, *, integrator: str = "fast") -> Motor:
+        """The plant as a motor at rest.
+
+        Raises
+        ------
+        InputError
+            No inertia is stated, or a value that no motor has.
+        """
+        inertia = self.inertia
+        if inertia == 0.0:
+            raise InputError(
+                f"{self.source}: [body] inertia = 0 cannot be simulated as a motor; state one"
+            )
+        return self._motor(inertia, integrator)
+
+    def follower(self) -> Motor:
+        """The plant as a motor that is only moved along given positions (``Motor.follow``)."""
+        return self._motor(self.inertia or 1.0, "fast")
+
+    def _motor(self, inertia: float, integrator: str) -> Motor:
+        def body(name: str) -> float:
+            return self.body[name].value if name in self.body else 0.0
+
+        return Motor(
+            inertia,
+            float(self.drive.get("gain", 1.0)),
+            self.friction.model(),
+            effects={e.name: {n: p.value for n, p in e.parameters.items()} for e in self.effects},
+            gravity_amplitude=body("gravity_amplitude"),
+            gravity_zero=body("gravity_zero_rad"),
+            weight=body("weight_n"),
+            input_limit=float(self.drive.get("limit", np.inf)),
+            count=self.count,
+            integrator=integrator,
+        )
+
+    def simulate(
+        self,
+        input: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        *,
+        load: npt.ArrayLike | None = None,
+        outputs: list[str] | None = None,
+        position: float = 0.0,
+        velocity: float = 0.0,
+    ) -> Trajectory:
+        """Simulate samples of held input from rest, or from this position and velocity.
+
+        Parameters are those of ``Motor.simulate``.
+
+        Raises
+        ------
+        InputError
+            As for ``motor`` and ``Motor.simulate``; a plant of prescribed motion.
+        """
+        if self.prescribed_motion:
+            raise InputError(
+                f"{self.source}: [drive] kind = 'prescribed_motion' has no input to simulate; "
+                "use Motor.follow or a drive with an input"
+            )
+        motor = self.motor()
+        motor.reset(position, velocity)
+        return motor.simulate(input, dt, load=load, outputs=outputs)
+
+    def _check(self) -> None:
+        """Refuse what the catalogue refuses, naming the file."""
+        try:
+            self._motor(1.0, "fast")
+        except InputError as error:
+            raise InputError(f"{self.source}: {error}") from None
+
+    def __repr__(self) -> str:
+        effects = f" + {', '.join(e.name for e in self.effects)}" if self.effects else ""
+        return f"Plant({self.motion}, {self.friction.law}{effects}, from {self.source})"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{path}</td><td>{p.value:.6g}</td></tr>" for path, p in self.parameters.items()
+        )
+        return f"<p>{self!r}</p><table><tr><th>parameter</th><th>value</th></tr>{rows}</table>"

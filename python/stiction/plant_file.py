@@ -1,0 +1,263 @@
+"""Plant files: TOML in, checked tables out, and back."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from .errors import InputError
+from .parameter import Parameter, number
+from .wording import did_you_mean, listed
+
+__all__ = ["Parts", "parse", "read", "read_toml", "render"]
+
+INPUTS: Final = ("current_a", "voltage_v", "torque_nm", "force_n")
+"""What a drive may be commanded in."""
+
+_TABLES: Final = ("motion", "drive", "body", "friction", "effects", "sensor", "controller")
+_DRIVE: Final = ("kind", "input", "gain", "limit")
+_BODY: Final = ("inertia", "gravity_amplitude", "gravity_zero_rad", "weight_n")
+_CONTROLLERS: Final = ("pd", "pid", "position_velocity")
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The checked tables of a plant file."""
+
+    motion: str
+    drive: dict[str, Any]
+    body: dict[str, Parameter]
+    law: str
+    friction: dict[str, Parameter]
+    options: dict[str, str]
+    effects: list[tuple[str, dict[str, Parameter]]]
+    sensor: dict[str, float]
+    controller: dict[str, Any]
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Read a TOML file.
+
+    Raises
+    ------
+    InputError
+        Missing, a directory, not UTF-8, not TOML, empty.
+    """
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+        table = tomllib.loads(text)
+    except FileNotFoundError:
+        raise InputError(f"{path}: there is no such file; check the path") from None
+    except IsADirectoryError:
+        raise InputError(f"{path}: is a directory; give the file in it") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: is not text in UTF-8; save it as UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{path}: is not TOML: {error}; mend that line") from None
+    if not table:
+        raise InputError(f"{path}: is empty; state at least [friction] law")
+    return table
+
+
+def read(path: Path) -> tuple[dict[str, Any], str]:
+    """The raw tables of a plant file and the name to use in messages."""
+    return read_toml(path), str(path)
+
+
+def parse(table: Mapping[str, Any], source: str) -> Parts:
+    """Check the tables of a plant file.
+
+    Raises
+    ------
+    InputError
+        Unknown or missing keys, wrong types, values out of bounds.
+    """
+    known(table, _TABLES, source)
+    motion_table = section(table, "motion", source)
+    known(motion_table, ("kind",), f"{source}: [motion]")
+    motion = motion_table.get("kind", "rotary")
+    choice(motion, ("rotary", "linear"), f"{source}: [motion] kind")
+    law, friction, options = _friction(section(table, "friction", source), source)
+    return Parts(
+        motion=motion,
+        drive=_drive(section(table, "drive", source), source),
+        body=_body(section(table, "body", source), motion, source),
+        law=law,
+        friction=friction,
+        options=options,
+        effects=_effects(table.get("effects", []), source),
+        sensor=_sensor(section(table, "sensor", source), motion, source),
+        controller=_controller(section(table, "controller", source), source),
+    )
+
+
+def known(table: Mapping[str, Any], allowed: Iterable[str], where: str) -> None:
+    """Refuse keys that are not allowed."""
+    allowed = list(allowed)
+    for key in table:
+        if key not in allowed:
+            raise InputError(
+                f"{where}: '{key}' is unknown{did_you_mean(key, allowed)}; "
+                f"allowed are {listed(allowed)}"
+            )
+
+
+def choice(given: Any, allowed: Iterable[str], where: str) -> str:
+    """Take one of the allowed words."""
+    allowed = list(allowed)
+    if not isinstance(given, str) or given not in allowed:
+        near = did_you_mean(given, allowed) if isinstance(given, str) else ""
+        raise InputError(f"{where} = {given!r} is unknown{near}; allowed are {listed(allowed)}")
+    return given
+
+
+def section(table: Mapping[str, Any], name: str, source: str) -> Mapping[str, Any]:
+    """The table ``[name]``, empty where it is not there."""
+    given = table.get(name, {})
+    if not isinstance(given, Mapping):
+        kind = type(given).__name__
+        raise InputError(f"{source}: {name} is a {kind}; write it as a table, [{name}]")
+    return given
+
+
+def _drive(given: Mapping[str, Any], source: str) -> dict[str, Any]:
+    where = f"{source}: [drive]"
+    known(given, _DRIVE, where)
+    drive: dict[str, Any] = {}
+    if "kind" in given:
+        drive["kind"] = choice(given["kind"], ("direct", "prescribed_motion"), f"{where} kind")
+    if "input" in given:
+        drive["input"] = choice(given["input"], INPUTS, f"{where} input")
+    for name in ("gain", "limit"):
+        if name in given:
+            drive[name] = number(given[name], f"{where} {name}")
+    if drive.get("gain") == 0.0:
+        raise InputError(f"{where} gain = 0 moves nothing; give the effort per unit of input")
+    if drive.get("limit", 1.0) <= 0.0:
+        raise InputError(f"{where} limit = {drive['limit']} is not above 0")
+    return drive
+
+
+def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Parameter]:
+    where = f"{source}: [body]"
+    known(given, _BODY, where)
+    body = {name: Parameter.read(value, f"{where} {name}") for name, value in given.items()}
+    if "inertia" in body and not 0.0 <= body["inertia"].value < math.inf:
+        unit = "kg·m²" if motion == "rotary" else "kg"
+        raise InputError(
+            f"{where} inertia = {body['inertia'].value} is out of bounds: allowed is a finite "
+            f"number from 0 in {unit}"
+        )
+    if "weight_n" in body and motion == "rotary":
+        raise InputError(
+            f"{where} weight_n is for linear plants; use gravity_amplitude for a rotary one"
+        )
+    return body
+
+
+def _friction(
+    given: Mapping[str, Any], source: str
+) -> tuple[str, dict[str, Parameter], dict[str, str]]:
+    from .catalogue import laws
+
+    where = f"{source}: [friction]"
+    if "law" not in given:
+        names = listed(law.name for law in laws())
+        raise InputError(f"{where} law is missing; allowed are {names}")
+    law = choice(given["law"], (law.name for law in laws()), f"{where} law")
+    record = next(entry for entry in laws() if entry.name == law)
+    options = {option.name: option for option in record.options}
+    names = [parameter.name for parameter in record.parameters]
+    known(given, ["law", *names, *options], where)
+    words = {
+        name: choice(given[name], (w for w, _ in option.choices), f"{where} {name}")
+        for name, option in options.items()
+        if name in given
+    }
+    parameters = {
+        name: Parameter.read(given[name], f"{where} {name}") for name in names if name in given
+    }
+    return law, parameters, words
+
+
+def _effects(given: Any, source: str) -> list[tuple[str, dict[str, Parameter]]]:
+    from .catalogue import effects
+
+    if not isinstance(given, list) or not all(isinstance(e, Mapping) for e in given):
+        raise InputError(f"{source}: effects is not a list of tables; write [[effects]]")
+    records = {record.name: record for record in effects()}
+    result: list[tuple[str, dict[str, Parameter]]] = []
+    for index, entry in enumerate(given):
+        where = f"{source}: [[effects]] {index + 1}"
+        if "name" not in entry:
+            raise InputError(f"{where}: name is missing; allowed are {listed(records)}")
+        name = choice(entry["name"], records, f"{where} name")
+        if any(name == other for other, _ in result):
+            raise InputError(f"{where}: '{name}' is there twice; drop one")
+        where = f"{where} ({name})"
+        allowed = [parameter.name for parameter in records[name].parameters]
+        known(entry, ["name", *allowed], where)
+        values = {
+            key: Parameter.read(value, f"{where} {key}")
+            for key, value in entry.items()
+            if key != "name"
+        }
+        result.append((name, values))
+    return result
+
+
+def _sensor(given: Mapping[str, Any], motion: str, source: str) -> dict[str, float]:
+    where = f"{source}: [sensor]"
+    own = "counts_per_rev" if motion == "rotary" else "count_m"
+    known(given, (own,), where)
+    sensor = {name: number(value, f"{where} {name}") for name, value in given.items()}
+    for name, value in sensor.items():
+        if not 0.0 < value < math.inf:
+            raise InputError(f"{where} {name} = {value} is not a finite number above 0")
+    return sensor
+
+
+def _controller(given: Mapping[str, Any], source: str) -> dict[str, Any]:
+    where = f"{source}: [controller]"
+    if not given:
+        return {}
+    if "kind" not in given:
+        raise InputError(f"{where} kind is missing; allowed are {listed(_CONTROLLERS)}")
+    choice(given["kind"], _CONTROLLERS, f"{where} kind")
+    return dict(given)
+
+
+def render(table: Mapping[str, Any]) -> str:
+    """The text of a plant file, from plain tables."""
+    lines: list[str] = []
+    for name, content in table.items():
+        if isinstance(content, list):
+            for entry in content:
+                lines += [f"[[{name}]]", *_lines(entry), ""]
+        else:
+            lines += [f"[{name}]", *_lines(content), ""]
+    return "\n".join(lines)
+
+
+def _lines(table: Mapping[str, Any]) -> list[str]:
+    return [f"{key} = {_value(value)}" for key, value in table.items()]
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+        return f'"{escaped}"'
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{k} = {_value(v)}" for k, v in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(_value(v) for v in value) + "]"
+    # repr keeps every bit; TOML writes infinity and nan as Python does.
+    return repr(float(value)) if isinstance(value, float) else repr(value)

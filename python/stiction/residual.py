@@ -1,0 +1,253 @@
+"""What a simulation gets wrong: the effort residual along the measured motion, and the free run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from .errors import InputError
+from .motion import SMOOTHING_SHARE, Kernel, count_of, evenly, held, noise_of, play, smooth
+from .trajectory import FloatArray, Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from .plant import Plant
+    from .recording import Recording
+
+__all__ = ["EffortResidual", "FreeRun", "effort_residual", "free_run"]
+
+SUPPORTS_S: Final = (0.030, 0.300)
+"""Narrowest and widest kernel that is chosen; 28 to 50 ms suit machines sampled at 1 kHz."""
+FEWEST_SAMPLES: Final = 8
+"""Fewer samples than this do not average anything."""
+NOISE_SHARE: Final = 0.02
+"""The kernel is widened until the inertia term holds less position noise than this share of the
+effort: a coarse encoder needs more than 30 ms."""
+
+
+@dataclass(frozen=True)
+class EffortResidual:
+    """Measured effort minus what the model needs for the measured motion.
+
+    Both went through the same kernel: residual = K∗(drive + load + gravity + added efforts) −
+    J·K''∗x − K∗F, with friction F driven by the measured position.
+
+    Attributes
+    ----------
+    time : numpy.ndarray, shape (n,)
+        Centre of the kernel, s.
+    effort, model, residual : numpy.ndarray, shape (n,)
+        N·m or N.
+    support : float
+        Width of the kernel in s.
+    unit : str
+    """
+
+    time: FloatArray
+    effort: FloatArray
+    model: FloatArray
+    support: float
+    unit: str
+
+    @property
+    def residual(self) -> FloatArray:
+        """Measured minus model."""
+        return self.effort - self.model
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the residual."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+    @property
+    def relative(self) -> float:
+        """2-norm of the residual over that of the measured effort."""
+        scale = float(np.linalg.norm(self.effort))
+        return float(np.linalg.norm(self.residual)) / scale if scale > 0.0 else float("inf")
+
+    def __repr__(self) -> str:
+        return (
+            f"EffortResidual({100 * self.relative:.3f} % of the measured effort, "
+            f"{self.rms:.4g} {self.unit} rms, kernel {1e3 * self.support:.0f} ms)"
+        )
+
+    def _repr_html_(self) -> str:
+        return f"<p>{self!r}</p>"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The numbers, for JSON."""
+        return {
+            "relative": self.relative,
+            "rms": self.rms,
+            "unit": self.unit,
+            "kernel_support_s": self.support,
+        }
+
+    def plot(self) -> Figure:
+        """A figure of both efforts and of the residual."""
+        from . import plot
+
+        return plot.residual(self.time, self.effort, self.model, unit=self.unit)
+
+
+@dataclass(frozen=True)
+class FreeRun:
+    """The simulation started once and left alone, beside the measured motion.
+
+    Attributes
+    ----------
+    time : numpy.ndarray, shape (n,)
+    measured, simulated : numpy.ndarray, shape (n,)
+        Position, rad or m.
+    trajectory : Trajectory
+    unit : str
+    """
+
+    time: FloatArray
+    measured: FloatArray
+    simulated: FloatArray
+    trajectory: Trajectory
+    unit: str
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of measured minus simulated position."""
+        return float(np.sqrt(np.mean((self.measured - self.simulated) ** 2)))
+
+    @property
+    def greatest(self) -> float:
+        """Greatest magnitude of measured minus simulated position."""
+        return float(np.max(np.abs(self.measured - self.simulated)))
+
+    def __repr__(self) -> str:
+        return f"FreeRun({self.rms:.4g} {self.unit} rms, greatest {self.greatest:.4g} {self.unit})"
+
+    def _repr_html_(self) -> str:
+        return f"<p>{self!r}</p>"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The numbers, for JSON."""
+        return {"rms": self.rms, "greatest": self.greatest, "unit": self.unit}
+
+    def plot(self) -> Figure:
+        """A figure of both motions and of their difference."""
+        from . import plot
+
+        return plot.overlay(self.time, self.measured, self.simulated, unit=self.unit)
+
+
+def effort_residual(
+    plant: Plant, recording: Recording, *, support: float | None = None
+) -> EffortResidual:
+    """The effort that the model leaves unexplained along the measured motion.
+
+    Parameters
+    ----------
+    plant : Plant
+    recording : Recording
+        With position, and input or (for prescribed motion) effort.
+    support : float, optional
+        Width of the kernel in s. Without it the narrowest one from 30 ms on that keeps the
+        position noise in the inertia term below 2 % of the effort.
+
+    Raises
+    ------
+    InputError
+        No position, no input, or too short for the kernel.
+    """
+    position, source = _needed(recording)
+    prescribed = plant.prescribed_motion or recording.input is None
+    driving = recording.effort if prescribed else recording.input
+    if driving is None:
+        raise InputError(f"{source}: there is no effort; prescribed motion needs an effort column")
+    time, dt = evenly(recording.time)
+    x = np.interp(time, recording.time, position)
+    u = held(time, recording.time, driving)
+    scale = 1.0 if prescribed else float(plant.drive.get("gain", 1.0))
+    if support is None:
+        level = abs(scale) * float(np.sqrt(np.mean(u**2)))
+        kernel = _quiet_kernel(dt, plant.inertia * noise_of(x), level)
+    else:
+        kernel = Kernel(support, dt)
+    if len(time) < 4 * kernel.half:
+        raise InputError(
+            f"{source}: {len(time)} samples are too few for a kernel of {kernel.support:.3g} s; "
+            "give a longer recording or a smaller support"
+        )
+    load = recording.channels.get("load")
+    pushed = np.zeros_like(x) if load is None else held(time, recording.time, load)
+
+    motor = plant.follower()
+    motor.reset(float(x[0]), 0.0)
+    driven_by = smooth(play(x, plant.count or count_of(x)), dt, SMOOTHING_SHARE * kernel.support)
+    inputs = np.zeros(len(x) - 1) if prescribed else u[:-1]
+    drive, ambient, friction = motor.follow(driven_by, inputs, dt, load=pushed[:-1])
+
+    # Stamps of `follow` are the sample ends 1 … n − 1. A measured effort belongs to its stamp; a
+    # held one is the mean of what held before and after, or the residual is half a sample late.
+    if prescribed:
+        measured = u[1:]
+    else:
+        after = np.append(drive[1:], drive[-1])
+        measured = 0.5 * (drive + after)
+    load_after = np.append(pushed[1:-1], pushed[-2])
+    measured = measured + 0.5 * (pushed[:-1] + load_after)
+    effort = kernel.mean(measured)
+    inertia = plant.inertia * kernel.second_derivative(x[1:])
+    model = inertia + kernel.mean(friction - ambient)
+    return EffortResidual(
+        time[1:][kernel.half : -kernel.half], effort, model, kernel.support, plant.effort_unit
+    )
+
+
+def free_run(plant: Plant, recording: Recording) -> FreeRun:
+    """Simulate the recorded input from the measured start and compare the motion.
+
+    The starting velocity is the slope of the smoothed position at the first row.
+
+    Raises
+    ------
+    InputError
+        No position or no input; a plant without inertia.
+    """
+    position, source = _needed(recording)
+    if recording.input is None:
+        raise InputError(f"{source}: there is no input, so nothing can run freely")
+    steps = np.diff(recording.time)
+    smoothed = smooth(position, recording.dt, SMOOTHING_SHARE * SUPPORTS_S[0])
+    velocity = float((smoothed[1] - smoothed[0]) / steps[0])
+    load = recording.channels.get("load")
+    trajectory = plant.simulate(
+        recording.input[:-1],
+        steps,
+        load=None if load is None else load[:-1],
+        position=float(position[0]),
+        velocity=velocity if abs(velocity) * recording.duration > plant.count else 0.0,
+    )
+    return FreeRun(
+        recording.time[1:],
+        position[1:],
+        trajectory.position,
+        trajectory,
+        plant.position_unit,
+    )
+
+
+def _quiet_kernel(dt: float, noise: float, level: float) -> Kernel:
+    """The narrowest kernel that leaves little of the noise of J·x in the inertia term."""
+    support, widest = max(SUPPORTS_S[0], FEWEST_SAMPLES * dt), SUPPORTS_S[1]
+    while True:
+        kernel = Kernel(support, dt)
+        if support >= widest or noise * kernel.roughness <= NOISE_SHARE * level:
+            return kernel
+        support = min(1.25 * support, widest)
+
+
+def _needed(recording: Recording) -> tuple[FloatArray, str]:
+    source = str(recording.path) if recording.path is not None else "recording"
+    if recording.position is None:
+        raise InputError(f"{source}: there is no measured position to compare with")
+    return recording.position, source

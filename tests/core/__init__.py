@@ -1,0 +1,1 @@
+"""The compiled core, from Python: its contract, bad input, oracles and properties."""
