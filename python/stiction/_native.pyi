@@ -8,6 +8,8 @@ import numpy.typing as npt
 
 _Floats = npt.NDArray[np.float64]
 
+__all__ = ["FrictionModel", "Motor", "Nothing", "__version__", "effects", "laws"]
+
 __version__: Final[str]
 
 def laws() -> list[dict[str, Any]]: ...

@@ -16,6 +16,7 @@ from ._native import FrictionModel
 from .errors import InputError
 from .motor import Motor
 from .parameter import Parameter
+from .recording.units import Motion
 from .trajectory import Trajectory
 from .wording import did_you_mean, listed
 
@@ -68,7 +69,7 @@ class Plant:
     """
 
     friction: Friction
-    motion: str = "rotary"
+    motion: Motion = "rotary"
     drive: Mapping[str, Any] = field(default_factory=dict)
     body: Mapping[str, Parameter] = field(default_factory=dict)
     effects: tuple[Effect, ...] = ()
@@ -221,9 +222,7 @@ class Plant:
             self,
             body=part("body."),
             friction=replace(self.friction, parameters=part("friction.")),
-            effects=tuple(
-                replace(e, parameters=part(f"effects.{e.name}.")) for e in self.effects
-            ),
+            effects=tuple(replace(e, parameters=part(f"effects.{e.name}.")) for e in self.effects),
         )
         plant._check()
         return plant

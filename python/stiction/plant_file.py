@@ -11,10 +11,12 @@ from typing import Any, Final
 
 from .errors import InputError
 from .parameter import Parameter, number
+from .recording.units import Motion
 from .wording import did_you_mean, listed
 
 __all__ = ["Parts", "parse", "read", "read_toml", "render"]
 
+MOTIONS: Final = ("rotary", "linear")
 INPUTS: Final = ("current_a", "voltage_v", "torque_nm", "force_n")
 """What a drive may be commanded in."""
 
@@ -28,7 +30,7 @@ _CONTROLLERS: Final = ("pd", "pid", "position_velocity")
 class Parts:
     """The checked tables of a plant file."""
 
-    motion: str
+    motion: Motion
     drive: dict[str, Any]
     body: dict[str, Parameter]
     law: str
@@ -81,8 +83,8 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
     known(table, _TABLES, source)
     motion_table = section(table, "motion", source)
     known(motion_table, ("kind",), f"{source}: [motion]")
-    motion = motion_table.get("kind", "rotary")
-    choice(motion, ("rotary", "linear"), f"{source}: [motion] kind")
+    kind = choice(motion_table.get("kind", "rotary"), MOTIONS, f"{source}: [motion] kind")
+    motion: Motion = "linear" if kind == "linear" else "rotary"
     law, friction, options = _friction(section(table, "friction", source), source)
     return Parts(
         motion=motion,
@@ -168,10 +170,10 @@ def _friction(
 
     where = f"{source}: [friction]"
     if "law" not in given:
-        names = listed(law.name for law in laws())
-        raise InputError(f"{where} law is missing; allowed are {names}")
-    law = choice(given["law"], (law.name for law in laws()), f"{where} law")
-    record = next(entry for entry in laws() if entry.name == law)
+        known_laws = listed(record.name for record in laws())
+        raise InputError(f"{where} law is missing; allowed are {known_laws}")
+    law = choice(given["law"], (record.name for record in laws()), f"{where} law")
+    record = next(record for record in laws() if record.name == law)
     options = {option.name: option for option in record.options}
     names = [parameter.name for parameter in record.parameters]
     known(given, ["law", *names, *options], where)
@@ -193,22 +195,21 @@ def _effects(given: Any, source: str) -> list[tuple[str, dict[str, Parameter]]]:
         raise InputError(f"{source}: effects is not a list of tables; write [[effects]]")
     records = {record.name: record for record in effects()}
     result: list[tuple[str, dict[str, Parameter]]] = []
-    for index, entry in enumerate(given):
-        where = f"{source}: [[effects]] {index + 1}"
+    for index, entry in enumerate(given, 1):
+        where = f"{source}: [[effects]] {index}"
         if "name" not in entry:
             raise InputError(f"{where}: name is missing; allowed are {listed(records)}")
-        name = choice(entry["name"], records, f"{where} name")
-        if any(name == other for other, _ in result):
-            raise InputError(f"{where}: '{name}' is there twice; drop one")
-        where = f"{where} ({name})"
-        allowed = [parameter.name for parameter in records[name].parameters]
-        known(entry, ["name", *allowed], where)
+        effect = choice(entry["name"], records, f"{where} name")
+        if any(effect == other for other, _ in result):
+            raise InputError(f"{where}: '{effect}' is there twice; drop one")
+        where = f"{where} ({effect})"
+        known(entry, ["name", *(p.name for p in records[effect].parameters)], where)
         values = {
             key: Parameter.read(value, f"{where} {key}")
             for key, value in entry.items()
             if key != "name"
         }
-        result.append((name, values))
+        result.append((effect, values))
     return result
 
 

@@ -82,7 +82,7 @@ def figure(
     height, width : float
         Inches.
     title : str
-        Of the whole figure; at the left above the first panel.
+        Of the whole figure, at its upper left.
     sharex : bool
         Whether the panels of a column share their horizontal axis.
     height_ratios, width_ratios : sequence of float, optional
@@ -113,7 +113,7 @@ def figure(
         panel.grid(True, color="#e6e8ea", linewidth=0.6)
         panel.set_axisbelow(True)
     if title:
-        panels[0].set_title(title, loc="left", fontsize=TITLE, color=INK, pad=8.0)
+        drawn.suptitle(title, x=0.012, ha="left", fontsize=TITLE, color=INK)
     return drawn, panels
 
 

@@ -23,6 +23,8 @@ SUPPORTS_S: Final = (0.030, 0.300)
 """Narrowest and widest kernel that is chosen; 28 to 50 ms suit machines sampled at 1 kHz."""
 FEWEST_SAMPLES: Final = 8
 """Fewer samples than this do not average anything."""
+STARTING_S: Final = 0.010
+"""Stretch at the start of a recording that tells the starting velocity."""
 NOISE_SHARE: Final = 0.02
 """The kernel is widened until the inertia term holds less position noise than this share of the
 effort: a coarse encoder needs more than 30 ms."""
@@ -206,7 +208,7 @@ def effort_residual(
 def free_run(plant: Plant, recording: Recording) -> FreeRun:
     """Simulate the recorded input from the measured start and compare the motion.
 
-    The starting velocity is the slope of the smoothed position at the first row.
+    The starting velocity is the slope of a parabola through the first rows.
 
     Raises
     ------
@@ -217,15 +219,14 @@ def free_run(plant: Plant, recording: Recording) -> FreeRun:
     if recording.input is None:
         raise InputError(f"{source}: there is no input, so nothing can run freely")
     steps = np.diff(recording.time)
-    smoothed = smooth(position, recording.dt, SMOOTHING_SHARE * SUPPORTS_S[0])
-    velocity = float((smoothed[1] - smoothed[0]) / steps[0])
+    velocity = _starting_velocity(recording.time, position, plant.count or count_of(position))
     load = recording.channels.get("load")
     trajectory = plant.simulate(
         recording.input[:-1],
         steps,
         load=None if load is None else load[:-1],
         position=float(position[0]),
-        velocity=velocity if abs(velocity) * recording.duration > plant.count else 0.0,
+        velocity=velocity,
     )
     return FreeRun(
         recording.time[1:],
@@ -234,6 +235,15 @@ def free_run(plant: Plant, recording: Recording) -> FreeRun:
         trajectory,
         plant.position_unit,
     )
+
+
+def _starting_velocity(time: FloatArray, position: FloatArray, count: float) -> float:
+    """Slope at the first row, 0 where the first rows stay within two counts."""
+    rows = max(5, round(STARTING_S / float(np.median(np.diff(time)))))
+    t, x = time[:rows] - time[0], position[:rows]
+    if np.ptp(x) <= 2.0 * count:
+        return 0.0
+    return float(np.polynomial.Polynomial.fit(t, x, 2).deriv()(0.0))
 
 
 def _quiet_kernel(dt: float, noise: float, level: float) -> Kernel:

@@ -12,6 +12,7 @@ from .parameter import number
 from .plant import Plant
 from .plant_file import choice, known, read_toml, section
 from .recording import Columns, Recording
+from .recording.units import Motion
 
 __all__ = ["Session", "load", "load_recording"]
 
@@ -66,7 +67,7 @@ def load(path: str | Path, *, plant: Plant | None = None) -> Session:
     if plant is None and "plant" in table:
         named = table["plant"]
         if not isinstance(named, str):
-            raise InputError(f"{source}: plant = {named!r} is not a path; write plant = \"…\"")
+            raise InputError(f'{source}: plant = {named!r} is not a path; write plant = "…"')
         plant = Plant.load(path.parent / named)
     columns = section(table, "columns", source)
     entries = table.get("recordings", [])
@@ -80,7 +81,7 @@ def load(path: str | Path, *, plant: Plant | None = None) -> Session:
         where = f"{source}: [[recordings]] {index}"
         known(entry, _RECORDING, where)
         if not isinstance(entry.get("file"), str):
-            raise InputError(f"{where}: file is missing; write file = \"…\"")
+            raise InputError(f'{where}: file is missing; write file = "…"')
         file = (path.parent / entry["file"]).resolve()
         if file in seen:
             raise InputError(
@@ -116,7 +117,8 @@ def load_recording(
         As for ``Recording.load``.
     """
     mapped = Columns.parse(columns, where=f"{where}: [columns]") if columns else None
-    drive = motion = None
+    drive: str | None = None
+    motion: Motion | None = None
     count: float | None = None
     if plant is not None:
         drive = "prescribed_motion" if plant.prescribed_motion else plant.drive.get("input")

@@ -1,8 +1,7 @@
-"""What the tests of recordings share: a small machine's data, and the folder of real ones."""
+"""What the tests of recordings share: a small machine's data."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,17 +11,6 @@ import pytest
 
 Columns = dict[str, npt.NDArray[np.float64]]
 ROWS = 240
-_REPOSITORY = Path(__file__).parents[2]
-
-
-@pytest.fixture
-def shared_data() -> Path:
-    """The folder of real recordings; the test is skipped where it is absent."""
-    named = os.environ.get("STICTION_DATA", "../shared/data")
-    folder = Path(named) if Path(named).is_absolute() else _REPOSITORY / named
-    if not folder.is_dir():
-        pytest.skip(f"no real recordings: STICTION_DATA names no folder ({folder})")
-    return folder
 
 
 @pytest.fixture

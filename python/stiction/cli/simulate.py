@@ -89,9 +89,7 @@ def read_columns(text: str) -> dict[str, Any]:
     return columns
 
 
-def _one(
-    plant: Plant, recording: Recording, where: Path, support: float | None
-) -> dict[str, Any]:
+def _one(plant: Plant, recording: Recording, where: Path, support: float | None) -> dict[str, Any]:
     stem = recording.path.stem if recording.path is not None else "recording"
     lines = [f"{stem}: {len(recording)} rows over {recording.duration:.6g} s"]
     lines += [f"  {note}" for note in recording.notes]

@@ -297,7 +297,7 @@ def experiment_2(
     16.3
     """
     bench = Bench(rig, integrator, dt, encoder_count)
-    torque = _ramp(bench, target, ramp_rate, whole_samples(PATIENCE, dt))
+    torque = _ramp(bench, target, ramp_rate)
     hold_time, start = bench.time, bench.samples
     bench.hold(torque, hold)
     record = bench.record()
@@ -404,14 +404,14 @@ def experiment_3(
     )
 
 
-def _ramp(bench: Bench, target: float, rate: float, end: int) -> float:
+def _ramp(bench: Bench, target: float, rate: float, end: float = math.inf) -> float:
     """Ramp until the encoder reads the target or sample `end` is reached; the torque by then."""
     block = whole_samples(CONTROL_PERIOD, bench.dt)
     for period in range(whole_samples(PATIENCE, CONTROL_PERIOD) + 1):
         torque = rate * period * CONTROL_PERIOD
         if bench.reading >= target or bench.samples >= end:
             return torque
-        bench.apply(np.full(min(block, end - bench.samples), torque))
+        bench.apply(np.full(int(min(block, end - bench.samples)), torque))
     raise InputError(
         f"the ramp of {rate:g} N·m/s has not reached {target / ARC_SECOND:g} arc-seconds after "
         f"{PATIENCE:g} s; give a nearer target or a steeper ramp"

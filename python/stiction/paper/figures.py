@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import singledispatch
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullLocator
 
 from ..errors import InputError
 from ..plot import (
@@ -162,7 +163,12 @@ def _pulse_trains(run: PulseTrains) -> Figure:
 @draw.register
 def _static_test(test: StaticTest) -> Figure:
     drawn, (panel,) = figure(height=4.6, width=6.4, title=test.title)
-    _path(panel, test.effort, test.position)
+    if test.driven == "staircase":
+        # The torque jumps while the rotor stands; only the ends of the levels lie on the curve.
+        _path(panel, test.level, test.settled)
+        panel.set_xlabel("position at the end of each level (arc-seconds)")
+    else:
+        _path(panel, test.effort, test.position)
     _points(panel, test.letters, test.level, test.settled / ARC_SECOND)
     return drawn
 
@@ -211,25 +217,15 @@ def static_comparison(tests: Sequence[StaticTest]) -> Figure:
 def _hardening_cycles(run: HardeningCycles) -> Figure:
     drawn, (loop, plastic) = figure(1, 2, height=3.7, title=run.title)
     _path(loop, run.effort, run.position)
-    plastic.plot(
-        *thinned(run.time, run.states["plastic"] / ARC_SECOND),
-        color=SIMULATED,
-        linewidth=1.4,
-        label="permanent displacement",
-    )
-    plastic.plot(
-        *thinned(run.time, run.states["hardening"] / ARC_SECOND),
-        color=CYCLE[2],
-        linewidth=1.2,
-        linestyle=(0, (4, 2.5)),
-        label="work hardening h",
-    )
-    ends = run.settled_at
-    plastic.plot(run.time[ends], run.states["plastic"][ends] / ARC_SECOND, "o", color=ACCENT, ms=4)
-    plastic.set_ylim(0.0, 1.25 * float(run.states["hardening"].max()) / ARC_SECOND)
+    permanent = run.states["plastic"] / ARC_SECOND
+    plastic.plot(*thinned(run.time, permanent), color=SIMULATED, linewidth=1.4)
+    plastic.plot(run.time[run.settled_at], permanent[run.settled_at], "o", color=ACCENT, ms=4)
+    for at, added in zip(run.settled_at, run.permanent / ARC_SECOND, strict=True):
+        text = f"{added:+.2f}".replace("-", "−") if abs(added) >= 0.005 else "0"
+        _note(plastic, text, run.time[at], permanent[at], (0, 7), ha="center")
+    plastic.margins(y=0.14)
     plastic.set_xlabel(_TIME)
-    plastic.set_ylabel("displacement (arc-seconds)")
-    legend(plastic, loc="lower right")
+    plastic.set_ylabel("permanent displacement (arc-seconds)")
     return drawn
 
 
@@ -239,13 +235,15 @@ def _nested_loops(run: NestedLoops) -> Figure:
     _path(loop, run.effort, run.position)
     loop.set_xlabel("displacement of the spring (arc-seconds)")
     _points(loop, run.letters, run.level, run.settled / ARC_SECOND)
-    memory.step(run.time, run.reverse_points, where="post", color=SIMULATED, linewidth=1.3)
-    for letter, at in zip(run.letters, run.settled_at, strict=True):
-        _note(memory, letter, run.time[at], run.reverse_points[at], (0, 5), ha="center")
-    memory.margins(y=0.12)
-    memory.yaxis.set_major_locator(MaxNLocator(integer=True))
-    memory.set_xlabel(_TIME)
-    memory.set_ylabel("reverse points kept")
+    points = ("a", *run.letters)
+    starts = np.concatenate([[0], run.settled_at[:-1]])
+    kept = run.reverse_points[(starts + run.settled_at) // 2]
+    legs = [f"{one} to {other}" for one, other in pairwise(points)]
+    memory.barh(legs, kept, color=SIMULATED, height=0.55)
+    memory.invert_yaxis()
+    memory.grid(False, axis="y")
+    memory.xaxis.set_major_locator(MaxNLocator(integer=True))
+    memory.set_xlabel("reverse points kept")
     return drawn
 
 
@@ -282,7 +280,9 @@ def _loop_areas(run: LoopAreas) -> Figure:
         areas.plot(distance / ARC_SECOND, 1e6 * area, "o", color=colour, ms=5)
     areas.set_xscale("log")
     areas.set_yscale("log")
-    areas.set_xlabel("distance D of the reverse points (arc-seconds)")
+    areas.set_xticks(run.distance / ARC_SECOND, [f"{d:g}" for d in run.distance / ARC_SECOND])
+    areas.xaxis.set_minor_locator(NullLocator())
+    areas.set_xlabel("distance D (arc-seconds)")
     areas.set_ylabel("work lost in a loop (µJ)")
     legend(areas, loc="upper left")
     return drawn

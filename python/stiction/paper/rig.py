@@ -76,7 +76,7 @@ def illustrative_motor(*, integrator: str = "reference", **overrides: float | st
 
     Examples
     --------
-    >>> illustrative_motor(creep_rate=1.0).parameters["creep_rate"]
+    >>> illustrative_motor(creep_rate=1.0).parameters["friction.creep_rate"]
     1.0
     """
     inertia, law = _split(overrides)

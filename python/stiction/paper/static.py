@@ -2,9 +2,10 @@
 
 The paper states that every level of torque is held for 2 s and that the position is recorded at
 the end. It steps from level to level, and so do the tests here with ``driven="staircase"``; but
-each step overshoots by nearly its own height, and the overshoot hardens the junctions and leaves
-reverse points of its own. ``driven="ramp"`` approaches the levels slowly, and ``driven="force"``
-leaves inertia and damper out, so that the friction itself passes exactly through the levels.
+each step overshoots by nearly its own height. The overshoot hardens the junctions a little beyond
+the level and leaves the spring on another branch, farther along. ``driven="ramp"`` approaches the
+levels slowly, and ``driven="force"`` leaves inertia and damper out, so that the friction itself
+passes exactly through the levels.
 """
 
 from __future__ import annotations
@@ -407,7 +408,7 @@ def nested_loops(*, rig: RigLike = None, dt: float = FORCE_STEP) -> NestedLoops:
     if "reverse_points" not in law.state:
         raise InputError(f"nested_loops: law '{law.law}' keeps no reverse points")
     letters = ("b", "c", "d", "e", "f", "g", "f′", "d′", "b′", "h")
-    levels = (0.40, 0.04, 0.34, 0.10, 0.28, 0.16, 0.28, 0.34, 0.40, 0.46)
+    levels = (0.40, -0.32, 0.30, -0.22, 0.20, -0.12, 0.20, 0.30, 0.40, 0.46)
     path = ForcePath(law.copy(), levels, step=dt)
     direct = ForcePath(law.copy(), levels[-1:], step=dt)
     record = path.record(0.0)

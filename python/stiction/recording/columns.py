@@ -13,8 +13,8 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from ..errors import InputError
-from .units import find_unit
 from ..wording import did_you_mean, listed
+from .units import find_unit
 
 ROLES: Final[dict[str, tuple[str, ...]]] = {
     "time": ("time",),

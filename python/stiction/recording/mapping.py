@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError
+from ..wording import listed
 from .columns import CANONICAL, ROLES, Column, Columns
 from .repair import check_lengths
 from .table import Table
@@ -24,7 +25,6 @@ from .units import (
     to_si,
     unit_names,
 )
-from ..wording import listed
 
 PRESCRIBED: Final = "prescribed_motion"
 DRIVES: Final = ("current_a", "voltage_v", "torque_nm", "force_n", PRESCRIBED)

@@ -14,13 +14,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
+from ..wording import did_you_mean
 from .columns import ROLES, Columns
 from .formats import read_table
 from .mapping import read_channels
 from .rendering import as_html, as_text
 from .repair import Place, Repair, check_lengths, mend
 from .units import FloatArray, Motion
-from ..wording import did_you_mean
 
 SPLIT_ROLES: Final = ("train", "select", "test")
 """What a recording may be used for."""

@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
-from .units import FloatArray
 from ..wording import counted
+from .units import FloatArray
 
 BAD_SHARE: Final = 0.05
 """Repairs stay under this share of a channel's cells."""

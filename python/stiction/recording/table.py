@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
-from .units import FloatArray
 from ..wording import counted, did_you_mean, listed
+from .units import FloatArray
 
 # Of each column, this many cells that are not numbers are kept; one is enough for an error.
 CELLS_KEPT = 20

@@ -9,8 +9,8 @@ import os
 from pathlib import Path
 
 from ...errors import InputError
-from ..table import Table
 from ...wording import nearest
+from ..table import Table
 from . import delimited, json_records, mat, npz
 from .format import Format
 

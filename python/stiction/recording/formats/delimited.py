@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import InputError
+from ...wording import counted
 from ..table import CELLS_KEPT, Cell, Table, is_missing
 from ..units import FloatArray
-from ...wording import counted
 from .format import Format
 
 _BLANKS = " "

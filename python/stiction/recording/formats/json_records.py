@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...errors import InputError
-from ..table import CELLS_KEPT, Cell, Table
 from ...wording import counted, listed
+from ..table import CELLS_KEPT, Cell, Table
 from .format import Format
 
 _SHAPE = 'write [{"time_s": 0.0, ...}, ...], or an object that holds one such list'

@@ -46,7 +46,7 @@ def _unreadable(path: Path, error: Exception) -> InputError:
 
 
 def _read_classic(path: Path, found: _Found) -> None:
-    import scipy.io  # type: ignore[import-untyped]
+    import scipy.io
 
     try:
         variables = scipy.io.loadmat(str(path), appendmat=False)
@@ -75,7 +75,7 @@ def _add_classic(name: str, value: Any, found: _Found) -> None:
 
 def _read_hdf5(path: Path, found: _Found) -> None:
     try:
-        import h5py  # type: ignore[import-untyped]
+        import h5py
     except ImportError as error:
         raise InputError(
             f"{path}: this MAT file has version 7.3, which is read through h5py; install it "

@@ -1,0 +1,73 @@
+# Two commands do everything: `make demo` and `make test`. Each sets up what it needs first.
+
+SHELL := /bin/sh
+PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11 python; do \
+	command -v $$p >/dev/null 2>&1 && \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && \
+	{ echo $$p; break; }; done)
+RUST_NEEDED := $(shell sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/ready
+OUT ?= stiction-demo
+SOURCES := Cargo.toml Cargo.lock pyproject.toml $(shell find crates -name '*.rs' -o -name Cargo.toml)
+export PYO3_PYTHON := $(abspath $(BIN)/python)
+export CARGO_TERM_PROGRESS_WHEN := never
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+.PHONY: demo test lint rust-tests python-tests wheel bench format clean toolchain
+
+demo: $(READY)
+	$(BIN)/stiction demo --out $(OUT)
+
+test: lint rust-tests python-tests
+	@echo "all tests passed"
+
+toolchain:
+	@if [ -z "$(PYTHON)" ]; then \
+		echo "Python 3.11 or newer is missing; on Debian: apt-get install python3 python3-venv" >&2; \
+		exit 1; fi
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { \
+		echo "$(PYTHON) lacks venv; on Debian: apt-get install python3-venv" >&2; exit 1; }
+	@command -v cargo >/dev/null 2>&1 && command -v rustc >/dev/null 2>&1 || { \
+		echo "Rust $(RUST_NEEDED) or newer is missing; install it from https://rustup.rs" >&2; exit 1; }
+	@have=$$(rustc --version | cut -d' ' -f2); \
+	least=$$(printf '%s\n%s\n' "$(RUST_NEEDED)" "$$have" | sort -V | head -n 1); \
+	[ "$$least" = "$(RUST_NEEDED)" ] || { \
+		echo "rustc $$have is older than $(RUST_NEEDED); run: rustup update stable" >&2; exit 1; }
+
+$(READY): $(SOURCES) | toolchain
+	[ -x $(BIN)/python ] || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --editable '.[dev]'
+	touch $@
+
+lint: $(READY)
+	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || { \
+		echo "rustfmt or clippy is missing; run: rustup component add rustfmt clippy" >&2; exit 1; }
+	cargo fmt --all --check
+	cargo clippy --quiet --workspace --all-targets -- -D warnings
+	$(BIN)/ruff format --check python tests examples benches
+	$(BIN)/ruff check python tests examples benches
+	$(BIN)/mypy
+	$(BIN)/stubtest stiction._native --ignore-disjoint-bases
+
+rust-tests: $(READY)
+	cargo test --quiet
+
+python-tests: $(READY)
+	$(BIN)/pytest --quiet
+
+wheel: $(READY)
+	$(BIN)/maturin build --quiet --release --out dist
+
+bench: $(READY)
+	cargo bench
+	$(BIN)/python benches/step_overhead.py
+
+format: $(READY)
+	cargo fmt --all
+	$(BIN)/ruff format python tests examples benches
+	$(BIN)/ruff check --fix python tests examples benches
+
+clean:
+	rm -rf $(VENV) target dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

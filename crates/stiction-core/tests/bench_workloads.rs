@@ -1,0 +1,26 @@
+//! The benches time what they claim: paths on which every law slides and sticks again.
+#![allow(missing_docs)]
+
+// The bench crate itself is not built by `cargo test`, because criterion would be.
+#[path = "../../../benches/lib.rs"]
+mod workload;
+
+use stiction_core::friction::{Channels, LAWS};
+use stiction_core::integrate::Integrator;
+use stiction_core::motor::PerSample;
+use workload::{DT, SAMPLES, efforts, model, motor, velocities};
+
+#[test]
+fn the_timed_paths_break_away_and_stick_again() {
+    for record in LAWS {
+        let mut model = model(record);
+        let mut friction = vec![0.0; SAMPLES];
+        model.simulate(&velocities(), DT, |_| Channels::default(), &mut friction);
+        assert!(model.statistics().breakaways > 1, "{} never slides", record.name);
+        let mut motor = motor(record, Integrator::Fast);
+        let same = PerSample::Same;
+        motor.simulate(&efforts(), same(0.0), same(DT), &mut []).unwrap();
+        let counted = motor.statistics();
+        assert!(counted.breakaways > 1 && counted.sticks > 1, "{}: {counted:?}", record.name);
+    }
+}

@@ -1,0 +1,160 @@
+"""``stiction paper``: every experiment of the paper, drawn and in numbers."""
+
+from __future__ import annotations
+
+import json as json_text
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from ..paper import (
+    ILLUSTRATIVE_RIG,
+    Result,
+    dahl_on_static_1,
+    experiment_1,
+    experiment_2,
+    experiment_3,
+    hardening_cycles,
+    loop_areas,
+    nested_loops,
+    static_test,
+    stick_slip,
+)
+from .answer import answer, folder
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["Section", "paper", "paper_command", "render_json", "render_text", "write_figure"]
+
+NOTE = (
+    'The rig is illustrative: its numbers are not the authors\'. "prototype" is an independent '
+    "prototype of the same equations on the same rig."
+)
+
+# Slow ramps need no finer samples: finer ones move no position by 1e-4 arc-seconds.
+_RAMP_STEP = 2.5e-4
+
+
+@dataclass(frozen=True)
+class Section:
+    """One experiment of the command's answer: its numbers, and where its figures are.
+
+    Attributes
+    ----------
+    name : str
+        Of the figures' files, without ending.
+    result : Result
+        Title, source and numbers.
+    figures : tuple of Path
+        SVG and PNG.
+    """
+
+    name: str
+    result: Result
+    figures: tuple[Path, ...]
+
+
+def paper(
+    *,
+    out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("stiction-paper"),
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Run and draw every experiment of the paper on the illustrative rig.
+
+    Parameters
+    ----------
+    out
+        Folder for the figures (SVG and PNG) and numbers.json.
+    json
+        Print JSON.
+    """
+    sections = paper_command(out)
+    answer(render_text(sections), render_json(sections), as_json=json)
+
+
+def paper_command(out: Path) -> list[Section]:
+    """Run and draw every experiment on the illustrative rig.
+
+    Writes an SVG and a PNG of each, and ``numbers.json``, into `out`, which is made where it
+    does not exist.
+
+    Parameters
+    ----------
+    out : Path
+
+    Returns
+    -------
+    list of Section
+        In the order of the paper.
+
+    Raises
+    ------
+    InputError
+        `out` cannot be made a folder.
+    """
+    from ..paper.figures import static_comparison
+
+    out = folder(Path(out))
+    sections = []
+
+    def add(name: str, result: Result, figure: Figure | None = None) -> None:
+        written = write_figure(out, name, result.plot() if figure is None else figure)
+        sections.append(Section(name, result, written))
+
+    add("experiment-1", experiment_1())
+    add("experiment-2", experiment_2())
+    add("experiment-3", experiment_3())
+    forced = static_test(1)
+    add("static-test-1", forced)
+    add("static-test-2", static_test(2))
+    add("static-test-3", static_test(3))
+    ramped = static_test(1, driven="ramp", dt=_RAMP_STEP)
+    stepped = static_test(1, driven="staircase")
+    comparison = static_comparison([forced, ramped, stepped])
+    add("static-test-1-steps", stepped, comparison)
+    add("dahl-on-static-test-1", dahl_on_static_1())
+    add("nested-loops", nested_loops())
+    add("hardening-cycles", hardening_cycles())
+    add("loop-areas", loop_areas())
+    add("stick-slip", stick_slip())
+    (out / "numbers.json").write_text(
+        json_text.dumps(render_json(sections), indent=2, ensure_ascii=False) + "\n",
+        encoding="utf-8",
+    )
+    return sections
+
+
+def render_text(sections: Iterable[Section]) -> str:
+    """The numbers of every experiment as text, with the prototype's beside them."""
+    blocks = [NOTE]
+    for section in sections:
+        names = ", ".join(str(path) for path in section.figures)
+        blocks.append(f"{section.result!r}\n  figure: {names}")
+    return "\n\n".join(blocks)
+
+
+def render_json(sections: Sequence[Section]) -> dict[str, Any]:
+    """The numbers of every experiment as plain dicts and lists; figures by file name."""
+    return {
+        "note": NOTE,
+        "rig": dict(ILLUSTRATIVE_RIG),
+        "experiments": [
+            {
+                "name": section.name,
+                **section.result.to_dict(),
+                "figures": [path.name for path in section.figures],
+            }
+            for section in sections
+        ],
+    }
+
+
+def write_figure(out: Path, name: str, figure: Figure) -> tuple[Path, ...]:
+    """Write a figure as SVG and PNG; returns both paths."""
+    from ..plot import save
+
+    return tuple(save(figure, out / f"{name}{ending}") for ending in (".svg", ".png"))

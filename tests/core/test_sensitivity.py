@@ -1,0 +1,238 @@
+"""Exact derivatives by parameters against differences of whole simulations."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+
+from .rigs import CONTACTS, INERTIA, drawn_rig, motor
+
+# Where both perturbed runs take the same branches, as a share of the derivative's own range.
+SAME_BRANCHES = 1e-6
+# Across break-away, averaged over the break-away step: what the chord itself is good for.
+ACROSS_BREAKAWAY = 0.01
+DT = 1e-4
+EFFECTS = {
+    "cogging": {"cosine": 0.03, "sine": -0.02, "order": 40.0},
+    "stribeck": {"excess": 0.2, "velocity": 0.05, "exponent": 1.7},
+    "torque_bias": {"bias": 0.04},
+}
+# Of two runs of a thousand steps, as a share of the motion.
+ROUND_OFF = 2e-15
+# A share of each parameter for the central difference, small enough for branches to agree.
+STEP = 1e-5
+
+
+def changed(machine, path, value):
+    """The same motor with one parameter changed; paths are those of `parameters`."""
+    group, *names = path.split(".")
+    law, keywords = machine.friction_settings()
+    settings = machine.settings()
+    if group == "friction":
+        keywords[names[0]] = value
+    elif group == "effects":
+        settings["effects"][names[0]][names[1]] = value
+    else:
+        name = {"gain": "torque_constant", "gravity_zero_rad": "gravity_zero"}.get(
+            names[0], names[0].removesuffix("_n")
+        )
+        settings[name] = value
+    return st.Motor(friction=st.FrictionModel(law, **keywords), **settings)
+
+
+def followed(machine, current, dt):
+    """Position and velocity after every sample, and the branches taken by then."""
+    rows, branches = [], []
+    for u in current.tolist():
+        rows.append(machine.step(u, dt))
+        branches.append(tuple(machine.statistics.values()))
+    return np.array(rows).T, branches
+
+
+def central_difference(machine, path, current, dt, relative):
+    """([∂position, ∂velocity], whether both runs took the same branches in the same samples)."""
+    value = machine.parameters[path]
+    step = relative * abs(value)
+    (high, taken), (low, also) = (
+        followed(changed(machine, path, value + sign * step), current, dt) for sign in (1.0, -1.0)
+    )
+    return (high - low) / (2.0 * step), taken == also
+
+
+def fourth_order_difference(machine, path, current, dt, relative):
+    """The same with the error of second order taken out by a second, wider difference."""
+    near, same = central_difference(machine, path, current, dt, relative)
+    wide, also = central_difference(machine, path, current, dt, 2.0 * relative)
+    return (4.0 * near - wide) / 3.0, same and also
+
+
+def smooth_current(force, n, seed):
+    """Swings within `force`, smooth so that few turning points lie near a step's edge."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(n) * DT
+    waves = [np.sin(2.0 * np.pi * rng.uniform(2.0, 15.0) * time + k) for k in range(3)]
+    return force * np.sum(waves, axis=0) / 3.0
+
+
+def worst(machine, current, dt=DT, relative=STEP, skip=()):
+    """By parameter the greatest share by which derivative and difference disagree; the others."""
+    # A parameter at 0 is mostly at its bound: those have a test of their own below.
+    paths = [p for p, v in machine.parameters.items() if np.isfinite(v) and v and p not in skip]
+    exact_x, exact_v = machine.sensitivity(current, dt, paths)
+    shares, left_out = {}, []
+    run = machine.copy().simulate(current, dt)
+    for k, path in enumerate(paths):
+        chord, same = fourth_order_difference(machine, path, current, dt, relative)
+        if not same:
+            left_out.append(path)
+            continue
+        step = relative * abs(machine.parameters[path])
+        worst_of_both = 0.0
+        for exact, difference, moved in zip(
+            (exact_x[k], exact_v[k]), chord, (run.position, run.velocity), strict=True
+        ):
+            scale = np.abs(exact).max()
+            # Round-off of two runs over the step; where it hides the derivative, nothing is said.
+            if ROUND_OFF * np.abs(moved).max() / step > SAME_BRANCHES * scale:
+                worst_of_both = np.nan
+                break
+            worst_of_both = max(worst_of_both, np.abs(exact - difference).max() / scale)
+        if np.isfinite(worst_of_both):
+            shares[path] = worst_of_both
+        else:
+            left_out.append(path)
+    return shares, left_out
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_derivatives_of_a_sticking_machine_equal_differences(seed):
+    inertia, parameters, force = drawn_rig(seed)
+    machine = st.Motor(
+        inertia=inertia,
+        friction=st.FrictionModel("hsieh_pan", **parameters),
+        gravity_amplitude=0.02 * force,
+        gravity_zero=0.3,
+        weight=0.01 * force,
+        effects={"torque_bias": {"bias": 0.03 * force}},
+    )
+    shares, left_out = worst(machine, smooth_current(force, 1500, seed))
+    assert len(shares) > 9, left_out
+    assert max(shares.values()) < SAME_BRANCHES, shares
+
+
+@pytest.mark.parametrize("kind", [k for k in CONTACTS if k not in ("sticking", "elastic")])
+def test_derivatives_across_break_away_and_stick_equal_differences(kind):
+    machine = motor(kind, effects=EFFECTS, gravity_amplitude=0.05, gravity_zero=0.1, weight=0.01)
+    current = smooth_current(1.8, 1500, 3)
+    # Where F_c and F_s are equal neither can pass the other.
+    equal = machine.parameters["friction.coulomb"] == machine.parameters["friction.breakaway"]
+    skip = ("friction.coulomb", "friction.breakaway") if equal else ()
+    shares, left_out = worst(machine, current, skip=skip)
+    assert machine.copy().simulate(current, DT).statistics["breakaways"] >= 1
+    assert len(shares) > 9, left_out
+    assert max(shares.values()) < SAME_BRANCHES, shares
+
+
+def test_derivatives_start_at_the_present_state_and_leave_it():
+    machine = motor("hook")
+    current = smooth_current(1.2, 1200, 1)
+    machine.simulate(current[:500], DT)
+    kept = machine.copy()
+    position, velocity = machine.sensitivity(current[500:], DT, ["friction.viscous"])
+    assert machine == kept
+    assert position.shape == velocity.shape == (1, 700)
+    chord = []
+    for sign in (1.0, -1.0):
+        other = changed(machine, "friction.viscous", 0.05 + sign * 1e-7)
+        other.state = kept.state
+        chord.append(other.simulate(current[500:], DT).position)
+    difference = (chord[0] - chord[1]) / 2e-7
+    scale = np.abs(position).max()
+    assert np.abs(position[0] - difference).max() < 100.0 * SAME_BRANCHES * scale
+
+
+def test_many_parameters_are_differentiated_as_one_at_a_time():
+    machine = motor("hook", effects=EFFECTS)
+    paths = [p for p, v in machine.parameters.items() if np.isfinite(v)]
+    assert len(paths) > 16
+    current = smooth_current(1.2, 500, 1)
+    together = machine.sensitivity(current, DT, paths)
+    for k, path in enumerate(paths):
+        alone = machine.sensitivity(current, DT, [path])
+        assert np.array_equal(alone[0][0], together[0][k]), path
+        assert np.array_equal(alone[1][0], together[1][k]), path
+    empty = machine.sensitivity(current, DT, [])
+    assert empty[0].shape[0] == 0
+
+
+@pytest.mark.parametrize("kind", CONTACTS)
+def test_derivatives_are_finite_at_rest_and_at_every_neutral_point(kind):
+    machine = motor(
+        kind,
+        effects={"cogging": {}, "stribeck": {}, "torque_bias": {}},
+    )
+    paths = [p for p, v in machine.parameters.items() if np.isfinite(v)]
+    for current in (np.zeros(50), np.repeat([0.0, 0.4, 0.0, -0.7, 0.0], 200)):
+        for values in machine.sensitivity(current, DT, paths):
+            assert np.isfinite(values).all()
+
+
+ONE_SIDED = {
+    "hardening_coefficient": 1e-9,
+    "creep_rate": 1e-6,
+    "damping": 1e-7,
+    "viscous": 1e-7,
+}
+
+
+@pytest.mark.parametrize("name", ONE_SIDED)
+def test_derivative_at_a_neutral_point_is_that_of_the_first_step_away_from_it(name):
+    # What a score test asks for: would this part help, seen from where it is switched off?
+    hook = CONTACTS["hook"][1] | {name: 0.0}
+    machine = st.Motor(inertia=INERTIA, friction=st.FrictionModel("hsieh_pan", **hook))
+    current = np.repeat([0.3, 0.8], 500)
+    exact = machine.sensitivity(current, DT, [f"friction.{name}"])[0][0]
+    step = ONE_SIDED[name]
+    near, wide = (
+        changed(machine, f"friction.{name}", k * step).simulate(current, DT).position
+        for k in (1.0, 2.0)
+    )
+    here = machine.simulate(current, DT).position
+    chord = (4.0 * near - wide - 3.0 * here) / (2.0 * step)
+    assert np.abs(chord).max() > 0.0
+    assert np.abs(exact - chord).max() < 1e-3 * np.abs(chord).max()
+
+
+@pytest.mark.parametrize("kind", ["hook", "rated", "kept", "stribeck"])
+@pytest.mark.parametrize("dt", [1e-4, 2e-5])
+@pytest.mark.parametrize("integrator", ["fast", "reference"])
+def test_derivative_by_breakaway_equals_the_chord_averaged_over_the_break_away_step(
+    kind, dt, integrator
+):
+    law, keywords = CONTACTS[kind]
+    # A ramp breaks away once; the body slides on against its friction and the ramp's end.
+    rate, level = 4.0, 0.5
+    n = round(0.16 / dt)
+    current = np.minimum(rate * np.arange(n) * dt, 0.55)
+    path = "friction.breakaway"
+
+    def final(value):
+        friction = st.FrictionModel(law, **keywords | {"breakaway": value})
+        machine = st.Motor(inertia=INERTIA, friction=friction, integrator=integrator)
+        slope = machine.sensitivity(current, dt, [path])[0][0, -1]
+        run = machine.simulate(current, dt, outputs=("position",))
+        return run.position[-1], slope, machine.statistics["breakaways"]
+
+    # Break-away levels whose moments sweep two steps of the ramp, evenly.
+    values = level + rate * dt * (np.arange(16) + 0.5) / 8.0
+    slopes, chords = [], []
+    for value in values:
+        high, _, one = final(value * 1.001)
+        low, _, other = final(value * 0.999)
+        _, slope, breaks = final(value)
+        assert breaks == one == other == 1
+        chords.append((high - low) / (0.002 * value))
+        slopes.append(slope)
+    assert np.mean(slopes) == pytest.approx(np.mean(chords), rel=ACROSS_BREAKAWAY)
+    # Not by chance: no single value is far off either.
+    assert np.abs(np.array(slopes) / np.mean(chords) - 1.0).max() < 5.0 * ACROSS_BREAKAWAY

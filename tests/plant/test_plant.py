@@ -1,0 +1,183 @@
+"""Plant files: what they mean, that they survive a round trip, and what they refuse."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stiction import FrictionModel, InputError, Motor, Plant
+
+WHOLE = """
+[motion]
+kind = "rotary"
+[drive]
+input = "current_a"
+gain = 0.52
+limit = 4.0
+[body]
+inertia = { value = 0.0076, min = 0.001, max = 0.1 }
+gravity_amplitude = 0.1
+gravity_zero_rad = 0.2
+[friction]
+law = "hsieh_pan"
+breakaway = 0.5
+viscous = { value = 0.05, fixed = true }
+after_slip = "keep"
+[[effects]]
+name = "cogging"
+cosine = 0.02
+order = 24
+[sensor]
+counts_per_rev = 4096
+[controller]
+kind = "pd"
+kp = 10.0
+"""
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "plant.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def whole(tmp_path: Path) -> Plant:
+    return Plant.load(written(tmp_path, WHOLE))
+
+
+def test_a_plant_survives_a_round_trip(whole: Plant, tmp_path: Path) -> None:
+    assert Plant.load(whole.save(tmp_path / "again.toml")) == whole
+
+
+def test_a_plant_simulates_as_the_motor_it_describes(whole: Plant) -> None:
+    current = 2.0 * np.sin(np.arange(3000) * 0.01)
+    by_hand = Motor(
+        0.0076,
+        0.52,
+        FrictionModel("hsieh_pan", breakaway=0.5, viscous=0.05, after_slip="keep"),
+        effects={"cogging": {"cosine": 0.02, "order": 24.0}},
+        gravity_amplitude=0.1,
+        gravity_zero=0.2,
+        input_limit=4.0,
+        count=2 * np.pi / 4096,
+    ).simulate(current, 1e-3)
+    run = whole.simulate(current, 1e-3)
+    assert np.array_equal(run.position, by_hand.position)
+    assert np.array_equal(run.measured, by_hand.measured)
+
+
+def test_the_input_limit_and_the_count_reach_the_trajectory(whole: Plant) -> None:
+    beyond = whole.simulate(np.full(500, 9.0), 1e-3)
+    at_limit = whole.simulate(np.full(500, 4.0), 1e-3)
+    assert np.array_equal(beyond.position, at_limit.position)
+    counts = beyond.measured / (2 * np.pi / 4096)
+    assert np.allclose(counts, np.round(counts), atol=1e-6)
+
+
+def test_values_are_replaced_by_path_or_by_unique_name(whole: Plant) -> None:
+    changed = whole.with_values({"inertia": 0.01, "effects.cogging.cosine": 0.5})
+    assert changed.parameters["body.inertia"].value == 0.01
+    assert changed.parameters["body.inertia"].max == 0.1
+    assert changed.parameters["effects.cogging.cosine"].value == 0.5
+    assert whole.parameters["body.inertia"].value == 0.0076
+    with pytest.raises(InputError, match="breakawy"):
+        whole.with_values({"breakawy": 1.0})
+
+
+def test_naming_the_law_alone_is_a_plant(tmp_path: Path) -> None:
+    plant = Plant.load(written(tmp_path, '[friction]\nlaw = "coulomb"\n'))
+    assert plant.motion == "rotary"
+    with pytest.raises(InputError, match="inertia is missing"):
+        plant.motor()
+
+
+REFUSED = {
+    "not TOML": ("[friction", "is not TOML"),
+    "empty": ("", "is empty"),
+    "unknown table": ('[frictoin]\nlaw = "coulomb"', r"'frictoin' is unknown \(did you mean 'fri"),
+    "no law": ("[friction]\ncoulomb = 1.0", "law is missing"),
+    "unknown law": ('[friction]\nlaw = "coulom"', "'coulom' is unknown"),
+    "unknown parameter": (
+        '[friction]\nlaw = "coulomb"\ncoulom = 1.0',
+        r"'coulom' is unknown \(did you mean 'coulomb'",
+    ),
+    "text for a number": (
+        '[friction]\nlaw = "coulomb"\ncoulomb = "much"',
+        "'much' is a str; allowed is a number",
+    ),
+    "true for a number": ('[friction]\nlaw = "coulomb"\ncoulomb = true', "True is a bool"),
+    "nan": ('[friction]\nlaw = "coulomb"\ncoulomb = nan', "nan is not a number"),
+    "out of bounds": ('[friction]\nlaw = "coulomb"\ncoulomb = -1.0', "coulomb = -1 is out of bou"),
+    "wrong order": (
+        '[friction]\nlaw = "coulomb"\ncoulomb = 1.0\nbreakaway = 0.5',
+        "coulomb = 1 must not exceed breakaway = 0.5",
+    ),
+    "unknown option": (
+        '[friction]\nlaw = "hsieh_pan"\ndamper = "floor"',
+        "'floor' is unknown; allowed are hook, spring",
+    ),
+    "negative inertia": (
+        '[body]\ninertia = -1.0\n[friction]\nlaw = "coulomb"',
+        "inertia = -1.0 is out of bounds",
+    ),
+    "zero gain": ('[drive]\ngain = 0\n[friction]\nlaw = "coulomb"', "gain = 0"),
+    "unknown input": (
+        '[drive]\ninput = "current"\n[friction]\nlaw = "coulomb"',
+        r"'current' is unknown \(did you mean 'current_a'",
+    ),
+    "unknown motion": ('[motion]\nkind = "round"\n[friction]\nlaw = "coulomb"', "'round' is unk"),
+    "unknown effect": (
+        '[friction]\nlaw = "coulomb"\n[[effects]]\nname = "coging"',
+        r"'coging' is unknown \(did you mean 'cogging'",
+    ),
+    "nameless effect": ('[friction]\nlaw = "coulomb"\n[[effects]]\nbias = 1', "name is missing"),
+    "effect twice": (
+        '[friction]\nlaw = "coulomb"\n[[effects]]\nname = "cogging"\n[[effects]]\nname = "cogging"',
+        "'cogging' is there twice",
+    ),
+    "effects as a table": ('[friction]\nlaw = "coulomb"\n[effects]\nname = "cogging"', "not a li"),
+    "value out of its own bounds": (
+        '[friction]\nlaw = "coulomb"\ncoulomb = { value = 2.0, max = 1.0 }',
+        "out of its own bounds",
+    ),
+    "unknown key of a parameter": (
+        '[friction]\nlaw = "coulomb"\ncoulomb = { value = 2.0, maximum = 1.0 }',
+        "'maximum' is unknown",
+    ),
+    "count of the wrong motion": (
+        '[sensor]\ncount_m = 1e-6\n[friction]\nlaw = "coulomb"',
+        "'count_m' is unknown",
+    ),
+    "controller without a kind": ('[controller]\nkp = 1\n[friction]\nlaw = "coulomb"', "kind is m"),
+}
+
+
+@pytest.mark.parametrize("fault", REFUSED)
+def test_a_faulty_plant_is_refused_in_one_sentence(tmp_path: Path, fault: str) -> None:
+    text, sentence = REFUSED[fault]
+    path = written(tmp_path, text)
+    with pytest.raises(InputError, match=sentence) as caught:
+        Plant.load(path)
+    assert str(path) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_files_folders_and_other_encodings_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no such file"):
+        Plant.load(tmp_path / "none.toml")
+    with pytest.raises(InputError, match="directory"):
+        Plant.load(tmp_path)
+    (tmp_path / "latin.toml").write_bytes(b'[friction]\nlaw = "coulomb" # \xe9\n')
+    with pytest.raises(InputError, match="UTF-8"):
+        Plant.load(tmp_path / "latin.toml")
+
+
+def test_prescribed_motion_has_nothing_to_simulate(tmp_path: Path) -> None:
+    text = '[drive]\nkind = "prescribed_motion"\n[friction]\nlaw = "coulomb"\n'
+    plant = Plant.load(written(tmp_path, text))
+    assert plant.inertia == 0.0
+    with pytest.raises(InputError, match="prescribed_motion"):
+        plant.simulate(np.zeros(10), 1e-3)

@@ -1,0 +1,179 @@
+"""The effort residual along the measured motion, and the free run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stiction import InputError, Plant, Recording
+from stiction.motion import Kernel, count_of, evenly, held, noise_of, play
+from stiction.residual import effort_residual, free_run
+
+DT = 1e-3
+# The kernel leaves what a third-order splined motion has beyond its second derivative.
+DISCRETISATION = 2e-3
+
+
+def plant(law: str = "coulomb", **friction: float) -> Plant:
+    return Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm", "gain": 1.0},
+            "body": {"inertia": 0.0076, "gravity_amplitude": 0.2},
+            "friction": {"law": law, **friction},
+            "effects": [{"name": "torque_bias", "bias": 0.05}],
+        }
+    )
+
+
+def recorded(machine: Plant, n: int = 8000) -> Recording:
+    """What an ideal recorder keeps: row k is the state at k·dt, before input k acts."""
+    time = np.arange(n) * DT
+    effort = 0.9 * np.sin(7.0 * time) + 0.6 * np.sin(2.1 * time)
+    run = machine.simulate(effort[:-1], DT)
+    return Recording(time, effort, np.concatenate([[0.0], run.position]))
+
+
+@pytest.mark.parametrize(
+    ("law", "friction"),
+    [
+        ("coulomb", {"coulomb": 0.3, "viscous": 0.05}),
+        ("hsieh_pan", {"breakaway": 0.5, "viscous": 0.05}),
+    ],
+)
+def test_the_true_plant_leaves_next_to_nothing(law: str, friction: dict[str, float]) -> None:
+    machine = plant(law, **friction)
+    recording = recorded(machine)
+    residual = effort_residual(machine, recording)
+    assert residual.relative < 0.03
+    # Away from the kinks of stops and break-aways there is discretisation alone.
+    assert np.median(np.abs(residual.residual)) < DISCRETISATION
+    # The free run starts at a velocity read off the motion, not at the true one.
+    run = free_run(machine, recording)
+    assert run.rms < 1e-3 * np.ptp(run.measured)
+
+
+def test_what_is_missing_shows_in_the_residual() -> None:
+    machine = plant(coulomb=0.3, viscous=0.05)
+    recording = recorded(machine)
+    without = Plant.from_dict({k: v for k, v in machine.to_dict().items() if k != "effects"})
+    residual = effort_residual(without, recording)
+    # Driven − model is what the model lacks, and a bias pushes along +x.
+    assert np.mean(residual.residual) == pytest.approx(-0.05, abs=0.005)
+    assert free_run(without, recording).rms > 100 * free_run(machine, recording).rms
+
+
+def test_half_a_sample_matters_and_is_accounted_for() -> None:
+    machine = plant(coulomb=0.3, viscous=0.05)
+    recording = recorded(machine)
+    assert recording.input is not None
+    late = Recording(recording.time, np.roll(recording.input, 1), recording.position)
+    early = Recording(recording.time, np.roll(recording.input, -1), recording.position)
+    true = effort_residual(machine, recording).rms
+    assert true < effort_residual(machine, late).rms
+    assert true < effort_residual(machine, early).rms
+
+
+def test_jitter_of_the_clock_does_not_shift_the_input() -> None:
+    machine = plant(coulomb=0.3, viscous=0.05)
+    recording = recorded(machine)
+    rng = np.random.default_rng(1)
+    time = recording.time + rng.uniform(-2e-6, 2e-6, len(recording))
+    jittered = Recording(time, recording.input, recording.position)
+    assert effort_residual(machine, jittered).rms < 2 * effort_residual(machine, recording).rms
+
+
+def test_prescribed_motion_needs_no_inertia() -> None:
+    machine = Plant.from_dict(
+        {
+            "drive": {"kind": "prescribed_motion"},
+            "friction": {"law": "coulomb", "coulomb": 2.0, "viscous": 3.0},
+        }
+    )
+    time = np.arange(4000) * DT
+    position, velocity = 0.1 * np.sin(5 * time), 0.5 * np.cos(5 * time)
+    effort = 2.0 * np.sign(velocity) + 3.0 * velocity
+    recording = Recording(time, None, position, effort=effort)
+    residual = effort_residual(machine, recording)
+    assert residual.relative < 0.02
+    with pytest.raises(InputError, match="no input"):
+        free_run(machine, recording)
+
+
+def test_the_kernel_takes_second_derivatives_exactly() -> None:
+    kernel = Kernel(0.030, DT)
+    time = np.arange(200) * DT
+    assert kernel.weights.sum() == pytest.approx(1.0)
+    assert kernel.second_derivative(3.0 * time**2) == pytest.approx(6.0, rel=1e-9)
+    assert np.allclose(kernel.mean(time), time[kernel.half : -kernel.half])
+
+
+def test_a_coarse_encoder_gets_a_wider_kernel() -> None:
+    machine = plant(coulomb=0.3, viscous=0.05)
+    recording = recorded(machine)
+    assert recording.position is not None
+    count = 2 * np.pi / 2000
+    coarse = Recording(
+        recording.time, recording.input, np.round(recording.position / count) * count
+    )
+    fine = effort_residual(machine, recording).support
+    assert effort_residual(machine, coarse).support > 1.5 * fine
+    assert count_of(np.round(recording.position / count) * count) == pytest.approx(count)
+    assert count_of(recording.position) == 0.0
+
+
+def test_helpers_of_motion_do_what_they_say() -> None:
+    rng = np.random.default_rng(0)
+    smooth = np.sin(np.arange(5000) * 1e-3)
+    assert noise_of(smooth + 1e-4 * rng.standard_normal(5000)) == pytest.approx(1e-4, rel=0.05)
+    flicker = 0.1 + 1e-3 * (np.arange(100) % 2)
+    assert np.ptp(play(flicker, 2e-3)) == 0.0
+    stamps, dt = evenly(np.array([0.0, 0.1, 0.21, 0.3]))
+    assert dt == pytest.approx(0.1)
+    values = held(stamps, np.array([0.0, 0.1, 0.201, 0.3]), np.array([1.0, 2.0, 3.0, 4.0]))
+    assert values.tolist() == [1.0, 2.0, 3.0, 4.0]
+
+
+def test_too_short_or_lacking_recordings_are_refused() -> None:
+    machine = plant(coulomb=0.3)
+    time = np.arange(300) * DT
+    short = Recording(time, np.zeros(300), np.zeros(300))
+    with pytest.raises(InputError, match="too few"):
+        effort_residual(machine, short, support=0.2)
+    with pytest.raises(InputError, match="no measured position"):
+        effort_residual(machine, Recording(time, np.zeros(300), None))
+
+
+EMPS = """
+[motion]
+kind = "linear"
+[drive]
+input = "voltage_v"
+gain = 35.15065
+[body]
+inertia = 95.109
+[friction]
+law = "coulomb"
+coulomb = 20.39
+viscous = 203.50
+[[effects]]
+name = "torque_bias"
+bias = 3.165
+"""
+
+
+def test_emps_with_its_published_parameters(shared_data: Path, tmp_path: Path) -> None:
+    (tmp_path / "emps.toml").write_text(EMPS)
+    machine = Plant.load(tmp_path / "emps.toml")
+    columns = {
+        "time": "t",
+        "input": {"name": "vir", "unit": "V"},
+        "position": {"name": "qm", "unit": "m"},
+    }
+    recording = Recording.load(
+        shared_data / "emps" / "DATA_EMPS.mat", columns, motion="linear", drive="voltage_v"
+    )
+    # Published: 4.083 % with another filter, and about 5.2 mm for the open-loop run.
+    assert 100 * effort_residual(machine, recording).relative == pytest.approx(4.083, abs=0.5)
+    assert 1e3 * free_run(machine, recording).rms == pytest.approx(5.2, abs=0.2)
