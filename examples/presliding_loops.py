@@ -20,7 +20,14 @@ DT = 0.01  # s
 def walk():
     """Position (rad), friction (N·m) along the path, and what is remembered at its turns."""
     # Spring alone: neither creep nor damper, so that the loops close to the last digits.
-    law = st.FrictionModel("hsieh_pan", hardening_coefficient=0.0, damping=0.0)
+    law = st.FrictionModel(
+        "hsieh_pan",
+        initial_stiffness=3000.0,  # N·m/rad, right after a turn
+        final_stiffness=500.0,  # N·m/rad, far from it
+        decay_distance=30.0 * ARC_SECOND,
+        hardening_coefficient=0.0,
+        damping=0.0,
+    )
     position, friction, turns = [0.0], [0.0], []
     for leg in np.diff(TURNS) * ARC_SECOND:
         samples = round(abs(leg) / (SPEED * DT))

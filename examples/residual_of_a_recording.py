@@ -37,10 +37,9 @@ def record(folder):
     time = DT * np.arange(8001)
     current = 1.6 * np.sin(2 * np.pi * 0.5 * time) + 0.5 * np.sin(2 * np.pi * 3.1 * time)
     run = machine.simulate(current, DT, outputs=("measured",))
-    # Row k holds the state at its time and the input from there on: outputs belong one row later.
+    # Output k is the state after input k: it belongs to row k + 1.
     position = np.concatenate([[0.0], run.measured[:-1]])
-    rows = np.column_stack([time, current, position])
-    head = "time_s,current_a,position_rad"
+    rows, head = np.column_stack([time, current, position]), "time_s,current_a,position_rad"
     np.savetxt(folder / "run.csv", rows, delimiter=",", header=head, comments="", fmt="%.12g")
     return folder / "run.csv"
 
@@ -52,8 +51,7 @@ def main():
         (folder / "plain.toml").write_text(PLANT, encoding="utf-8")
         for title in ("plain", "cogs"):
             found = effort_residual(st.Plant.load(folder / f"{title}.toml"), recording)
-            print(f"plant '{title}': {100 * found.relative:.2f} % of the effort unexplained, "
-                  f"{found.rms:.4f} {found.unit} rms")
+            print(f"plant '{title}': {100 * found.relative:.2f} % of the effort unexplained")
             if title == "plain" and len(sys.argv) > 1:
                 print("wrote", plot.save(found.plot(), sys.argv[1]))
 

@@ -15,7 +15,7 @@ DT = 1e-4  # s
 
 
 def pull(speed, duration):
-    """Time (s), position (rad) and torque of the spring (N·m) while its far end moves at `speed`."""
+    """Time (s), position (rad), torque of the spring (N·m), break-aways, pulled at `speed`."""
     friction = st.FrictionModel(
         "hsieh_pan", breakaway=0.5, coulomb=0.35, stribeck_velocity=0.05, viscous=0.05
     )

@@ -105,7 +105,7 @@ class Motor(_native.Motor):
         """An independent copy, state included."""
         law, keywords = self.friction_settings()
         other = type(self)(friction=FrictionModel(law, **keywords), **self.settings())
-        other.state = self.state
+        other.adopt(self)
         return other
 
     def __copy__(self) -> Self:

@@ -19,6 +19,8 @@ __all__ = ["FloatArray", "Trajectory"]
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
+_MOTION = ("position", "velocity", "friction", "measured")
+
 
 class Trajectory:
     """Columns of a simulation, each of shape (n,); read them as attributes or by name.
@@ -35,7 +37,7 @@ class Trajectory:
     statistics : Mapping
         How often each branch was taken since the last reset.
     success : bool
-        Whether every value is finite.
+        Whether no value is NaN, and motion and friction are finite.
     message : str
         What happened, in words.
     """
@@ -74,8 +76,12 @@ class Trajectory:
 
     @property
     def success(self) -> bool:
-        """Whether every value is finite."""
-        return all(bool(np.isfinite(values).all()) for values in self._columns.values())
+        """Whether no value is NaN and motion and friction are finite."""
+        # A level may be infinite by definition: break-away of a contact that never slips.
+        finite = [self._columns[name] for name in _MOTION if name in self._columns]
+        return all(bool(np.isfinite(values).all()) for values in finite) and not any(
+            bool(np.isnan(values).any()) for values in self._columns.values()
+        )
 
     @property
     def message(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -118,7 +119,7 @@ def pieces(n, seed, count=7):
     """Slices that cut range(n) at random places."""
     cuts = np.sort(np.random.default_rng(seed).choice(np.arange(1, n), count, replace=False))
     edges = [0, *cuts.tolist(), n]
-    return [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    return [slice(a, b) for a, b in itertools.pairwise(edges)]
 
 
 def for_oracle(parameters):

@@ -20,14 +20,12 @@ COMMON = {
     "derandomize": True,
     "suppress_health_check": [HealthCheck.too_slow, HealthCheck.data_too_large],
 }
-# A panic arrives as a BaseException of this name; anything else is an answer.
-PANIC = "PanicException"
 # A single call on a few hundred samples takes milliseconds; this long means it hangs.
 PATIENCE = 20.0
 
 
 def answers(call):
-    """The result of a call, or None where it was refused; panics are failures."""
+    """The result of a call, or None where it was refused; a panic passes through and fails."""
     began = time.perf_counter()
     try:
         return call()
@@ -91,9 +89,7 @@ def built(definition):
     return answers(lambda: st.FrictionModel(law, **keywords))
 
 
-MODERATE = hs.floats(-5.0, 1.0).flatmap(
-    lambda e: hs.sampled_from([-(10.0**e), 10.0**e, 0.0])
-)
+MODERATE = hs.floats(-5.0, 1.0).flatmap(lambda e: hs.sampled_from([-(10.0**e), 10.0**e, 0.0]))
 
 
 @settings(max_examples=400, **COMMON)
@@ -132,7 +128,7 @@ def test_motors_on_every_law_stay_finite(definition, levels, inertia, dt, integr
     if model is None or model.parameters.get("initial_stiffness", 0.0) * dt**2 / inertia > 1e2:
         return
     parameters = model.parameters
-    if max(parameters.get("damping", 0.0), parameters["viscous"]) * dt / inertia > 10.0:
+    if max(parameters.get("damping", 0.0), parameters.get("viscous", 0.0)) * dt / inertia > 10.0:
         return
     machine = st.Motor(inertia=inertia, friction=model, integrator=integrator)
     run = machine.simulate(np.repeat(levels, 10), dt, outputs=("position", "velocity", "friction"))
@@ -370,7 +366,8 @@ def test_every_parameter_works_at_its_neutral_and_at_its_typical_value(law):
     for spec in LAWS[law].parameters:
         for value in {spec.neutral, spec.typical} - {None}:
             # The hook needs a break-away to slide at all.
-            keywords = {"breakaway": 0.5} | {spec.name: value}
+            hooked = any(other.name == "breakaway" for other in LAWS[law].parameters)
+            keywords = ({"breakaway": 0.5} if hooked else {}) | {spec.name: value}
             model = st.FrictionModel(law, **keywords)
             forces = model.simulate(np.repeat([1e-3, 0.2, -1e-3, -0.3, 0.0], 30), 1e-3)
             assert np.isfinite(forces).all(), spec.name

@@ -1,9 +1,9 @@
-"""The core against the independent oracles, on rigs that are drawn and never the illustrative one."""
+"""The core against the independent oracles, on drawn rigs instead of the illustrative one."""
+
+import itertools
 
 import numpy as np
 import pytest
-
-import stiction as st
 from tests.reference.broken_closing import WRONG_RULES, ReversePointSpring
 from tests.reference.coulomb_reference import simulate_coulomb, slide_closed_form
 from tests.reference.hook_reference import (
@@ -12,6 +12,8 @@ from tests.reference.hook_reference import (
     simulate_with_events,
 )
 from tests.reference.hsieh_pan_reference import follow_motion, simulate_sticking
+
+import stiction as st
 
 from .rigs import HOOK, ILLUSTRATIVE, INERTIA, RATED, around, drawn_rig, for_oracle
 
@@ -104,9 +106,7 @@ def test_a_wrong_closing_rule_fails_where_the_right_one_agrees(closing):
     d_0 = curve["decay_distance"]
     # Loops in loops, through their closings and through the mirror point of the first.
     turns = np.array([0.0, 0.9, -0.35, 0.5, -0.1, 0.8, -0.5, 1.3, -1.5, 0.2]) * d_0
-    path = np.concatenate(
-        [np.linspace(a, b, 200)[1:] for a, b in zip(turns[:-1], turns[1:], strict=True)]
-    )
+    path = np.concatenate([np.linspace(a, b, 200)[1:] for a, b in itertools.pairwise(turns)])
     moves = np.diff(path, prepend=0.0)
     dt = 1e-3
     model = st.FrictionModel("hsieh_pan", damping=0.0, hardening_coefficient=0.0, **curve)

@@ -7,7 +7,15 @@ from hypothesis import strategies as hs
 
 import stiction as st
 
-from .rigs import CONTACTS, HOOK, ILLUSTRATIVE, INERTIA, contact, drawn_rig, motor, wandering_current
+from .rigs import (
+    CONTACTS,
+    HOOK,
+    ILLUSTRATIVE,
+    INERTIA,
+    drawn_rig,
+    motor,
+    wandering_current,
+)
 
 DT = 1e-3
 # Round-off of a running sum of 1e5 products, as a share of all the work that went to and fro.
@@ -178,9 +186,7 @@ def test_closed_loops_are_wiped_out(seed, turns, parts, virgin_curve):
 @pytest.mark.parametrize("virgin_curve", ["masing", "same"])
 @pytest.mark.parametrize("levels", [(1.0, 0.3), (1.0, -1.0), (1.0, -0.9), (0.2, -1.0)])
 def test_memory_stays_bounded_under_many_equal_cycles(levels, virgin_curve):
-    model = st.FrictionModel(
-        "hsieh_pan", **ILLUSTRATIVE | STUCK, virgin_curve=virgin_curve
-    )
+    model = st.FrictionModel("hsieh_pan", **ILLUSTRATIVE | STUCK, virgin_curve=virgin_curve)
     # A power of two for dt and for the levels keeps the positions exact: equal means equal.
     dt = 2.0**-10
     high, low = (np.round(level * 2.0**8) * 2.0**-22 for level in levels)

@@ -20,9 +20,7 @@ CASES = [
 ]
 
 
-def pulled(
-    speed, dt, duration, *, sliding=False, inertia=INERTIA, stiffness=STIFFNESS, **law
-):
+def pulled(speed, dt, duration, *, sliding=False, inertia=INERTIA, stiffness=STIFFNESS, **law):
     """Position, velocity, mode and pulling force at the end of each step, and the motor.
 
     Started under a slack spring, at rest or sliding at the speed of its far end.

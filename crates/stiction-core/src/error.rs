@@ -58,6 +58,17 @@ pub enum Error {
         /// Its value.
         greater_value: f64,
     },
+    /// A step that is far too long for the machine.
+    #[error(
+        "dt = {given} s is too long for this machine; give at most {longest:.3} s, or check the \
+         units of inertia and stiffness"
+    )]
+    TooLong {
+        /// The step as given.
+        given: f64,
+        /// The longest allowed.
+        longest: f64,
+    },
     /// A state that does not fit the law.
     #[error("state entry '{name}' {problem}; give a state that the same law returned")]
     State {

@@ -14,7 +14,7 @@ pub const CHUNK: usize = 128;
 const EVENT_ROOM: usize = 32;
 
 /// Which law, with every parameter and option decided.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct LawSpec {
     /// Catalogue entry.
     pub record: &'static LawRecord,
@@ -22,6 +22,19 @@ pub struct LawSpec {
     pub values: Vec<f64>,
     /// Index of the choice for each of the record's options.
     pub choices: Vec<usize>,
+}
+
+impl std::fmt::Debug for LawSpec {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut shown = formatter.debug_struct(self.record.name);
+        for (parameter, value) in self.record.parameters.iter().zip(&self.values) {
+            shown.field(parameter.name, value);
+        }
+        for (name, word) in self.options() {
+            shown.field(name, &word);
+        }
+        shown.finish()
+    }
 }
 
 impl PartialEq for LawSpec {

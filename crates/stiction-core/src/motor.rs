@@ -5,7 +5,9 @@ use crate::drive::Drive;
 use crate::effects::{AnyEffect, EffectRecord, Effects, effect_record};
 use crate::error::{Error, Result};
 use crate::friction::{AnyState, Entry, Law, LawState, Statistics};
-use crate::integrate::{Along, Integrator, Machine, Run, sample, substeps, through_events};
+use crate::integrate::{
+    Along, Integrator, MOST_PARTS, Machine, Run, parts, sample, through_events,
+};
 use crate::model::{CHUNK, LawSpec};
 use crate::parameter::resolve;
 use crate::scalar::Scalar;
@@ -203,6 +205,13 @@ impl PerSample<'_> {
     }
 }
 
+fn whole_parts(parts: f64, dt: f64) -> Result<u32> {
+    if parts <= MOST_PARTS {
+        return Ok(parts as u32);
+    }
+    Err(Error::TooLong { given: dt, longest: dt * MOST_PARTS / parts })
+}
+
 /// A motor over some number type, with its running state.
 #[derive(Debug, Clone)]
 pub struct Running<S: Scalar> {
@@ -230,9 +239,9 @@ impl<S: Scalar> Running<S> {
 
     /// One sample.
     #[inline]
-    pub fn step(&mut self, input: f64, load: f64, dt: f64) {
+    pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<()> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
-            let parts = substeps(&self.machine, law, dt);
+            let parts = whole_parts(parts(&self.machine, law, dt), dt)?;
             state.make_room(parts as usize + CHUNK / 4);
             sample(
                 &self.machine,
@@ -246,6 +255,7 @@ impl<S: Scalar> Running<S> {
                 self.integrator,
             );
         });
+        Ok(())
     }
 
     /// Samples; `row` sees the body, the machine and one state of the law after each.
@@ -255,25 +265,25 @@ impl<S: Scalar> Running<S> {
         load: PerSample<'_>,
         dt: PerSample<'_>,
         mut row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
-    ) {
+    ) -> Result<()> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let mut known = f64::NAN;
-            let mut parts = 1;
+            let mut divided = 1;
             for (chunk, inputs) in inputs.chunks(CHUNK).enumerate() {
                 let mut room = 0;
                 for (k, input) in inputs.iter().enumerate() {
                     let index = chunk * CHUNK + k;
                     let dt = dt.at(index);
                     if dt != known {
-                        parts = substeps(&self.machine, law, dt);
+                        divided = whole_parts(parts(&self.machine, law, dt), dt)?;
                         known = dt;
                     }
-                    if room < parts as usize {
+                    if room < divided as usize {
                         // Once a chunk where samples are not divided, never inside a step.
-                        room = CHUNK.max(parts as usize);
+                        room = CHUNK.max(divided as usize);
                         state.make_room(room + CHUNK / 4);
                     }
-                    room -= parts as usize;
+                    room -= divided as usize;
                     sample(
                         &self.machine,
                         law,
@@ -282,7 +292,7 @@ impl<S: Scalar> Running<S> {
                         S::constant(*input),
                         S::constant(load.at(index)),
                         dt,
-                        parts,
+                        divided,
                         self.integrator,
                     );
                     let seen = &*state;
@@ -290,6 +300,7 @@ impl<S: Scalar> Running<S> {
                 }
             }
         });
+        Ok(())
     }
 }
 
@@ -381,9 +392,9 @@ impl Motor {
 
     /// One sample; position and velocity at its end.
     #[inline]
-    pub fn step(&mut self, input: f64, load: f64, dt: f64) -> (f64, f64) {
-        self.running.step(input, load, dt);
-        (self.running.run.position, self.running.run.velocity)
+    pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<(f64, f64)> {
+        self.running.step(input, load, dt)?;
+        Ok((self.running.run.position, self.running.run.velocity))
     }
 
     /// Samples; fills the columns asked for, each as long as `inputs`.
@@ -424,8 +435,7 @@ impl Motor {
                     Column::Law(index) => output(*index),
                 };
             }
-        });
-        Ok(())
+        })
     }
 
     /// Efforts along given positions, one more than there are samples: of the drive, of gravity and
@@ -484,6 +494,7 @@ impl Motor {
             ("second_position", number(run.second_position)),
             ("second_velocity", number(run.second_velocity)),
             ("relaxed", number(run.relaxed)),
+            ("ambient", number(run.ambient())),
         ];
         entries.extend(with_state!(&self.running.state, |state| state.entries()));
         entries
@@ -502,8 +513,10 @@ impl Motor {
         run.second_position = read.number("second_position", false)?;
         run.second_velocity = read.number("second_velocity", false)?;
         run.relaxed = read.number("relaxed", false)?;
-        self.running.state = self.running.law.restore(&law)?;
-        self.running.machine.refresh(&mut run);
+        let state = self.running.law.restore(&law)?;
+        // As it was, not recomputed: it belongs to the end of the last step, to the bit.
+        run.set_ambient(read.number("ambient", false)?);
+        self.running.state = state;
         self.running.run = run;
         Ok(())
     }
@@ -514,5 +527,13 @@ impl Motor {
     }
 }
 
-const BODY: [&str; 7] =
-    ["position", "velocity", "time", "friction", "second_position", "second_velocity", "relaxed"];
+const BODY: [&str; 8] = [
+    "position",
+    "velocity",
+    "time",
+    "friction",
+    "second_position",
+    "second_velocity",
+    "relaxed",
+    "ambient",
+];

@@ -173,6 +173,20 @@ impl Scalar for Dual {
     }
 }
 
+/// −ln(1 − u)/u for u < 1; 1 at u = 0.
+#[inline]
+pub fn logarithmic_mean<S: Scalar>(u: S) -> S {
+    let x = u.re();
+    if x.abs() < 1e-3 {
+        // The next term is below 2e-19 here.
+        let value = 1.0 + x * (0.5 + x * (1.0 / 3.0 + x * (0.25 + x * (0.2 + x / 6.0))));
+        let slope = 0.5 + x * (2.0 / 3.0 + x * (0.75 + x * (0.8 + x * (5.0 / 6.0))));
+        return u.chain(value, slope);
+    }
+    let value = -(-x).ln_1p() / x;
+    u.chain(value, (1.0 / (1.0 - x) - value) / x)
+}
+
 /// The sign of a real number as −1, 0 or 1.
 #[inline]
 pub fn sign(x: f64) -> f64 {

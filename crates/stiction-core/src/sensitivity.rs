@@ -54,7 +54,7 @@ pub fn sensitivity(
                 result.position[target][k] = Scalar::partial(run.position, column);
                 result.velocity[target][k] = Scalar::partial(run.velocity, column);
             }
-        });
+        })?;
     }
     Ok(result)
 }

@@ -16,11 +16,15 @@ fn the_timed_paths_break_away_and_stick_again() {
         let mut model = model(record);
         let mut friction = vec![0.0; SAMPLES];
         model.simulate(&velocities(), DT, |_| Channels::default(), &mut friction);
-        assert!(model.statistics().breakaways > 1, "{} never slides", record.name);
+        let hooked = record.parameters.iter().any(|p| p.name == "breakaway");
+        let counted = model.statistics();
+        let events = if hooked { counted.breakaways } else { counted.closings };
+        assert!(events > 1, "{}: {counted:?}", record.name);
         let mut motor = motor(record, Integrator::Fast);
         let same = PerSample::Same;
         motor.simulate(&efforts(), same(0.0), same(DT), &mut []).unwrap();
         let counted = motor.statistics();
-        assert!(counted.breakaways > 1 && counted.sticks > 1, "{}: {counted:?}", record.name);
+        let events = if hooked { counted.breakaways.min(counted.sticks) } else { counted.closings };
+        assert!(events > 1, "{}: {counted:?}", record.name);
     }
 }

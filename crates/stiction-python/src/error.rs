@@ -36,15 +36,36 @@ pub fn finite(py: Python<'_>, name: &str, value: f64) -> PyResult<f64> {
     }
 }
 
+/// Beyond these, forces of allowed parameters leave the range of floats.
+const FASTEST: f64 = 1e6;
+const LONGEST: f64 = 1e6;
+
+/// Refuses a velocity that is not finite or faster than anything.
+#[inline]
+pub fn velocity(py: Python<'_>, value: f64) -> PyResult<f64> {
+    if value.abs() <= FASTEST {
+        Ok(value)
+    } else if !value.is_finite() {
+        finite(py, "velocity", value)
+    } else {
+        Err(input_error(
+            py,
+            format!("velocity = {value} is out of bounds: allowed is -1e6 to 1e6 in rad/s or m/s"),
+        ))
+    }
+}
+
 /// Refuses a step that is not a positive time.
 #[inline]
 pub fn duration(py: Python<'_>, name: &str, value: f64) -> PyResult<f64> {
-    if value > 0.0 && value.is_finite() {
+    if value > 0.0 && value <= LONGEST {
         Ok(value)
     } else {
         Err(input_error(
             py,
-            format!("{name} = {value} is not a step: allowed is a positive number of seconds"),
+            format!(
+                "{name} = {value} is not a step: allowed is a positive number of seconds, at most 1e6"
+            ),
         ))
     }
 }

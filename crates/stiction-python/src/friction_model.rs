@@ -11,7 +11,7 @@ use stiction_core::friction::{Channels, Entry};
 use stiction_core::model::{FrictionModel as Core, LawSpec};
 
 use crate::arrays::{Each, samples};
-use crate::error::{IntoPython, duration, finite, input_error};
+use crate::error::{IntoPython, duration, finite, input_error, velocity};
 use crate::state::{from_dict, keywords, to_dict};
 
 /// A friction law with its parameters and its state.
@@ -101,7 +101,7 @@ impl FrictionModel {
         effort: f64,
         temperature: Option<f64>,
     ) -> PyResult<f64> {
-        let velocity = finite(py, "velocity", velocity)?;
+        let velocity = self::velocity(py, velocity)?;
         let dt = duration(py, "dt", dt)?;
         let channels = channels(py, load, effort, temperature)?;
         Ok(self.lock().step(velocity, dt, &channels))
@@ -136,6 +136,9 @@ impl FrictionModel {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let dt = duration(py, "dt", dt)?;
         let velocity = samples("velocity", velocity)?;
+        if let Some(fastest) = velocity.as_slice()?.iter().find(|v| v.abs() > 1e6) {
+            self::velocity(py, *fastest)?;
+        }
         let shape = velocity.shape().to_vec();
         if shape.len() > 2 {
             return Err(input_error(
@@ -187,7 +190,7 @@ impl FrictionModel {
         effort: f64,
         temperature: Option<f64>,
     ) -> PyResult<(f64, f64)> {
-        let velocity = finite(py, "velocity", velocity)?;
+        let velocity = self::velocity(py, velocity)?;
         let dt = duration(py, "dt", dt)?;
         let channels = channels(py, load, effort, temperature)?;
         Ok(self.lock().trial(velocity, dt, &channels))

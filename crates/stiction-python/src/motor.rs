@@ -107,7 +107,7 @@ impl Motor {
         let current = finite(py, "current", current)?;
         let dt = duration(py, "dt", dt)?;
         let load = finite(py, "load", load)?;
-        Ok(self.lock().step(current, load, dt))
+        self.lock().step(current, load, dt).or_input_error(py)
     }
 
     /// Samples with held inputs; the arrays asked for, by name.
@@ -130,10 +130,23 @@ impl Motor {
         let names: Vec<String> = match (outputs, out) {
             (Some(names), _) => names,
             (None, Some(out)) if !out.is_empty() => {
-                out.keys().iter().map(|key| key.extract()).collect::<PyResult<_>>()?
+                out.keys().iter().filter_map(|key| key.extract().ok()).collect()
             }
             _ => Column::names(&law).iter().map(|name| (*name).to_owned()).collect(),
         };
+        if let Some(out) = out {
+            for key in out.keys() {
+                let key: String = key
+                    .extract()
+                    .map_err(|_| input_error(py, format!("key {key} of out is not a word")))?;
+                if !names.contains(&key) {
+                    return Err(input_error(
+                        py,
+                        format!("out['{key}'] is not among outputs; add it there or drop it"),
+                    ));
+                }
+            }
+        }
         let result = PyDict::new(py);
         let mut arrays: Vec<(Column, PyReadwriteArrayDyn<'py, f64>)> = Vec::new();
         for name in &names {
@@ -303,6 +316,13 @@ impl Motor {
     fn set_state(&self, state: &Bound<'_, PyDict>) -> PyResult<()> {
         let entries = from_dict(state)?;
         self.lock().restore(&entries).or_input_error(state.py())
+    }
+
+    /// Takes over the state of another motor of the same definition, whatever it is.
+    fn adopt(&self, other: &Bound<'_, Self>) {
+        // Copied out first: two locks at once could wait for each other.
+        let core = other.get().lock().clone();
+        *self.lock() = core;
     }
 
     /// How often each branch was taken: reversals, closings, break-aways, sticks, memory.

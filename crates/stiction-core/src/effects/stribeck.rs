@@ -1,6 +1,7 @@
 //! Friction that is higher at low speed.
 
 use super::{Effect, EffectFacts, Hook, LevelChange, Situation};
+use crate::friction::elements::stribeck::fall;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -44,7 +45,7 @@ impl<S: Scalar> Effect<S> for Stribeck<S> {
     #[inline]
     fn level(&self, at: &Situation<S>) -> LevelChange<S> {
         let p = &self.0;
-        let power = (at.velocity / p.velocity).power_of_magnitude(p.exponent);
-        LevelChange { friction: p.excess * (-power).exp(), viscous: S::constant(0.0) }
+        let (left, _) = fall(at.velocity, p.velocity, p.exponent);
+        LevelChange { friction: p.excess * left, viscous: S::constant(0.0) }
     }
 }

@@ -1,5 +1,6 @@
 //! Dry friction with true stick, viscous friction and, as an option, a Stribeck fall.
 
+use super::elements::stribeck::{fall, steepest};
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
     Statistics,
@@ -95,15 +96,12 @@ impl<S: Scalar> Coulomb<S> {
         if !self.falls {
             return (p.coulomb * channels.level * mode + viscous * velocity, viscous);
         }
-        let power = (velocity / p.stribeck_velocity).power_of_magnitude(p.stribeck_exponent);
-        let excess = (p.breakaway - p.coulomb) * (-power).exp();
-        let level = (p.coulomb + excess) * channels.level;
-        let steepness = if velocity.re() == 0.0 {
-            S::constant(0.0)
-        } else {
-            -(excess * channels.level * p.stribeck_exponent * power / velocity)
-        };
-        (level * mode + viscous * velocity, steepness * mode + viscous)
+        let (left, steepness) = fall(velocity, p.stribeck_velocity, p.stribeck_exponent);
+        let excess = p.breakaway - p.coulomb;
+        let level = (p.coulomb + excess * left) * channels.level;
+        // By velocity, not by speed: the level stands with the sign of the mode.
+        let steepness = excess * steepness * channels.level * (mode * sign(velocity.re()));
+        (level * mode + viscous * velocity, steepness + viscous)
     }
 }
 
@@ -167,6 +165,12 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
         self.parameters.viscous.re()
     }
 
+    fn steepest_fall(&self) -> f64 {
+        let p = &self.parameters;
+        let excess = p.breakaway.re() - p.coulomb.re();
+        steepest(excess, p.stribeck_velocity.re(), p.stribeck_exponent.re())
+    }
+
     #[inline]
     fn force(&self, state: &CoulombState<S>, velocity: S, channels: &Channels<S>) -> S {
         if state.mode == 0.0 && velocity.re() == 0.0 {
@@ -197,7 +201,9 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
             return CoulombTrial { mode, outcome: Outcome { force, slope, damping: slope } };
         }
         let (force, slope) = self.sliding(mode, motion.velocity, channels);
-        CoulombTrial { mode, outcome: Outcome { force, slope, damping: slope } }
+        // A falling flank is left explicit: implicit, it could outweigh the inertia.
+        let damping = if slope.re() > 0.0 { slope } else { S::constant(0.0) };
+        CoulombTrial { mode, outcome: Outcome { force, slope, damping } }
     }
 
     #[inline]

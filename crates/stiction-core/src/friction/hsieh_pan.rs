@@ -1,9 +1,10 @@
 //! The pre-sliding model of Hsieh and Pan: plastic module, nonlinear spring, damper and hook.
 
 use super::elements::lag::follow;
-use super::elements::memory::ReversePoint;
 use super::elements::plastic::{Creep, Plastic};
-use super::elements::spring::{Curve, SpringState, VirginCurve, Walk};
+use super::elements::series;
+use super::elements::spring::{Curve, Loading, SpringState, VirginCurve, Walk};
+use super::elements::stribeck::{fall, steepest};
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
     Statistics,
@@ -184,29 +185,22 @@ impl<S: Scalar> LawState<S> for HsiehPanState<S> {
     fn entries(&self) -> Vec<(&'static str, Entry)> {
         let number = |x: S| Entry::Number(x.re());
         let count = |n: u64| Entry::Number(n as f64);
-        let points = self.spring.memory.points();
-        vec![
+        let mut entries = self.spring.entries();
+        entries.extend([
             ("mode", Entry::Number(self.mode)),
-            ("spring", number(self.spring.position)),
-            ("spring_force", number(self.spring.force)),
-            ("spring_slope", number(self.spring.slope)),
-            ("direction", Entry::Number(self.spring.direction)),
             ("series_force", number(self.series)),
             ("plastic", number(self.plastic)),
             ("hardening", number(self.hardening)),
             ("latched_breakaway", number(self.latched)),
             ("filtered_force", number(self.filtered)),
             ("breakaway_level", number(self.breakaway)),
-            (
-                "reverse_points",
-                Entry::Pairs(points.iter().map(|p| [p.position.re(), p.force.re()]).collect()),
-            ),
             ("reversals", count(self.statistics.reversals)),
             ("closings", count(self.statistics.closings)),
             ("breakaways", count(self.statistics.breakaways)),
             ("sticks", count(self.statistics.sticks)),
             ("memory_peak", count(self.statistics.memory_peak)),
-        ]
+        ]);
+        entries
     }
 
     fn statistics(&self) -> Statistics {
@@ -223,16 +217,19 @@ impl<S: Scalar> HsiehPan<S> {
     #[inline]
     fn sliding_level(&self, latched: S, velocity: S, channels: &Channels<S>) -> (S, S) {
         let p = &self.parameters;
-        let speed = velocity.abs();
-        let power = (velocity / p.stribeck_velocity).power_of_magnitude(p.stribeck_exponent);
-        let excess = (latched - p.coulomb) * (-power).exp();
+        let (left, steepness) = fall(velocity, p.stribeck_velocity, p.stribeck_exponent);
+        let excess = latched - p.coulomb;
         let viscous = p.viscous * channels.viscous_level / channels.level;
-        let steepness = if speed.re() == 0.0 {
-            S::constant(0.0)
-        } else {
-            -(excess * p.stribeck_exponent * power / speed)
-        };
-        (p.coulomb + excess + viscous * speed, steepness + viscous)
+        (p.coulomb + excess * left + viscous * velocity.abs(), excess * steepness + viscous)
+    }
+
+    /// Force through the series and creep rate at an instant.
+    fn series_force(&self, spring: S, hardening: S, velocity: S) -> (S, S) {
+        if self.damper_on_spring {
+            let damper = self.parameters.damping;
+            return series::instant(&self.plastic, damper, spring, hardening, velocity);
+        }
+        (spring, self.plastic.hardening_rate(hardening, spring))
     }
 
     /// Filtered force and break-away level after the series force went from `from` to `to`.
@@ -261,17 +258,25 @@ impl<S: Scalar> HsiehPan<S> {
         channels: &Channels<S>,
     ) -> HsiehPanTrial<S> {
         if self.damper_on_spring {
-            return self.stick_with_damper_on_spring(state, motion, channels);
+            let step = series::step(
+                &state.spring,
+                &self.curve,
+                &self.plastic,
+                self.parameters.damping,
+                state.hardening,
+                motion,
+            );
+            let outcome = Outcome {
+                force: step.force * channels.level,
+                slope: step.slope * channels.level,
+                damping: step.damping * channels.level,
+            };
+            return self.stuck(state, motion, step.walk, step.force, step.creep, outcome);
         }
-        let going = match sign(motion.displacement.re()) {
-            // A held contact relaxes: the creep takes the spring back.
-            0.0 => -sign(state.spring.force.re()),
-            direction => direction,
-        };
         let creep = self.plastic.creep(
             state.hardening,
             state.spring.force,
-            state.spring.slope_towards(&self.curve, going),
+            |direction| state.spring.slope_towards(&self.curve, direction),
             motion.displacement,
             motion.duration,
         );
@@ -282,70 +287,6 @@ impl<S: Scalar> HsiehPan<S> {
             * (-(creep.share - 1.0))
             + damping;
         self.stuck(state, motion, walk, walk.end.force, creep, Outcome { force, slope, damping })
-    }
-
-    /// A step of a sticking hook whose damper sits across the spring: the force through the
-    /// series, S(x_s) + C_s·x_s', drives the creep, and creep lowers that force: one scalar root.
-    fn stick_with_damper_on_spring(
-        &self,
-        state: &HsiehPanState<S>,
-        motion: &Motion<S>,
-        channels: &Channels<S>,
-    ) -> HsiehPanTrial<S> {
-        let damper = self.parameters.damping;
-        let dt = motion.duration;
-        let per_time =
-            if dt.re() > 0.0 { S::constant(1.0) / dt } else { S::constant(0.0) };
-        let series = |creep: S| {
-            let walk = state.spring.walk(&self.curve, motion.displacement - creep);
-            (walk, walk.end.force + damper * (motion.velocity - creep * per_time))
-        };
-        let (_, uncrept) = series(S::constant(0.0));
-        let s = sign(uncrept.re());
-        let approached = -((-(self.plastic.rate * dt)).exp_m1());
-        let excess = |force: S| (self.plastic.limit(force) - state.hardening) * approached;
-        let mut gained = S::constant(0.0);
-        let mut gradient = S::constant(0.0);
-        let mut most = excess(uncrept).re();
-        if most > 0.0 {
-            let mut least = 0.0;
-            for _ in 0..40 {
-                let (walk, force) = series(gained * s);
-                let miss = gained - excess(force);
-                gradient = self.plastic.exponent * self.plastic.limit(force) / (force * s)
-                    * approached;
-                if force.re() == 0.0 {
-                    gradient = S::constant(0.0);
-                }
-                let rise = gradient * (walk.end.slope + damper * per_time) + 1.0;
-                if miss.re() > 0.0 {
-                    most = most.min(gained.re());
-                } else {
-                    least = gained.re().max(least);
-                }
-                let next = gained - miss / rise;
-                let settled = miss.re().abs() <= 4.0 * f64::EPSILON * most;
-                gained = if next.re() < least || next.re() > most {
-                    S::constant(0.5 * (least + most))
-                } else {
-                    next
-                };
-                if settled {
-                    break;
-                }
-            }
-        }
-        let creep = Creep {
-            hardening: gained,
-            displacement: gained * s,
-            share: S::constant(0.0),
-        };
-        let (walk, force) = series(creep.displacement);
-        let softened = gradient * (walk.end.slope + damper * per_time) + 1.0;
-        let damping = damper / softened * channels.level;
-        let slope = walk.end.slope * dt / softened * channels.level + damping;
-        let outcome = Outcome { force: force * channels.level, slope, damping };
-        self.stuck(state, motion, walk, force, creep, outcome)
     }
 
     #[inline]
@@ -373,6 +314,19 @@ impl<S: Scalar> HsiehPan<S> {
         }
     }
 
+    /// A force rising from `from` to `to` while the body moves by `distance`, limited to what the
+    /// spring gains when the hook stands still: a hook dragged backwards would give back work
+    /// that nobody did. Returns the stiffness where the limit holds.
+    #[inline]
+    fn no_faster_than_the_spring(&self, from: S, to: S, distance: S) -> (S, Option<S>) {
+        let least = from + self.parameters.final_stiffness * distance;
+        if to.re() <= least.re() {
+            return (to, None);
+        }
+        let limit = self.curve.virgin(self.curve.virgin_inverse(from) + distance);
+        if to.re() <= limit.force.re() { (to, None) } else { (limit.force, Some(limit.slope)) }
+    }
+
     /// A step of a sliding hook: the force follows the sliding level over the distance ℓ.
     fn slip(
         &self,
@@ -390,17 +344,23 @@ impl<S: Scalar> HsiehPan<S> {
         let distance = motion.displacement.abs();
         let z = distance / self.parameters.slip_distance;
         let followed = follow(state.series * s, from, to, z);
-        let sigma = followed.value;
+        let (sigma, held_back) = self.no_faster_than_the_spring(state.series * s, followed.value, distance);
         let (filtered, breakaway) =
             self.breakaway_after(state.filtered, state.series, sigma * s, motion.duration);
         let turning = sign(motion.velocity.re());
         let damping = steepness * followed.end_share * channels.level * (s * turning);
+        let damping =
+            if damping.re() > 0.0 && held_back.is_none() { damping } else { S::constant(0.0) };
         // Held velocity: start and end level move together, and the distance with them.
         let held = steepness * followed.end_share
             + from_steepness * (-(followed.end_share - 1.0) - followed.remainder);
         let catching_up = (to - state.series * s) * followed.remainder * motion.duration
             / self.parameters.slip_distance;
-        let slope = (held + catching_up) * channels.level * (s * turning);
+        let slope = match held_back {
+            None => (held + catching_up) * (s * turning),
+            Some(stiffness) => stiffness * motion.duration,
+        };
+        let slope = slope * channels.level;
         HsiehPanTrial {
             outcome: Outcome { force: sigma * channels.level * s, slope, damping },
             series: sigma * s,
@@ -484,24 +444,20 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
     fn restore(&self, entries: &[(String, Entry)]) -> Result<HsiehPanState<S>> {
         let mut read = EntryReader::new(entries);
         let mut state = self.initial();
-        let signs = [-1.0, 0.0, 1.0];
-        state.mode = read.choice("mode", &signs)?;
-        state.spring.position = S::constant(read.number("spring", false)?);
-        state.spring.force = S::constant(read.number("spring_force", false)?);
-        state.spring.slope = S::constant(read.number("spring_slope", false)?);
-        state.spring.direction = read.choice("direction", &signs)?;
+        state.mode = read.choice("mode", &[-1.0, 0.0, 1.0])?;
+        if state.mode != 0.0 && !self.parameters.breakaway.re().is_finite() {
+            return Err(Error::State {
+                name: "mode".to_owned(),
+                problem: format!("is {}, allowed is 0: this contact never slips", state.mode),
+            });
+        }
+        state.spring.restore(&mut read)?;
         state.series = S::constant(read.number("series_force", false)?);
         state.plastic = S::constant(read.number("plastic", false)?);
         state.hardening = S::constant(read.number("hardening", false)?);
         state.latched = S::constant(read.number("latched_breakaway", false)?);
         state.filtered = S::constant(read.number("filtered_force", false)?);
         state.breakaway = S::constant(read.number("breakaway_level", true)?);
-        let rows = read.pairs("reverse_points")?;
-        check_nesting(rows, state.spring.position.re(), state.spring.direction)?;
-        state.spring.memory.restore(rows.iter().map(|row| ReversePoint {
-            position: S::constant(row[0]),
-            force: S::constant(row[1]),
-        }));
         state.statistics = Statistics {
             reversals: read.count("reversals")?,
             closings: read.count("closings")?,
@@ -520,6 +476,25 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
 
     fn greatest_damping(&self) -> f64 {
         self.parameters.damping.re().max(self.parameters.viscous.re())
+    }
+
+    fn steepest_fall(&self) -> f64 {
+        let p = &self.parameters;
+        if !p.breakaway.re().is_finite() {
+            return 0.0;
+        }
+        let excess = p.breakaway.re() - p.coulomb.re();
+        steepest(excess, p.stribeck_velocity.re(), p.stribeck_exponent.re())
+    }
+
+    fn fastest_rate(&self, state: &HsiehPanState<S>) -> f64 {
+        let force = state.series.re().abs();
+        if force == 0.0 {
+            return self.plastic.rate.re();
+        }
+        let limit = self.plastic.limit(state.series).re();
+        let gain = self.plastic.exponent.re() * limit / force * self.greatest_stiffness();
+        self.plastic.rate.re() * (1.0 + gain)
     }
 
     #[inline]
@@ -559,12 +534,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
                 state.spring.accept(walk);
                 state.plastic = *plastic;
                 state.hardening = *hardening;
-                if walk.reversed || walk.closings > 0 {
-                    state.statistics.reversals += u64::from(walk.reversed);
-                    state.statistics.closings += u64::from(walk.closings);
-                    let held = state.spring.memory.points().len() as u64;
-                    state.statistics.memory_peak = state.statistics.memory_peak.max(held);
-                }
+                state.spring.count(walk, &mut state.statistics);
             }
             Mode::Slip { .. } => state.spring.force = trial.series,
         }
@@ -616,9 +586,10 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
                 // x_hook' = x' − x_s' with σ' = (T − σ)·x'/ℓ: the hook turns back where the pull
                 // exceeds ℓ times the stiffness. A force at its break-away level cannot stick.
                 let reach = self.parameters.slip_distance;
+                // With the damper on the spring the series cannot stop short: it catches at rest.
                 let least = reach * self.parameters.final_stiffness - pull;
                 let held_down = trial.breakaway.re() - trial.series.re().abs();
-                if least.re() > 0.0 || held_down <= 0.0 {
+                if least.re() > 0.0 || held_down <= 0.0 || self.damper_on_spring {
                     return S::constant(least.re().abs().max(f64::MIN_POSITIVE));
                 }
                 let at = self.curve.virgin_inverse(trial.series);
@@ -704,60 +675,4 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
             mode: Mode::Stick { walk, plastic, hardening },
         }
     }
-}
-
-impl<S: Scalar> HsiehPan<S> {
-    /// Force through the series and creep rate at an instant.
-    fn series_force(&self, spring: S, hardening: S, velocity: S) -> (S, S) {
-        if !self.damper_on_spring {
-            return (spring, self.plastic.hardening_rate(hardening, spring));
-        }
-        // T = S + C·(v − s·h'(T)): the right side falls as |T| grows, so bisection is safe.
-        let damper = self.parameters.damping;
-        let uncrept = spring + damper * velocity;
-        let s = sign(uncrept.re());
-        let rate = |t: S| self.plastic.hardening_rate(hardening, t);
-        if rate(uncrept).re() == 0.0 {
-            return (uncrept, S::constant(0.0));
-        }
-        let (mut low, mut high) = (0.0, uncrept.re().abs());
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            let t = S::constant(middle * s);
-            if (uncrept - damper * rate(t) * s).re() * s > middle {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        // One Newton step in the full number type carries the derivatives.
-        let t = S::constant(0.5 * (low + high) * s);
-        let steep =
-            self.plastic.exponent * self.plastic.limit(t) / (t * s) * self.plastic.rate * damper;
-        let t = t - (t - uncrept + damper * rate(t) * s) / (steep + 1.0);
-        (t, rate(t))
-    }
-}
-
-/// Reverse points must alternate and nest, or the walk would run behind its anchor.
-fn check_nesting(rows: &[[f64; 2]], position: f64, direction: f64) -> Result<()> {
-    let bad = |problem: &str| {
-        Err(Error::State { name: "reverse_points".to_owned(), problem: problem.to_owned() })
-    };
-    let chain: Vec<f64> = rows.iter().map(|row| row[0]).chain([position]).collect();
-    for triple in chain.windows(3) {
-        let inside = triple[2] >= triple[0].min(triple[1]) && triple[2] <= triple[0].max(triple[1]);
-        if !inside {
-            return bad("does not nest: every point lies between the two before it");
-        }
-    }
-    if let [.., last, end] = chain[..]
-        && (end - last) * direction < 0.0
-    {
-        return bad("disagrees with 'direction'");
-    }
-    if rows.is_empty() && position * direction < 0.0 {
-        return bad("is empty although the spring is not on its virgin curve");
-    }
-    Ok(())
 }

@@ -60,7 +60,8 @@ pub struct Outcome<S> {
     pub force: S,
     /// ∂force/∂velocity for a velocity held over the step, at fixed duration.
     pub slope: S,
-    /// ∂force/∂(velocity at the end) at fixed displacement.
+    /// ∂force/∂(velocity at the end) at fixed displacement, where it calms the motion; 0 where
+    /// friction falls with speed.
     pub damping: S,
 }
 
@@ -99,6 +100,15 @@ pub enum Entry {
     Number(f64),
     /// Rows of two numbers.
     Pairs(Vec<[f64; 2]>),
+}
+
+impl std::fmt::Display for Entry {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(x) => write!(formatter, "{x}"),
+            Self::Pairs(rows) => write!(formatter, "an array of shape ({}, 2)", rows.len()),
+        }
+    }
 }
 
 /// State of a law: owned by the caller, changed by `commit` and `switch` alone.
@@ -150,6 +160,14 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn greatest_stiffness(&self) -> f64;
     /// Greatest ∂force/∂velocity at fixed displacement that lasts: limits the step as well.
     fn greatest_damping(&self) -> f64;
+    /// Steepest fall of friction with speed: limits the step to a few parts.
+    fn steepest_fall(&self) -> f64 {
+        0.0
+    }
+    /// Fastest rate of the internal variables at this state (reference integrator).
+    fn fastest_rate(&self, _state: &Self::State) -> f64 {
+        0.0
+    }
 
     /// Friction at the present state.
     fn force(&self, state: &Self::State, velocity: S, channels: &Channels<S>) -> S;
@@ -356,6 +374,7 @@ macro_rules! laws {
 laws! {
     coulomb => Coulomb,
     hsieh_pan => HsiehPan,
+    maxwell_slip => MaxwellSlip,
 }
 
 /// The record of the law called `name`.
@@ -397,7 +416,7 @@ impl<'a> EntryReader<'a> {
             Entry::Number(x) if x.is_finite() || (infinite && !x.is_nan()) => Ok(*x),
             other => Err(Error::State {
                 name: name.to_owned(),
-                problem: format!("is {other:?}, not a finite number"),
+                problem: format!("is {other}, not a finite number"),
             }),
         }
     }

@@ -132,8 +132,9 @@ impl<S: Scalar> Machine<S> {
     #[inline]
     pub(super) fn relax(&self, run: &Run<S>, friction: S, span: S) -> S {
         let zero = S::constant(0.0);
-        self.relaxation
-            .map_or(zero, |module| module.creep(run.relaxed, friction, zero, zero, span).hardening)
+        self.relaxation.map_or(zero, |module| {
+            module.creep(run.relaxed, friction, |_| zero, zero, span).hardening
+        })
     }
 
     /// Signed displacement that goes with a gain of hardening.
@@ -148,6 +149,16 @@ impl<S: Scalar> Run<S> {
     #[inline]
     pub fn situation(&self) -> Situation<S> {
         Situation { position: self.position, velocity: self.velocity, time: self.time }
+    }
+
+    /// Gravity, added efforts and shaft at the end of the last step.
+    pub fn ambient(&self) -> S {
+        self.ambient
+    }
+
+    /// Sets what [`Self::ambient`] returned.
+    pub fn set_ambient(&mut self, ambient: S) {
+        self.ambient = ambient;
     }
 
     /// The same state over another number type, with no parameter dependence.

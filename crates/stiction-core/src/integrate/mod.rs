@@ -33,16 +33,23 @@ pub enum Integrator {
 const LONGEST_PHASE: f64 = 0.065;
 /// (C/J)·h above which a sample is divided.
 const LONGEST_DAMPING: f64 = 0.25;
-/// A step divided further than this is a mistake in the units, not a stiff machine.
-const MOST_SUBSTEPS: f64 = 1e5;
+/// Where friction falls with speed a sample is divided further, to follow the fall, but not
+/// without end: the steeper it is, the shorter it lasts.
+const MOST_PARTS_FOR_A_FALL: f64 = 16.0;
+/// λ·h above which the reference integrator divides a sample for the law's internal variables.
+const LONGEST_RATE: f64 = 0.3;
+/// A sample that needs more parts than this is a mistake in the units, not a stiff machine.
+pub const MOST_PARTS: f64 = 1e5;
 
-/// Number of equal steps that a sample of this duration is divided into.
-pub fn substeps<S: Scalar, L: FrictionLaw<S>>(machine: &Machine<S>, law: &L, dt: f64) -> u32 {
+/// Number of equal parts that a sample of this duration is divided into; above [`MOST_PARTS`] the
+/// sample is too long for the machine.
+pub fn parts<S: Scalar, L: FrictionLaw<S>>(machine: &Machine<S>, law: &L, dt: f64) -> f64 {
     let lightest = machine.lightest_inertia();
     let stiffness = law.greatest_stiffness() + machine.greatest_stiffness();
     let phase = dt * (stiffness / lightest).sqrt() / LONGEST_PHASE;
-    let damping = dt * law.greatest_damping() / lightest / LONGEST_DAMPING;
-    phase.max(damping).ceil().clamp(1.0, MOST_SUBSTEPS) as u32
+    let calming = dt * law.greatest_damping() / lightest / LONGEST_DAMPING;
+    let falling = dt * law.steepest_fall() / lightest / LONGEST_DAMPING;
+    phase.max(calming).max(falling.min(MOST_PARTS_FOR_A_FALL)).ceil().max(1.0)
 }
 
 /// Advances body and friction by one sample whose input and load are held.
@@ -56,22 +63,104 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>>(
     input: S,
     load: S,
     dt: f64,
-    substeps: u32,
+    parts: u32,
     integrator: Integrator,
 ) {
-    let span = S::constant(dt / f64::from(substeps));
     match integrator {
         Integrator::Fast => {
+            let span = S::constant(dt / f64::from(parts));
             let mut stepper = fast::Fast { machine, run, input, load };
-            for _ in 0..substeps {
+            for _ in 0..parts {
                 through_events(&mut stepper, law, state, span);
             }
         }
         Integrator::Reference => {
+            let fast = (dt * law.fastest_rate(state) / LONGEST_RATE).min(MOST_PARTS).ceil() as u32;
+            let parts = parts.max(fast);
+            let span = S::constant(dt / f64::from(parts));
             let mut stepper = reference::Reference { machine, run, input, load };
-            for _ in 0..substeps {
+            for _ in 0..parts {
                 through_events(&mut stepper, law, state, span);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Body;
+    use crate::drive::Drive;
+    use crate::effects::{Effects, Relaxation, SecondMass};
+    use crate::friction::FrictionLaw;
+    use crate::friction::coulomb::Coulomb;
+    use crate::sensor::Sensor;
+
+    const INERTIA: f64 = 0.01;
+
+    fn machine() -> Machine<f64> {
+        Machine::new(
+            Drive { gain: 1.0, limit: f64::INFINITY },
+            Body::new(INERTIA, 0.0, 0.0, 0.0),
+            Effects::new([]),
+            Sensor::default(),
+        )
+    }
+
+    /// F_c, F_s, v_s, δ, F_v.
+    fn coulomb(level: f64) -> Coulomb<f64> {
+        Coulomb::build(&[level, level, 0.1, 2.0, 0.0], &[])
+    }
+
+    fn run(
+        machine: &Machine<f64>,
+        law: &Coulomb<f64>,
+        input: f64,
+        integrator: Integrator,
+    ) -> Vec<Run<f64>> {
+        let (mut state, mut run) = (law.initial(), machine.start(0.0, 0.0));
+        let dt = 1e-4;
+        let parts = parts(machine, law, dt) as u32;
+        (0..5000)
+            .map(|_| {
+                sample(machine, law, &mut state, &mut run, input, 0.0, dt, parts, integrator);
+                run
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_second_mass_swings_on_its_shaft() {
+        let (share, stiffness, input) = (0.4, 50.0, 0.2);
+        let mut machine = machine();
+        machine.second_mass = Some(SecondMass { share, stiffness, damping: 0.0 });
+        machine.inertia = INERTIA * (1.0 - share);
+        let omega = (stiffness / (INERTIA * share * (1.0 - share))).sqrt();
+        for integrator in [Integrator::Fast, Integrator::Reference] {
+            for (k, run) in run(&machine, &coulomb(0.0), input, integrator).iter().enumerate() {
+                let t = (k + 1) as f64 * 1e-4;
+                // The centre of mass accelerates evenly; the twist swings about its mean.
+                let centre = 0.5 * input / INERTIA * t * t;
+                let twist = input * share / stiffness * (1.0 - (omega * t).cos());
+                let position = centre + share * twist;
+                let swing = 2.0 * input * share / stiffness;
+                assert!((run.position - position).abs() < 2e-3 * share * swing);
+                let held_back = run.position - run.second_position;
+                assert!((held_back - twist).abs() < 2e-3 * swing);
+            }
+        }
+    }
+
+    #[test]
+    fn a_relaxing_contact_creeps_while_it_holds() {
+        let mut machine = machine();
+        machine.relaxation = Some(Relaxation { coefficient: 1e-3, exponent: 2.0, rate: 3.0 });
+        let runs = run(&machine, &coulomb(1.0), 0.5, Integrator::Fast);
+        for (k, run) in runs.iter().enumerate() {
+            let t = (k + 1) as f64 * 1e-4;
+            let exact = 1e-3 * 0.25 * (1.0 - (-3.0 * t).exp());
+            assert!((run.position - exact).abs() < 1e-12);
+            assert_eq!(run.friction, 0.5);
         }
     }
 }

@@ -3,4 +3,6 @@
 pub mod lag;
 pub mod memory;
 pub mod plastic;
+pub mod series;
 pub mod spring;
+pub mod stribeck;

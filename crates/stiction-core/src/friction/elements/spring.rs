@@ -6,6 +6,8 @@
 //! loop: both its points are forgotten and motion goes on along the older branch (property ii).
 
 use super::memory::{ReverseMemory, ReversePoint};
+use crate::error::{Error, Result};
+use crate::friction::{Entry, EntryReader, Statistics};
 use crate::scalar::{Scalar, sign};
 
 /// The first loading curve, before any reversal.
@@ -15,6 +17,26 @@ pub enum VirginCurve {
     Masing,
     /// σ = sgn(x)·G(|x|): the first loading is as soft as any branch.
     Same,
+}
+
+/// The loading curves of a spring with memory.
+pub trait Loading<S: Scalar> {
+    /// Slope right after a reversal, the greatest there is.
+    fn initial_stiffness(&self) -> S;
+    /// G and its slope at distance d ≥ 0 from a reverse point.
+    fn branch(&self, d: S) -> Response<S>;
+    /// The curve before any reversal at elongation x.
+    fn virgin(&self, x: S) -> Response<S>;
+    /// Whether the first loop closes at the mirror of its reverse point.
+    fn closes_at_mirror(&self) -> bool;
+}
+
+/// The virgin curve that goes with a branch under Masing's rule: half its size.
+#[inline]
+pub fn masing<S: Scalar>(curve: &impl Loading<S>, x: S) -> Response<S> {
+    let s = if x.re() < 0.0 { -1.0 } else { 1.0 };
+    let r = curve.branch(x * (2.0 * s));
+    Response { force: r.force * (0.5 * s), slope: r.slope }
 }
 
 /// G(d) = k_inf·d + (k_0 − k_inf)·d_0·(1 − e^(−d/d_0)).
@@ -62,40 +84,6 @@ impl<S: Scalar> Curve<S> {
         }
     }
 
-    /// Slope right after a reversal, the greatest there is.
-    #[inline]
-    pub fn initial_stiffness(&self) -> S {
-        self.initial_stiffness
-    }
-
-    /// G and its slope at distance d from a reverse point.
-    #[inline]
-    pub fn branch(&self, d: S) -> Response<S> {
-        // A wrong anchor gives a negative distance, and the exponential explodes.
-        debug_assert!(d.re() >= 0.0, "branch evaluated behind its reverse point: {d:?}");
-        let faded = -((-(d * self.inverse_distance)).exp_m1());
-        Response {
-            force: self.final_stiffness * d + self.fading * self.decay_distance * faded,
-            slope: self.initial_stiffness - self.fading * faded,
-        }
-    }
-
-    /// The virgin curve at elongation x.
-    #[inline]
-    pub fn virgin(&self, x: S) -> Response<S> {
-        let (s, magnitude) = (if x.re() < 0.0 { -1.0 } else { 1.0 }, x.abs_keeping_slope());
-        match self.virgin {
-            VirginCurve::Masing => {
-                let r = self.branch(magnitude * 2.0);
-                Response { force: r.force * (0.5 * s), slope: r.slope }
-            }
-            VirginCurve::Same => {
-                let r = self.branch(magnitude);
-                Response { force: r.force * s, slope: r.slope }
-            }
-        }
-    }
-
     /// The elongation at which the virgin curve has this force, from a guess nearby.
     ///
     /// The curve is concave and rising, so Newton's iteration cannot leave its domain once it
@@ -119,15 +107,38 @@ impl<S: Scalar> Curve<S> {
     }
 }
 
-/// |x| whose derivative at 0 is that of the positive side: the virgin curve is odd and smooth
-/// there, so the kink of the magnitude must not lose the slope.
-trait KeepSlope {
-    fn abs_keeping_slope(self) -> Self;
-}
-impl<S: Scalar> KeepSlope for S {
+impl<S: Scalar> Loading<S> for Curve<S> {
     #[inline]
-    fn abs_keeping_slope(self) -> S {
-        if self.re() < 0.0 { -self } else { self }
+    fn initial_stiffness(&self) -> S {
+        self.initial_stiffness
+    }
+
+    #[inline]
+    fn branch(&self, d: S) -> Response<S> {
+        // A wrong anchor gives a negative distance, and the exponential explodes.
+        debug_assert!(d.re() >= 0.0, "branch evaluated behind its reverse point: {d:?}");
+        let faded = -((-(d * self.inverse_distance)).exp_m1());
+        Response {
+            force: self.final_stiffness * d + self.fading * self.decay_distance * faded,
+            slope: self.initial_stiffness - self.fading * faded,
+        }
+    }
+
+    #[inline]
+    fn virgin(&self, x: S) -> Response<S> {
+        match self.virgin {
+            VirginCurve::Masing => masing(self, x),
+            VirginCurve::Same => {
+                let s = if x.re() < 0.0 { -1.0 } else { 1.0 };
+                let r = self.branch(x * s);
+                Response { force: r.force * s, slope: r.slope }
+            }
+        }
+    }
+
+    #[inline]
+    fn closes_at_mirror(&self) -> bool {
+        self.virgin == VirginCurve::Masing
     }
 }
 
@@ -167,7 +178,7 @@ pub struct Walk<S> {
 
 impl<S: Scalar> SpringState<S> {
     /// Relaxed, with nothing remembered.
-    pub fn relaxed(curve: &Curve<S>) -> Self {
+    pub fn relaxed(curve: &impl Loading<S>) -> Self {
         Self {
             position: S::constant(0.0),
             force: S::constant(0.0),
@@ -188,7 +199,7 @@ impl<S: Scalar> SpringState<S> {
 
     /// Slope with which the spring would start to move in this direction.
     #[inline]
-    pub fn slope_towards(&self, curve: &Curve<S>, direction: f64) -> S {
+    pub fn slope_towards(&self, curve: &impl Loading<S>, direction: f64) -> S {
         if direction == self.direction || direction == 0.0 {
             self.slope
         } else {
@@ -198,7 +209,7 @@ impl<S: Scalar> SpringState<S> {
 
     /// Read-only walk to another elongation.
     #[inline]
-    pub fn walk(&self, curve: &Curve<S>, displacement: S) -> Walk<S> {
+    pub fn walk(&self, curve: &impl Loading<S>, displacement: S) -> Walk<S> {
         let position = self.position + displacement;
         let moving = sign(displacement.re());
         let direction = if moving == 0.0 { self.direction } else { moving };
@@ -233,17 +244,15 @@ impl<S: Scalar> SpringState<S> {
     #[inline]
     fn closing_target(
         &self,
-        curve: &Curve<S>,
+        curve: &impl Loading<S>,
         kept: usize,
         added: Option<&ReversePoint<S>>,
     ) -> Option<(f64, usize)> {
         let points = &self.memory.points()[..kept];
-        let mirror = |anchor: &ReversePoint<S>| match curve.virgin {
-            // The only loop is with the virgin curve, and it closes at the mirror point.
-            VirginCurve::Masing => Some(-anchor.position.re()),
-            // The branch stays inside the virgin curve for ever.
-            VirginCurve::Same => None,
-        };
+        // With one point left the only loop is with the virgin curve; a branch that does not meet
+        // it at the mirror point stays inside it for ever.
+        let mirror =
+            |anchor: &ReversePoint<S>| curve.closes_at_mirror().then(|| -anchor.position.re());
         match (added, points) {
             (Some(anchor), []) => mirror(anchor).map(|x| (x, 0)),
             (Some(_), [.., older]) => Some((older.position.re(), 1)),
@@ -265,6 +274,49 @@ impl<S: Scalar> SpringState<S> {
         }
     }
 
+    /// Counts reversals and closings of an accepted walk.
+    #[inline]
+    pub fn count(&self, walk: &Walk<S>, statistics: &mut Statistics) {
+        if walk.reversed || walk.closings > 0 {
+            statistics.reversals += u64::from(walk.reversed);
+            statistics.closings += u64::from(walk.closings);
+            let held = self.memory.points().len() as u64;
+            statistics.memory_peak = statistics.memory_peak.max(held);
+        }
+    }
+
+    /// The spring as entries of a state.
+    pub fn entries(&self) -> Vec<(&'static str, Entry)> {
+        let points = self.memory.points();
+        vec![
+            ("spring", Entry::Number(self.position.re())),
+            ("spring_force", Entry::Number(self.force.re())),
+            ("spring_slope", Entry::Number(self.slope.re())),
+            ("direction", Entry::Number(self.direction)),
+            (
+                "reverse_points",
+                Entry::Pairs(points.iter().map(|p| [p.position.re(), p.force.re()]).collect()),
+            ),
+        ]
+    }
+
+    /// Takes the spring from the entries of a state.
+    pub fn restore(&mut self, read: &mut EntryReader<'_>) -> Result<()> {
+        self.position = S::constant(read.number("spring", false)?);
+        self.force = S::constant(read.number("spring_force", false)?);
+        self.slope = S::constant(read.number("spring_slope", false)?);
+        self.direction = read.choice("direction", &[-1.0, 0.0, 1.0])?;
+        let rows = read.pairs("reverse_points")?;
+        check_nesting(rows, self.position.re(), self.direction)?;
+        self.memory.restore(
+            rows.iter().map(|row| ReversePoint {
+                position: S::constant(row[0]),
+                force: S::constant(row[1]),
+            }),
+        );
+        Ok(())
+    }
+
     /// The same spring over another number type.
     pub fn map<T: Scalar>(&self, convert: impl Fn(S) -> T) -> SpringState<T> {
         SpringState {
@@ -275,6 +327,37 @@ impl<S: Scalar> SpringState<S> {
             memory: self.memory.map(convert),
         }
     }
+}
+
+/// Reverse points must alternate and nest, or the walk would run behind its anchor.
+fn check_nesting(rows: &[[f64; 2]], position: f64, direction: f64) -> Result<()> {
+    let bad = |problem: &str| {
+        Err(Error::State { name: "reverse_points".to_owned(), problem: problem.to_owned() })
+    };
+    // The way in which the spring moved towards each point: the first from the origin, each
+    // later one back from the point before it.
+    let mut towards = 0.0;
+    for (k, row) in rows.iter().enumerate() {
+        let before = if k == 0 { 0.0 } else { rows[k - 1][0] };
+        let way = sign(row[0] - before);
+        let inside = k < 2 || (row[0] - rows[k - 2][0]) * way < 0.0;
+        if way == 0.0 || way == towards || !inside {
+            return bad("does not nest: every point lies strictly between the two before it");
+        }
+        towards = way;
+    }
+    if let [.., last] = rows {
+        if direction != -towards || (position - last[0]) * direction < 0.0 {
+            return bad("disagrees with 'direction'");
+        }
+        let passed = rows.len() > 1 && (position - rows[rows.len() - 2][0]) * direction > 0.0;
+        if passed {
+            return bad("does not nest: the spring is past the point before the last");
+        }
+    } else if position * direction < 0.0 {
+        return bad("is empty although the spring is not on its virgin curve");
+    }
+    Ok(())
 }
 
 #[cfg(test)]

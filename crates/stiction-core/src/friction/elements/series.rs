@@ -1,0 +1,148 @@
+//! Spring and damper side by side, in series with the plastic module: the force through the series
+//! drives the creep, and the creep lowers that force. Each question is one scalar root.
+
+use super::lag::follow;
+use super::plastic::{Creep, Plastic};
+use super::spring::{Loading, SpringState, Walk};
+use crate::friction::Motion;
+use crate::scalar::{Scalar, sign};
+
+/// A step of the series.
+#[derive(Debug, Clone, Copy)]
+pub struct SeriesStep<S> {
+    /// What the spring does.
+    pub walk: Walk<S>,
+    /// What the plastic module does.
+    pub creep: Creep<S>,
+    /// Force through the series at the end.
+    pub force: S,
+    /// ∂force/∂velocity at the end, at fixed displacement.
+    pub damping: S,
+    /// ∂force/∂velocity for a velocity held over the step.
+    pub slope: S,
+}
+
+/// Steps spring ∥ damper in series with the plastic module.
+///
+/// The force T = S(x_s) + C·(x' − x_p') goes from its root at the start of the step to that at
+/// its end; between them f(|T|) is taken as linear, for which the hardening has a closed form.
+pub fn step<S: Scalar>(
+    spring: &SpringState<S>,
+    curve: &impl Loading<S>,
+    plastic: &Plastic<S>,
+    damper: S,
+    hardening: S,
+    motion: &Motion<S>,
+) -> SeriesStep<S> {
+    let zero = S::constant(0.0);
+    let (from, _) = instant(plastic, damper, spring.force, hardening, motion.start_velocity);
+    let uncrept_walk = spring.walk(curve, motion.displacement);
+    let uncrept = uncrept_walk.end.force + damper * motion.velocity;
+    let s = sign(uncrept.re());
+    let z = plastic.rate * motion.duration;
+    let reaching = |force: S| {
+        let followed = follow(hardening, plastic.limit(from), plastic.limit(force), z);
+        (followed.value - hardening, followed.end_share)
+    };
+    // Hardening gained, and its slope by the force at the end.
+    let gained = |force: S| {
+        let (gain, share) = reaching(force);
+        if gain.re() > 0.0 { (gain, share * plastic.limit_slope(force)) } else { (zero, zero) }
+    };
+    // What T must equal; it falls as |T| grows, so the root is bracketed by 0 and the force that
+    // no creep would leave.
+    let needed = |force: S| {
+        let (gain, gain_slope) = gained(force);
+        let walk = spring.walk(curve, motion.displacement - gain * s);
+        let creeping = plastic.hardening_rate(hardening + gain, force);
+        let quickening = if creeping.re() > 0.0 {
+            plastic.rate * (plastic.limit_slope(force) - gain_slope)
+        } else {
+            zero
+        };
+        let value = walk.end.force + damper * (motion.velocity - creeping * s);
+        let softening = walk.end.slope * gain_slope + damper * quickening;
+        (walk, gain, value, softening + 1.0)
+    };
+    let (mut low, mut high) = (0.0, uncrept.re().abs());
+    let mut force = uncrept;
+    for _ in 0..60 {
+        let (_, _, value, rise) = needed(force);
+        let miss = force - value;
+        let over = miss.re() * s;
+        if over > 0.0 {
+            high = high.min(force.re().abs());
+        } else {
+            low = force.re().abs().max(low);
+        }
+        let next = force - miss / rise;
+        let inside = next.re() * s >= low && next.re() * s <= high;
+        let settled = miss.re().abs() <= 4.0 * f64::EPSILON * high;
+        force = if inside { next } else { S::constant(0.5 * (low + high) * s) };
+        if settled || s == 0.0 {
+            break;
+        }
+    }
+    let (walk, gain, _, softened) = needed(force);
+    let damping = damper / softened;
+    // A held velocity moves the force at the start as well, and with it the creep.
+    let from_slope = plastic.limit_slope(from);
+    let started = if plastic.hardening_rate(hardening, from).re() > 0.0 {
+        damper / (damper * plastic.rate * from_slope + 1.0)
+    } else {
+        damper
+    };
+    let followed = follow(hardening, plastic.limit(from), plastic.limit(force), z);
+    let by_start = if gain.re() > 0.0 {
+        -(followed.end_share + followed.remainder - 1.0)
+            * from_slope
+            * started
+            * (s * sign(from.re()))
+    } else {
+        zero
+    };
+    let creeping = plastic.hardening_rate(hardening + gain, force).re() > 0.0;
+    let recovered = if creeping { damper * plastic.rate } else { zero };
+    let held = walk.end.slope * motion.duration + damper - by_start * (walk.end.slope - recovered);
+    SeriesStep {
+        walk,
+        creep: Creep { hardening: gain, displacement: gain * s, share: zero },
+        force,
+        damping,
+        slope: held / softened,
+    }
+}
+
+/// Force through the series and creep rate at an instant: T = S + C·(v − s·h'(T)).
+pub fn instant<S: Scalar>(
+    plastic: &Plastic<S>,
+    damper: S,
+    spring: S,
+    hardening: S,
+    velocity: S,
+) -> (S, S) {
+    let uncrept = spring + damper * velocity;
+    let s = sign(uncrept.re());
+    let rate = |t: S| plastic.hardening_rate(hardening, t);
+    if rate(uncrept).re() == 0.0 {
+        return (uncrept, S::constant(0.0));
+    }
+    // T + C·h'(T) is convex in |T|: Newton from the uncrept force falls to the root without
+    // passing it, and its last pass carries the derivatives.
+    let mut t = uncrept;
+    for _ in 0..60 {
+        let rise = if rate(t).re() > 0.0 {
+            plastic.limit_slope(t) * plastic.rate
+        } else {
+            S::constant(0.0)
+        };
+        let miss = t - uncrept + damper * rate(t) * s;
+        let next = t - miss / (rise * damper + 1.0);
+        let moved = (next.re() - t.re()).abs();
+        t = next;
+        if moved <= 4.0 * f64::EPSILON * uncrept.re().abs() {
+            break;
+        }
+    }
+    (t, rate(t))
+}

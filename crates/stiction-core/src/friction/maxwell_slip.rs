@@ -1,0 +1,285 @@
+//! Parallel elasto-slide elements without number: pre-sliding hysteresis that ends in sliding.
+
+use super::elements::spring::{Loading, Response, SpringState, Walk, masing};
+use super::{
+    Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
+    Statistics,
+};
+use crate::error::Result;
+use crate::parameter::{OptionSpec, ParameterSpec};
+use crate::parameters;
+use crate::scalar::{Scalar, logarithmic_mean};
+
+parameters! {
+    /// Parameters of [`MaxwellSlip`].
+    pub struct MaxwellSlipParameters {
+        coulomb: Effort, "friction once every element slides, F_c",
+            default Value(0.35), neutral None, typical 0.35, bounds 1e-12, 1e9;
+        initial_stiffness: Stiffness, "slope right after a reversal, all elements sticking, k_0",
+            default Value(3000.0), neutral None, typical 3000.0, bounds 1e-9, 1e15;
+        yield_shape: One, "spread of the yield points: 1/2 even, 0 exponential, below 0 with a long tail, near 1 all at once, κ",
+            default Value(0.0), neutral None, typical 0.2, bounds -2.0, 0.9;
+        viscous: Damping, "friction per speed, F_v",
+            default Value(0.0), neutral Some(0.0), typical 0.05, bounds 0.0, 1e9;
+    }
+}
+
+/// Virgin curve V(x) = F_c·(1 − (1 − κ·y)₊^(1/κ)), y = k_0·|x|/F_c, and Masing's branches
+/// G(d) = 2·V(d/2).
+///
+/// κ → 0 is 1 − e^(−y). The curve is what infinitely many elements give whose yield points are
+/// distributed with density −V''.
+#[derive(Debug, Clone, Copy)]
+struct YieldCurve<S> {
+    coulomb: S,
+    stiffness: S,
+    shape: S,
+    inverse_distance: S,
+}
+
+impl<S: Scalar> Loading<S> for YieldCurve<S> {
+    #[inline]
+    fn initial_stiffness(&self) -> S {
+        self.stiffness
+    }
+
+    #[inline]
+    fn branch(&self, d: S) -> Response<S> {
+        debug_assert!(d.re() >= 0.0, "branch evaluated behind its reverse point: {d:?}");
+        let y = d * 0.5 * self.inverse_distance;
+        let u = self.shape * y;
+        if u.re() >= 1.0 {
+            return Response { force: self.coulomb * 2.0, slope: S::constant(0.0) };
+        }
+        let yielded = -((-(y * logarithmic_mean(u))).exp_m1());
+        let sticking = -(yielded - 1.0);
+        Response {
+            force: self.coulomb * 2.0 * yielded,
+            slope: self.stiffness * sticking / (-(u - 1.0)),
+        }
+    }
+
+    #[inline]
+    fn virgin(&self, x: S) -> Response<S> {
+        masing(self, x)
+    }
+
+    #[inline]
+    fn closes_at_mirror(&self) -> bool {
+        true
+    }
+}
+
+/// Pre-sliding hysteresis with reverse-point memory that goes over into sliding at F_c.
+///
+/// F = L·σ(x) + F_v·v, σ on [`YieldCurve`] with Masing branches: the limit of a Maxwell-slip model
+/// with ever more elements, evaluated in closed form, so that no step of a finite ladder imitates
+/// creep or dwell.
+///
+/// At v = 0 the force stays where it is: no creep, no drift. Memory: reverse points. Passive.
+/// Source: Iwan, J. Appl. Mech. 33 (1966); Lampaert, Al-Bender, Swevers, Physcon 2003; the
+/// one-parameter family of yield distributions is ours.
+#[derive(Debug, Clone)]
+pub struct MaxwellSlip<S> {
+    parameters: MaxwellSlipParameters<S>,
+    curve: YieldCurve<S>,
+}
+
+/// State of [`MaxwellSlip`]; forces are those at level 1.
+#[derive(Debug, Clone)]
+pub struct MaxwellSlipState<S> {
+    spring: SpringState<S>,
+    statistics: Statistics,
+}
+
+/// A step of [`MaxwellSlip`].
+#[derive(Debug, Clone, Copy)]
+pub struct MaxwellSlipTrial<S> {
+    walk: Walk<S>,
+    outcome: Outcome<S>,
+}
+
+impl<S: Scalar> MaxwellSlipState<S> {
+    /// The same state over another number type.
+    pub fn map<T: Scalar>(&self, convert: impl Fn(S) -> T) -> MaxwellSlipState<T> {
+        MaxwellSlipState { spring: self.spring.map(convert), statistics: self.statistics }
+    }
+}
+
+impl<S: Scalar> LawState<S> for MaxwellSlipState<S> {
+    const OUTPUTS: &'static [&'static str] = &["spring", "spring_force"];
+
+    fn output(&self, index: usize) -> S {
+        if index == 0 { self.spring.position } else { self.spring.force }
+    }
+
+    fn entries(&self) -> Vec<(&'static str, Entry)> {
+        let count = |n: u64| Entry::Number(n as f64);
+        let mut entries = self.spring.entries();
+        entries.extend([
+            ("reversals", count(self.statistics.reversals)),
+            ("closings", count(self.statistics.closings)),
+            ("memory_peak", count(self.statistics.memory_peak)),
+        ]);
+        entries
+    }
+
+    fn statistics(&self) -> Statistics {
+        Statistics { memory_growths: self.spring.memory.growths(), ..self.statistics }
+    }
+
+    fn make_room(&mut self, steps: usize) {
+        self.spring.memory.make_room(steps);
+    }
+}
+
+impl<S: Scalar> MaxwellSlip<S> {
+    #[inline]
+    fn moved(
+        &self,
+        state: &MaxwellSlipState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> MaxwellSlipTrial<S> {
+        let walk = state.spring.walk(&self.curve, motion.displacement);
+        let damping = self.parameters.viscous * channels.viscous_level;
+        let force = walk.end.force * channels.level + damping * motion.velocity;
+        let slope = walk.end.slope * channels.level * motion.duration + damping;
+        MaxwellSlipTrial { walk, outcome: Outcome { force, slope, damping } }
+    }
+}
+
+impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
+    type State = MaxwellSlipState<S>;
+    type Trial = MaxwellSlipTrial<S>;
+
+    const PARAMETERS: &'static [ParameterSpec] = MaxwellSlipParameters::<f64>::SPECS;
+    const OPTIONS: &'static [OptionSpec] = &[];
+    const SUMMARY: &'static str =
+        "elasto-slide elements in parallel: hysteresis with memory that goes over into sliding";
+    const SOURCE: &'static str =
+        "Iwan (1966); Lampaert, Al-Bender, Swevers (2003); yield distribution ours";
+
+    fn build(values: &[S], _choices: &[usize]) -> Self {
+        let p = MaxwellSlipParameters::from_values(values);
+        let curve = YieldCurve {
+            coulomb: p.coulomb,
+            stiffness: p.initial_stiffness,
+            shape: p.yield_shape,
+            inverse_distance: p.initial_stiffness / p.coulomb,
+        };
+        Self { parameters: p, curve }
+    }
+
+    fn check(_values: &[f64]) -> Result<()> {
+        Ok(())
+    }
+
+    fn initial(&self) -> MaxwellSlipState<S> {
+        MaxwellSlipState {
+            spring: SpringState::relaxed(&self.curve),
+            statistics: Statistics::default(),
+        }
+    }
+
+    fn restore(&self, entries: &[(String, Entry)]) -> Result<MaxwellSlipState<S>> {
+        let mut read = EntryReader::new(entries);
+        let mut state = self.initial();
+        state.spring.restore(&mut read)?;
+        state.statistics = Statistics {
+            reversals: read.count("reversals")?,
+            closings: read.count("closings")?,
+            memory_peak: read.count("memory_peak")?,
+            ..Statistics::default()
+        };
+        read.finish()?;
+        Ok(state)
+    }
+
+    fn greatest_stiffness(&self) -> f64 {
+        self.parameters.initial_stiffness.re()
+    }
+
+    fn greatest_damping(&self) -> f64 {
+        self.parameters.viscous.re()
+    }
+
+    #[inline]
+    fn force(&self, state: &MaxwellSlipState<S>, velocity: S, channels: &Channels<S>) -> S {
+        state.spring.force * channels.level
+            + self.parameters.viscous * channels.viscous_level * velocity
+    }
+
+    #[inline]
+    fn advance(
+        &self,
+        state: &MaxwellSlipState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> MaxwellSlipTrial<S> {
+        self.moved(state, motion, channels)
+    }
+
+    #[inline]
+    fn outcome(&self, trial: &MaxwellSlipTrial<S>) -> Outcome<S> {
+        trial.outcome
+    }
+
+    #[inline]
+    fn commit(&self, state: &mut MaxwellSlipState<S>, trial: &MaxwellSlipTrial<S>) {
+        state.spring.accept(&trial.walk);
+        state.spring.count(&trial.walk, &mut state.statistics);
+    }
+
+    #[inline]
+    fn pending(&self, _state: &MaxwellSlipState<S>, _velocity: S) -> Option<Event> {
+        None
+    }
+
+    #[inline]
+    fn event(
+        &self,
+        _state: &MaxwellSlipState<S>,
+        _trial: &MaxwellSlipTrial<S>,
+        _motion: &Motion<S>,
+    ) -> Option<Event> {
+        None
+    }
+
+    fn margin(
+        &self,
+        _state: &MaxwellSlipState<S>,
+        _trial: &MaxwellSlipTrial<S>,
+        _motion: &Motion<S>,
+        _event: Event,
+    ) -> S {
+        S::constant(1.0)
+    }
+
+    fn switch(&self, _state: &mut MaxwellSlipState<S>, _event: Event) {}
+
+    fn internal(&self, _state: &MaxwellSlipState<S>) -> [S; INTERNAL] {
+        [S::constant(0.0); INTERNAL]
+    }
+
+    fn rates(
+        &self,
+        state: &MaxwellSlipState<S>,
+        motion: &Motion<S>,
+        _internal: &[S; INTERNAL],
+        channels: &Channels<S>,
+    ) -> (S, [S; INTERNAL]) {
+        let trial = self.moved(state, motion, channels);
+        (trial.outcome.force, [S::constant(0.0); INTERNAL])
+    }
+
+    fn settle(
+        &self,
+        state: &MaxwellSlipState<S>,
+        motion: &Motion<S>,
+        _internal: &[S; INTERNAL],
+        channels: &Channels<S>,
+    ) -> MaxwellSlipTrial<S> {
+        self.moved(state, motion, channels)
+    }
+}
