@@ -127,8 +127,11 @@ def test_derivatives_across_break_away_and_stick_equal_differences(kind):
     # Where F_c and F_s are equal neither can pass the other.
     equal = machine.parameters["friction.coulomb"] == machine.parameters["friction.breakaway"]
     skip = ("friction.coulomb", "friction.breakaway") if equal else ()
-    # A slide goes far, and its positions have fewer digits to spare: a wider difference.
-    shares, left_out = worst(machine, current, relative=4.0 * STEP, skip=skip)
+    # A slide goes far: at the narrow width round-off shows, at the wide one the curvature. The
+    # derivative must agree with one of them.
+    narrow, left_out = worst(machine, current, skip=skip)
+    wide, _ = worst(machine, current, relative=4.0 * STEP, skip=skip)
+    shares = {path: min(share, wide.get(path, share)) for path, share in narrow.items()}
     assert machine.copy().simulate(current, DT).statistics["breakaways"] >= 1
     assert len(shares) > 9, left_out
     assert max(shares.values()) < SAME_BRANCHES, shares
