@@ -8,9 +8,9 @@ use std::path::Path;
 
 use common::{Stream, drawn, motor, positions, run};
 use stiction_core::effects::{EFFECTS, neutral_values};
-use stiction_core::friction::{Channels, LAWS};
+use stiction_core::friction::{Channels, LAWS, Statistics};
 use stiction_core::model::{FrictionModel, LawSpec};
-use stiction_core::motor::{Column, EffectSpec, Motor, MotorSpec, PerSample};
+use stiction_core::motor::{EffectSpec, Motor, MotorSpec, PerSample};
 use stiction_core::sensitivity::sensitivity;
 
 fn files(folder: &str) -> BTreeSet<String> {
@@ -181,16 +181,19 @@ fn active_effects_change_the_motion() {
     }
 }
 
-fn end_state(
-    spec: &MotorSpec,
-    inputs: &[f64],
-    dt: f64,
-) -> (f64, f64, stiction_core::friction::Statistics) {
+/// Final position and the branches taken by the end of every sample: a reversal that moves into
+/// the neighbouring step leaves the final counts as they were.
+fn end_state(spec: &MotorSpec, inputs: &[f64], dt: f64) -> (f64, Vec<Statistics>) {
     let mut motor = Motor::new(spec.clone()).unwrap();
-    let (mut x, mut v) = (vec![0.0; inputs.len()], vec![0.0; inputs.len()]);
-    let columns = &mut [(Column::Position, x.as_mut_slice()), (Column::Velocity, v.as_mut_slice())];
-    motor.simulate(inputs, PerSample::Same(0.0), PerSample::Same(dt), columns).unwrap();
-    (x[inputs.len() - 1], v[inputs.len() - 1], motor.statistics())
+    let mut position = 0.0;
+    let branches = inputs
+        .iter()
+        .map(|input| {
+            position = motor.step(*input, 0.0, dt).unwrap().0;
+            motor.statistics()
+        })
+        .collect();
+    (position, branches)
 }
 
 #[test]
@@ -239,10 +242,10 @@ fn gradients_equal_central_differences_on_the_same_branches() {
                 let chord = |size: f64| {
                     let up = end_state(&perturbed(size), &inputs, dt);
                     let down = end_state(&perturbed(-size), &inputs, dt);
-                    (up.2 == down.2).then_some((up.0 - down.0) / (2.0 * size))
+                    (up.1 == down.1).then_some((up.0 - down.0) / (2.0 * size))
                 };
                 let scale = value.abs().max(1e-3);
-                let (Some(wide), Some(narrow)) = (chord(2e-5 * scale), chord(1e-5 * scale)) else {
+                let (Some(wide), Some(narrow)) = (chord(2e-4 * scale), chord(1e-4 * scale)) else {
                     continue;
                 };
                 let position = end_state(&spec, &inputs, dt).0.abs();
@@ -251,7 +254,7 @@ fn gradients_equal_central_differences_on_the_same_branches() {
                 let chord = narrow + (narrow - wide) / 3.0;
                 let noise = (wide - narrow).abs();
                 // A difference of positions of this size has no more digits than that.
-                let digits = 16.0 * f64::EPSILON * position / (1e-5 * scale);
+                let digits = 16.0 * f64::EPSILON * position / (1e-4 * scale);
                 if noise > 1e-5 * chord.abs() || digits > 1e-5 * chord.abs() {
                     continue;
                 }

@@ -192,8 +192,11 @@ macro_rules! effects {
 
 effects! {
     cogging => Cogging,
+    direction_asymmetry => DirectionAsymmetry,
+    position_dependent_friction => PositionDependentFriction,
     stribeck => Stribeck,
     torque_bias => TorqueBias,
+    viscous_quadratic => ViscousQuadratic,
 }
 
 /// The record of the effect called `name`.

@@ -1,0 +1,51 @@
+//! Friction that varies with position.
+
+use super::{Effect, EffectFacts, Hook, LevelChange, Situation};
+use crate::parameter::ParameterSpec;
+use crate::parameters;
+use crate::scalar::Scalar;
+
+parameters! {
+    /// Parameters of [`PositionDependentFriction`].
+    pub struct PositionDependentFrictionParameters {
+        cosine: One, "amplitude of the cosine part, as a share of friction",
+            default Value(0.0), neutral Some(0.0), typical 0.1, bounds -0.6, 0.6;
+        sine: One, "amplitude of the sine part, as a share of friction",
+            default Value(0.0), neutral Some(0.0), typical 0.1, bounds -0.6, 0.6;
+        order: Order, "periods per 2π rad (rotary) or per 2π m (linear), N",
+            default Value(1.0), neutral None, typical 1.0, bounds 1e-6, 1e9;
+    }
+}
+
+/// Level 1 + a·cos(N·x) + b·sin(N·x): a bent shaft, a screw that runs tight once a turn.
+///
+/// Neutral: a = b = 0. The bounds keep the level above 0 whatever the position.
+/// Source: Popović, Goldenberg, Proc. IEEE ICRA (1998).
+#[derive(Debug, Clone)]
+pub struct PositionDependentFriction<S>(PositionDependentFrictionParameters<S>);
+
+impl<S: Scalar> Effect<S> for PositionDependentFriction<S> {
+    const PARAMETERS: &'static [ParameterSpec] = PositionDependentFrictionParameters::<f64>::SPECS;
+    const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
+    const FACTS: EffectFacts = EffectFacts {
+        summary: "friction that repeats with position",
+        class: "angle",
+        coordinate: "position, odd in direction",
+        channels: &[],
+        look_alikes: &["torque_constant_ripple"],
+        experiment: "sine of high acceleration: the input varies at the same position",
+        gains: &["cosine", "sine"],
+    };
+
+    fn build(values: &[S]) -> Self {
+        Self(PositionDependentFrictionParameters::from_values(values))
+    }
+
+    #[inline]
+    fn level(&self, at: &Situation<S>) -> LevelChange<S> {
+        let p = &self.0;
+        let angle = p.order * at.position;
+        let friction = p.cosine * angle.cos() + p.sine * angle.sin();
+        LevelChange { friction, viscous: S::constant(0.0) }
+    }
+}
