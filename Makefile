@@ -30,7 +30,7 @@ toolchain:
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { \
 		echo "$(PYTHON) lacks venv; on Debian: apt-get install python3-venv" >&2; exit 1; }
 	@command -v cargo >/dev/null 2>&1 && command -v rustc >/dev/null 2>&1 || { \
-		echo "Rust $(RUST_NEEDED) or newer is missing; install it from https://rustup.rs" >&2; exit 1; }
+		echo "Rust $(RUST_NEEDED) or newer is missing; run: curl --proto '=https' -sSf https://sh.rustup.rs | sh" >&2; exit 1; }
 	@have=$$(rustc --version | cut -d' ' -f2); \
 	least=$$(printf '%s\n%s\n' "$(RUST_NEEDED)" "$$have" | sort -V | head -n 1); \
 	[ "$$least" = "$(RUST_NEEDED)" ] || { \

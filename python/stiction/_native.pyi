@@ -97,6 +97,15 @@ class Motor:
         *,
         load: npt.ArrayLike | None = None,
     ) -> tuple[_Floats, _Floats, _Floats]: ...
+    def follow_sensitivity(
+        self,
+        position: npt.ArrayLike,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        parameters: Sequence[str],
+        *,
+        load: npt.ArrayLike | None = None,
+    ) -> tuple[_Floats, _Floats]: ...
     def sensitivity(
         self,
         current: npt.ArrayLike,

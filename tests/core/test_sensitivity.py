@@ -240,3 +240,42 @@ def test_derivative_by_breakaway_equals_the_chord_averaged_over_the_break_away_s
     assert np.mean(slopes) == pytest.approx(np.mean(chords), rel=ACROSS_BREAKAWAY)
     # Not by chance: no single value is far off either.
     assert np.abs(np.array(slopes) / np.mean(chords) - 1.0).max() < 5.0 * ACROSS_BREAKAWAY
+
+
+@pytest.mark.parametrize("kind", CONTACTS)
+def test_efforts_along_a_motion_are_differentiated_by_every_parameter(kind):
+    machine = motor(kind, effects=EFFECTS, gravity_amplitude=0.05, gravity_zero=0.1)
+    time = np.arange(601) * 1e-3
+    path = 0.02 * np.sin(9.0 * time) + 1e-3 * np.sin(41.0 * time)
+    current = np.cos(7.0 * time[:-1])
+    # Along a given motion the inertia has no part.
+    paths = [
+        p for p, v in machine.parameters.items() if np.isfinite(v) and v and p != "body.inertia"
+    ]
+    needed, driven = machine.follow_sensitivity(path, current, 1e-3, paths)
+    assert needed.shape == driven.shape == (len(paths), 600)
+
+    def along(value, name):
+        other = changed(machine, name, value)
+        drive, ambient, friction = other.follow(path, current, 1e-3)
+        return np.array([friction - ambient, drive])
+
+    compared = 0
+    for k, name in enumerate(paths):
+        value = machine.parameters[name]
+        step = 1e-5 * abs(value)
+        try:
+            near, wide = (
+                (along(value + w * step, name) - along(value - w * step, name)) / (2.0 * w * step)
+                for w in (1.0, 2.0)
+            )
+        except st.InputError:
+            continue
+        exact = np.array([needed[k], driven[k]])
+        scale = np.abs(exact).max()
+        # Samples in which a mode changes at another share of the sample have no difference.
+        smooth = np.abs(near - wide) <= 1e-6 * scale
+        assert np.mean(smooth) > 0.9, name
+        assert np.abs(exact - near)[smooth].max() <= 1e-5 * max(scale, 1e-9), name
+        compared += 1
+    assert compared > 5

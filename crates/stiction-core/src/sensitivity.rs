@@ -1,4 +1,4 @@
-//! Exact derivatives of a trajectory by parameters: the same simulation over dual numbers.
+//! Exact derivatives by parameters: the same simulation over dual numbers.
 
 use crate::error::{Error, Result};
 use crate::friction::AnyState;
@@ -15,15 +15,17 @@ pub struct Sensitivity {
     pub velocity: Vec<Vec<f64>>,
 }
 
-/// Simulates from a given state and differentiates by the parameters at these paths.
-pub fn sensitivity(
+/// Body and friction state from which a differentiated run starts; it depends on no parameter.
+pub type Start<'a> = (&'a Run<f64>, &'a AnyState<f64>);
+
+/// Runs `visit` once for every [`COLUMNS`] of the parameters at these paths, with the motor whose
+/// parameters are seeded, the index of the first of them and their number.
+fn passes(
     spec: &MotorSpec,
-    start: (&Run<f64>, &AnyState<f64>),
-    inputs: &[f64],
-    load: PerSample<'_>,
-    dt: PerSample<'_>,
+    start: Start<'_>,
     paths: &[String],
-) -> Result<Sensitivity> {
+    mut visit: impl FnMut(&mut Running<Dual>, usize, usize) -> Result<()>,
+) -> Result<()> {
     let parameters = spec.parameters();
     let wanted = paths
         .iter()
@@ -33,8 +35,6 @@ pub fn sensitivity(
             })
         })
         .collect::<Result<Vec<usize>>>()?;
-    let columns = || vec![vec![0.0; inputs.len()]; paths.len()];
-    let mut result = Sensitivity { position: columns(), velocity: columns() };
     for (pass, seeded) in wanted.chunks(COLUMNS).enumerate() {
         let values: Vec<Dual> = parameters
             .iter()
@@ -48,13 +48,64 @@ pub fn sensitivity(
         running.state = start.1.lift();
         running.run = start.0.lift();
         running.machine.refresh(&mut running.run);
-        running.simulate(inputs, load, dt, |k, run, _, _| {
-            for column in 0..seeded.len() {
-                let target = pass * COLUMNS + column;
-                result.position[target][k] = Scalar::partial(run.position, column);
-                result.velocity[target][k] = Scalar::partial(run.velocity, column);
-            }
-        })?;
+        visit(&mut running, pass * COLUMNS, seeded.len())?;
     }
+    Ok(())
+}
+
+/// Simulates from a given state and differentiates by the parameters at these paths.
+pub fn sensitivity(
+    spec: &MotorSpec,
+    start: Start<'_>,
+    inputs: &[f64],
+    load: PerSample<'_>,
+    dt: PerSample<'_>,
+    paths: &[String],
+) -> Result<Sensitivity> {
+    let columns = || vec![vec![0.0; inputs.len()]; paths.len()];
+    let mut result = Sensitivity { position: columns(), velocity: columns() };
+    passes(spec, start, paths, |running, first, number| {
+        running.simulate(inputs, load, dt, |k, run, _, _| {
+            for column in 0..number {
+                result.position[first + column][k] = Scalar::partial(run.position, column);
+                result.velocity[first + column][k] = Scalar::partial(run.velocity, column);
+            }
+        })
+    })?;
+    Ok(result)
+}
+
+/// Derivatives of the efforts along given positions.
+#[derive(Debug, Clone)]
+pub struct EffortSensitivity {
+    /// ∂(friction − gravity and added efforts)/∂parameter, one vector of samples for each.
+    pub needed: Vec<Vec<f64>>,
+    /// ∂(effort of the drive)/∂parameter, likewise.
+    pub driven: Vec<Vec<f64>>,
+}
+
+/// Follows given positions and differentiates the efforts by the parameters at these paths: all of
+/// an effort residual but its inertia term.
+pub fn follow_sensitivity(
+    spec: &MotorSpec,
+    start: Start<'_>,
+    positions: &[f64],
+    inputs: PerSample<'_>,
+    load: PerSample<'_>,
+    dt: PerSample<'_>,
+    paths: &[String],
+) -> Result<EffortSensitivity> {
+    let columns = || vec![vec![0.0; positions.len().saturating_sub(1)]; paths.len()];
+    let mut result = EffortSensitivity { needed: columns(), driven: columns() };
+    passes(spec, start, paths, |running, first, number| {
+        running.follow(positions, inputs, load, dt, |k, efforts| {
+            let needed = efforts.friction - efforts.ambient;
+            for column in 0..number {
+                result.needed[first + column][k] = Scalar::partial(needed, column);
+                result.driven[first + column][k] = Scalar::partial(efforts.driven, column);
+            }
+        });
+        Ok(())
+    })?;
     Ok(result)
 }

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stiction_core::integrate::Integrator;
 use stiction_core::motor::{Column, EffectSpec, Motor as Core, MotorSpec};
-use stiction_core::sensitivity::sensitivity;
+use stiction_core::sensitivity::{follow_sensitivity, sensitivity};
 
 use crate::arrays::{Each, one_row, target};
 use crate::error::{IntoPython, duration, finite, input_error};
@@ -202,6 +202,46 @@ impl Motor {
         }
         let [driven, ambient, friction] = efforts.map(|values| PyArray1::from_vec(py, values));
         Ok((driven, ambient, friction))
+    }
+
+    /// Exact derivatives by parameters along given positions (shape (n + 1,)): of friction less
+    /// gravity and added efforts, and of the effort of the drive; each of shape (parameters, n).
+    /// The motor is left as it was.
+    #[pyo3(signature = (position, current, dt, parameters, *, load=None))]
+    #[allow(clippy::type_complexity)]
+    fn follow_sensitivity<'py>(
+        &self,
+        py: Python<'py>,
+        position: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        parameters: Vec<String>,
+        load: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Bound<'py, numpy::PyArray2<f64>>, Bound<'py, numpy::PyArray2<f64>>)> {
+        let position = one_row("position", position)?;
+        let n = position.len() - 1;
+        if n == 0 {
+            return Err(input_error(py, "position has 1 value; give at least two"));
+        }
+        let current = Each::read("current", Some(current), 0.0, &[n])?;
+        let dt = Each::steps("dt", dt, &[n])?;
+        let load = Each::read("load", load, 0.0, &[n])?;
+        let position = position.as_slice()?;
+        let (current, dt, load) = (current.per_sample()?, dt.per_sample()?, load.per_sample()?);
+        let rows = py.detach(|| {
+            let core = self.lock().clone();
+            let running = core.running();
+            let start = (&running.run, &running.state);
+            follow_sensitivity(core.spec(), start, position, current, load, dt, &parameters)
+        });
+        let rows = rows.or_input_error(py)?;
+        let array = |rows: &[Vec<f64>]| {
+            if rows.is_empty() {
+                return Ok(numpy::PyArray2::zeros(py, [0, n], false));
+            }
+            numpy::PyArray2::from_vec2(py, rows)
+        };
+        Ok((array(&rows.needed)?, array(&rows.driven)?))
     }
 
     /// Exact derivatives of position and velocity by parameters, from the present state.

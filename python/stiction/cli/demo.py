@@ -39,6 +39,6 @@ def demo(
     closing = (
         f"Pulled at {slow.speed:g} rad/s the rotor sticks and slips ({slow.breakaways} "
         f"break-aways); pulled at {smooth.speed:g} rad/s it slides smoothly after "
-        f"{smooth.breakaways}.\nFigures and numbers.json are in {out}."
+        f"{smooth.breakaways} break-away.\nFigures and numbers.json are in {out}."
     )
     answer(f"{render_text(sections)}\n\n{closing}", render_json(sections), as_json=json)
