@@ -137,7 +137,7 @@ class Recording:
         start_s: float = 0.0,
         keep_faulty: bool = False,
     ) -> Recording:
-        """Read a recording from a CSV, MAT, NPZ or JSON file.
+        """Read a recording from a CSV, MAT, NPZ, JSON or Parquet file.
 
         Parameters
         ----------

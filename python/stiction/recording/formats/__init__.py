@@ -11,7 +11,7 @@ from pathlib import Path
 from ...errors import InputError
 from ...wording import nearest
 from ..table import Table
-from . import delimited, json_records, mat, npz
+from . import delimited, json_records, mat, npz, parquet
 from .format import Format
 
 __all__ = ["FORMATS", "Format", "read_table"]
@@ -21,6 +21,7 @@ FORMATS: tuple[Format, ...] = (
     mat.FORMAT,
     npz.FORMAT,
     json_records.FORMAT,
+    parquet.FORMAT,
 )
 
 

@@ -1,0 +1,330 @@
+"""Which rows of a session train, select and test.
+
+The split only marks rows: the friction state runs through the whole of every recording, whoever
+fits or judges.  It is made before anything is fitted, and the same session always gives the same.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from ..errors import InputError
+from ..wording import counted, listed
+from .blocks import Part, blocks, check_lengths_of
+from .recording import SPLIT_ROLES, Recording
+
+BLOCK_S: Final = 2.0
+"""Length of interleaved blocks: several times what friction remembers, short enough to alternate
+with drifts."""
+
+EDGE_S: Final = 0.05
+"""Dropped on either side of an edge between blocks: the width of the kernel."""
+
+
+@dataclass(frozen=True)
+class Fold:
+    """One way to leave rows of train out: ``fit`` on these, judge on ``held``."""
+
+    fit: tuple[Part, ...]
+    held: tuple[Part, ...]
+
+
+@dataclass(frozen=True)
+class Split:
+    """Rows by what they are for.
+
+    Attributes
+    ----------
+    train, select, test : tuple of Part
+        Parameters are fitted on ``train``; ``select`` decides which effects; ``test`` is opened
+        once, after the last decision.
+    folds : tuple of Fold
+        Where there is no ``select``: what is left out of train in turn to decide.
+    rules : tuple of str
+        What was decided, in sentences.
+    names : tuple of str
+        Of the recordings, for words.
+    spans : tuple of ndarray, shape (rows,)
+        Time of each recording's rows from its first, s.
+    """
+
+    train: tuple[Part, ...]
+    select: tuple[Part, ...]
+    test: tuple[Part, ...]
+    folds: tuple[Fold, ...]
+    rules: tuple[str, ...]
+    names: tuple[str, ...]
+    _times: tuple[Any, ...]
+
+    def describe(self) -> str:
+        """The split in plain words, one line a role."""
+        lines = [*self.rules]
+        for role in SPLIT_ROLES:
+            parts = getattr(self, role)
+            lines.append(f"{role}: {self._words(parts)}" if parts else self._without(role))
+        return "\n".join(lines)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The split as ``data.split`` of findings.json.
+
+        Returns
+        -------
+        dict
+            ``rules`` (sentences), ``train``, ``select``, ``test`` (lists of ``{recording, name,
+            rows: [start, stop], seconds: [from, to]}``; recordings counted from 0, ``stop``
+            behind the last row, seconds since the recording's first row) and ``folds`` (lists of
+            ``{fit, held}``, each such a list).
+        """
+        return {
+            "rules": list(self.rules),
+            **{role: self._entries(getattr(self, role)) for role in SPLIT_ROLES},
+            "folds": [
+                {"fit": self._entries(fold.fit), "held": self._entries(fold.held)}
+                for fold in self.folds
+            ],
+        }
+
+    def __repr__(self) -> str:
+        return self.describe()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Split):
+            return NotImplemented
+        return self.to_dict() == other.to_dict()
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _seconds(self, part: Part) -> tuple[float, float]:
+        time = self._times[part.recording]
+        return float(time[part.start] - time[0]), float(time[part.stop - 1] - time[0])
+
+    def _entries(self, parts: Sequence[Part]) -> list[dict[str, Any]]:
+        return [
+            {
+                "recording": part.recording,
+                "name": self.names[part.recording],
+                "rows": [part.start, part.stop],
+                "seconds": list(self._seconds(part)),
+            }
+            for part in parts
+        ]
+
+    def _words(self, parts: Sequence[Part]) -> str:
+        lengths = [high - low for low, high in map(self._seconds, parts)]
+        pieces = Counter(part.recording for part in parts)
+        whole = {
+            part.recording
+            for part in parts
+            if part.stop - part.start == len(self._times[part.recording])
+        }
+        words = [
+            self.names[index]
+            if index in whole
+            else f"{counted(pieces[index], 'block')} of {self.names[index]}"
+            for index in pieces
+        ]
+        return f"{listed(words)} ({sum(lengths):.4g} s)"
+
+    def _without(self, role: str) -> str:
+        if role == "select" and self.folds:
+            return f"select: {counted(len(self.folds), 'fold')} over train"
+        return f"{role}: nothing"
+
+
+def split(
+    recordings: Sequence[Recording], *, block_s: float = BLOCK_S, edge_s: float = EDGE_S
+) -> Split:
+    """Deal the recordings of a session, or blocks of them, to train, select and test.
+
+    Roles that are stated stay.  Where others have a role, a recording without one trains.
+    Without a ``test`` the last recording of the commonest kind is split off from train, or every
+    third block where every kind occurs once.  Without a ``select`` the recordings of train are
+    left out in turn; of a kind that occurs once, interleaved blocks are.  Without any role the
+    recordings of each kind are dealt train, select, test in turn, and a single recording is cut
+    into blocks that are dealt so.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording, or Session
+    block_s : float
+        Length of interleaved blocks, s; they come out a little longer, for no rest is left.
+    edge_s : float
+        Dropped on either side of an edge between two blocks, s: the width of the kernel.
+
+    Returns
+    -------
+    Split
+
+    Raises
+    ------
+    InputError
+        Nothing to train on, the same recording in two roles, or a recording shorter than three
+        blocks that had to be cut into blocks.
+    """
+    return _Dealer(tuple(recordings), block_s, edge_s).deal()
+
+
+class _Dealer:
+    """One call of `split`: who has which parts so far, and what was decided."""
+
+    def __init__(
+        self, recordings: tuple[Recording, ...], block_s: float, edge_s: float
+    ) -> None:
+        if not recordings:
+            raise InputError("session: there are no recordings to split; give at least one")
+        check_lengths_of(block_s, edge_s)
+        self.recordings = recordings
+        self.block_s = block_s
+        self.edge_s = edge_s
+        self.names = tuple(
+            recording.path.name if recording.path is not None else f"recording {index}"
+            for index, recording in enumerate(recordings, 1)
+        )
+        self.roles: list[str | None] = [recording.role for recording in recordings]
+        self.parts: dict[str, list[Part]] = {role: [] for role in SPLIT_ROLES}
+        self.folds: list[Fold] = []
+        self.rules: list[str] = []
+
+    def deal(self) -> Split:
+        if self.roles == [None]:
+            self._deal_blocks()
+        else:
+            if not any(self.roles):
+                self._deal_kinds()
+            self._deal_stated()
+            self._refuse_copies()
+            if not self.parts["test"]:
+                self._split_off()
+            if not self.parts["select"]:
+                self._fold()
+        return Split(
+            *(tuple(self.parts[role]) for role in SPLIT_ROLES),
+            folds=tuple(self.folds),
+            rules=tuple(self.rules),
+            names=self.names,
+            _times=tuple(recording.time for recording in self.recordings),
+        )
+
+    def _deal_blocks(self) -> None:
+        for turn, part in enumerate(self._blocks(0)):
+            self.parts[SPLIT_ROLES[turn % 3]].append(part)
+        self.rules.append(
+            f"The single recording is cut into blocks of about {self.block_s:g} s, dealt train, "
+            f"select, test in turn; {self.edge_s:g} s on either side of each edge are dropped."
+        )
+
+    def _deal_kinds(self) -> None:
+        seen: Counter[str] = Counter()
+        for index, recording in enumerate(self.recordings):
+            self.roles[index] = SPLIT_ROLES[seen[recording.kind] % 3]
+            seen[recording.kind] += 1
+        self.rules.append(
+            "No recording has a role: those of each kind are dealt train, select, test in turn."
+        )
+
+    def _deal_stated(self) -> None:
+        without = [index for index, role in enumerate(self.roles) if role is None]
+        if without:
+            self.rules.append(
+                f"Without a role beside others that have one, these train: {self._listed(without)}."
+            )
+        for index, recording in enumerate(self.recordings):
+            role = self.roles[index] = self.roles[index] or "train"
+            self.parts[role].append(Part(index, 0, len(recording)))
+        if not self.parts["train"]:
+            held = [role for role in SPLIT_ROLES if self.parts[role]]
+            given = "every recording has the role 'test'" if held == ["test"] else (
+                f"the recordings have the roles {' and '.join(held)}, and none has 'train'"
+            )  # fmt: skip
+            raise InputError(
+                f"session: {given}, so there is nothing to fit on; give at least one recording "
+                'role = "train", or none a role'
+            )
+
+    def _refuse_copies(self) -> None:
+        """The same data may not be fitted and judged on, not even in a fold."""
+        first: dict[str, int] = {}
+        for index, recording in enumerate(self.recordings):
+            at = first.setdefault(recording.hash, index)
+            one, two = self.roles[at], self.roles[index]
+            shared = one == two and (one != "train" or bool(self.parts["select"]))
+            if at != index and not shared:
+                where = f"as {one} and as {two}" if one != two else "in train"
+                raise InputError(
+                    f"session: {self.names[at]} and {self.names[index]} are the same recording "
+                    f"twice, {where}; held-out data must not be fitted on, drop one of the two"
+                )
+
+    def _split_off(self) -> None:
+        kinds = self._kinds_of_train()
+        kind, number = max(kinds.items(), key=lambda item: item[1])
+        if number > 1:
+            chosen = [p for p in self.parts["train"] if self.recordings[p.recording].kind == kind]
+            self.parts["train"].remove(chosen[-1])
+            self.parts["test"].append(chosen[-1])
+            self.rules.append(
+                f"No recording has the role test: {self.names[chosen[-1].recording]}, the last of "
+                "the commonest kind in train, is split off before anything is fitted."
+            )
+            return
+        trained, self.parts["train"] = self.parts["train"], []
+        for part in trained:
+            for turn, block in enumerate(self._blocks(part.recording)):
+                self.parts["test" if turn % 3 == 2 else "train"].append(block)
+        self.rules.append(
+            "No recording has the role test and every kind occurs once in train: every third "
+            f"block of about {self.block_s:g} s is split off before anything is fitted; "
+            f"{self.edge_s:g} s on either side of each edge are dropped."
+        )
+
+    def _fold(self) -> None:
+        kinds = self._kinds_of_train()
+        train = tuple(self.parts["train"])
+        single = [i for i in self._trained() if kinds[self.recordings[i].kind] == 1]
+        many = [i for i in self._trained() if i not in single]
+        for index in many:
+            held = tuple(part for part in train if part.recording == index)
+            fit = tuple(part for part in train if part.recording != index)
+            self.folds.append(Fold(fit, held))
+        cut = {index: self._turns(index, train) for index in single}
+        others = tuple(part for part in train if part.recording in many)
+        for turn in range(max((len(turns) for turns in cut.values()), default=0)):
+            held = tuple(part for turns in cut.values() for part in turns[turn])
+            fit = others + tuple(
+                part
+                for turns in cut.values()
+                for other, parts in enumerate(turns)
+                if other != turn
+                for part in parts
+            )
+            self.folds.append(Fold(tuple(sorted(fit)), held))
+        words = ["the recordings of train are left out in turn"] if many else []
+        if single:
+            words.append(f"interleaved blocks are left out in turn of {self._listed(single)}")
+        self.rules.append(f"No recording has the role select: to decide, {', and '.join(words)}.")
+
+    def _turns(self, index: int, train: Sequence[Part]) -> list[list[Part]]:
+        """The parts of a recording that occurs once, by the fold that holds them."""
+        own = [part for part in train if part.recording == index]
+        if len(own) > 1:  # cut already, of every three blocks the third to test
+            return [own[0::2], own[1::2]]
+        cut = self._blocks(index)
+        return [cut[0::3] + cut[2::3], cut[1::3]] if len(cut) < 2 else [cut[0::2], cut[1::2]]
+
+    def _blocks(self, index: int) -> list[Part]:
+        time = np.asarray(self.recordings[index].time)
+        return blocks(index, time, self.names[index], self.block_s, self.edge_s)
+
+    def _trained(self) -> list[int]:
+        return list(dict.fromkeys(part.recording for part in self.parts["train"]))
+
+    def _kinds_of_train(self) -> Counter[str]:
+        return Counter(self.recordings[index].kind for index in self._trained())
+
+    def _listed(self, indices: Sequence[int]) -> str:
+        return listed(self.names[index] for index in indices)
