@@ -60,7 +60,7 @@ pub enum Error {
     },
     /// A step that is far too long for the machine.
     #[error(
-        "dt = {given} s is too long for this machine; give at most {longest:.3} s, or check the \
+        "dt = {given} s is too long for this machine; give at most {longest:.2e} s, or check the \
          units of inertia and stiffness"
     )]
     TooLong {

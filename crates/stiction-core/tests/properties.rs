@@ -373,3 +373,35 @@ fn a_slide_that_is_pulled_above_break_away_gives_nothing_back() {
         assert!(least > -1e-9, "{viscous} {distance} {speed}: {least}");
     }
 }
+
+#[test]
+fn a_jump_of_velocity_breaks_a_series_damper_away_once_and_gives_nothing_back() {
+    let parameters = [("breakaway", 0.5), ("coulomb", 0.35), ("hardening_coefficient", 0.0)];
+    let spec = law("hsieh_pan", &parameters, &[("damper", "spring")]);
+    let mut model = FrictionModel::new(spec);
+    let channels = Channels::default();
+    model.step(1.2, 1e-9, &channels);
+    assert_eq!(model.statistics().breakaways, 1);
+    assert_eq!(entry(&model, "mode"), 1.0);
+    model.reset();
+    let dt = 1e-6;
+    let (mut work, mut before, mut ends) = (0.0, 0.0, Vec::new());
+    for _ in 0..20 {
+        let path = [
+            (0.004, 10_000, dt),
+            (0.8, 1, 1e-9),
+            (1.2, 1, 1e-9),
+            (0.0, 1, 1e-9),
+            (-0.004, 10_000, dt),
+        ];
+        for (velocity, steps, dt) in path {
+            for _ in 0..steps {
+                let force = model.step(velocity, dt, &channels);
+                work += 0.5 * (before + force) * velocity * dt;
+                before = force;
+            }
+        }
+        ends.push(work);
+    }
+    assert!(ends.windows(2).all(|pair| pair[1] >= pair[0] - 1e-9), "{ends:?}");
+}

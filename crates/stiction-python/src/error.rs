@@ -37,7 +37,7 @@ pub fn finite(py: Python<'_>, name: &str, value: f64) -> PyResult<f64> {
 }
 
 /// Beyond these, forces of allowed parameters leave the range of floats.
-const FASTEST: f64 = 1e6;
+pub const FASTEST: f64 = 1e6;
 const LONGEST: f64 = 1e6;
 
 /// Refuses a velocity that is not finite or faster than anything.

@@ -11,7 +11,7 @@ use stiction_core::friction::{Channels, Entry};
 use stiction_core::model::{FrictionModel as Core, LawSpec};
 
 use crate::arrays::{Each, samples};
-use crate::error::{IntoPython, duration, finite, input_error, velocity};
+use crate::error::{FASTEST, IntoPython, duration, finite, input_error, velocity};
 use crate::state::{from_dict, keywords, to_dict};
 
 /// A friction law with its parameters and its state.
@@ -136,7 +136,7 @@ impl FrictionModel {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let dt = duration(py, "dt", dt)?;
         let velocity = samples("velocity", velocity)?;
-        if let Some(fastest) = velocity.as_slice()?.iter().find(|v| v.abs() > 1e6) {
+        if let Some(fastest) = velocity.as_slice()?.iter().find(|v| v.abs() > FASTEST) {
             self::velocity(py, *fastest)?;
         }
         let shape = velocity.shape().to_vec();

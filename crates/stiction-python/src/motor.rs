@@ -10,7 +10,7 @@ use stiction_core::motor::{Column, EffectSpec, Motor as Core, MotorSpec};
 use stiction_core::sensitivity::{follow_sensitivity, sensitivity};
 
 use crate::arrays::{Each, one_row, target};
-use crate::error::{IntoPython, duration, finite, input_error};
+use crate::error::{IntoPython, duration, finite, input_error, velocity};
 use crate::friction_model::FrictionModel;
 use crate::state::{from_dict, keywords, to_dict};
 
@@ -340,7 +340,7 @@ impl Motor {
     #[pyo3(signature = (position=0.0, velocity=0.0))]
     fn reset(&self, py: Python<'_>, position: f64, velocity: f64) -> PyResult<()> {
         let position = finite(py, "position", position)?;
-        let velocity = finite(py, "velocity", velocity)?;
+        let velocity = self::velocity(py, velocity)?;
         self.lock().reset(position, velocity);
         Ok(())
     }

@@ -604,6 +604,10 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
             state.mode = sign(state.series.re());
             // Latched: a level that went on following the loading rate would let it chatter.
             state.latched = state.breakaway;
+            if self.damper_on_spring {
+                // The damper lets go with the hook; its share must not turn into spring force.
+                state.series = state.spring.force;
+            }
             state.spring.place_on_virgin(&self.curve, state.series);
             state.statistics.breakaways += 1;
         } else {

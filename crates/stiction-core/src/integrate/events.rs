@@ -55,14 +55,13 @@ pub fn through_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
         };
         passed += 1;
         let (event, at) = earliest(stepper, law, state, event, left);
-        if at.re() > 0.0 {
-            let shortened = stepper.attempt(law, state, at);
-            stepper.accept(law, state, &shortened, event == Event::Reversal);
-            left -= at;
-            // What is left below round-off of the step still asks for the force after the event.
-            if left.re() <= f64::EPSILON * span.re() {
-                left = S::constant(0.0);
-            }
+        // Also where the event is due at once: a velocity that jumped has changed the force.
+        let shortened = stepper.attempt(law, state, at);
+        stepper.accept(law, state, &shortened, event == Event::Reversal && at.re() > 0.0);
+        left -= at;
+        // What is left below round-off of the step still asks for the force after the event.
+        if left.re() <= f64::EPSILON * span.re() {
+            left = S::constant(0.0);
         }
         law.switch(state, event);
     }
