@@ -17,11 +17,13 @@ from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     from .catalogue import effects, laws
+    from .fitting import FitResult, fit
     from .plant import Plant
     from .recording import Recording
     from .session import Session, load
 
 __all__ = [
+    "FitResult",
     "FrictionModel",
     "InputError",
     "Motor",
@@ -31,16 +33,19 @@ __all__ = [
     "Trajectory",
     "__version__",
     "effects",
+    "fit",
     "laws",
     "load",
 ]
 
 # Imported on first use, so that `import stiction` costs little more than numpy.
 _LAZY = {
+    "FitResult": "fitting",
     "Plant": "plant",
     "Recording": "recording",
     "Session": "session",
     "effects": "catalogue",
+    "fit": "fitting",
     "laws": "catalogue",
     "load": "session",
 }

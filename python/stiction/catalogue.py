@@ -16,7 +16,8 @@ class ParameterRecord:
     """One parameter: name, meaning, units (rotary and linear), default, bounds.
 
     ``default_rule`` says where the default follows another parameter; ``neutral`` is the value
-    at which the parameter does nothing, where there is one.
+    at which the parameter does nothing, where there is one. A fit leaves an ``optional`` parameter
+    alone unless a plant states it.
     """
 
     name: str
@@ -28,6 +29,7 @@ class ParameterRecord:
     neutral: float | None
     typical: float
     bounds: tuple[float, float]
+    optional: bool
 
 
 @dataclass(frozen=True)

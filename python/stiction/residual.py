@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .errors import InputError
-from .motion import SMOOTHING_SHARE, Kernel, count_of, evenly, held, noise_of, play, smooth
+from .motion import count_of
 from .trajectory import FloatArray, Trajectory
+from .weak_form import WeakForm
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,15 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["EffortResidual", "FreeRun", "effort_residual", "free_run"]
 
-SUPPORTS_S: Final = (0.030, 0.300)
-"""Narrowest and widest kernel that is chosen; 28 to 50 ms suit machines sampled at 1 kHz."""
-FEWEST_SAMPLES: Final = 8
-"""Fewer samples than this do not average anything."""
 STARTING_S: Final = 0.010
 """Stretch at the start of a recording that tells the starting velocity."""
-NOISE_SHARE: Final = 0.02
-"""The kernel is widened until the inertia term holds less position noise than this share of the
-effort: a coarse encoder needs more than 30 ms."""
 
 
 @dataclass(frozen=True)
@@ -160,49 +154,9 @@ def effort_residual(
     InputError
         No position, no input, or too short for the kernel.
     """
-    position, source = _needed(recording)
-    prescribed = plant.prescribed_motion or recording.input is None
-    driving = recording.effort if prescribed else recording.input
-    if driving is None:
-        raise InputError(f"{source}: there is no effort; prescribed motion needs an effort column")
-    time, dt = evenly(recording.time)
-    x = np.interp(time, recording.time, position)
-    u = held(time, recording.time, driving)
-    scale = 1.0 if prescribed else float(plant.drive.get("gain", 1.0))
-    if support is None:
-        level = abs(scale) * float(np.sqrt(np.mean(u**2)))
-        kernel = _quiet_kernel(dt, plant.inertia * noise_of(x), level)
-    else:
-        kernel = Kernel(support, dt)
-    if len(time) < 4 * kernel.half:
-        raise InputError(
-            f"{source}: {len(time)} samples are too few for a kernel of {kernel.support:.3g} s; "
-            "give a longer recording or a smaller support"
-        )
-    load = recording.channels.get("load")
-    pushed = np.zeros_like(x) if load is None else held(time, recording.time, load)
-
-    motor = plant.follower()
-    motor.reset(float(x[0]), 0.0)
-    driven_by = smooth(play(x, plant.count or count_of(x)), dt, SMOOTHING_SHARE * kernel.support)
-    inputs = np.zeros(len(x) - 1) if prescribed else u[:-1]
-    drive, ambient, friction = motor.follow(driven_by, inputs, dt, load=pushed[:-1])
-
-    # Stamps of `follow` are the sample ends 1 … n − 1. A measured effort belongs to its stamp; a
-    # held one is the mean of what held before and after, or the residual is half a sample late.
-    if prescribed:
-        measured = u[1:]
-    else:
-        after = np.append(drive[1:], drive[-1])
-        measured = 0.5 * (drive + after)
-    load_after = np.append(pushed[1:-1], pushed[-2])
-    measured = measured + 0.5 * (pushed[:-1] + load_after)
-    effort = kernel.mean(measured)
-    inertia = plant.inertia * kernel.second_derivative(x[1:])
-    model = inertia + kernel.mean(friction - ambient)
-    return EffortResidual(
-        time[1:][kernel.half : -kernel.half], effort, model, kernel.support, plant.effort_unit
-    )
+    form = WeakForm(plant, recording, support=support)
+    measured, model = form.efforts(plant)
+    return EffortResidual(form.time, measured, model, form.kernel.support, plant.effort_unit)
 
 
 def free_run(plant: Plant, recording: Recording) -> FreeRun:
@@ -244,16 +198,6 @@ def _starting_velocity(time: FloatArray, position: FloatArray, count: float) -> 
     if np.ptp(x) <= 2.0 * count:
         return 0.0
     return float(np.polynomial.Polynomial.fit(t, x, 2).deriv()(0.0))
-
-
-def _quiet_kernel(dt: float, noise: float, level: float) -> Kernel:
-    """The narrowest kernel that leaves little of the noise of J·x in the inertia term."""
-    support, widest = max(SUPPORTS_S[0], FEWEST_SAMPLES * dt), SUPPORTS_S[1]
-    while True:
-        kernel = Kernel(support, dt)
-        if support >= widest or noise * kernel.roughness <= NOISE_SHARE * level:
-            return kernel
-        support = min(1.25 * support, widest)
 
 
 def _needed(recording: Recording) -> tuple[FloatArray, str]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from html import escape
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +14,9 @@ from .parameter import number
 from .plant import Plant
 from .plant_file import choice, known, read_toml, section
 from .recording import Columns, Recording
-from .recording.units import Motion
+from .recording.split import BLOCK_S, EDGE_S, Split, name_of, split
+from .recording.units import FloatArray, Motion
+from .wording import counted, did_you_mean, listed
 
 __all__ = ["Session", "load", "load_recording"]
 
@@ -25,14 +29,84 @@ _ROLES = ("train", "select", "test")
 class Session:
     """Recordings of one machine.
 
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    plant : Plant, optional
+    replicates : mapping of int to int, optional
+        Index of a recording to the index of the one whose motion it repeats.
+
     Attributes
     ----------
     recordings : tuple of Recording
     plant : Plant or None
+    replicates : mapping of int to int
+    starts : tuple of float
+        When each recording starts on the session clock, s: its ``start_s``, or, where none is
+        stated, the end of the one before it.
+
+    Raises
+    ------
+    InputError
+        Recordings that overlap on the session clock, or a replicate of nothing or of itself.
     """
 
-    recordings: tuple[Recording, ...]
+    recordings: Sequence[Recording]
     plant: Plant | None = None
+    replicates: Mapping[int, int] = field(default_factory=dict)
+    starts: tuple[float, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "recordings", tuple(self.recordings))
+        object.__setattr__(self, "replicates", dict(self.replicates))
+        for index, of in self.replicates.items():
+            if index == of or not {index, of} <= set(range(len(self.recordings))):
+                raise InputError(
+                    f"session: replicates says that recording {index} repeats recording {of}; "
+                    f"give two different indices from 0 to {len(self.recordings) - 1}"
+                )
+        object.__setattr__(self, "starts", _starts(self.recordings))
+
+    @property
+    def clock_stated(self) -> bool:
+        """Whether any recording states ``start_s``; without it the pauses are unknown."""
+        return any(recording.start_s != 0.0 for recording in self.recordings)
+
+    @property
+    def hashes(self) -> tuple[str, ...]:
+        """SHA-256 of each recording's channels, in hexadecimal."""
+        return tuple(recording.hash for recording in self.recordings)
+
+    def clock(self, index: int) -> FloatArray:
+        """Time of every row of a recording on the session clock.
+
+        Parameters
+        ----------
+        index : int
+
+        Returns
+        -------
+        ndarray, shape (rows,)
+            s.
+        """
+        time = self.recordings[index].time
+        clock: FloatArray = time - time[0] + self.starts[index]
+        return clock
+
+    def split(self, *, block_s: float = BLOCK_S, edge_s: float = EDGE_S) -> Split:
+        """Which rows train, select and test; see ``stiction.recording.split.split``.
+
+        Parameters
+        ----------
+        block_s, edge_s : float
+            Length of interleaved blocks, and what they lose at an edge, s.
+
+        Raises
+        ------
+        InputError
+            As there.
+        """
+        return split(self.recordings, block_s=block_s, edge_s=edge_s)
 
     def __iter__(self) -> Iterator[Recording]:
         return iter(self.recordings)
@@ -41,10 +115,59 @@ class Session:
         return len(self.recordings)
 
     def __repr__(self) -> str:
-        return f"Session({len(self.recordings)} recordings, plant {self.plant!r})"
+        return f"Session({counted(len(self.recordings), 'recording')}, plant {self.plant!r})"
+
+    def _repr_html_(self) -> str:
+        head = "".join(f"<th>{escape(word)}</th>" for word in _HEAD)
+        body = "".join(
+            "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in self._row(index)) + "</tr>"
+            for index in range(len(self.recordings))
+        )
+        return (
+            f"<p><b>{escape(repr(self))}</b></p>"
+            f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        )
+
+    def _row(self, index: int) -> tuple[str, ...]:
+        recording = self.recordings[index]
+        of = self.replicates.get(index)
+        return (
+            name_of(recording, index),
+            recording.role or "",
+            recording.kind,
+            f"{self.starts[index]:.6g}",
+            f"{recording.duration:.6g}",
+            str(len(recording)),
+            "" if of is None else name_of(self.recordings[of], of),
+        )
 
 
-def load(path: str | Path, *, plant: Plant | None = None) -> Session:
+_HEAD = ("recording", "role", "kind", "starts at s", "lasts s", "rows", "replicate of")
+
+
+def _starts(recordings: Sequence[Recording]) -> tuple[float, ...]:
+    """Starts on the session clock: as stated, or one recording after the other."""
+    if not any(recording.start_s != 0.0 for recording in recordings):
+        starts, at = [], 0.0
+        for recording in recordings:
+            starts.append(at)
+            at += recording.duration + recording.dt
+        return tuple(starts)
+    stated = tuple(recording.start_s for recording in recordings)
+    order = sorted(range(len(recordings)), key=lambda index: stated[index])
+    for before, after in pairwise(order):
+        end = stated[before] + recordings[before].duration
+        if stated[after] < end:
+            raise InputError(
+                f"session: {name_of(recordings[after], after)} starts at "
+                f"{stated[after]:g} s, before {name_of(recordings[before], before)} ends at "
+                f"{end:.6g} s; one machine makes one recording at a time: state start_s of each, "
+                "on one clock, or of none"
+            )
+    return stated
+
+
+def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = False) -> Session:
     """Read a session file, its plant and its recordings.
 
     Parameters
@@ -53,11 +176,18 @@ def load(path: str | Path, *, plant: Plant | None = None) -> Session:
         ``session.toml``; the paths in it are relative to it.
     plant : Plant, optional
         Takes the place of the plant that the file names.
+    keep_faulty : bool
+        Load recordings with too many missing cells too; they say so in their ``faults``.
+
+    Returns
+    -------
+    Session
 
     Raises
     ------
     InputError
-        Missing or unparsable file, unknown keys, no recordings, one file twice, and all that
+        Missing or unparsable file, unknown keys, no recordings, one file twice, a replicate of a
+        file that is not listed, recordings that overlap on the session clock, and all that
         ``Plant.load`` and ``Recording.load`` refuse.
     """
     path = Path(path)
@@ -96,9 +226,41 @@ def load(path: str | Path, *, plant: Plant | None = None) -> Session:
         start = number(entry.get("start_s", 0.0), f"{where} start_s")
         own = {**columns, **section(entry, "columns", where)}
         recordings.append(
-            load_recording(file, plant, own, role=role, kind=kind, start_s=start, where=source)
+            load_recording(
+                file,
+                plant,
+                own,
+                role=role,
+                kind=kind,
+                start_s=start,
+                keep_faulty=keep_faulty,
+                where=source,
+            )
         )
-    return Session(tuple(recordings), plant)
+    return Session(tuple(recordings), plant, _replicates(path, entries, seen))
+
+
+def _replicates(path: Path, entries: list[dict[str, Any]], seen: dict[Path, int]) -> dict[int, int]:
+    """Index to index, from what ``replicate_of`` names; ``seen`` counts from 1."""
+    replicates = {}
+    for index, entry in enumerate(entries):
+        if "replicate_of" not in entry:
+            continue
+        named = entry["replicate_of"]
+        where = f"{path}: [[recordings]] {index + 1} replicate_of = {named!r}"
+        if not isinstance(named, str):
+            raise InputError(f'{where} is not a path; write replicate_of = "…"')
+        of = seen.get((path.parent / named).resolve())
+        files = [other["file"] for other in entries if other is not entry]
+        if of is None:
+            raise InputError(
+                f"{where} is none of the recordings{did_you_mean(named, files)}; name the file of "
+                f"another one: {listed(files)}"
+            )
+        if of == index + 1:
+            raise InputError(f"{where} is the recording itself; name another, or leave it out")
+        replicates[index] = of - 1
+    return replicates
 
 
 def load_recording(

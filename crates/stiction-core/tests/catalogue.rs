@@ -44,6 +44,9 @@ fn parameters_are_documented_and_their_defaults_are_allowed() {
     }
     for law in LAWS {
         assert!(LawSpec::new(law.name, &[], &[]).is_ok(), "{} lacks defaults", law.name);
+        for name in law.optional {
+            assert!(law.parameters.iter().any(|p| p.name == *name), "{}.{name}", law.name);
+        }
     }
     for effect in EFFECTS {
         assert!(EffectSpec::new(effect.name, &[]).is_ok(), "{} lacks defaults", effect.name);

@@ -6,7 +6,11 @@ use stiction_core::effects::EFFECTS;
 use stiction_core::friction::LAWS;
 use stiction_core::parameter::{Default, MotionKind, ParameterSpec};
 
-fn parameters<'py>(py: Python<'py>, specs: &[ParameterSpec]) -> PyResult<Bound<'py, PyList>> {
+fn parameters<'py>(
+    py: Python<'py>,
+    specs: &[ParameterSpec],
+    optional: &[&str],
+) -> PyResult<Bound<'py, PyList>> {
     let list = PyList::empty(py);
     for spec in specs {
         let dict = PyDict::new(py);
@@ -25,6 +29,7 @@ fn parameters<'py>(py: Python<'py>, specs: &[ParameterSpec]) -> PyResult<Bound<'
         dict.set_item("neutral", spec.neutral)?;
         dict.set_item("typical", spec.typical)?;
         dict.set_item("bounds", spec.bounds)?;
+        dict.set_item("optional", optional.contains(&spec.name))?;
         list.append(dict)?;
     }
     Ok(list)
@@ -39,7 +44,7 @@ pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         dict.set_item("name", law.name)?;
         dict.set_item("summary", law.summary)?;
         dict.set_item("source", law.source)?;
-        dict.set_item("parameters", parameters(py, law.parameters)?)?;
+        dict.set_item("parameters", parameters(py, law.parameters, law.optional)?)?;
         let options = PyList::empty(py);
         for option in law.options {
             let entry = PyDict::new(py);
@@ -71,7 +76,7 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         dict.set_item("gains", effect.facts.gains.to_vec())?;
         let hooks: Vec<&str> = effect.hooks.iter().map(|hook| hook.word()).collect();
         dict.set_item("hooks", hooks)?;
-        dict.set_item("parameters", parameters(py, effect.parameters)?)?;
+        dict.set_item("parameters", parameters(py, effect.parameters, &[])?)?;
         list.append(dict)?;
     }
     Ok(list)

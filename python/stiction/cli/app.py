@@ -7,6 +7,7 @@ import cyclopts
 from .. import __version__
 from .catalogue import effects, laws
 from .demo import demo
+from .fit import fit
 from .paper import paper
 from .simulate import simulate
 
@@ -21,6 +22,6 @@ def build() -> cyclopts.App:
         version=f"stiction {__version__}",
         help_format="plaintext",
     )
-    for verb in (demo, simulate, laws, effects, paper):
+    for verb in (demo, simulate, fit, laws, effects, paper):
         app.command(verb)
     return app

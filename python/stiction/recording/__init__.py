@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from ..errors import InputError
+from .blocks import Part
+from .checks import Check, check
 from .columns import CANONICAL, ROLES, Column, Columns
 from .formats import read_table
 from .recording import Recording
 from .repair import Repair
+from .split import Fold, Split
 from .table import Cell, Table
 from .units import UNITS, Unit
 
@@ -15,12 +18,17 @@ __all__ = [
     "ROLES",
     "UNITS",
     "Cell",
+    "Check",
     "Column",
     "Columns",
+    "Fold",
     "InputError",
+    "Part",
     "Recording",
     "Repair",
+    "Split",
     "Table",
     "Unit",
+    "check",
     "read_table",
 ]

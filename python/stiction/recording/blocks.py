@@ -15,7 +15,8 @@ FEWEST_BLOCKS: Final = 3
 """One each to train, select and test."""
 
 SHORT_SHARE: Final = 0.05
-"""A block may be this share shorter than asked: 600 rows at a nominal 10 ms last 5.96 s."""
+"""Where only three blocks fit they may be this share shorter than asked: 600 rows at a nominal 10
+ms last 5.96 s."""
 
 
 @dataclass(frozen=True, order=True)
@@ -79,7 +80,9 @@ def blocks(
         A recording shorter than three blocks, or one with so wide a gap that a block is empty.
     """
     span = float(time[-1] - time[0]) + float(np.median(np.diff(time)))
-    number = math.floor(span / block_s + SHORT_SHARE)
+    number = math.floor(span / block_s + 1e-6)  # the last step of a clock is rounded too
+    if span >= (1.0 - SHORT_SHARE) * FEWEST_BLOCKS * block_s:
+        number = max(number, FEWEST_BLOCKS)
     if number < FEWEST_BLOCKS:
         raise InputError(
             f"session: {name} lasts {span:.3g} s and must be cut into at least {FEWEST_BLOCKS} "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import os
 from collections.abc import Mapping
@@ -237,6 +238,16 @@ class Recording:
     def duration(self) -> float:
         """Time from the first to the last row, s."""
         return float(self.time[-1] - self.time[0])
+
+    @property
+    def hash(self) -> str:
+        """SHA-256 of the names and bytes of all channels, time included, in hexadecimal."""
+        digest = hashlib.sha256()
+        main = {name: getattr(self, name) for name in _MAIN}
+        for name, array in sorted({**main, **self.channels}.items()):
+            if array is not None:
+                digest.update(name.encode() + b"\0" + array.astype("<f8").tobytes())
+        return digest.hexdigest()
 
     def __len__(self) -> int:
         return len(self.time)

@@ -7,16 +7,16 @@ fits or judges.  It is made before anything is fitted, and the same session alwa
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, Final
-
-import numpy as np
 
 from ..errors import InputError
 from ..wording import counted, listed
 from .blocks import Part, blocks, check_lengths_of
 from .recording import SPLIT_ROLES, Recording
+
+__all__ = ["BLOCK_S", "EDGE_S", "Fold", "Part", "Split", "name_of", "split"]
 
 BLOCK_S: Final = 2.0
 """Length of interleaved blocks: several times what friction remembers, short enough to alternate
@@ -49,8 +49,10 @@ class Split:
         What was decided, in sentences.
     names : tuple of str
         Of the recordings, for words.
-    spans : tuple of ndarray, shape (rows,)
-        Time of each recording's rows from its first, s.
+    lengths : tuple of int
+        Rows of each recording.
+    seconds : mapping of Part to (float, float)
+        First and last row of each part, s since the recording's first row.
     """
 
     train: tuple[Part, ...]
@@ -59,7 +61,8 @@ class Split:
     folds: tuple[Fold, ...]
     rules: tuple[str, ...]
     names: tuple[str, ...]
-    _times: tuple[Any, ...]
+    lengths: tuple[int, ...]
+    seconds: Mapping[Part, tuple[float, float]] = field(hash=False)
 
     def describe(self) -> str:
         """The split in plain words, one line a role."""
@@ -92,43 +95,28 @@ class Split:
     def __repr__(self) -> str:
         return self.describe()
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Split):
-            return NotImplemented
-        return self.to_dict() == other.to_dict()
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def _seconds(self, part: Part) -> tuple[float, float]:
-        time = self._times[part.recording]
-        return float(time[part.start] - time[0]), float(time[part.stop - 1] - time[0])
-
     def _entries(self, parts: Sequence[Part]) -> list[dict[str, Any]]:
         return [
             {
                 "recording": part.recording,
                 "name": self.names[part.recording],
                 "rows": [part.start, part.stop],
-                "seconds": list(self._seconds(part)),
+                "seconds": list(self.seconds[part]),
             }
             for part in parts
         ]
 
     def _words(self, parts: Sequence[Part]) -> str:
-        lengths = [high - low for low, high in map(self._seconds, parts)]
+        lasting = sum(high - low for low, high in map(self.seconds.__getitem__, parts))
         pieces = Counter(part.recording for part in parts)
-        whole = {
-            part.recording
-            for part in parts
-            if part.stop - part.start == len(self._times[part.recording])
-        }
+        whole = {part.recording for part in parts if len(part) == self.lengths[part.recording]}
         words = [
             self.names[index]
             if index in whole
             else f"{counted(pieces[index], 'block')} of {self.names[index]}"
             for index in pieces
         ]
-        return f"{listed(words)} ({sum(lengths):.4g} s)"
+        return f"{listed(words)} ({lasting:.4g} s)"
 
     def _without(self, role: str) -> str:
         if role == "select" and self.folds:
@@ -169,22 +157,22 @@ def split(
     return _Dealer(tuple(recordings), block_s, edge_s).deal()
 
 
+def name_of(recording: Recording, index: int) -> str:
+    """What a recording is called in sentences: its file, or its number counted from 1."""
+    return recording.path.name if recording.path is not None else f"recording {index + 1}"
+
+
 class _Dealer:
     """One call of `split`: who has which parts so far, and what was decided."""
 
-    def __init__(
-        self, recordings: tuple[Recording, ...], block_s: float, edge_s: float
-    ) -> None:
+    def __init__(self, recordings: tuple[Recording, ...], block_s: float, edge_s: float) -> None:
         if not recordings:
             raise InputError("session: there are no recordings to split; give at least one")
         check_lengths_of(block_s, edge_s)
         self.recordings = recordings
         self.block_s = block_s
         self.edge_s = edge_s
-        self.names = tuple(
-            recording.path.name if recording.path is not None else f"recording {index}"
-            for index, recording in enumerate(recordings, 1)
-        )
+        self.names = tuple(name_of(recording, i) for i, recording in enumerate(recordings))
         self.roles: list[str | None] = [recording.role for recording in recordings]
         self.parts: dict[str, list[Part]] = {role: [] for role in SPLIT_ROLES}
         self.folds: list[Fold] = []
@@ -203,19 +191,33 @@ class _Dealer:
             if not self.parts["select"]:
                 self._fold()
         return Split(
-            *(tuple(self.parts[role]) for role in SPLIT_ROLES),
+            train=tuple(self.parts["train"]),
+            select=tuple(self.parts["select"]),
+            test=tuple(self.parts["test"]),
             folds=tuple(self.folds),
             rules=tuple(self.rules),
             names=self.names,
-            _times=tuple(recording.time for recording in self.recordings),
+            lengths=tuple(len(recording) for recording in self.recordings),
+            seconds={part: self._seconds(part) for part in self._all_parts()},
         )
+
+    def _all_parts(self) -> Iterator[Part]:
+        for parts in self.parts.values():
+            yield from parts
+        for fold in self.folds:
+            yield from (*fold.fit, *fold.held)
+
+    def _seconds(self, part: Part) -> tuple[float, float]:
+        time = self.recordings[part.recording].time
+        return float(time[part.start] - time[0]), float(time[part.stop - 1] - time[0])
 
     def _deal_blocks(self) -> None:
         for turn, part in enumerate(self._blocks(0)):
-            self.parts[SPLIT_ROLES[turn % 3]].append(part)
+            self.parts[SPLIT_ROLES[_turned(turn)]].append(part)
         self.rules.append(
             f"The single recording is cut into blocks of about {self.block_s:g} s, dealt train, "
-            f"select, test in turn; {self.edge_s:g} s on either side of each edge are dropped."
+            f"select, test in a turning order; {self.edge_s:.3g} s on either side of each edge are "
+            "dropped."
         )
 
     def _deal_kinds(self) -> None:
@@ -275,7 +277,7 @@ class _Dealer:
         trained, self.parts["train"] = self.parts["train"], []
         for part in trained:
             for turn, block in enumerate(self._blocks(part.recording)):
-                self.parts["test" if turn % 3 == 2 else "train"].append(block)
+                self.parts["test" if _turned(turn) == 2 else "train"].append(block)
         self.rules.append(
             "No recording has the role test and every kind occurs once in train: every third "
             f"block of about {self.block_s:g} s is split off before anything is fitted; "
@@ -314,10 +316,10 @@ class _Dealer:
         if len(own) > 1:  # cut already, of every three blocks the third to test
             return [own[0::2], own[1::2]]
         cut = self._blocks(index)
-        return [cut[0::3] + cut[2::3], cut[1::3]] if len(cut) < 2 else [cut[0::2], cut[1::2]]
+        return [cut[0::2], cut[1::2]]
 
     def _blocks(self, index: int) -> list[Part]:
-        time = np.asarray(self.recordings[index].time)
+        time = self.recordings[index].time
         return blocks(index, time, self.names[index], self.block_s, self.edge_s)
 
     def _trained(self) -> list[int]:
@@ -328,3 +330,12 @@ class _Dealer:
 
     def _listed(self, indices: Sequence[int]) -> str:
         return listed(self.names[index] for index in indices)
+
+
+def _turned(turn: int) -> int:
+    """Whose turn a block is: 0 1 2, 1 2 0, 2 0 1 and again.
+
+    Dealt in the same order every time, the blocks of a machine whose motion repeats every three
+    of them would show each role one stretch of that motion alone.
+    """
+    return (turn + turn // 3) % 3

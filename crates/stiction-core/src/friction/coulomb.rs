@@ -110,6 +110,8 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
     type Trial = CoulombTrial<S>;
 
     const PARAMETERS: &'static [ParameterSpec] = CoulombParameters::<f64>::SPECS;
+    const OPTIONAL: &'static [&'static str] =
+        &["breakaway", "stribeck_velocity", "stribeck_exponent"];
     const OPTIONS: &'static [OptionSpec] = &[];
     const SUMMARY: &'static str =
         "dead zone with true stick; viscous friction and a Stribeck fall as options";

@@ -376,6 +376,14 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
     type Trial = HsiehPanTrial<S>;
 
     const PARAMETERS: &'static [ParameterSpec] = HsiehPanParameters::<f64>::SPECS;
+    const OPTIONAL: &'static [&'static str] = &[
+        "hardening_exponent",
+        "stribeck_velocity",
+        "stribeck_exponent",
+        "slip_distance",
+        "loading_rate",
+        "loading_time",
+    ];
     const OPTIONS: &'static [OptionSpec] = OPTIONS;
     const SUMMARY: &'static str =
         "pre-sliding with creep, work hardening and reverse-point memory; breaks away and slides";

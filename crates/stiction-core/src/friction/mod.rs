@@ -141,6 +141,8 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
 
     /// Parameters, in the order of [`FrictionLaw::build`]'s values.
     const PARAMETERS: &'static [ParameterSpec];
+    /// Parameters that a fit leaves alone unless they are stated: terms beyond the core of the law.
+    const OPTIONAL: &'static [&'static str] = &[];
     /// Options; the first choice of each is the default.
     const OPTIONS: &'static [OptionSpec];
     /// One sentence: what the law is.
@@ -233,6 +235,8 @@ pub struct LawRecord {
     pub source: &'static str,
     /// Parameters.
     pub parameters: &'static [ParameterSpec],
+    /// Parameters that a fit leaves alone unless they are stated.
+    pub optional: &'static [&'static str],
     /// Options.
     pub options: &'static [OptionSpec],
     /// States that a trajectory can show.
@@ -267,6 +271,7 @@ macro_rules! laws {
             summary: <$module::$law<f64> as FrictionLaw<f64>>::SUMMARY,
             source: <$module::$law<f64> as FrictionLaw<f64>>::SOURCE,
             parameters: <$module::$law<f64> as FrictionLaw<f64>>::PARAMETERS,
+            optional: <$module::$law<f64> as FrictionLaw<f64>>::OPTIONAL,
             options: <$module::$law<f64> as FrictionLaw<f64>>::OPTIONS,
             outputs: <<$module::$law<f64> as FrictionLaw<f64>>::State as LawState<f64>>::OUTPUTS,
         },)*];

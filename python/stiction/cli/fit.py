@@ -1,0 +1,53 @@
+"""``stiction fit``: parameters from recordings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from .. import session as sessions
+from ..errors import InputError
+from ..fitting import fit as run
+from .answer import answer, folder
+
+__all__ = ["fit"]
+
+
+def fit(
+    session: Path,
+    *,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Fit the plant of a session to its recordings.
+
+    Writes the fitted plant.toml, fit.json and fit.html, and prints parameters with standard
+    errors, the error where fitted and the error held out.
+
+    Parameters
+    ----------
+    session
+        Session file: names the plant, the columns and the recordings.
+    out
+        Folder for the results, ./<session>-fit/ without it.
+    json
+        Print JSON.
+    """
+    loaded = sessions.load(session)
+    if loaded.plant is None:
+        raise InputError(f'{session}: plant is missing; write plant = "plant.toml"')
+    result = run(loaded.plant, loaded)
+    where = folder(Path(f"{session.stem}-fit") if out is None else out)
+    files = [where / "plant.toml", where / "fit.json", where / "fit.html"]
+    result.plant.save(files[0])
+    files[1].write_text(result.to_json() + "\n", encoding="utf-8")
+    page = (
+        '<!doctype html><html lang="en"><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>Fit of {session.name}</title>{result._repr_html_()}</html>\n"
+    )
+    files[2].write_text(page, encoding="utf-8")
+    wrote = "\n".join(f"wrote {file}" for file in files)
+    answer(f"{result}\n\n{wrote}", result.to_dict(), as_json=json)

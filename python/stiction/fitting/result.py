@@ -1,0 +1,179 @@
+"""What a fit returns: one result, rendered as text, HTML and JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+from ..errors import InputError
+from ..plant import Plant
+from ..trajectory import FloatArray
+from ..wording import did_you_mean
+
+__all__ = ["FitParameter", "FitResult"]
+
+
+@dataclass(frozen=True)
+class FitParameter:
+    """A fitted parameter.
+
+    Attributes
+    ----------
+    value, stderr : float
+        SI value and standard error, which allows for residuals correlated over 1 s.
+    ci95 : tuple of float
+        value ± 1.96·stderr.
+    unit : str
+    at_bound : {"", "lower", "upper"}
+    start : float
+        Where the fit started.
+    """
+
+    value: float
+    stderr: float
+    ci95: tuple[float, float]
+    unit: str
+    at_bound: str
+    start: float
+
+
+@dataclass(frozen=True)
+class FitResult:
+    """A fitted plant and how well it is known.
+
+    Attributes
+    ----------
+    plant : Plant
+        With the fitted values.
+    parameters : Mapping of str to FitParameter
+        By path, such as ``friction.coulomb``.
+    covariance, correlations : numpy.ndarray, shape (p, p)
+        In the order of ``parameters``.
+    bounds_hit, undetermined : tuple of str
+        Sentences.
+    r2 : float
+        1 − Σr²/Σ(u − ū)² over the rows fitted, u the measured effort.
+    train_rms, train_relative : float
+        Residual: root mean square, and 2-norm over that of the measured effort.
+    heldout_rms, heldout_relative : float or None
+        The same over rows that were not fitted.
+    unit : str
+        Of the effort.
+    split : str
+        Which rows were fitted and which held out, in words.
+    success : bool
+    message : str
+    evaluations : int
+    """
+
+    plant: Plant
+    parameters: Mapping[str, FitParameter]
+    covariance: FloatArray
+    correlations: FloatArray
+    bounds_hit: tuple[str, ...]
+    undetermined: tuple[str, ...]
+    r2: float
+    train_rms: float
+    train_relative: float
+    heldout_rms: float | None
+    heldout_relative: float | None
+    unit: str
+    split: str
+    success: bool
+    message: str
+    evaluations: int
+
+    def __getitem__(self, name: str) -> FitParameter:
+        """The parameter at a path, or of a bare name where that is unique.
+
+        Raises
+        ------
+        InputError
+            No such parameter, or several.
+        """
+        hits = [p for p in self.parameters if p == name or p.rsplit(".", 1)[-1] == name]
+        if len(hits) != 1:
+            words = [*self.parameters, *(p.rsplit(".", 1)[-1] for p in self.parameters)]
+            what = "is ambiguous" if hits else f"was not fitted{did_you_mean(name, words)}"
+            raise InputError(f"parameter '{name}' {what}; there are {', '.join(self.parameters)}")
+        return self.parameters[hits[0]]
+
+    def __str__(self) -> str:
+        rows = [("parameter", "value", "± (1 s.e.)", "unit", "")]
+        for path, p in self.parameters.items():
+            note = f"at its {p.at_bound} bound" if p.at_bound else ""
+            rows.append((path, f"{p.value:.6g}", f"{p.stderr:.2g}", p.unit, note))
+        widths = [max(len(row[k]) for row in rows) for k in range(4)]
+        table = [
+            "  ".join([*(f"{row[k]:<{widths[k]}}" for k in range(4)), row[4]]).rstrip()
+            for row in rows
+        ]
+        return "\n".join([*self._headline(), "", *table, *self._remarks()])
+
+    __repr__ = __str__
+
+    def _headline(self) -> list[str]:
+        lines = [
+            self.message,
+            f"effort error where fitted: {100 * self.train_relative:.3f} % (relative 2-norm), "
+            f"{self.train_rms:.4g} {self.unit} rms, r² {self.r2:.5f}",
+        ]
+        if self.heldout_rms is not None and self.heldout_relative is not None:
+            lines.append(
+                f"effort error held out: {100 * self.heldout_relative:.3f} %, "
+                f"{self.heldout_rms:.4g} {self.unit} rms"
+            )
+        return [*lines, self.split]
+
+    def _remarks(self) -> list[str]:
+        return [f"  {sentence}" for sentence in (*self.bounds_hit, *self.undetermined)]
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{escape(path)}</td><td>{p.value:.6g}</td><td>{p.stderr:.2g}</td>"
+            f"<td>{escape(p.unit)}</td><td>{escape(p.at_bound)}</td></tr>"
+            for path, p in self.parameters.items()
+        )
+        lines = "".join(f"<p>{escape(line)}</p>" for line in self._headline())
+        remarks = "".join(f"<li>{escape(line.strip())}</li>" for line in self._remarks())
+        head = "<tr><th>parameter</th><th>value</th><th>s.e.</th><th>unit</th><th>bound</th></tr>"
+        return f"{lines}<table>{head}{rows}</table><ul>{remarks}</ul>"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain dicts and lists."""
+        return {
+            "law": self.plant.friction.law,
+            "effects": [effect.name for effect in self.plant.effects],
+            "parameters": {
+                path: {
+                    "value": p.value,
+                    "stderr": p.stderr,
+                    "ci95": list(p.ci95),
+                    "unit": p.unit,
+                    "at_bound": p.at_bound,
+                    "start": p.start,
+                }
+                for path, p in self.parameters.items()
+            },
+            "covariance": self.covariance.tolist(),
+            "correlations": self.correlations.tolist(),
+            "bounds_hit": list(self.bounds_hit),
+            "undetermined": list(self.undetermined),
+            "r2": self.r2,
+            "train_rms": self.train_rms,
+            "train_relative": self.train_relative,
+            "heldout_rms": self.heldout_rms,
+            "heldout_relative": self.heldout_relative,
+            "unit": self.unit,
+            "split": self.split,
+            "success": self.success,
+            "message": self.message,
+            "evaluations": self.evaluations,
+        }
+
+    def to_json(self) -> str:
+        """Everything as JSON."""
+        return json.dumps(self.to_dict(), indent=2, ensure_ascii=False)

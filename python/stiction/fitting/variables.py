@@ -1,0 +1,122 @@
+"""What a fit varies: parameters within bounds, ordered pairs as ratios."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ..catalogue import ParameterRecord, effects, laws
+from ..plant import Plant
+from ..trajectory import FloatArray
+
+__all__ = ["Variables", "records", "unit_of"]
+
+RATIOS: Final = {
+    "friction.final_stiffness": "friction.initial_stiffness",
+    "friction.coulomb": "friction.breakaway",
+}
+"""The lesser of an ordered pair is varied as a share of the greater: box bounds cannot express
+the order."""
+SHARES: Final = (1e-3, 1.0 - 1e-3)
+
+_BODY: Final = {
+    "body.inertia": (1e-12, math.inf, ("kg·m²", "kg")),
+    "body.gravity_amplitude": (-math.inf, math.inf, ("N·m", "N·m")),
+    "body.gravity_zero_rad": (-math.pi, math.pi, ("rad", "rad")),
+    "body.weight_n": (-math.inf, math.inf, ("N", "N")),
+}
+
+
+def records(plant: Plant) -> dict[str, ParameterRecord]:
+    """The catalogue's record of every parameter of law and effects, by path."""
+    law = next(record for record in laws() if record.name == plant.friction.law)
+    found = {f"friction.{p.name}": p for p in law.parameters}
+    by_name = {record.name: record for record in effects()}
+    for effect in plant.effects:
+        for p in by_name[effect.name].parameters:
+            found[f"effects.{effect.name}.{p.name}"] = p
+    return found
+
+
+def unit_of(plant: Plant, path: str) -> str:
+    """Unit of the parameter at a path."""
+    linear = plant.motion == "linear"
+    if path in _BODY:
+        return _BODY[path][2][linear]
+    record = records(plant)[path]
+    return record.linear_unit if linear else record.unit
+
+
+@dataclass(frozen=True)
+class Variables:
+    """The vector that an optimiser sees, and its way to the parameters of a plant.
+
+    Attributes
+    ----------
+    paths : tuple of str
+        Parameters, in the order of the vector.
+    lower, upper : numpy.ndarray, shape (p,)
+        Bounds of the parameters themselves.
+    ratio_of : Mapping of int to int
+        Index of a parameter that is varied as a share of another one.
+    """
+
+    paths: tuple[str, ...]
+    lower: FloatArray
+    upper: FloatArray
+    ratio_of: Mapping[int, int]
+
+    @classmethod
+    def of(cls, plant: Plant, paths: Sequence[str]) -> Variables:
+        """The variables of the parameters at these paths."""
+        known = records(plant)
+        lower, upper = [], []
+        for path in paths:
+            low, high = _BODY[path][:2] if path in _BODY else known[path].bounds
+            stated = plant.parameters[path]
+            lower.append(low if stated.min is None else max(low, stated.min))
+            upper.append(high if stated.max is None else min(high, stated.max))
+        ratios = {
+            index: paths.index(RATIOS[path])
+            for index, path in enumerate(paths)
+            if path in RATIOS and RATIOS[path] in paths
+        }
+        return cls(tuple(paths), np.array(lower), np.array(upper), ratios)
+
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """Bounds of the vector."""
+        lower, upper = self.lower.copy(), self.upper.copy()
+        for child in self.ratio_of:
+            lower[child], upper[child] = SHARES
+        return lower, upper
+
+    def vector(self, values: FloatArray) -> FloatArray:
+        """The vector for these parameter values, moved inside the bounds."""
+        vector = np.array(values, dtype=np.float64)
+        for child, parent in self.ratio_of.items():
+            vector[child] = values[child] / values[parent]
+        return np.asarray(np.clip(vector, *self.bounds()))
+
+    def values(self, vector: FloatArray) -> FloatArray:
+        """Parameter values of a vector."""
+        values = np.array(vector, dtype=np.float64)
+        for child, parent in self.ratio_of.items():
+            values[child] = vector[child] * vector[parent]
+        return values
+
+    def chain(self, jacobian: FloatArray, vector: FloatArray) -> FloatArray:
+        """Derivatives by the vector from derivatives by the parameters."""
+        columns = jacobian.copy()
+        for child, parent in self.ratio_of.items():
+            columns[:, parent] += jacobian[:, child] * vector[child]
+            columns[:, child] = jacobian[:, child] * vector[parent]
+        return columns
+
+    def plant(self, plant: Plant, vector: FloatArray) -> Plant:
+        """The plant with the values of a vector."""
+        values = self.values(vector)
+        return plant.with_values(dict(zip(self.paths, values.tolist(), strict=True)))

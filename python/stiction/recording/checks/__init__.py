@@ -1,0 +1,50 @@
+"""What is wrong with a recording before any model is asked: found, what it means, what to try."""
+
+from __future__ import annotations
+
+from ..recording import Recording
+from . import clock, readings
+from .finding import Check, Verdict
+from .noise import Stretches, noise, noise_levels
+from .signal import spike_rows, without_spikes
+
+__all__ = [
+    "Check",
+    "Stretches",
+    "Verdict",
+    "check",
+    "noise_levels",
+    "spike_rows",
+    "without_spikes",
+]
+
+
+def check(recording: Recording) -> tuple[Check, ...]:
+    """Look a recording over.
+
+    Each check is a function of this package with its thresholds as keywords, each with its reason.
+
+    Parameters
+    ----------
+    recording : Recording
+
+    Returns
+    -------
+    tuple of Check
+        At least one of each name, ``"fine"`` ones included, always in the same order.
+    """
+    return (
+        *readings.missing(recording),
+        clock.jitter(recording),
+        clock.gaps(recording),
+        clock.rate(recording),
+        clock.sampling(recording),
+        *readings.constant(recording),
+        *readings.spikes(recording),
+        readings.repeats(recording),
+        *readings.stuck(recording),
+        *readings.clipping(recording),
+        readings.saturation(recording),
+        readings.refresh(recording),
+        *noise(recording),
+    )

@@ -1,0 +1,76 @@
+"""What the checks ask of one channel."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ...motion import count_of
+from ..recording import Recording
+from ..units import FloatArray
+
+IntArray = npt.NDArray[np.int64]
+
+SPIKE_TIMES: Final = 15.0
+"""A spike's second difference is this many times what 80 % of the rows stay below: white noise
+reaches four times that, and a slip or an impact does not come back within one sample.  Up to one
+row in twenty may be a spike, each of which disturbs three second differences."""
+
+SPIKE_COUNTS: Final = 12.0
+"""And this many sensor counts, for a machine at rest flickers by one."""
+
+BACK_SHARE: Final = 0.25
+"""The rows beside a spike agree to this share of its height: it went out and came back."""
+
+
+def channels_of(recording: Recording) -> Iterator[tuple[str, FloatArray]]:
+    """Every channel besides time that holds values only, by name."""
+    main = {"input": recording.input, "position": recording.position}
+    for name, array in {**main, **recording.channels}.items():
+        if array is not None and bool(np.all(np.isfinite(array))):
+            yield name, array
+
+
+def spike_rows(
+    values: FloatArray, *, times: float = SPIKE_TIMES, counts: float = SPIKE_COUNTS
+) -> IntArray:
+    """Rows where a reading leaves its neighbours for one sample.
+
+    Parameters
+    ----------
+    values : ndarray, shape (rows,)
+    times, counts : float
+        See ``SPIKE_TIMES`` and ``SPIKE_COUNTS``.
+
+    Returns
+    -------
+    ndarray of int, shape (spikes,)
+    """
+    out = values[1:-1] - values[:-2]
+    back = values[1:-1] - values[2:]
+    bend = np.abs(out + back)
+    usual = float(np.quantile(bend, 0.8))
+    span = float(np.ptp(np.quantile(values, (0.01, 0.99))))
+    least = max(times * usual, counts * count_of(values), 1e-3 * span)
+    height = np.minimum(np.abs(out), np.abs(back))
+    returned = np.abs(out - back) <= BACK_SHARE * height
+    return np.flatnonzero((bend > least) & (out * back > 0.0) & returned) + 1
+
+
+def without_spikes(values: FloatArray) -> FloatArray:
+    """The same with each spike replaced by the mean of its neighbours; a copy if there is one."""
+    rows = spike_rows(values)
+    if not len(rows):
+        return values
+    mended = values.copy()
+    mended[rows] = 0.5 * (values[rows - 1] + values[rows + 1])
+    return mended
+
+
+def runs(mask: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Start and stop of every stretch where ``mask`` holds."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(np.int8), [0]))))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))

@@ -1,0 +1,281 @@
+"""Fits: true parameters come back, and what the data do not tell is said.
+
+The data are made by the independent machines of ``tests/reference``, not by the core.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.reference.coulomb_reference import simulate_coulomb
+
+from stiction import InputError, Plant, Recording, fit
+from stiction.cli import run
+from stiction.weak_form import WeakForm
+
+DT = 1e-3
+TRUE = {"inertia": 0.0076, "coulomb": 0.3, "viscous": 0.05}
+# The kernel smears the kinks of stops and reversals; what is left of them biases by this share.
+BIAS = 0.01
+NOISE = 2e-3
+COUNT = 2 * np.pi / 2**18
+
+
+def swept(n: int, seed: int = 0) -> np.ndarray:
+    """Sines of several sizes and a few rests, N·m."""
+    time = np.arange(n) * DT
+    rng = np.random.default_rng(seed)
+    waves = sum(0.45 * np.sin(2 * np.pi * f * time + rng.uniform(0, 6)) for f in (0.4, 1.1, 2.3))
+    return np.where(time % 5.0 > 4.5, 0.0, waves)
+
+
+def recorded(n: int = 10_000, seed: int = 0, noise: float = NOISE) -> Recording:
+    """What a recorder keeps of the independent Coulomb machine: counts, and noisy effort."""
+    rng = np.random.default_rng(seed + 100)
+    effort = swept(n, seed)
+    run = simulate_coulomb(
+        effort[:-1],
+        DT,
+        inertia=TRUE["inertia"],
+        coulomb=TRUE["coulomb"],
+        breakaway=TRUE["coulomb"],
+        viscous=TRUE["viscous"],
+    )
+    position = np.concatenate([[0.0], run["position"]])
+    measured = effort + noise * rng.standard_normal(n)
+    return Recording(np.arange(n) * DT, measured, np.round(position / COUNT) * COUNT)
+
+
+def plant(law: str = "coulomb", **more: object) -> Plant:
+    return Plant.from_dict(
+        {"drive": {"input": "torque_nm", "gain": 1.0}, "friction": {"law": law}, **more}
+    )
+
+
+@pytest.fixture(scope="module")
+def recording() -> Recording:
+    return recorded()
+
+
+def test_naming_the_law_alone_brings_the_true_parameters_back(recording: Recording) -> None:
+    found = fit(plant(), recording)
+    assert found.success, found.message
+    for name, value in TRUE.items():
+        assert found[name].value == pytest.approx(value, rel=BIAS), name
+        assert found[name].stderr < BIAS * value
+        assert found[name].at_bound == ""
+    assert found.heldout_relative is not None
+    assert found.heldout_relative < 0.02
+    assert found.r2 > 0.999
+    assert not found.undetermined
+
+
+def test_stated_numbers_are_where_it_starts_and_fixed_ones_stay(recording: Recording) -> None:
+    start = plant(body={"inertia": {"value": 0.009, "fixed": True}})
+    found = fit(start, recording)
+    assert "body.inertia" not in found.parameters
+    assert found.plant.inertia == 0.009
+    free = fit(plant(body={"inertia": 0.02}), recording)
+    assert free["inertia"].start == pytest.approx(0.02)
+    assert free["inertia"].value == pytest.approx(TRUE["inertia"], rel=BIAS)
+
+
+def test_a_bound_that_is_hit_is_said(recording: Recording) -> None:
+    bounded = plant(friction={"law": "coulomb", "viscous": {"value": 0.02, "max": 0.03}})
+    found = fit(bounded, recording)
+    assert found["viscous"].at_bound == "upper"
+    assert any("friction.viscous ended at its upper bound" in s for s in found.bounds_hit)
+
+
+def test_what_the_data_do_not_tell_is_said(recording: Recording) -> None:
+    # Equal levels: where nothing falls, its speed scale has no meaning.
+    friction = {
+        "law": "coulomb",
+        "coulomb": 0.3,
+        "breakaway": {"value": 0.3, "fixed": True},
+        "stribeck_velocity": 0.1,
+    }
+    found = fit(plant(friction={**friction, "coulomb": {"value": 0.3, "fixed": True}}), recording)
+    assert any("friction.stribeck_velocity is not determined" in s for s in found.undetermined)
+    assert found["stribeck_velocity"].stderr == np.inf
+
+
+def test_two_effects_that_act_alike_are_named_together(recording: Recording) -> None:
+    still = plant(
+        body={"gravity_amplitude": 0.0, "gravity_zero_rad": {"value": 0.0, "fixed": True}},
+        effects=[{"name": "cogging", "order": {"value": 1.0, "fixed": True}}],
+    )
+    twin = Plant.from_dict(
+        {
+            **still.to_dict(),
+            "effects": [{"name": "cogging", "sine": 0.0, "order": {"value": 1.0, "fixed": True}}],
+        }
+    )
+    found = fit(twin, recording)
+    assert any(
+        "only a combination of" in s and "gravity_amplitude" in s and "cogging.sine" in s
+        for s in found.undetermined
+    )
+
+
+def test_the_jacobian_is_that_of_the_residual(recording: Recording) -> None:
+    machine = plant(
+        "maxwell_slip",
+        body={"inertia": 0.008, "gravity_amplitude": 0.01},
+        effects=[{"name": "torque_bias", "bias": 0.02}, {"name": "stribeck", "excess": 0.1}],
+    ).with_values({})
+    whole = Plant.from_dict(
+        {
+            **machine.to_dict(),
+            "friction": {
+                "law": "maxwell_slip",
+                "coulomb": 0.3,
+                "initial_stiffness": 400.0,
+                "yield_shape": 0.2,
+                "viscous": 0.05,
+            },
+        }
+    )
+    form = WeakForm(whole, recording, every=0.005)
+    paths = list(whole.parameters)
+    exact = form.jacobian(whole, paths)
+    for k, path in enumerate(paths):
+        value = whole.parameters[path].value
+        step = 1e-6 * max(abs(value), 1e-3)
+
+        def residual(value: float, path: str = path) -> np.ndarray:
+            measured, model = form.efforts(whole.with_values({path: value}))
+            return measured - model
+
+        chord = (residual(value + step) - residual(value - step)) / (2 * step)
+        assert np.abs(exact[:, k] - chord).max() < 1e-5 * np.abs(chord).max(), path
+
+
+def test_intervals_cover_the_truth_about_as_often_as_they_say() -> None:
+    # White noise on the effort alone, position exact: nothing but noise biases the estimate.
+    covered = tried = 0
+    for seed in range(12):
+        found = fit(plant(), recorded(6000, seed=seed, noise=0.03))
+        for name, value in TRUE.items():
+            low, high = found[name].ci95
+            # The kernel's bias counts as truth's own width here.
+            covered += low - 0.004 * value <= value <= high + 0.004 * value
+            tried += 1
+    assert covered / tried > 0.8
+
+
+def test_several_recordings_are_fitted_together() -> None:
+    session = [recorded(6000, seed=seed) for seed in range(3)]
+    found = fit(plant(), session)
+    assert found["coulomb"].value == pytest.approx(TRUE["coulomb"], rel=BIAS)
+    assert "test" in found.split
+    assert found.heldout_rms is not None
+
+
+def test_a_result_renders_as_text_html_and_json(recording: Recording) -> None:
+    found = fit(plant(), recording)
+    text = str(found)
+    assert "friction.coulomb" in text
+    assert "effort error held out" in text
+    assert "<table>" in found._repr_html_()
+    data = json.loads(found.to_json())
+    assert data["parameters"]["friction.coulomb"]["unit"] == "N·m"
+    assert np.array(data["covariance"]).shape == (3, 3)
+    with pytest.raises(InputError, match="did you mean"):
+        found["coulom"]
+
+
+def test_interrupting_a_fit_keeps_the_best_so_far(
+    recording: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls = 0
+    efforts = WeakForm.efforts
+
+    def interrupted(self: WeakForm, machine: Plant) -> tuple[np.ndarray, np.ndarray]:
+        nonlocal calls
+        calls += 1
+        if calls == 3:
+            raise KeyboardInterrupt
+        return efforts(self, machine)
+
+    monkeypatch.setattr(WeakForm, "efforts", interrupted)
+    found = fit(plant(), recording)
+    assert not found.success
+    assert "interrupted" in found.message
+    assert found["coulomb"].value == pytest.approx(TRUE["coulomb"], rel=0.2)
+
+
+def test_nothing_to_fit_is_refused_in_words(recording: Recording) -> None:
+    fixed = plant(
+        body={"inertia": {"value": 0.0076, "fixed": True}},
+        friction={
+            "law": "coulomb",
+            "coulomb": {"value": 0.3, "fixed": True},
+            "viscous": {"value": 0.05, "fixed": True},
+        },
+    )
+    with pytest.raises(InputError, match="every parameter is fixed"):
+        fit(fixed, recording)
+    with pytest.raises(InputError, match="no recordings"):
+        fit(plant(), [])
+    still = Recording(np.arange(8000) * DT, np.zeros(8000), np.zeros(8000))
+    with pytest.raises(InputError, match="nothing moves"):
+        fit(plant(), still)
+
+
+def test_the_command_writes_the_fitted_plant(
+    recording: Recording, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "plant.toml").write_text(
+        '[drive]\ninput = "torque_nm"\n[friction]\nlaw = "coulomb"\n'
+    )
+    assert recording.input is not None
+    assert recording.position is not None
+    table = np.column_stack([recording.time, recording.input, recording.position])
+    np.savetxt(
+        tmp_path / "run.csv",
+        table,
+        delimiter=",",
+        comments="",
+        header="time_s,torque_nm,position_rad",
+    )
+    session = tmp_path / "session.toml"
+    session.write_text('plant = "plant.toml"\n[[recordings]]\nfile = "run.csv"\n')
+    assert run(["fit", str(session), "-o", str(tmp_path / "out")]) == 0
+    assert "friction.coulomb" in capsys.readouterr().out
+    fitted = Plant.load(tmp_path / "out" / "plant.toml")
+    assert fitted.parameters["friction.coulomb"].value == pytest.approx(0.3, rel=BIAS)
+    assert run(["fit", str(session), "--json", "-o", str(tmp_path / "out")]) == 0
+    assert json.loads(capsys.readouterr().out)["success"]
+    session.write_text('[[recordings]]\nfile = "run.csv"\n')
+    assert run(["fit", str(session)]) == 2
+    assert "plant is missing" in capsys.readouterr().err
+
+
+def test_emps_comes_out_near_its_published_parameters(shared_data: Path) -> None:
+    columns = {
+        "time": "t",
+        "input": {"name": "vir", "unit": "V"},
+        "position": {"name": "qm", "unit": "m"},
+    }
+    emps = Recording.load(
+        shared_data / "emps" / "DATA_EMPS.mat", columns, motion="linear", drive="voltage_v"
+    )
+    machine = Plant.from_dict(
+        {
+            "motion": {"kind": "linear"},
+            "drive": {"input": "voltage_v", "gain": 35.15065},
+            "body": {"inertia": 50.0},
+            "friction": {"law": "coulomb"},
+            "effects": [{"name": "torque_bias", "bias": 0.0}],
+        }
+    )
+    found = fit(machine, emps)
+    published = {"inertia": 95.109, "viscous": 203.50, "coulomb": 20.39}
+    for name, value in published.items():
+        assert found[name].value == pytest.approx(value, rel=0.08), name
+    assert found["bias"].value == pytest.approx(3.165, abs=1.2)
+    assert found.train_relative < 0.045

@@ -1,0 +1,119 @@
+"""Sessions: hashes, replicates and the clock."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.recording import Recording
+
+
+def recorded(seed: int = 0, **labels: object) -> Recording:
+    time = 5.0 + np.arange(300) / 100.0
+    noise = np.random.default_rng(seed).normal(size=(2, len(time)))
+    return Recording(time, *noise, **labels)  # type: ignore[arg-type]
+
+
+def written(folder: Path, *entries: str) -> Path:
+    """A session file with one recording file for each entry: a.csv, b.csv, ..."""
+    text = ""
+    for seed, entry in enumerate(entries):
+        name = "abcdef"[seed] + ".csv"
+        noise = np.random.default_rng(seed).normal(size=(2, 300))
+        table = np.column_stack((np.arange(300) / 100.0, *noise))
+        head = "time_s,current_a,position_rad"
+        np.savetxt(folder / name, table, delimiter=",", header=head, comments="")
+        text += f'[[recordings]]\nfile = "{name}"\n{entry}\n'
+    path = folder / "session.toml"
+    path.write_text(text)
+    return path
+
+
+def test_a_list_of_recordings_makes_a_session() -> None:
+    recordings = [recorded(0), recorded(1)]
+    session = st.Session(recordings)
+    assert session.recordings == tuple(recordings)
+    assert list(session) == recordings
+
+
+def test_a_hash_tells_recordings_apart_and_holds_for_copies() -> None:
+    one, two, three = st.Session((recorded(0), recorded(0), recorded(1))).hashes
+    assert one == two != three
+    assert len(one) == 64
+    noise = recorded(0)
+    other = Recording(noise.time, noise.position, noise.input)
+    assert other.hash != one
+    more = Recording(noise.time, noise.input, noise.position, load=np.zeros(300))
+    assert more.hash != one
+
+
+def test_the_session_clock_starts_each_recording_where_it_says() -> None:
+    session = st.Session((recorded(start_s=100.0), recorded(1, start_s=0.0)))
+    assert session.clock_stated
+    assert session.starts == (100.0, 0.0)
+    assert session.clock(0)[0] == 100.0
+    np.testing.assert_allclose(np.diff(session.clock(0)), 0.01)
+
+
+def test_without_a_stated_start_the_recordings_follow_one_another() -> None:
+    session = st.Session((recorded(0), recorded(1)))
+    assert not session.clock_stated
+    assert session.starts == pytest.approx((0.0, 3.0))
+    assert session.clock(1)[0] == pytest.approx(session.clock(0)[-1] + 0.01)
+
+
+def test_recordings_that_overlap_on_the_session_clock_are_refused() -> None:
+    with pytest.raises(st.InputError, match=r"recording 1 starts at 2 s, before recording 2 ends"):
+        st.Session((recorded(start_s=2.0), recorded(1)))
+    assert len(st.Session((recorded(start_s=3.0), recorded(1)))) == 2
+
+
+def test_an_overlap_in_a_session_file_names_the_files(tmp_path: Path) -> None:
+    path = written(tmp_path, "start_s = 0.0", "start_s = 1.0")
+    with pytest.raises(st.InputError, match=r"b\.csv starts at 1 s, before a\.csv ends at 2\.99 s"):
+        st.load(path)
+
+
+def test_a_replicate_points_at_the_recording_it_repeats(tmp_path: Path) -> None:
+    session = st.load(written(tmp_path, "", 'replicate_of = "a.csv"'))
+    assert session.replicates == {1: 0}
+
+
+@pytest.mark.parametrize(
+    ("entry", "sentence"),
+    [
+        ('replicate_of = "c.csv"', r"replicate_of = 'c.csv' is none of the recordings"),
+        ('replicate_of = "b.csv"', r"replicate_of = 'b.csv' is the recording itself"),
+        ("replicate_of = 1", r"replicate_of = 1 is not a path"),
+    ],
+)
+def test_a_replicate_of_nothing_is_refused(tmp_path: Path, entry: str, sentence: str) -> None:
+    with pytest.raises(st.InputError, match=sentence):
+        st.load(written(tmp_path, "", entry))
+
+
+@pytest.mark.parametrize("replicates", [{0: 0}, {0: 2}, {5: 0}])
+def test_replicates_given_in_python_are_checked_too(replicates: dict[int, int]) -> None:
+    with pytest.raises(st.InputError, match="two different indices from 0 to 1"):
+        st.Session((recorded(0), recorded(1)), replicates=replicates)
+
+
+def test_a_faulty_recording_is_kept_where_asked(tmp_path: Path) -> None:
+    path = written(tmp_path, "")
+    lines = (tmp_path / "a.csv").read_text().splitlines()
+    holes = [line.rpartition(",")[0] + "," for line in lines[1:31]]
+    (tmp_path / "a.csv").write_text("\n".join([lines[0], *holes, *lines[31:]]))
+    with pytest.raises(st.InputError, match="position has 30 missing"):
+        st.load(path)
+    assert st.load(path, keep_faulty=True).recordings[0].faults
+
+
+def test_a_session_shows_itself_as_a_table(tmp_path: Path) -> None:
+    entries = ('role = "train"\nkind = "a < b"', 'replicate_of = "a.csv"')
+    html = st.load(written(tmp_path, *entries))._repr_html_()
+    assert html.count("<tr>") == 3
+    assert "a &lt; b" in html
+    assert html.count("a.csv") == 2
