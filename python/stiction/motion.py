@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
 
+from .errors import InputError
 from .trajectory import FloatArray
 
 __all__ = ["Kernel", "count_of", "evenly", "held", "noise_of", "play", "smooth"]
@@ -13,6 +15,10 @@ __all__ = ["Kernel", "count_of", "evenly", "held", "noise_of", "play", "smooth"]
 SMOOTHING_SHARE: Final = 0.1
 """Support over which a position is smoothed before it drives friction, as a share of the kernel's:
 3 ms where that has 30 ms."""
+
+
+WIDEST: Final = 1e6
+"""Samples; a wider kernel is a slip of the units."""
 
 
 class Kernel:
@@ -31,19 +37,28 @@ class Kernel:
 
     Attributes
     ----------
-    weights : numpy.ndarray, shape (2·half + 1,)
-        Sum 1.
+    weights : numpy.ndarray, shape (samples,)
+        Sum 1; an odd number of samples.
+
+    Raises
+    ------
+    InputError
+        A support below one sample, or not finite.
     """
 
     def __init__(self, support: float, dt: float) -> None:
-        # Four box filters convolved make the cubic B-spline; at least one sample each.
-        length = max(1, round(support / dt / 4))
-        box = np.ones(length) / length
-        weights = box
-        for _ in range(3):
-            weights = np.convolve(weights, box)
-        if len(weights) % 2 == 0:
-            weights = np.convolve(weights, [0.5, 0.5])
+        if not (math.isfinite(support) and dt <= support <= WIDEST * dt):
+            raise InputError(
+                f"support = {support:g} s is out of bounds: allowed is {dt:g} s (one sample) to "
+                f"{WIDEST * dt:g} s"
+            )
+        # Four box filters convolved make the cubic B-spline. Their lengths are as equal as an
+        # odd number of samples allows, so that the kernel has a centre and the width asked for.
+        samples = 2 * ((round(support / dt) - 1) // 2) + 1
+        weights = np.ones(1)
+        for k in range(4):
+            length = (samples + 3 + k) // 4
+            weights = np.convolve(weights, np.ones(length) / length)
         self.weights: FloatArray = weights
         self.dt = dt
         self.support = len(weights) * dt

@@ -23,6 +23,9 @@ INPUTS: Final = ("current_a", "voltage_v", "torque_nm", "force_n")
 _TABLES: Final = ("motion", "drive", "body", "friction", "effects", "sensor", "controller")
 _DRIVE: Final = ("kind", "input", "gain", "limit")
 _BODY: Final = ("inertia", "gravity_amplitude", "gravity_zero_rad", "weight_n")
+_GAINS: Final = ("kp", "ki", "kd", "kv", "limit")
+_DERIVATIVES: Final = ("backward", "backward_of_two_sample_mean", "measured")
+_OTHER_MOTION: Final = {"rotary": "force_n", "linear": "torque_nm"}
 _CONTROLLERS: Final = ("pd", "pid", "position_velocity")
 
 
@@ -88,7 +91,7 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
     law, friction, options = _friction(section(table, "friction", source), source)
     return Parts(
         motion=motion,
-        drive=_drive(section(table, "drive", source), source),
+        drive=_drive(section(table, "drive", source), motion, source),
         body=_body(section(table, "body", source), motion, source),
         law=law,
         friction=friction,
@@ -128,14 +131,15 @@ def section(table: Mapping[str, Any], name: str, source: str) -> Mapping[str, An
     return given
 
 
-def _drive(given: Mapping[str, Any], source: str) -> dict[str, Any]:
+def _drive(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Any]:
     where = f"{source}: [drive]"
     known(given, _DRIVE, where)
     drive: dict[str, Any] = {}
     if "kind" in given:
         drive["kind"] = choice(given["kind"], ("direct", "prescribed_motion"), f"{where} kind")
     if "input" in given:
-        drive["input"] = choice(given["input"], INPUTS, f"{where} input")
+        allowed = [name for name in INPUTS if name != _OTHER_MOTION[motion]]
+        drive["input"] = choice(given["input"], allowed, f"{where} input of a {motion} plant")
     for name in ("gain", "limit"):
         if name in given:
             drive[name] = number(given[name], f"{where} {name}")
@@ -231,7 +235,14 @@ def _controller(given: Mapping[str, Any], source: str) -> dict[str, Any]:
     if "kind" not in given:
         raise InputError(f"{where} kind is missing; allowed are {listed(_CONTROLLERS)}")
     choice(given["kind"], _CONTROLLERS, f"{where} kind")
-    return dict(given)
+    known(given, ("kind", "derivative", *_GAINS), where)
+    controller: dict[str, Any] = {"kind": given["kind"]}
+    if "derivative" in given:
+        controller["derivative"] = choice(given["derivative"], _DERIVATIVES, f"{where} derivative")
+    for name in _GAINS:
+        if name in given:
+            controller[name] = number(given[name], f"{where} {name}")
+    return controller
 
 
 def render(table: Mapping[str, Any]) -> str:

@@ -42,6 +42,12 @@ class Trajectory:
         What happened, in words.
     """
 
+    _columns: Mapping[str, FloatArray]
+    _dt: float | FloatArray
+    _length: int
+    _start: float
+    _statistics: Mapping[str, int]
+
     def __init__(
         self,
         columns: Mapping[str, FloatArray],
@@ -51,11 +57,22 @@ class Trajectory:
         start: float = 0.0,
         statistics: Mapping[str, int] | None = None,
     ) -> None:
-        self._columns = MappingProxyType(dict(columns))
-        self._dt = dt
-        self._length = length
-        self._start = start
-        self.statistics = MappingProxyType(dict(statistics or {}))
+        # Written past the guard below, once.
+        self.__dict__.update(
+            _columns=MappingProxyType(dict(columns)),
+            _dt=dt,
+            _length=length,
+            _start=start,
+            _statistics=MappingProxyType(dict(statistics or {})),
+        )
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a trajectory is frozen: {name} cannot be set")
+
+    @property
+    def statistics(self) -> Mapping[str, int]:
+        """How often each branch was taken since the last reset."""
+        return self._statistics
 
     @property
     def columns(self) -> Mapping[str, FloatArray]:
@@ -155,6 +172,8 @@ class Trajectory:
     def save(self, path: str | Path) -> Path:
         """Write time and columns as NPZ (or CSV, by the name's ending); returns the path."""
         path = Path(path)
+        if not path.parent.is_dir():
+            raise InputError(f"{path}: there is no folder {path.parent}; make it first")
         table = {"time_s": self.time, **self._columns}
         if path.suffix == ".npz":
             np.savez_compressed(path, **table)  # type: ignore[arg-type]

@@ -24,6 +24,9 @@ FEWEST_SAMPLES: Final = 8
 NOISE_SHARE: Final = 0.02
 """The kernel is widened until the inertia term holds less position noise than this share of the
 effort: a coarse encoder needs more than 30 ms."""
+NOISY_STEP: Final = 0.01
+"""Noise of the position over the rms step from row to row above which the motion that drives
+friction is smoothed; below it smoothing would only smear stops into slow motion."""
 ACCELERATION_SHARE: Final = 0.1
 """Where no inertia is stated: share of the acceleration that may be noise."""
 
@@ -102,8 +105,10 @@ class WeakForm:
         load = recording.channels.get("load")
         self.load = np.zeros_like(x) if load is None else held(time, recording.time, load)
         self.effort = u
-        smoothing = SMOOTHING_SHARE * self.kernel.support
-        self.position = smooth(play(x, plant.count or count_of(x)), self.dt, smoothing)
+        followed = play(x, plant.count or count_of(x))
+        noisy = noise > NOISY_STEP * float(np.sqrt(np.mean(np.diff(x) ** 2)))
+        smoothing = max(self.dt, SMOOTHING_SHARE * self.kernel.support) if noisy else self.dt
+        self.position = smooth(followed, self.dt, smoothing)
         self.input = np.zeros(len(x) - 1) if self.prescribed else u[:-1]
         self.time = self._thin(time[1:][self.kernel.half : -self.kernel.half])
         self.acceleration = self._thin(self.kernel.second_derivative(x[1:]))

@@ -149,6 +149,40 @@ def test_bad_recordings_and_columns_exit_2(
         assert captured.err.count("\n") == 1
 
 
+@pytest.mark.parametrize("support", ["nan", "inf", "1e300", "-1", "0"])
+def test_a_kernel_that_cannot_be_is_refused(
+    plant: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], support: str
+) -> None:
+    path = recording(tmp_path)
+    arguments = ["simulate", str(plant), str(path), f"--support={support}", "-o", str(tmp_path)]
+    assert run(arguments) == 2
+    captured = capsys.readouterr()
+    assert "support" in captured.err
+    assert str(path) in captured.err
+    assert captured.err.count("\n") == 1
+    assert run([*arguments[:3], "--support=0.017", *arguments[4:]]) == 0
+    assert "kernel of 17 ms" in capsys.readouterr().out
+
+
+def test_absurd_cells_are_refused_in_one_sentence(
+    plant: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = recording(tmp_path)
+    lines = path.read_text().splitlines()
+    cells = lines[700].split(",")
+    path.write_text("\n".join([*lines[:700], f"{cells[0]},1e300,{cells[2]}", *lines[701:]]))
+    assert run(["simulate", str(plant), str(path), "-o", str(tmp_path)]) == 2
+    captured = capsys.readouterr()
+    assert str(path) in captured.err
+    assert captured.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("verb", ["laws", "effects"])
+def test_the_catalogue_is_written_where_that_is_asked_for(verb: str, tmp_path: Path) -> None:
+    assert run([verb, "-o", str(tmp_path / "o")]) == 0
+    assert json.loads((tmp_path / "o" / f"{verb}.json").read_text())
+
+
 def test_help_and_version_answer(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["--version"]) == 0
     assert capsys.readouterr().out.startswith("stiction ")

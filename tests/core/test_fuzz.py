@@ -358,7 +358,11 @@ def test_every_effect_within_its_bounds_gives_finite_motion(name, data, integrat
     }
     machine = answers(lambda: motor("hook", effects={name: values}, integrator=integrator))
     if machine is not None:
-        assert machine.simulate(np.repeat([0.3, -0.7, 0.0], 20), 1e-4).success
+        run = machine.simulate(np.repeat([0.3, -0.7, 0.0], 20), 1e-4)
+        # Friction that falls with the square of speed drives the machine, which then runs away
+        # by itself and says so.
+        driven = values.get("quadratic", 0.0) < 0.0
+        assert run.success or (driven and "ran away" in run.message)
 
 
 @pytest.mark.parametrize("law", sorted(LAWS))

@@ -151,6 +151,18 @@ REFUSED = {
         '[sensor]\ncount_m = 1e-6\n[friction]\nlaw = "coulomb"',
         "'count_m' is unknown",
     ),
+    "unknown gain of a controller": (
+        '[controller]\nkind = "pd"\nzz = 1\n[friction]\nlaw = "coulomb"',
+        "'zz' is unknown",
+    ),
+    "word for a gain": (
+        '[controller]\nkind = "pd"\nkp = "abc"\n[friction]\nlaw = "coulomb"',
+        "'abc' is a str",
+    ),
+    "force on a rotary plant": (
+        '[drive]\ninput = "force_n"\n[friction]\nlaw = "coulomb"',
+        "input of a rotary plant = 'force_n' is unknown",
+    ),
     "controller without a kind": ('[controller]\nkp = 1\n[friction]\nlaw = "coulomb"', "kind is m"),
 }
 

@@ -18,6 +18,16 @@ pub enum Error {
         /// The allowed names, separated by commas.
         known: String,
     },
+    /// A word where a number belongs, or the other way round.
+    #[error("{name} is {given}; allowed is {allowed}")]
+    WrongKind {
+        /// What was being set.
+        name: String,
+        /// What was given.
+        given: String,
+        /// What is allowed.
+        allowed: String,
+    },
     /// A number outside its bounds.
     #[error(
         "{name} = {given} is out of bounds: allowed is {lower} to {upper}{unit}; change {name}"

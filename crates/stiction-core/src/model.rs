@@ -49,7 +49,16 @@ impl LawSpec {
     /// The law called `name`; what is not stated takes its default.
     pub fn new(name: &str, stated: &[(String, f64)], options: &[(String, String)]) -> Result<Self> {
         let record = law_record(name)?;
-        for (option, _) in options {
+        for (option, word) in options {
+            if record.parameters.iter().any(|known| known.name == option) {
+                let allowed = "a number".to_owned();
+                let given = format!("the word '{word}'");
+                return Err(Error::WrongKind {
+                    name: format!("{option} of {name}"),
+                    given,
+                    allowed,
+                });
+            }
             if !record.options.iter().any(|known| known.name == option) {
                 let words = record.parameters.iter().map(|p| p.name);
                 let words: Vec<&str> = words.chain(record.options.iter().map(|o| o.name)).collect();
@@ -72,6 +81,16 @@ impl LawSpec {
                 }
             })
             .collect::<Result<Vec<usize>>>()?;
+        for (number, value) in stated {
+            if let Some(option) = record.options.iter().find(|known| known.name == number) {
+                let words: Vec<&str> = option.choices.iter().map(|(word, _)| *word).collect();
+                return Err(Error::WrongKind {
+                    name: format!("{number} of {name}"),
+                    given: format!("the number {value}"),
+                    allowed: words.join(" or "),
+                });
+            }
+        }
         let values = resolve(name, record.parameters, stated)?;
         Law::<f64>::check(name, &values)?;
         Ok(Self { record, values, choices })

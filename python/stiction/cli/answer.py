@@ -9,12 +9,17 @@ from typing import Any
 
 from ..errors import InputError
 
-__all__ = ["answer", "folder"]
+__all__ = ["answer", "folder", "json_of"]
 
 
 def answer(text: str, data: Any, *, as_json: bool) -> None:
     """Print the text, or the data as JSON where that was asked for."""
-    print(json.dumps(_plain(data), indent=2, ensure_ascii=False) if as_json else text)
+    print(json_of(data) if as_json else text)
+
+
+def json_of(data: Any) -> str:
+    """The data as JSON text; what JSON has no number for becomes a word."""
+    return json.dumps(_plain(data), indent=2, ensure_ascii=False)
 
 
 def folder(path: Path) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Annotated, TypeVar
 
 from cyclopts import Parameter
@@ -11,24 +12,32 @@ from .. import catalogue
 from ..catalogue import EffectRecord, LawRecord, ParameterRecord
 from ..errors import InputError
 from ..wording import did_you_mean, listed
-from .answer import answer
+from .answer import answer, folder, json_of
 
 __all__ = ["effects", "laws"]
 
 _Record = TypeVar("_Record", LawRecord, EffectRecord)
 
 
-def laws(name: str | None = None, *, json: Annotated[bool, Parameter(negative="")] = False) -> None:
+def laws(
+    name: str | None = None,
+    *,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
     """List the friction laws, or show one with its parameters and options.
 
     Parameters
     ----------
     name
         Law to show.
+    out
+        Folder to write laws.json into as well.
     json
         Print JSON.
     """
     records = catalogue.laws()
+    _write(out, "laws", records)
     if name is None:
         answer(_table(records), [record.to_dict() for record in records], as_json=json)
         return
@@ -48,7 +57,10 @@ def laws(name: str | None = None, *, json: Annotated[bool, Parameter(negative=""
 
 
 def effects(
-    name: str | None = None, *, json: Annotated[bool, Parameter(negative="")] = False
+    name: str | None = None,
+    *,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """List the effects, or show one with its parameters, look-alikes and separating experiment.
 
@@ -56,10 +68,13 @@ def effects(
     ----------
     name
         Effect to show.
+    out
+        Folder to write effects.json into as well.
     json
         Print JSON.
     """
     records = catalogue.effects()
+    _write(out, "effects", records)
     if name is None:
         answer(_table(records), [record.to_dict() for record in records], as_json=json)
         return
@@ -75,6 +90,12 @@ def effects(
         *_parameters(record.parameters),
     ]
     answer("\n".join(lines), record.to_dict(), as_json=json)
+
+
+def _write(out: Path | None, name: str, records: Iterable[LawRecord | EffectRecord]) -> None:
+    if out is not None:
+        text = json_of([record.to_dict() for record in records])
+        (folder(out) / f"{name}.json").write_text(text + "\n", encoding="utf-8")
 
 
 def _table(records: Iterable[LawRecord | EffectRecord]) -> str:

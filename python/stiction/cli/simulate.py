@@ -12,6 +12,7 @@ from .. import residual, session
 from ..errors import InputError
 from ..plant import Plant
 from ..recording import Recording
+from ..recording.checks import check
 from .answer import answer, folder
 
 __all__ = ["simulate"]
@@ -56,7 +57,7 @@ def simulate(
         mapped = None if columns is None else read_columns(columns)
         recordings = [session.load_recording(recording, machine, mapped, where="--columns")]
     where = folder(out)
-    results = [_one(machine, each, where, support) for each in recordings]
+    results = [_named(machine, each, where, support) for each in recordings]
     text = "\n\n".join(result.pop("text") for result in results)
     answer(text, results[0] if len(results) == 1 else results, as_json=json)
 
@@ -89,12 +90,28 @@ def read_columns(text: str) -> dict[str, Any]:
     return columns
 
 
+def _named(
+    plant: Plant, recording: Recording, where: Path, support: float | None
+) -> dict[str, Any]:
+    """The answer for one recording, or a refusal that names its file."""
+    try:
+        # Absurd numbers are refused below, in words.
+        with np.errstate(all="ignore"):
+            return _one(plant, recording, where, support)
+    except InputError as error:
+        file = str(recording.path)
+        raise InputError(str(error) if file in str(error) else f"{file}: {error}") from None
+
+
 def _one(plant: Plant, recording: Recording, where: Path, support: float | None) -> dict[str, Any]:
     stem = recording.path.stem if recording.path is not None else "recording"
     lines = [f"{stem}: {len(recording)} rows over {recording.duration:.6g} s"]
     lines += [f"  {note}" for note in recording.notes]
+    remarks = [check.what for check in check(recording) if check.verdict != "fine"]
+    lines += [f"  {remark}" for remark in remarks]
     result: dict[str, Any] = {
         "recording": stem,
+        "remarks": remarks,
         "rows": len(recording),
         "duration_s": recording.duration,
         "notes": list(recording.notes),
@@ -118,6 +135,11 @@ def _one(plant: Plant, recording: Recording, where: Path, support: float | None)
             )
             result["free_run"] = run.to_dict()
         effort = residual.effort_residual(plant, recording, support=support)
+        if not np.isfinite(effort.relative):
+            raise InputError(
+                "the effort residual is not a finite number; check units, and cells far beyond "
+                "what the machine can do"
+            )
         files += _figures(effort.plot(), where / f"{stem}-effort-residual")
         lines.append(
             f"effort along the measured motion: error {100 * effort.relative:.3f} % "

@@ -25,7 +25,7 @@ class FitParameter:
     value, stderr : float
         SI value and standard error, which allows for residuals correlated over 1 s.
     ci95 : tuple of float
-        value ± 1.96·stderr.
+        value ± t·stderr, t of Student with as many degrees as there are blocks of 1 s, less one.
     unit : str
     at_bound : {"", "lower", "upper"}
     start : float

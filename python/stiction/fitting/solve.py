@@ -18,7 +18,13 @@ from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .result import FitParameter, FitResult
 from .start import complete, free_paths
-from .statistics import CORRELATED_S, correlations, covariance, undetermined_directions
+from .statistics import (
+    CORRELATED_S,
+    correlations,
+    covariance,
+    interval_width,
+    undetermined_directions,
+)
 from .variables import Variables, unit_of
 
 __all__ = ["fit"]
@@ -224,12 +230,13 @@ def _result(
     fitted = optimiser.blocks
     jacobians = [block.weight * optimiser.columns(plant, block) for block in fitted]
     residuals = [block.weight * block.residual(plant)[block.train] for block in fitted]
-    matrix = covariance(jacobians, residuals, [block.rows for block in fitted])
+    matrix, pieces = covariance(jacobians, residuals, [block.rows for block in fitted])
     flat = undetermined_directions(jacobians, variables.paths)
     dead = {path for group in flat for path in group}
     values, starts = variables.values(vector), variables.values(begin)
     errors = np.sqrt(np.maximum(np.diag(matrix), 0.0))
     sides = _sides(variables, vector, begin, errors)
+    width = interval_width(pieces)
     parameters = {}
     for k, path in enumerate(variables.paths):
         error = float("inf") if path in dead else float(np.sqrt(max(matrix[k, k], 0.0)))
@@ -237,7 +244,7 @@ def _result(
         parameters[path] = FitParameter(
             value=value,
             stderr=error,
-            ci95=(value - 1.96 * error, value + 1.96 * error),
+            ci95=(value - width * error, value + width * error),
             unit=unit_of(plant, path),
             at_bound=sides[k],
             start=float(starts[k]),

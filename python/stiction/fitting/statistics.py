@@ -9,7 +9,13 @@ import numpy as np
 
 from ..trajectory import FloatArray
 
-__all__ = ["CORRELATED_S", "correlations", "covariance", "undetermined_directions"]
+__all__ = [
+    "CORRELATED_S",
+    "correlations",
+    "covariance",
+    "interval_width",
+    "undetermined_directions",
+]
 
 CORRELATED_S: Final = 1.0
 """Residuals further apart than this are taken as independent."""
@@ -19,8 +25,8 @@ FLAT: Final = 1e-5
 
 def covariance(
     jacobians: Sequence[FloatArray], residuals: Sequence[FloatArray], rows_per_block: Sequence[int]
-) -> FloatArray:
-    """Covariance of the parameters that allows for residuals correlated within blocks.
+) -> tuple[FloatArray, int]:
+    """Covariance of the parameters that allows for residuals correlated within blocks, and B.
 
     C = (JᵀJ)⁻¹·(Σ_b g_b·g_bᵀ)·(JᵀJ)⁻¹·B/(B − 1), g_b = J_bᵀ·r_b over block b of B: the sandwich
     of White (1980) over blocks. White residuals would give the usual s²·(JᵀJ)⁻¹.
@@ -47,7 +53,17 @@ def covariance(
             meat += np.outer(gradient, gradient)
             blocks += 1
     few = blocks / (blocks - 1) if blocks > 1 else np.inf
-    return np.asarray(bread @ meat @ bread * few / np.outer(scale, scale))
+    return np.asarray(bread @ meat @ bread * few / np.outer(scale, scale)), blocks
+
+
+def interval_width(blocks: int) -> float:
+    """Half the width of a 95 % interval in standard errors: Student's t with B − 1 degrees.
+
+    B blocks are B independent pieces of evidence, however many rows they hold.
+    """
+    from scipy.stats import t
+
+    return float(t.ppf(0.975, max(1, blocks - 1)))
 
 
 def correlations(covariance: FloatArray) -> FloatArray:
