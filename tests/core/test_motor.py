@@ -28,6 +28,7 @@ EFFECTS = {
     "cogging": {"cosine": 0.03, "sine": -0.02, "order": 40.0},
     "stribeck": {"excess": 0.2, "velocity": 0.05},
     "torque_bias": {"bias": 0.04},
+    "input_delay": {"delay": 0.0037},
 }
 BUILDS = {
     "plain": {},

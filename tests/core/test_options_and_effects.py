@@ -161,6 +161,60 @@ def test_stribeck_effect_raises_friction_at_low_speed():
     assert run.friction[-1] == pytest.approx(0.35, rel=1e-6)
 
 
+def delayed_mean(current, durations, delay):
+    """Mean over each sample of the held input delayed; 0 before the first."""
+    ends = np.cumsum(durations)
+    stamps = np.concatenate([[-1.0, 0.0], ends])
+    integral = np.concatenate([[0.0, 0.0], np.cumsum(current * durations)])
+    late = np.interp(np.concatenate([[0.0], ends]) - delay, stamps, integral)
+    return np.diff(late) / durations
+
+
+@pytest.mark.parametrize("delay", [0.0, 2.5e-4, 2e-3, 0.0213])
+@pytest.mark.parametrize("kind", ["coulomb", "hook"])
+def test_input_delay_is_the_mean_of_the_delayed_input(kind, delay):
+    rng = np.random.default_rng(3)
+    current = pulses(0.8, 1000)
+    durations = rng.uniform(2e-4, 2e-3, 1000)
+    late = delayed_mean(current, durations, delay)
+    run = motor(kind, effects={"input_delay": {"delay": delay}}).simulate(current, durations)
+    shifted = motor(kind).simulate(late, durations)
+    assert worst_share(run.position, shifted.position) < 1e-8
+    path = np.concatenate([[0.0], run.position])
+    both = motor(kind, effects={"input_delay": {"delay": delay / 2}, "torque_bias": {}})
+    driven = both.follow(path, current, durations)[0]
+    assert np.allclose(driven, delayed_mean(current, durations, delay / 2), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("delay", [0.0, 2.5e-4, 1e-3, 0.0213])
+def test_a_delay_is_differentiated_towards_longer_ones(delay):
+    # 1e-3 is two samples: a kink, as is 0.
+    current = pulses(0.8, 400)
+    path = np.linspace(0.0, 1.0, 401)
+    machine = motor("coulomb", effects={"input_delay": {"delay": delay}})
+    _, driven = machine.follow_sensitivity(path, current, 5e-4, ["effects.input_delay.delay"])
+    durations = np.full(400, 5e-4)
+    near, here = (delayed_mean(current, durations, d) for d in (delay + 1e-7, delay))
+    assert np.allclose(driven[0], (near - here) / 1e-7, rtol=0, atol=1e-4 * np.abs(driven).max())
+    if delay == 0.0:
+        assert np.array_equal(driven[0], (np.concatenate([[0.0], current[:-1]]) - current) / 5e-4)
+
+
+def test_inputs_on_their_way_are_part_of_the_state():
+    machine = motor("hook", effects={"input_delay": {"delay": 2.5e-3}})
+    assert machine.state["input_history"].tolist() == [[0.0, 0.0], [0.0, 2.5e-3]]
+    machine.simulate([0.1, 0.2, 0.3], 1e-3)
+    history = machine.state["input_history"]
+    assert history[:, 0].tolist() == [0.1, 0.1, 0.2, 0.3]
+    assert np.allclose(history[:, 1], [0.0, 5e-4, 1e-3, 1e-3], rtol=1e-12)
+    for broken in (history[1:], history[:-1], history * [1.0, -1.0]):
+        with pytest.raises(st.InputError, match="input_history"):
+            machine.state = machine.state | {"input_history": broken}
+    assert "input_history" not in motor("hook").state
+    machine.reset()
+    assert machine == motor("hook", effects={"input_delay": {"delay": 2.5e-3}})
+
+
 def test_virgin_curve_same_is_a_whole_branch_and_masing_half_of_one():
     keywords = {"hardening_coefficient": 0.0, "damping": 0.0, "breakaway": np.inf}
     distances = np.linspace(1e-6, 2e-3, 400)

@@ -1,7 +1,7 @@
 //! A motor: machine, friction and the way they run together.
 
 use crate::body::Body;
-use crate::drive::Drive;
+use crate::drive::{DelayLine, Drive};
 use crate::effects::{AnyEffect, EffectRecord, Effects, effect_record};
 use crate::error::{Error, Result};
 use crate::friction::{AnyState, Entry, Law, LawState, Statistics};
@@ -223,8 +223,19 @@ pub struct Running<S: Scalar> {
     pub state: AnyState<S>,
     /// Body.
     pub run: Run<S>,
+    /// Inputs on their way to the drive, where an effect delays them.
+    pub line: Option<DelayLine<S>>,
     /// Integrator.
     pub integrator: Integrator,
+}
+
+/// What of the input reaches the drive during a sample.
+#[inline]
+fn arriving<S: Scalar>(line: &mut Option<&mut DelayLine<S>>, input: f64, dt: f64) -> S {
+    match line {
+        None => S::constant(input),
+        Some(line) => line.pass(input, dt),
+    }
 }
 
 impl<S: Scalar> Running<S> {
@@ -234,7 +245,18 @@ impl<S: Scalar> Running<S> {
         let state = law.initial();
         let zero = S::constant(0.0);
         let run = machine.start(zero, zero);
-        Self { machine, law, state, run, integrator: spec.integrator }
+        let line = machine.effects.delay().map(DelayLine::new);
+        Self { machine, law, state, run, line, integrator: spec.integrator }
+    }
+
+    /// Goes on from where another motor is; its state depends on no parameter of this one.
+    pub fn resume(&mut self, from: &Running<f64>) {
+        self.state = from.state.lift();
+        self.run = from.run.lift();
+        self.machine.refresh(&mut self.run);
+        if let (Some(line), Some(from)) = (&mut self.line, &from.line) {
+            line.resume(from);
+        }
     }
 
     /// One sample.
@@ -248,7 +270,7 @@ impl<S: Scalar> Running<S> {
                 law,
                 state,
                 &mut self.run,
-                S::constant(input),
+                arriving(&mut self.line.as_mut(), input, dt),
                 S::constant(load),
                 dt,
                 parts,
@@ -266,6 +288,7 @@ impl<S: Scalar> Running<S> {
         dt: PerSample<'_>,
         mut row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
     ) -> Result<()> {
+        let mut line = self.line.as_mut();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let mut known = f64::NAN;
             let mut divided = 1;
@@ -289,7 +312,7 @@ impl<S: Scalar> Running<S> {
                         law,
                         state,
                         &mut self.run,
-                        S::constant(*input),
+                        arriving(&mut line, *input, dt),
                         S::constant(load.at(index)),
                         dt,
                         divided,
@@ -327,6 +350,7 @@ impl<S: Scalar> Running<S> {
         dt: PerSample<'_>,
         mut row: impl FnMut(usize, Efforts<S>),
     ) {
+        let mut line = self.line.as_mut();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             // Velocity at a stamp is the slope between its neighbours, so that what depends on
             // velocity is not half a sample late; at the first stamp there is only one side.
@@ -341,7 +365,8 @@ impl<S: Scalar> Running<S> {
                 if k % CHUNK == 0 {
                     state.make_room(CHUNK + CHUNK / 4);
                 }
-                let span = S::constant(dt.at(k));
+                let duration = dt.at(k);
+                let span = S::constant(duration);
                 let load = S::constant(load.at(k));
                 let before = velocity;
                 velocity = slope(k + 1);
@@ -351,8 +376,8 @@ impl<S: Scalar> Running<S> {
                 self.run.second_position = self.run.position;
                 self.run.second_velocity = velocity;
                 let at = self.run.situation();
-                let (effort, driven, ambient) =
-                    self.machine.efforts(&at, S::constant(inputs.at(k)), load);
+                let input = arriving(&mut line, inputs.at(k), duration);
+                let (effort, driven, ambient) = self.machine.efforts(&at, input, load);
                 let channels = self.machine.channels(&at, effort, load);
                 let displacement = S::constant(pair[1] - pair[0]);
                 let mut held = Along::new(displacement, span, (before, velocity), channels);
@@ -475,6 +500,9 @@ impl Motor {
     pub fn reset(&mut self, position: f64, velocity: f64) {
         self.running.state = self.running.law.initial();
         self.running.run = self.running.machine.start(position, velocity);
+        if let Some(line) = &mut self.running.line {
+            line.clear();
+        }
     }
 
     /// Replaces the friction state, from another model of the same law and parameters.
@@ -496,14 +524,19 @@ impl Motor {
             ("relaxed", number(run.relaxed)),
             ("ambient", number(run.ambient())),
         ];
+        entries.extend(self.running.line.as_ref().map(DelayLine::entry));
         entries.extend(with_state!(&self.running.state, |state| state.entries()));
         entries
     }
 
     /// Sets body and friction state from named entries.
     pub fn restore(&mut self, entries: &[(String, Entry)]) -> Result<()> {
+        let mut line = self.running.line.clone();
+        let own = |name: &str| {
+            BODY.contains(&name) || (line.is_some() && name == DelayLine::<f64>::ENTRY)
+        };
         let (body, law): (Vec<_>, Vec<_>) =
-            entries.iter().cloned().partition(|(name, _)| BODY.contains(&name.as_str()));
+            entries.iter().cloned().partition(|(name, _)| own(name.as_str()));
         let mut read = crate::friction::EntryReader::new(&body);
         let mut run = self.running.run;
         run.position = read.number("position", false)?;
@@ -513,11 +546,15 @@ impl Motor {
         run.second_position = read.number("second_position", false)?;
         run.second_velocity = read.number("second_velocity", false)?;
         run.relaxed = read.number("relaxed", false)?;
+        if let Some(line) = &mut line {
+            line.restore(&mut read)?;
+        }
         let state = self.running.law.restore(&law)?;
         // As it was, not recomputed: it belongs to the end of the last step, to the bit.
         run.set_ambient(read.number("ambient", false)?);
         self.running.state = state;
         self.running.run = run;
+        self.running.line = line;
         Ok(())
     }
 

@@ -1,8 +1,6 @@
 //! Exact derivatives by parameters: the same simulation over dual numbers.
 
 use crate::error::{Error, Result};
-use crate::friction::AnyState;
-use crate::integrate::Run;
 use crate::motor::{MotorSpec, PerSample, Running};
 use crate::scalar::{COLUMNS, Dual, Scalar};
 
@@ -15,14 +13,11 @@ pub struct Sensitivity {
     pub velocity: Vec<Vec<f64>>,
 }
 
-/// Body and friction state from which a differentiated run starts; it depends on no parameter.
-pub type Start<'a> = (&'a Run<f64>, &'a AnyState<f64>);
-
 /// Runs `visit` once for every [`COLUMNS`] of the parameters at these paths, with the motor whose
 /// parameters are seeded, the index of the first of them and their number.
 fn passes(
     spec: &MotorSpec,
-    start: Start<'_>,
+    start: &Running<f64>,
     paths: &[String],
     mut visit: impl FnMut(&mut Running<Dual>, usize, usize) -> Result<()>,
 ) -> Result<()> {
@@ -45,18 +40,16 @@ fn passes(
             })
             .collect();
         let mut running = Running::new(spec, &values);
-        running.state = start.1.lift();
-        running.run = start.0.lift();
-        running.machine.refresh(&mut running.run);
+        running.resume(start);
         visit(&mut running, pass * COLUMNS, seeded.len())?;
     }
     Ok(())
 }
 
-/// Simulates from a given state and differentiates by the parameters at these paths.
+/// Simulates from the state of a motor, which depends on no parameter, and differentiates by the parameters at these paths.
 pub fn sensitivity(
     spec: &MotorSpec,
-    start: Start<'_>,
+    start: &Running<f64>,
     inputs: &[f64],
     load: PerSample<'_>,
     dt: PerSample<'_>,
@@ -88,7 +81,7 @@ pub struct EffortSensitivity {
 /// an effort residual but its inertia term.
 pub fn follow_sensitivity(
     spec: &MotorSpec,
-    start: Start<'_>,
+    start: &Running<f64>,
     positions: &[f64],
     inputs: PerSample<'_>,
     load: PerSample<'_>,

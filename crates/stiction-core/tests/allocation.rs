@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use common::{law, motor};
 use stiction_core::friction::{Channels, LAWS};
 use stiction_core::model::{FrictionModel, LawSpec};
+use stiction_core::motor::{EffectSpec, Motor, MotorSpec};
 
 static ALLOCATIONS: AtomicU64 = AtomicU64::new(0);
 
@@ -50,4 +51,18 @@ fn no_step_allocates() {
         assert!(!hooked || statistics.breakaways > 0, "{}: {statistics:?}", record.name);
         assert_eq!(after - before, 0, "{} allocates", record.name);
     }
+    let delay = EffectSpec::new("input_delay", &[("delay".to_owned(), 0.0123)]).unwrap();
+    let law = law("coulomb", &[("coulomb", 0.5)], &[]);
+    let spec = MotorSpec { effects: vec![delay], ..MotorSpec::new(0.0076, 1.0, law) };
+    let mut late = Motor::new(spec).unwrap();
+    let mut run = |samples: i32| {
+        let before = ALLOCATIONS.load(Ordering::Relaxed);
+        for k in 0..samples {
+            late.step(0.8 * (3e-3 * f64::from(k)).sin(), 0.0, 1e-4).unwrap();
+        }
+        ALLOCATIONS.load(Ordering::Relaxed) - before
+    };
+    // Room for the inputs on their way is found while the delay fills up, then no more.
+    run(200);
+    assert_eq!(run(20_000), 0, "a delay allocates");
 }

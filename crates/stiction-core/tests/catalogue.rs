@@ -218,14 +218,14 @@ fn gradients_equal_central_differences_on_the_same_branches() {
                 ..MotorSpec::new(0.0076 * stream.log(0.5, 2.0), 1.0, drawn(law, &mut stream))
             };
             let inputs = excitation(150);
-            let dt = 5e-4;
+            // No delay is a whole number of these: there its derivative is that to one side.
+            let dt = 4.7e-4;
             let parameters = spec.parameters();
             let paths: Vec<String> = parameters.iter().map(|(path, _)| path.clone()).collect();
             let fresh = Motor::new(spec.clone()).unwrap();
-            let start = (&fresh.running().run, &fresh.running().state);
             let exact = sensitivity(
                 &spec,
-                start,
+                fresh.running(),
                 &inputs,
                 PerSample::Same(0.0),
                 PerSample::Same(dt),

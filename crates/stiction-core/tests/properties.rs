@@ -209,11 +209,10 @@ fn across_breakaway(dt: f64) -> (f64, f64) {
             let breakaway = low + (high - low) * (f64::from(k) + 0.5) / f64::from(points);
             let spec = spec(breakaway);
             let fresh = Motor::new(spec.clone()).unwrap();
-            let start = (&fresh.running().run, &fresh.running().state);
             let path = ["friction.breakaway".to_owned()];
             stiction_core::sensitivity::sensitivity(
                 &spec,
-                start,
+                fresh.running(),
                 &inputs,
                 PerSample::Same(0.0),
                 PerSample::Same(dt),

@@ -230,9 +230,15 @@ impl Motor {
         let (current, dt, load) = (current.per_sample()?, dt.per_sample()?, load.per_sample()?);
         let rows = py.detach(|| {
             let core = self.lock().clone();
-            let running = core.running();
-            let start = (&running.run, &running.state);
-            follow_sensitivity(core.spec(), start, position, current, load, dt, &parameters)
+            follow_sensitivity(
+                core.spec(),
+                core.running(),
+                position,
+                current,
+                load,
+                dt,
+                &parameters,
+            )
         });
         let rows = rows.or_input_error(py)?;
         let array = |rows: &[Vec<f64>]| {
@@ -265,9 +271,7 @@ impl Motor {
         let (dt, load) = (dt.per_sample()?, load.per_sample()?);
         let result = py.detach(|| {
             let core = self.lock().clone();
-            let running = core.running();
-            let start = (&running.run, &running.state);
-            sensitivity(core.spec(), start, current, load, dt, &parameters)
+            sensitivity(core.spec(), core.running(), current, load, dt, &parameters)
         });
         let result = result.or_input_error(py)?;
         Ok((

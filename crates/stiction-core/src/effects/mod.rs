@@ -16,6 +16,8 @@ pub enum Hook {
     AddedEffort,
     /// Changes the way from input to effort.
     InputMap,
+    /// Lets the input arrive late.
+    InputDelay,
     /// Changes what the position sensor reads.
     SensorMap,
     /// Lets the friction state relax: a plastic module in series with the law.
@@ -31,6 +33,7 @@ impl Hook {
             Self::FrictionLevel => "friction level",
             Self::AddedEffort => "added effort",
             Self::InputMap => "input map",
+            Self::InputDelay => "input delay",
             Self::SensorMap => "sensor map",
             Self::StateRelaxation => "state relaxation",
             Self::SecondMass => "second mass",
@@ -119,6 +122,11 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn input(&self, input: S, _at: &Situation<S>) -> S {
         input
     }
+    /// How late the input arrives, in s. A delay that is there is followed even where it is 0, so
+    /// that derivatives see it.
+    fn delay(&self) -> Option<S> {
+        None
+    }
     /// What the sensor reads at this position.
     #[inline]
     fn sensor(&self, position: S) -> S {
@@ -193,6 +201,7 @@ macro_rules! effects {
 effects! {
     cogging => Cogging,
     direction_asymmetry => DirectionAsymmetry,
+    input_delay => InputDelay,
     position_dependent_friction => PositionDependentFriction,
     stribeck => Stribeck,
     torque_bias => TorqueBias,
@@ -228,18 +237,21 @@ pub struct Effects<S: Scalar> {
     efforts: Vec<AnyEffect<S>>,
     inputs: Vec<AnyEffect<S>>,
     sensors: Vec<AnyEffect<S>>,
+    delay: Option<S>,
     relaxation: Option<Relaxation<S>>,
     second_mass: Option<SecondMass<S>>,
 }
 
 impl<S: Scalar> Effects<S> {
-    /// Sorts effects by hook. Of several relaxations or second masses the last one counts.
+    /// Sorts effects by hook. Delays add up; of several relaxations or second masses the last one
+    /// counts.
     pub fn new(effects: impl IntoIterator<Item = AnyEffect<S>>) -> Self {
         let mut sorted = Self {
             levels: Vec::new(),
             efforts: Vec::new(),
             inputs: Vec::new(),
             sensors: Vec::new(),
+            delay: None,
             relaxation: None,
             second_mass: None,
         };
@@ -249,6 +261,11 @@ impl<S: Scalar> Effects<S> {
                     Hook::FrictionLevel => sorted.levels.push(effect.clone()),
                     Hook::AddedEffort => sorted.efforts.push(effect.clone()),
                     Hook::InputMap => sorted.inputs.push(effect.clone()),
+                    Hook::InputDelay => {
+                        let added = with_effect!(&effect, |e| e.delay());
+                        let sum = |delay| sorted.delay.map_or(delay, |other| other + delay);
+                        sorted.delay = added.map(sum).or(sorted.delay);
+                    }
                     Hook::SensorMap => sorted.sensors.push(effect.clone()),
                     Hook::StateRelaxation => {
                         sorted.relaxation =
@@ -297,6 +314,11 @@ impl<S: Scalar> Effects<S> {
     #[inline]
     pub fn sensor(&self, position: S) -> S {
         self.sensors.iter().fold(position, |x, effect| with_effect!(effect, |e| e.sensor(x)))
+    }
+
+    /// How late the input arrives, where an effect delays it.
+    pub fn delay(&self) -> Option<S> {
+        self.delay
     }
 
     /// Plastic module in series with the law.
