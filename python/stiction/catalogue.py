@@ -8,7 +8,15 @@ from typing import Any
 
 from . import _native
 
-__all__ = ["EffectRecord", "LawRecord", "OptionRecord", "ParameterRecord", "effects", "laws"]
+__all__ = [
+    "EffectRecord",
+    "LawRecord",
+    "OptionRecord",
+    "ParameterRecord",
+    "ShapeRecord",
+    "effects",
+    "laws",
+]
 
 
 @dataclass(frozen=True)
@@ -58,17 +66,40 @@ class LawRecord:
 
 
 @dataclass(frozen=True)
+class ShapeRecord:
+    """A parameter in which an effect is not linear, and where a diagnosis looks for it.
+
+    ``scale`` says what ``grid`` is measured in: "one", the values themselves; "speed", the way from
+    the lowest usual speed of a session (0) to the highest (1), logarithmically; "order", what the
+    range of motion can show. A refit varies it where ``fitted``.
+    """
+
+    parameter: str
+    scale: str
+    grid: tuple[float, ...]
+    fitted: bool
+
+
+@dataclass(frozen=True)
 class EffectRecord:
-    """An effect that a plant may have beside its law."""
+    """An effect that a plant may have beside its law.
+
+    ``law_terms`` are the parameters of laws that are this effect: where a plant states one of them,
+    its law has the effect already.
+    """
 
     name: str
     summary: str
+    means: str
+    remedy: str
     family: str
     coordinate: str
     channels: tuple[str, ...]
     look_alikes: tuple[str, ...]
     experiment: str
     gains: tuple[str, ...]
+    shapes: tuple[ShapeRecord, ...]
+    law_terms: tuple[str, ...]
     hooks: tuple[str, ...]
     parameters: tuple[ParameterRecord, ...]
 
@@ -108,12 +139,19 @@ def effects() -> tuple[EffectRecord, ...]:
         EffectRecord(
             name=entry["name"],
             summary=entry["summary"],
+            means=entry["means"],
+            remedy=entry["remedy"],
             family=entry["family"],
             coordinate=entry["coordinate"],
             channels=tuple(entry["channels"]),
             look_alikes=tuple(entry["look_alikes"]),
             experiment=entry["experiment"],
             gains=tuple(entry["gains"]),
+            shapes=tuple(
+                ShapeRecord(s["parameter"], s["scale"], tuple(s["grid"]), s["fitted"])
+                for s in entry["shapes"]
+            ),
+            law_terms=tuple(entry["law_terms"]),
             hooks=tuple(entry["hooks"]),
             parameters=_parameters(entry["parameters"]),
         )

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use common::{Stream, drawn, motor, positions, run};
-use stiction_core::effects::{EFFECTS, neutral_values};
+use stiction_core::effects::{EFFECTS, Scale, neutral_values};
 use stiction_core::friction::{Channels, LAWS, Statistics};
 use stiction_core::model::{FrictionModel, LawSpec};
 use stiction_core::motor::{EffectSpec, Motor, MotorSpec, PerSample};
@@ -57,6 +57,21 @@ fn parameters_are_documented_and_their_defaults_are_allowed() {
         for other in effect.facts.look_alikes {
             assert_ne!(other, &effect.name);
         }
+        let shapes: Vec<&str> = effect.facts.shapes.iter().map(|shape| shape.parameter).collect();
+        for spec in effect.parameters {
+            let (gain, shape) =
+                (effect.facts.gains.contains(&spec.name), shapes.contains(&spec.name));
+            assert!(gain != shape, "{}.{} is a gain or has a grid", effect.name, spec.name);
+        }
+        for shape in effect.facts.shapes {
+            assert!(effect.parameters.iter().any(|p| p.name == shape.parameter));
+            assert_eq!(shape.grid.is_empty(), shape.scale == Scale::Order, "{}", effect.name);
+        }
+        for term in effect.facts.law_terms {
+            let known = LAWS.iter().any(|law| law.parameters.iter().any(|p| p.name == *term));
+            assert!(known, "{}: no law has {term}", effect.name);
+        }
+        assert!(!effect.facts.means.is_empty() && !effect.facts.remedy.is_empty());
     }
 }
 

@@ -73,7 +73,20 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         dict.set_item("channels", effect.facts.channels.to_vec())?;
         dict.set_item("look_alikes", effect.facts.look_alikes.to_vec())?;
         dict.set_item("experiment", effect.facts.experiment)?;
+        dict.set_item("means", effect.facts.means)?;
+        dict.set_item("remedy", effect.facts.remedy)?;
         dict.set_item("gains", effect.facts.gains.to_vec())?;
+        dict.set_item("law_terms", effect.facts.law_terms.to_vec())?;
+        let shapes = PyList::empty(py);
+        for shape in effect.facts.shapes {
+            let entry = PyDict::new(py);
+            entry.set_item("parameter", shape.parameter)?;
+            entry.set_item("scale", shape.scale.word())?;
+            entry.set_item("grid", shape.grid.to_vec())?;
+            entry.set_item("fitted", shape.fitted)?;
+            shapes.append(entry)?;
+        }
+        dict.set_item("shapes", shapes)?;
         let hooks: Vec<&str> = effect.hooks.iter().map(|hook| hook.word()).collect();
         dict.set_item("hooks", hooks)?;
         dict.set_item("parameters", parameters(py, effect.parameters, &[])?)?;

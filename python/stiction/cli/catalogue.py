@@ -81,6 +81,8 @@ def effects(
     record = _find(name, records, "effect")
     lines = [
         f"{record.name}: {record.summary}",
+        f"means: {record.means}",
+        f"try: {record.remedy}",
         f"enters at: {listed(record.hooks)}",
         f"shows in: {record.coordinate}",
         f"looks like: {listed(record.look_alikes)}",

@@ -1,6 +1,6 @@
 //! Effort that depends on position alone.
 
-use super::{Effect, EffectFacts, Hook, Situation};
+use super::{Effect, EffectFacts, Hook, Scale, Shape, Situation};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -29,12 +29,18 @@ impl<S: Scalar> Effect<S> for Cogging<S> {
     const HOOKS: &'static [Hook] = &[Hook::AddedEffort];
     const FACTS: EffectFacts = EffectFacts {
         summary: "effort that repeats with position, whatever the direction",
+        means: "the rotor is pulled towards preferred positions, so slow motion and holding depend on \
+                where the machine stands",
+        remedy: "feed the fitted effort forward over position, or look for what repeats that often a \
+                 turn: magnets and slots, teeth, the screw's lead",
         class: "cogging",
         coordinate: "order spectrum over position, not odd in direction",
         channels: &[],
         look_alikes: &["torque_bias"],
         experiment: "slow full turns both ways",
         gains: &["cosine", "sine"],
+        shapes: &[Shape { parameter: "order", scale: Scale::Order, grid: &[], fitted: true }],
+        law_terms: &[],
     };
 
     fn build(values: &[S]) -> Self {

@@ -1,6 +1,6 @@
 //! Friction that differs between the two directions.
 
-use super::{Effect, EffectFacts, Hook, LevelChange, Situation};
+use super::{Effect, EffectFacts, Hook, LevelChange, Scale, Shape, Situation};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -31,12 +31,17 @@ impl<S: Scalar> Effect<S> for DirectionAsymmetry<S> {
     const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
     const FACTS: EffectFacts = EffectFacts {
         summary: "friction is higher in one direction than in the other",
+        means: "a compensation with one friction level for both directions is wrong in each",
+        remedy: "give the compensation a level for each direction; look for one-sided preload, a seal \
+                 lip or a gear that drives one way more easily",
         class: "offset",
         coordinate: "sign of speed; gone in small loops",
         channels: &[],
         look_alikes: &["torque_bias"],
         experiment: "pre-sliding loops and rests at zero input; a change of load",
         gains: &["coulomb", "viscous"],
+        shapes: &[Shape { parameter: "velocity", scale: Scale::Speed, grid: &[-0.2], fitted: false }],
+        law_terms: &[],
     };
 
     fn build(values: &[S]) -> Self {

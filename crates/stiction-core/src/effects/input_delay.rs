@@ -31,12 +31,17 @@ impl<S: Scalar> Effect<S> for InputDelay<S> {
     const HOOKS: &'static [Hook] = &[Hook::InputDelay];
     const FACTS: EffectFacts = EffectFacts {
         summary: "effort follows the input late",
+        means: "the controller acts on a machine that answers later than it thinks: less phase margin",
+        remedy: "put the delay into the controller's model, or look for a slow bus, a filter on the \
+                 command or stamps from another clock",
         class: "lag",
         coordinate: "rate of the input",
         channels: &[],
         look_alikes: &[],
         experiment: "chirp of the input above 1/(10 times the delay)",
         gains: &["delay"],
+        shapes: &[],
+        law_terms: &[],
     };
 
     fn build(values: &[S]) -> Self {

@@ -76,11 +76,50 @@ pub struct SecondMass<S> {
     pub damping: S,
 }
 
+/// What the values on the grid of a shape parameter are measured in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Themselves.
+    One,
+    /// Way from the lowest usual speed of the session (0) to the highest (1), logarithmically.
+    Speed,
+    /// Periods over position: the grid is that which the range of motion can show.
+    Order,
+}
+
+impl Scale {
+    /// The word used in the catalogue.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::One => "one",
+            Self::Speed => "speed",
+            Self::Order => "order",
+        }
+    }
+}
+
+/// A parameter in which an effect is not linear, with the values at which it is looked for.
+#[derive(Debug, Clone, Copy)]
+pub struct Shape {
+    /// Which parameter.
+    pub parameter: &'static str,
+    /// What the grid is measured in.
+    pub scale: Scale,
+    /// Values tried; empty where the scale brings its own.
+    pub grid: &'static [f64],
+    /// Whether a refit varies it.
+    pub fitted: bool,
+}
+
 /// What diagnosis needs to know of an effect.
 #[derive(Debug, Clone, Copy)]
 pub struct EffectFacts {
     /// One sentence: what it is.
     pub summary: &'static str,
+    /// What follows for who runs the machine.
+    pub means: &'static str,
+    /// What to do about it, and where to look for its source.
+    pub remedy: &'static str,
     /// Family of effects that look alike on ordinary data.
     pub class: &'static str,
     /// Coordinate in which the residual shows it.
@@ -93,6 +132,10 @@ pub struct EffectFacts {
     pub experiment: &'static str,
     /// Its parameters in which it is linear and which are 0 at the neutral point.
     pub gains: &'static [&'static str],
+    /// Its other parameters, each with a grid.
+    pub shapes: &'static [Shape],
+    /// Parameters of laws that are this effect: where a plant states one, the law has it already.
+    pub law_terms: &'static [&'static str],
 }
 
 /// An effect: hooks that it does not use keep their neutral default.

@@ -1,6 +1,6 @@
 //! Friction that varies with position.
 
-use super::{Effect, EffectFacts, Hook, LevelChange, Situation};
+use super::{Effect, EffectFacts, Hook, LevelChange, Scale, Shape, Situation};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -29,12 +29,17 @@ impl<S: Scalar> Effect<S> for PositionDependentFriction<S> {
     const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
     const FACTS: EffectFacts = EffectFacts {
         summary: "friction that repeats with position",
+        means: "the machine runs tight and loose in turn, always at the same places",
+        remedy: "tabulate the friction level over position; look for a bent shaft or screw, a rail out \
+                 of line, a bearing or seal that binds",
         class: "angle",
         coordinate: "position, odd in direction",
         channels: &[],
         look_alikes: &["torque_constant_ripple"],
         experiment: "sine of high acceleration: the input varies at the same position",
         gains: &["cosine", "sine"],
+        shapes: &[Shape { parameter: "order", scale: Scale::Order, grid: &[], fitted: true }],
+        law_terms: &[],
     };
 
     fn build(values: &[S]) -> Self {

@@ -1,6 +1,6 @@
 //! Friction that is higher at low speed.
 
-use super::{Effect, EffectFacts, Hook, LevelChange, Situation};
+use super::{Effect, EffectFacts, Hook, LevelChange, Scale, Shape, Situation};
 use crate::friction::elements::stribeck::fall;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -30,12 +30,25 @@ impl<S: Scalar> Effect<S> for Stribeck<S> {
     const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
     const FACTS: EffectFacts = EffectFacts {
         summary: "friction falls from a level at rest to a lower one as speed rises",
+        means: "friction that falls with speed makes slow motion jerk: stick-slip and hunting",
+        remedy: "compensate with the fitted curve, move faster through the fall, or change the \
+                 lubricant",
         class: "breakaway",
         coordinate: "logarithm of speed, odd in direction",
         channels: &[],
         look_alikes: &["dwell_strengthening", "rate_dependent_breakaway"],
         experiment: "two-way constant-speed ramps over three decades, without rests",
         gains: &["excess"],
+        shapes: &[
+            Shape {
+                parameter: "velocity",
+                scale: Scale::Speed,
+                grid: &[0.1, 0.25, 0.4, 0.55, 0.7, 0.85],
+                fitted: true,
+            },
+            Shape { parameter: "exponent", scale: Scale::One, grid: &[2.0], fitted: false },
+        ],
+        law_terms: &["stribeck_velocity", "stribeck_exponent"],
     };
 
     fn build(values: &[S]) -> Self {

@@ -25,12 +25,17 @@ impl<S: Scalar> Effect<S> for TorqueBias<S> {
     const HOOKS: &'static [Hook] = &[Hook::AddedEffort];
     const FACTS: EffectFacts = EffectFacts {
         summary: "constant effort, at rest as well as in motion",
+        means: "a constant effort pulls one way, at rest too",
+        remedy: "add it as a feed-forward; look for the amplifier's or current sensor's offset, a \
+                 spring, a cable, a weight",
         class: "offset",
         coordinate: "everywhere, also at rest",
         channels: &[],
         look_alikes: &["direction_asymmetry"],
         experiment: "pre-sliding loops and rests at zero input; the machine mounted the other way round",
         gains: &["bias"],
+        shapes: &[],
+        law_terms: &[],
     };
 
     fn build(values: &[S]) -> Self {

@@ -25,12 +25,16 @@ impl<S: Scalar> Effect<S> for ViscousQuadratic<S> {
     const HOOKS: &'static [Hook] = &[Hook::AddedEffort];
     const FACTS: EffectFacts = EffectFacts {
         summary: "friction that grows with the square of speed",
+        means: "drag at high speed is more than proportional to it",
+        remedy: "add the fitted term to the feed-forward; look for churned grease, a fan, eddy currents",
         class: "viscous_quadratic",
         coordinate: "high speed, odd in direction",
         channels: &[],
         look_alikes: &[],
         experiment: "top speed at least three times the normal one",
         gains: &["quadratic"],
+        shapes: &[],
+        law_terms: &[],
     };
 
     fn build(values: &[S]) -> Self {
