@@ -1,6 +1,6 @@
 """What the compiled module holds; checked against the binary by stubtest."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, Final, final
 
 import numpy as np
@@ -105,6 +105,16 @@ class Motor:
         parameters: Sequence[str],
         *,
         load: npt.ArrayLike | None = None,
+    ) -> tuple[_Floats, _Floats]: ...
+    def signatures(
+        self,
+        position: npt.ArrayLike,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        candidates: Iterable[tuple[str, dict[str, float]]],
+        *,
+        load: npt.ArrayLike | None = None,
+        threads: int = 1,
     ) -> tuple[_Floats, _Floats]: ...
     def sensitivity(
         self,

@@ -606,6 +606,31 @@ REFUSED = {
         lambda: machine().sensitivity([0.1], DT, []),
         ["dt"],
     ),
+    "signature of an unknown effect": (
+        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [("coging", {})]),
+        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [("cogging", {})]),
+        ["coging", "did you mean 'cogging'"],
+    ),
+    "signature at a gain": (
+        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [("cogging", {"sine": 0.1})]),
+        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [("cogging", {"order": 3.0})]),
+        ["sine = 0.1", "gain", "order"],
+    ),
+    "signature of a name alone": (
+        lambda: machine().signatures([0.0, 0.1], [0.1], DT, ["cogging"]),
+        lambda: machine().signatures([0.0, 0.1], [0.1], DT, (("cogging", {}),)),
+        ["candidates[0]", "cogging"],
+    ),
+    "signatures of nothing iterable": (
+        lambda: machine().signatures([0.0, 0.1], [0.1], DT, 3),
+        lambda: machine().signatures([0.0, 0.1], [0.1], DT, []),
+        ["candidates is 3"],
+    ),
+    "signatures on no thread": (
+        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [], threads=0),
+        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [], threads=1),
+        ["threads = 0"],
+    ),
 }
 
 

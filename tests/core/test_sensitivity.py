@@ -279,3 +279,77 @@ def test_efforts_along_a_motion_are_differentiated_by_every_parameter(kind):
         assert np.abs(exact - near)[smooth].max() <= 1e-5 * max(scale, 1e-9), name
         compared += 1
     assert compared > 5
+
+
+CANDIDATES = [
+    ("stribeck", {"velocity": 0.02}),
+    ("cogging", {"order": 7.0}),
+    ("stribeck", {"velocity": 0.3, "exponent": 1.0}),
+    ("input_delay", {}),
+    ("torque_bias", {}),
+    ("cogging", {}),
+    ("direction_asymmetry", {}),
+    ("position_dependent_friction", {"order": 2.0}),
+    ("viscous_quadratic", {}),
+]
+
+
+def signature_alone(machine, name, shape, gain, path, current, load):
+    """Signature of one gain from a motor that has the effect, at the gain 0."""
+    law, keywords = machine.friction_settings()
+    settings = machine.settings()
+    # An effect of the same name would hide the candidate.
+    settings["effects"] = {k: v for k, v in settings["effects"].items() if k != name}
+    settings["effects"][name] = shape
+    other = st.Motor(friction=st.FrictionModel(law, **keywords), **settings)
+    parameter = f"effects.{name}.{gain}"
+    needed, driven = other.follow_sensitivity(path, current, 1e-3, [parameter], load=load)
+    return needed[0], driven[0]
+
+
+@pytest.mark.parametrize("kind", CONTACTS)
+def test_signatures_are_the_derivatives_by_each_gain_alone(kind):
+    machine = motor(kind, effects={"viscous_quadratic": {}}, gravity_amplitude=0.05)
+    time = np.arange(501) * 1e-3
+    path = 0.02 * np.sin(9.0 * time) + 1e-3 * np.sin(41.0 * time)
+    current, load = np.cos(7.0 * time[:-1]), 0.1 * np.sin(3.0 * time[:-1])
+    kept = machine.copy()
+    needed, driven = machine.signatures(path, current, 1e-3, CANDIDATES, load=load)
+    gains = {effect.name: effect.gains for effect in st.effects()}
+    rows = [(name, shape, gain) for name, shape in CANDIDATES for gain in gains[name]]
+    assert machine == kept
+    assert needed.shape == driven.shape == (len(rows), 500)
+    for k, row in enumerate(rows):
+        alone = signature_alone(machine, *row, path, current, load)
+        assert np.array_equal(needed[k], alone[0]), row
+        assert np.array_equal(driven[k], alone[1]), row
+    assert np.abs(needed).max() > 0.0
+    assert np.abs(driven[[name == "input_delay" for name, *_ in rows]]).max() > 0.0
+
+
+def test_signatures_stand_beside_an_effect_of_the_same_name():
+    own = {"stribeck": {"excess": 0.3}, "input_delay": {"delay": 2.5e-3}}
+    machine = motor("hook", effects=own)
+    time = np.arange(501) * 1e-3
+    path, current = 0.02 * np.sin(9.0 * time), np.cos(7.0 * time[:-1])
+    needed, driven = machine.signatures(
+        path, current, 1e-3, [("stribeck", {}), ("input_delay", {})]
+    )
+    paths = ["effects.stribeck.excess", "effects.input_delay.delay"]
+    # Both effects are linear in their gains, two delays add up: the derivative is that of the own.
+    also_needed, also_driven = machine.follow_sensitivity(path, current, 1e-3, paths)
+    scale = np.abs(also_needed).max()
+    assert np.allclose(needed, also_needed, rtol=0, atol=1e-12 * scale)
+    assert np.allclose(driven, also_driven, rtol=0, atol=1e-12 * np.abs(also_driven).max())
+
+
+def test_signatures_are_the_same_for_any_number_of_threads():
+    machine = motor("hook")
+    time = np.arange(801) * 1e-3
+    path, current = 0.02 * np.sin(9.0 * time), np.cos(7.0 * time[:-1])
+    candidates = [("cogging", {"order": float(k)}) for k in range(1, 30)]
+    one = machine.signatures(path, current, 1e-3, candidates)
+    for threads in (2, 5):
+        other = machine.signatures(path, current, 1e-3, candidates, threads=threads)
+        assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+    assert machine.signatures(path, current, 1e-3, [])[0].shape == (0, 800)

@@ -87,6 +87,21 @@ pub enum Error {
         /// What is wrong with it.
         problem: String,
     },
+    /// A gain stated where every gain is 0.
+    #[error(
+        "{gain} = {given} of effect {effect} is a gain, and signatures are taken at the gain 0; \
+         allowed is {shapes}; leave {gain} out"
+    )]
+    Gain {
+        /// The effect.
+        effect: String,
+        /// Name of its gain.
+        gain: String,
+        /// The value as given.
+        given: f64,
+        /// Its parameters that are no gains.
+        shapes: String,
+    },
     /// Array lengths that do not fit.
     #[error("{name} has {given} values where {wanted} are needed; give one value a sample")]
     Length {

@@ -34,6 +34,23 @@ impl EffectSpec {
         let record = effect_record(name)?;
         Ok(Self { record, values: resolve(name, record.parameters, stated)? })
     }
+
+    /// The effect called `name` at its neutral point, in the shape stated.
+    pub fn candidate(name: &str, shape: &[(String, f64)]) -> Result<Self> {
+        let effect = Self::new(name, shape)?;
+        let gains = effect.record.facts.gains;
+        if let Some((gain, value)) = shape.iter().find(|(word, _)| gains.contains(&word.as_str())) {
+            let shapes = effect.record.parameters.iter().map(|p| p.name);
+            let shapes: Vec<&str> = shapes.filter(|word| !gains.contains(word)).collect();
+            return Err(Error::Gain {
+                effect: name.to_owned(),
+                gain: gain.clone(),
+                given: *value,
+                shapes: if shapes.is_empty() { "nothing".to_owned() } else { shapes.join(", ") },
+            });
+        }
+        Ok(effect)
+    }
 }
 
 /// Everything that defines a motor, in plain numbers.

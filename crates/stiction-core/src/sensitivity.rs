@@ -1,7 +1,10 @@
 //! Exact derivatives by parameters: the same simulation over dual numbers.
 
+use std::sync::{Mutex, PoisonError};
+
+use crate::effects::EffectRecord;
 use crate::error::{Error, Result};
-use crate::motor::{MotorSpec, PerSample, Running};
+use crate::motor::{EffectSpec, MotorSpec, PerSample, Running};
 use crate::scalar::{COLUMNS, Dual, Scalar};
 
 /// Derivatives of position and velocity at the end of every sample.
@@ -13,6 +16,22 @@ pub struct Sensitivity {
     pub velocity: Vec<Vec<f64>>,
 }
 
+/// The motor with the parameters at these places seeded, in the state of another.
+fn seeded(
+    spec: &MotorSpec,
+    start: &Running<f64>,
+    parameters: &[f64],
+    places: &[usize],
+) -> Running<Dual> {
+    let mut values: Vec<Dual> = parameters.iter().map(|value| Dual::constant(*value)).collect();
+    for (column, place) in places.iter().enumerate() {
+        values[*place] = Dual::variable(parameters[*place], column);
+    }
+    let mut running = Running::new(spec, &values);
+    running.resume(start);
+    running
+}
+
 /// Runs `visit` once for every [`COLUMNS`] of the parameters at these paths, with the motor whose
 /// parameters are seeded, the index of the first of them and their number.
 fn passes(
@@ -21,27 +40,18 @@ fn passes(
     paths: &[String],
     mut visit: impl FnMut(&mut Running<Dual>, usize, usize) -> Result<()>,
 ) -> Result<()> {
-    let parameters = spec.parameters();
+    let (known, values): (Vec<String>, Vec<f64>) = spec.parameters().into_iter().unzip();
     let wanted = paths
         .iter()
         .map(|path| {
-            parameters.iter().position(|(known, _)| known == path).ok_or_else(|| {
-                Error::unknown("parameter path", path, parameters.iter().map(|(p, _)| p.as_str()))
+            known.iter().position(|other| other == path).ok_or_else(|| {
+                Error::unknown("parameter path", path, known.iter().map(String::as_str))
             })
         })
         .collect::<Result<Vec<usize>>>()?;
-    for (pass, seeded) in wanted.chunks(COLUMNS).enumerate() {
-        let values: Vec<Dual> = parameters
-            .iter()
-            .enumerate()
-            .map(|(index, (_, value))| match seeded.iter().position(|own| *own == index) {
-                Some(column) => Dual::variable(*value, column),
-                None => Dual::constant(*value),
-            })
-            .collect();
-        let mut running = Running::new(spec, &values);
-        running.resume(start);
-        visit(&mut running, pass * COLUMNS, seeded.len())?;
+    for (pass, places) in wanted.chunks(COLUMNS).enumerate() {
+        let mut running = seeded(spec, start, &values, places);
+        visit(&mut running, pass * COLUMNS, places.len())?;
     }
     Ok(())
 }
@@ -71,10 +81,62 @@ pub fn sensitivity(
 /// Derivatives of the efforts along given positions.
 #[derive(Debug, Clone)]
 pub struct EffortSensitivity {
-    /// ∂(friction − gravity and added efforts)/∂parameter, one vector of samples for each.
-    pub needed: Vec<Vec<f64>>,
+    /// ∂(friction − gravity and added efforts)/∂parameter: all samples of the first, then all of
+    /// the next.
+    pub needed: Vec<f64>,
     /// ∂(effort of the drive)/∂parameter, likewise.
-    pub driven: Vec<Vec<f64>>,
+    pub driven: Vec<f64>,
+}
+
+/// A motion that was measured or prescribed, and what acted meanwhile.
+#[derive(Debug, Clone, Copy)]
+pub struct MeasuredMotion<'a> {
+    /// Positions, one more than there are samples.
+    pub positions: &'a [f64],
+    /// Inputs.
+    pub inputs: PerSample<'a>,
+    /// External efforts.
+    pub load: PerSample<'a>,
+    /// Durations.
+    pub dt: PerSample<'a>,
+}
+
+impl EffortSensitivity {
+    fn zeros(parameters: usize, motion: &MeasuredMotion<'_>) -> Self {
+        let size = parameters * motion.samples();
+        Self { needed: vec![0.0; size], driven: vec![0.0; size] }
+    }
+
+    /// The rows of each pass, one after the other.
+    fn passes(
+        &mut self,
+        motion: &MeasuredMotion<'_>,
+    ) -> impl Iterator<Item = (&mut [f64], &mut [f64])> {
+        let size = (COLUMNS * motion.samples()).max(1);
+        self.needed.chunks_mut(size).zip(self.driven.chunks_mut(size))
+    }
+}
+
+impl MeasuredMotion<'_> {
+    fn samples(&self) -> usize {
+        self.positions.len().saturating_sub(1)
+    }
+
+    /// Follows the motion and fills the rows of a pass.
+    fn differentiate(
+        &self,
+        running: &mut Running<Dual>,
+        (needed, driven): (&mut [f64], &mut [f64]),
+    ) {
+        let (samples, columns) = (self.samples(), needed.len() / self.samples().max(1));
+        running.follow(self.positions, self.inputs, self.load, self.dt, |k, efforts| {
+            let short = efforts.friction - efforts.ambient;
+            for column in 0..columns {
+                needed[column * samples + k] = Scalar::partial(short, column);
+                driven[column * samples + k] = Scalar::partial(efforts.driven, column);
+            }
+        });
+    }
 }
 
 /// Follows given positions and differentiates the efforts by the parameters at these paths: all of
@@ -82,23 +144,82 @@ pub struct EffortSensitivity {
 pub fn follow_sensitivity(
     spec: &MotorSpec,
     start: &Running<f64>,
-    positions: &[f64],
-    inputs: PerSample<'_>,
-    load: PerSample<'_>,
-    dt: PerSample<'_>,
+    motion: &MeasuredMotion<'_>,
     paths: &[String],
 ) -> Result<EffortSensitivity> {
-    let columns = || vec![vec![0.0; positions.len().saturating_sub(1)]; paths.len()];
-    let mut result = EffortSensitivity { needed: columns(), driven: columns() };
-    passes(spec, start, paths, |running, first, number| {
-        running.follow(positions, inputs, load, dt, |k, efforts| {
-            let needed = efforts.friction - efforts.ambient;
-            for column in 0..number {
-                result.needed[first + column][k] = Scalar::partial(needed, column);
-                result.driven[first + column][k] = Scalar::partial(efforts.driven, column);
-            }
-        });
+    let mut result = EffortSensitivity::zeros(paths.len(), motion);
+    let mut rows = result.passes(motion);
+    passes(spec, start, paths, |running, _, _| {
+        if let Some(rows) = rows.next() {
+            motion.differentiate(running, rows);
+        }
         Ok(())
     })?;
+    drop(rows);
     Ok(result)
+}
+
+/// Follows given positions and differentiates the efforts by every gain of effects that the motor
+/// does not have, each at the gain 0 and at its own shape; rows in the order of the candidates and
+/// of their gains.
+///
+/// The effects of a pass are neutral, so none of them sees the others, nor an effect of the same
+/// name that the motor has. Passes share nothing: the result is the same for any number of threads.
+pub fn signatures(
+    spec: &MotorSpec,
+    start: &Running<f64>,
+    motion: &MeasuredMotion<'_>,
+    candidates: &[EffectSpec],
+    threads: usize,
+) -> EffortSensitivity {
+    let gains = |effect: &'static EffectRecord| {
+        let place = |gain: &&str| effect.parameters.iter().position(|p| p.name == *gain);
+        effect.facts.gains.iter().filter_map(place)
+    };
+    let rows: Vec<(usize, usize)> = candidates
+        .iter()
+        .enumerate()
+        .flat_map(|(index, candidate)| gains(candidate.record).map(move |gain| (index, gain)))
+        .collect();
+    let mut result = EffortSensitivity::zeros(rows.len(), motion);
+    let work = Mutex::new(rows.chunks(COLUMNS).zip(result.passes(motion)));
+    let next = || work.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let passes = || {
+        while let Some((pass, rows)) = next() {
+            let mut running = with_candidates(spec, start, candidates, pass);
+            motion.differentiate(&mut running, rows);
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(passes);
+        }
+        passes();
+    });
+    drop(work);
+    result
+}
+
+/// The motor with the candidates of a pass, given as rows of candidate and place of its gain.
+fn with_candidates(
+    spec: &MotorSpec,
+    start: &Running<f64>,
+    candidates: &[EffectSpec],
+    rows: &[(usize, usize)],
+) -> Running<Dual> {
+    let mut extended = spec.clone();
+    let mut places = Vec::with_capacity(rows.len());
+    let mut end = spec.parameters().len();
+    let (mut added, mut begin) = (None, end);
+    for (index, gain) in rows {
+        if added != Some(*index) {
+            added = Some(*index);
+            begin = end;
+            end += candidates[*index].values.len();
+            extended.effects.push(candidates[*index].clone());
+        }
+        places.push(begin + gain);
+    }
+    let values: Vec<f64> = extended.parameters().into_iter().map(|(_, value)| value).collect();
+    seeded(&extended, start, &values, &places)
 }

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 use stiction_core::motor::PerSample;
+use stiction_core::sensitivity::MeasuredMotion;
 
 use crate::error::{duration, input_error};
 
@@ -125,6 +126,50 @@ impl<'py> Each<'py> {
         Ok(match self {
             Self::Same(value) => PerSample::Same(*value),
             Self::Array(array) => PerSample::Each(array.as_slice()?),
+        })
+    }
+}
+
+/// A motion that is followed: positions, and what acted in each sample between them.
+pub struct Measured<'py> {
+    position: PyReadonlyArrayDyn<'py, f64>,
+    current: Each<'py>,
+    load: Each<'py>,
+    dt: Each<'py>,
+}
+
+impl<'py> Measured<'py> {
+    /// Reads positions and, for the samples between them, inputs, steps and load.
+    pub fn read(
+        position: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        load: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Self> {
+        let py = position.py();
+        let position = one_row("position", position)?;
+        let n = position.len() - 1;
+        if n == 0 {
+            return Err(input_error(py, "position has 1 value; give at least two"));
+        }
+        let current = Each::read("current", Some(current), 0.0, &[n])?;
+        let dt = Each::steps("dt", dt, &[n])?;
+        let load = Each::read("load", load, 0.0, &[n])?;
+        Ok(Self { position, current, load, dt })
+    }
+
+    /// Samples between the positions.
+    pub fn samples(&self) -> usize {
+        self.position.len() - 1
+    }
+
+    /// The form that the core takes, usable without the interpreter.
+    pub fn motion(&self) -> PyResult<MeasuredMotion<'_>> {
+        Ok(MeasuredMotion {
+            positions: self.position.as_slice()?,
+            inputs: self.current.per_sample()?,
+            load: self.load.per_sample()?,
+            dt: self.dt.per_sample()?,
         })
     }
 }

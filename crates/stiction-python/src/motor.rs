@@ -2,14 +2,16 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use numpy::{PyArray1, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stiction_core::integrate::Integrator;
 use stiction_core::motor::{Column, EffectSpec, Motor as Core, MotorSpec};
-use stiction_core::sensitivity::{follow_sensitivity, sensitivity};
+use stiction_core::sensitivity::{
+    EffortSensitivity, MeasuredMotion, follow_sensitivity, sensitivity, signatures,
+};
 
-use crate::arrays::{Each, one_row, target};
+use crate::arrays::{Each, Measured, one_row, target};
 use crate::error::{IntoPython, duration, finite, input_error, velocity};
 use crate::friction_model::FrictionModel;
 use crate::state::{from_dict, keywords, to_dict};
@@ -25,6 +27,36 @@ impl Motor {
     fn lock(&self) -> MutexGuard<'_, Core> {
         self.core.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Passes are few: more threads than this have nothing to do.
+const MOST_THREADS: i64 = 256;
+
+/// The numbers given for an effect.
+fn parameters_of(name: &str, values: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f64)>> {
+    let py = values.py();
+    let values = values
+        .cast::<PyDict>()
+        .map_err(|_| input_error(py, format!("parameters of effect {name} are not a dict")))?;
+    let (numbers, words) = keywords(name, Some(values))?;
+    match words.first() {
+        None => Ok(numbers),
+        Some((option, _)) => Err(input_error(
+            py,
+            format!("{option} of effect {name} is a word; allowed is a number"),
+        )),
+    }
+}
+
+/// Derivatives as two arrays of this shape.
+#[allow(clippy::type_complexity)]
+fn both<'py>(
+    py: Python<'py>,
+    rows: EffortSensitivity,
+    shape: [usize; 2],
+) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
+    let array = |values| PyArray1::from_vec(py, values).reshape(shape);
+    Ok((array(rows.needed)?, array(rows.driven)?))
 }
 
 #[pymethods]
@@ -74,16 +106,7 @@ impl Motor {
             let name: String = name
                 .extract()
                 .map_err(|_| input_error(py, format!("effect name {name} is not a word")))?;
-            let values = values.cast::<PyDict>().map_err(|_| {
-                input_error(py, format!("parameters of effect {name} are not a dict"))
-            })?;
-            let (numbers, words) = keywords(&name, Some(values))?;
-            if let Some((option, _)) = words.first() {
-                return Err(input_error(
-                    py,
-                    format!("{option} of effect {name} is a word; allowed is a number"),
-                ));
-            }
+            let numbers = parameters_of(&name, &values)?;
             list.push(EffectSpec::new(&name, &numbers).or_input_error(py)?);
         }
         let spec = MotorSpec {
@@ -184,20 +207,13 @@ impl Motor {
         load: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)>
     {
-        let position = one_row("position", position)?;
-        let n = position.len() - 1;
-        if n == 0 {
-            return Err(input_error(py, "position has 1 value; give at least two"));
-        }
-        let current = Each::read("current", Some(current), 0.0, &[n])?;
-        let dt = Each::steps("dt", dt, &[n])?;
-        let load = Each::read("load", load, 0.0, &[n])?;
+        let measured = Measured::read(position, current, dt, load)?;
+        let n = measured.samples();
         let mut efforts = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
         {
-            let position = position.as_slice()?;
-            let (current, dt, load) = (current.per_sample()?, dt.per_sample()?, load.per_sample()?);
+            let MeasuredMotion { positions, inputs, load, dt } = measured.motion()?;
             let arrays = efforts.each_mut().map(Vec::as_mut_slice);
-            py.detach(|| self.lock().follow(position, current, load, dt, arrays))
+            py.detach(|| self.lock().follow(positions, inputs, load, dt, arrays))
                 .or_input_error(py)?;
         }
         let [driven, ambient, friction] = efforts.map(|values| PyArray1::from_vec(py, values));
@@ -217,37 +233,60 @@ impl Motor {
         dt: &Bound<'py, PyAny>,
         parameters: Vec<String>,
         load: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, numpy::PyArray2<f64>>, Bound<'py, numpy::PyArray2<f64>>)> {
-        let position = one_row("position", position)?;
-        let n = position.len() - 1;
-        if n == 0 {
-            return Err(input_error(py, "position has 1 value; give at least two"));
-        }
-        let current = Each::read("current", Some(current), 0.0, &[n])?;
-        let dt = Each::steps("dt", dt, &[n])?;
-        let load = Each::read("load", load, 0.0, &[n])?;
-        let position = position.as_slice()?;
-        let (current, dt, load) = (current.per_sample()?, dt.per_sample()?, load.per_sample()?);
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
+        let measured = Measured::read(position, current, dt, load)?;
+        let motion = measured.motion()?;
         let rows = py.detach(|| {
             let core = self.lock().clone();
-            follow_sensitivity(
-                core.spec(),
-                core.running(),
-                position,
-                current,
-                load,
-                dt,
-                &parameters,
-            )
+            follow_sensitivity(core.spec(), core.running(), &motion, &parameters)
         });
-        let rows = rows.or_input_error(py)?;
-        let array = |rows: &[Vec<f64>]| {
-            if rows.is_empty() {
-                return Ok(numpy::PyArray2::zeros(py, [0, n], false));
-            }
-            numpy::PyArray2::from_vec2(py, rows)
-        };
-        Ok((array(&rows.needed)?, array(&rows.driven)?))
+        both(py, rows.or_input_error(py)?, [parameters.len(), measured.samples()])
+    }
+
+    /// Exact derivatives along given positions (shape (n + 1,)) by the gains of effects beside the
+    /// motor's own, each at the gain 0 and in the shape given as (name, parameters): of friction
+    /// less gravity and added efforts, and of the effort of the drive; each of shape (gains, n), in
+    /// the order of the candidates and of their gains. The motor is left as it was.
+    #[pyo3(signature = (position, current, dt, candidates, *, load=None, threads=1))]
+    #[allow(clippy::type_complexity, clippy::too_many_arguments)] // keywords of the Python class
+    fn signatures<'py>(
+        &self,
+        py: Python<'py>,
+        position: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        candidates: &Bound<'py, PyAny>,
+        load: Option<&Bound<'py, PyAny>>,
+        threads: i64,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
+        let measured = Measured::read(position, current, dt, load)?;
+        let motion = measured.motion()?;
+        if !(1..=MOST_THREADS).contains(&threads) {
+            return Err(input_error(
+                py,
+                format!("threads = {threads} is out of bounds: allowed is 1 to {MOST_THREADS}"),
+            ));
+        }
+        let wanted = "give pairs of an effect's name and a dict of its shape, for instance \
+                      [('cogging', {'order': 12.0})]";
+        let each = candidates
+            .try_iter()
+            .map_err(|_| input_error(py, format!("candidates is {candidates}; {wanted}")))?;
+        let mut list = Vec::new();
+        for (k, candidate) in each.enumerate() {
+            let candidate = candidate?;
+            let pair: (String, Bound<'py, PyAny>) = candidate.extract().map_err(|_| {
+                input_error(py, format!("candidates[{k}] is {candidate}; {wanted}"))
+            })?;
+            let numbers = parameters_of(&pair.0, &pair.1)?;
+            list.push(EffectSpec::candidate(&pair.0, &numbers).or_input_error(py)?);
+        }
+        let gains = list.iter().map(|effect| effect.record.facts.gains.len()).sum();
+        let rows = py.detach(|| {
+            let core = self.lock().clone();
+            signatures(core.spec(), core.running(), &motion, &list, threads as usize)
+        });
+        both(py, rows, [gains, measured.samples()])
     }
 
     /// Exact derivatives of position and velocity by parameters, from the present state.
@@ -262,7 +301,7 @@ impl Motor {
         dt: &Bound<'py, PyAny>,
         parameters: Vec<String>,
         load: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, numpy::PyArray2<f64>>, Bound<'py, numpy::PyArray2<f64>>)> {
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
         let current = one_row("current", current)?;
         let shape = current.shape().to_vec();
         let dt = Each::steps("dt", dt, &shape)?;
@@ -274,10 +313,7 @@ impl Motor {
             sensitivity(core.spec(), core.running(), current, load, dt, &parameters)
         });
         let result = result.or_input_error(py)?;
-        Ok((
-            numpy::PyArray2::from_vec2(py, &result.position)?,
-            numpy::PyArray2::from_vec2(py, &result.velocity)?,
-        ))
+        Ok((PyArray2::from_vec2(py, &result.position)?, PyArray2::from_vec2(py, &result.velocity)?))
     }
 
     /// Paths and values of all parameters.
