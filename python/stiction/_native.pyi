@@ -96,6 +96,7 @@ class Motor:
         dt: npt.ArrayLike,
         *,
         load: npt.ArrayLike | None = None,
+        start: dict[str, float] | None = None,
     ) -> tuple[_Floats, _Floats, _Floats]: ...
     def follow_sensitivity(
         self,
@@ -105,6 +106,7 @@ class Motor:
         parameters: Sequence[str],
         *,
         load: npt.ArrayLike | None = None,
+        start: dict[str, float] | None = None,
     ) -> tuple[_Floats, _Floats]: ...
     def signatures(
         self,
@@ -114,6 +116,7 @@ class Motor:
         candidates: Iterable[tuple[str, dict[str, float]]],
         *,
         load: npt.ArrayLike | None = None,
+        start: dict[str, float] | None = None,
         threads: int = 1,
     ) -> tuple[_Floats, _Floats]: ...
     def sensitivity(

@@ -51,12 +51,17 @@ class OptionRecord:
 
 @dataclass(frozen=True)
 class LawRecord:
-    """A friction law."""
+    """A friction law.
+
+    ``start`` holds what a contact may bring along from before a recording, see ``Motor.follow``; at
+    0 it was never moved.
+    """
 
     name: str
     summary: str
     source: str
     parameters: tuple[ParameterRecord, ...]
+    start: tuple[ParameterRecord, ...]
     options: tuple[OptionRecord, ...]
     outputs: tuple[str, ...]
 
@@ -123,6 +128,7 @@ def _laws() -> Iterator[LawRecord]:
             summary=entry["summary"],
             source=entry["source"],
             parameters=_parameters(entry["parameters"]),
+            start=_parameters(entry["start"]),
             options=options,
             outputs=tuple(entry["outputs"]),
         )

@@ -606,6 +606,36 @@ REFUSED = {
         lambda: machine().sensitivity([0.1], DT, []),
         ["dt"],
     ),
+    "follow from an unknown start": (
+        lambda: machine().follow([0.0, 0.1], [0.1], DT, start={"forces": 0.1}),
+        lambda: machine().follow([0.0, 0.1], [0.1], DT, start={"force": 0.1}),
+        ["start of hsieh_pan", "did you mean 'force'", "hardening"],
+    ),
+    "follow from a start of coulomb": (
+        lambda: motor("coulomb").follow([0.0, 0.1], [0.1], DT, start={"force": 0.1}),
+        lambda: motor("coulomb").follow([0.0, 0.1], [0.1], DT, start={}),
+        ["start of coulomb", "known: none"],
+    ),
+    "follow from negative hardening": (
+        lambda: machine().follow([0.0, 0.1], [0.1], DT, start={"hardening": -1e-6}),
+        lambda: machine().follow([0.0, 0.1], [0.1], DT, start={"hardening": 1e-6}),
+        ["hardening", "out of bounds"],
+    ),
+    "follow from a start that is a number": (
+        lambda: machine().follow([0.0, 0.1], [0.1], DT, start=0.1),
+        lambda: machine().follow([0.0, 0.1], [0.1], DT, start=None),
+        ["start", "dict"],
+    ),
+    "derivative by a start that is not given": (
+        lambda: machine().follow_sensitivity([0.0, 0.1], [0.1], DT, ["start.force"]),
+        lambda: machine().follow_sensitivity([0.0, 0.1], [0.1], DT, ["start.force"], start={}),
+        ["start.force", "give start"],
+    ),
+    "derivative by an unknown start": (
+        lambda: machine().follow_sensitivity([0.0, 0.1], [0.1], DT, ["start.x"], start={}),
+        lambda: machine().follow_sensitivity([0.0, 0.1], [0.1], DT, ["start.hardening"], start={}),
+        ["start.x", "start.hardening"],
+    ),
     "signature of an unknown effect": (
         lambda: machine().signatures([0.0, 0.1], [0.1], DT, [("coging", {})]),
         lambda: machine().signatures([0.0, 0.1], [0.1], DT, [("cogging", {})]),

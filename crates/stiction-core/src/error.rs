@@ -102,6 +102,12 @@ pub enum Error {
         /// Its parameters that are no gains.
         shapes: String,
     },
+    /// A derivative by a start value where the start is not given.
+    #[error("parameter path '{path}' needs a start; give start, for instance {{'force': 0.0}}")]
+    NoStart {
+        /// The path as given.
+        path: String,
+    },
     /// Array lengths that do not fit.
     #[error("{name} has {given} values where {wanted} are needed; give one value a sample")]
     Length {
@@ -135,7 +141,7 @@ impl Error {
             kind: kind.into(),
             given: given.to_owned(),
             near,
-            known: known.join(", "),
+            known: if known.is_empty() { "none".to_owned() } else { known.join(", ") },
         }
     }
 }

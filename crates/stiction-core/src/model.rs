@@ -96,6 +96,11 @@ impl LawSpec {
         Ok(Self { record, values, choices })
     }
 
+    /// Start values of a contact in the order of the record; what is not stated is 0.
+    pub fn start(&self, stated: &[(String, f64)]) -> Result<Vec<f64>> {
+        resolve(&format!("the start of {}", self.record.name), self.record.start, stated)
+    }
+
     /// The law over some number type, from values of that type.
     pub fn law<S: Scalar>(&self, values: &[S]) -> Law<S> {
         Law::build(self.record.name, values, &self.choices)

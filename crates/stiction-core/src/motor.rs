@@ -522,6 +522,12 @@ impl Motor {
         }
     }
 
+    /// Replaces the friction state by that of a contact that brings these values along, in the
+    /// order of the law's start quantities.
+    pub fn prime(&mut self, start: &[f64]) {
+        self.running.state = self.running.law.primed(start);
+    }
+
     /// Replaces the friction state, from another model of the same law and parameters.
     pub fn set_friction_state(&mut self, state: AnyState<f64>) {
         self.running.state = state;

@@ -102,7 +102,12 @@ pub trait Scalar:
             m.powf(a)
         };
         let in_base = self.chain(value, a * value / x);
-        in_base + (exponent - a) * (value * m.ln())
+        if exponent.derivative_is_nonzero() {
+            in_base + (exponent - a) * (value * m.ln())
+        } else {
+            // A logarithm costs more than all the rest, and most exponents are not seeded.
+            in_base
+        }
     }
     /// True when the number depends on a seeded parameter.
     fn derivative_is_nonzero(self) -> bool {
@@ -170,6 +175,10 @@ impl Scalar for Dual {
         let mut scaled = <Self as DualNum>::scale(self, &slope);
         scaled.re = value;
         scaled
+    }
+    #[inline]
+    fn derivative_is_nonzero(self) -> bool {
+        self.eps.0.is_some_and(|eps| eps.iter().any(|partial| *partial != 0.0))
     }
 }
 

@@ -16,19 +16,40 @@ pub struct Sensitivity {
     pub velocity: Vec<Vec<f64>>,
 }
 
-/// The motor with the parameters at these places seeded, in the state of another.
+/// The state from which a differentiated run starts.
+#[derive(Debug, Clone, Copy)]
+pub struct Start<'a> {
+    /// That of this motor, which depends on no parameter …
+    pub running: &'a Running<f64>,
+    /// … but for its friction where start values of the law are given: that depends on them and on
+    /// the parameters of the law.
+    pub primed: Option<&'a [f64]>,
+}
+
+impl<'a> From<&'a Running<f64>> for Start<'a> {
+    fn from(running: &'a Running<f64>) -> Self {
+        Self { running, primed: None }
+    }
+}
+
+/// The motor with the parameters at these places seeded, start values behind the others.
 fn seeded(
     spec: &MotorSpec,
-    start: &Running<f64>,
+    start: Start<'_>,
     parameters: &[f64],
     places: &[usize],
 ) -> Running<Dual> {
-    let mut values: Vec<Dual> = parameters.iter().map(|value| Dual::constant(*value)).collect();
+    let all = parameters.iter().chain(start.primed.into_iter().flatten());
+    let mut values: Vec<Dual> = all.map(|value| Dual::constant(*value)).collect();
     for (column, place) in places.iter().enumerate() {
-        values[*place] = Dual::variable(parameters[*place], column);
+        values[*place] = Dual::variable(values[*place].re(), column);
     }
-    let mut running = Running::new(spec, &values);
-    running.resume(start);
+    let (values, primed) = values.split_at(parameters.len());
+    let mut running = Running::new(spec, values);
+    running.resume(start.running);
+    if start.primed.is_some() {
+        running.state = running.law.primed(primed);
+    }
     running
 }
 
@@ -36,15 +57,21 @@ fn seeded(
 /// parameters are seeded, the index of the first of them and their number.
 fn passes(
     spec: &MotorSpec,
-    start: &Running<f64>,
+    start: Start<'_>,
     paths: &[String],
     mut visit: impl FnMut(&mut Running<Dual>, usize, usize) -> Result<()>,
 ) -> Result<()> {
-    let (known, values): (Vec<String>, Vec<f64>) = spec.parameters().into_iter().unzip();
+    let (mut known, values): (Vec<String>, Vec<f64>) = spec.parameters().into_iter().unzip();
+    if start.primed.is_some() {
+        known.extend(spec.friction.record.start.iter().map(|own| format!("start.{}", own.name)));
+    }
     let wanted = paths
         .iter()
         .map(|path| {
             known.iter().position(|other| other == path).ok_or_else(|| {
+                if start.primed.is_none() && path.starts_with("start.") {
+                    return Error::NoStart { path: path.clone() };
+                }
                 Error::unknown("parameter path", path, known.iter().map(String::as_str))
             })
         })
@@ -67,7 +94,7 @@ pub fn sensitivity(
 ) -> Result<Sensitivity> {
     let columns = || vec![vec![0.0; inputs.len()]; paths.len()];
     let mut result = Sensitivity { position: columns(), velocity: columns() };
-    passes(spec, start, paths, |running, first, number| {
+    passes(spec, start.into(), paths, |running, first, number| {
         running.simulate(inputs, load, dt, |k, run, _, _| {
             for column in 0..number {
                 result.position[first + column][k] = Scalar::partial(run.position, column);
@@ -143,7 +170,7 @@ impl MeasuredMotion<'_> {
 /// an effort residual but its inertia term.
 pub fn follow_sensitivity(
     spec: &MotorSpec,
-    start: &Running<f64>,
+    start: Start<'_>,
     motion: &MeasuredMotion<'_>,
     paths: &[String],
 ) -> Result<EffortSensitivity> {
@@ -167,7 +194,7 @@ pub fn follow_sensitivity(
 /// name that the motor has. Passes share nothing: the result is the same for any number of threads.
 pub fn signatures(
     spec: &MotorSpec,
-    start: &Running<f64>,
+    start: Start<'_>,
     motion: &MeasuredMotion<'_>,
     candidates: &[EffectSpec],
     threads: usize,
@@ -203,7 +230,7 @@ pub fn signatures(
 /// The motor with the candidates of a pass, given as rows of candidate and place of its gain.
 fn with_candidates(
     spec: &MotorSpec,
-    start: &Running<f64>,
+    start: Start<'_>,
     candidates: &[EffectSpec],
     rows: &[(usize, usize)],
 ) -> Running<Dual> {

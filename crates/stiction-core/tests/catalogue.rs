@@ -44,6 +44,11 @@ fn parameters_are_documented_and_their_defaults_are_allowed() {
     }
     for law in LAWS {
         assert!(LawSpec::new(law.name, &[], &[]).is_ok(), "{} lacks defaults", law.name);
+        for start in law.start {
+            assert!(start.meaning.len() > 3, "start.{} of {}", start.name, law.name);
+            assert_eq!(start.neutral, Some(0.0), "start.{} of {}", start.name, law.name);
+            assert!(start.check(start.typical).is_ok(), "start.{} of {}", start.name, law.name);
+        }
         for name in law.optional {
             assert!(law.parameters.iter().any(|p| p.name == *name), "{}.{name}", law.name);
         }

@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use stiction_core::integrate::Integrator;
 use stiction_core::motor::{Column, EffectSpec, Motor as Core, MotorSpec};
 use stiction_core::sensitivity::{
-    EffortSensitivity, MeasuredMotion, follow_sensitivity, sensitivity, signatures,
+    EffortSensitivity, MeasuredMotion, Start, follow_sensitivity, sensitivity, signatures,
 };
 
 use crate::arrays::{Each, Measured, one_row, target};
@@ -27,24 +27,34 @@ impl Motor {
     fn lock(&self) -> MutexGuard<'_, Core> {
         self.core.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
+    /// Start values of the law, where any are given.
+    fn start(
+        &self,
+        py: Python<'_>,
+        given: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Option<Vec<f64>>> {
+        let Some(given) = given else { return Ok(None) };
+        let numbers = numbers_of("start", given)?;
+        self.lock().spec().friction.start(&numbers).or_input_error(py).map(Some)
+    }
 }
 
 /// Passes are few: more threads than this have nothing to do.
 const MOST_THREADS: i64 = 256;
 
-/// The numbers given for an effect.
-fn parameters_of(name: &str, values: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f64)>> {
+/// The numbers given for an effect or for a start.
+fn numbers_of(owner: &str, values: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f64)>> {
     let py = values.py();
     let values = values
         .cast::<PyDict>()
-        .map_err(|_| input_error(py, format!("parameters of effect {name} are not a dict")))?;
-    let (numbers, words) = keywords(name, Some(values))?;
+        .map_err(|_| input_error(py, format!("parameters of {owner} are not a dict")))?;
+    let (numbers, words) = keywords(owner, Some(values))?;
     match words.first() {
         None => Ok(numbers),
-        Some((option, _)) => Err(input_error(
-            py,
-            format!("{option} of effect {name} is a word; allowed is a number"),
-        )),
+        Some((option, _)) => {
+            Err(input_error(py, format!("{option} of {owner} is a word; allowed is a number")))
+        }
     }
 }
 
@@ -106,7 +116,7 @@ impl Motor {
             let name: String = name
                 .extract()
                 .map_err(|_| input_error(py, format!("effect name {name} is not a word")))?;
-            let numbers = parameters_of(&name, &values)?;
+            let numbers = numbers_of(&format!("effect {name}"), &values)?;
             list.push(EffectSpec::new(&name, &numbers).or_input_error(py)?);
         }
         let spec = MotorSpec {
@@ -196,7 +206,8 @@ impl Motor {
 
     /// Efforts along given positions (shape (n + 1,)): of the drive for held inputs (shape (n,)), of
     /// gravity and added efforts, and friction; each of shape (n,), at the end of each sample.
-    #[pyo3(signature = (position, current, dt, *, load=None))]
+    /// With start values of the law (`laws()`) the contact begins with these, not as it is.
+    #[pyo3(signature = (position, current, dt, *, load=None, start=None))]
     #[allow(clippy::type_complexity)]
     fn follow<'py>(
         &self,
@@ -205,16 +216,24 @@ impl Motor {
         current: &Bound<'py, PyAny>,
         dt: &Bound<'py, PyAny>,
         load: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)>
     {
         let measured = Measured::read(position, current, dt, load)?;
+        let start = self.start(py, start)?;
         let n = measured.samples();
         let mut efforts = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
         {
             let MeasuredMotion { positions, inputs, load, dt } = measured.motion()?;
             let arrays = efforts.each_mut().map(Vec::as_mut_slice);
-            py.detach(|| self.lock().follow(positions, inputs, load, dt, arrays))
-                .or_input_error(py)?;
+            py.detach(|| {
+                let mut core = self.lock();
+                if let Some(start) = &start {
+                    core.prime(start);
+                }
+                core.follow(positions, inputs, load, dt, arrays)
+            })
+            .or_input_error(py)?;
         }
         let [driven, ambient, friction] = efforts.map(|values| PyArray1::from_vec(py, values));
         Ok((driven, ambient, friction))
@@ -222,9 +241,10 @@ impl Motor {
 
     /// Exact derivatives by parameters along given positions (shape (n + 1,)): of friction less
     /// gravity and added efforts, and of the effort of the drive; each of shape (parameters, n).
-    /// The motor is left as it was.
-    #[pyo3(signature = (position, current, dt, parameters, *, load=None))]
-    #[allow(clippy::type_complexity)]
+    /// Where a start is given its values are parameters too: `start.force` and so on. The motor is
+    /// left as it was.
+    #[pyo3(signature = (position, current, dt, parameters, *, load=None, start=None))]
+    #[allow(clippy::type_complexity, clippy::too_many_arguments)] // keywords of the Python class
     fn follow_sensitivity<'py>(
         &self,
         py: Python<'py>,
@@ -233,12 +253,15 @@ impl Motor {
         dt: &Bound<'py, PyAny>,
         parameters: Vec<String>,
         load: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
         let measured = Measured::read(position, current, dt, load)?;
         let motion = measured.motion()?;
+        let primed = self.start(py, start)?;
         let rows = py.detach(|| {
             let core = self.lock().clone();
-            follow_sensitivity(core.spec(), core.running(), &motion, &parameters)
+            let start = Start { running: core.running(), primed: primed.as_deref() };
+            follow_sensitivity(core.spec(), start, &motion, &parameters)
         });
         both(py, rows.or_input_error(py)?, [parameters.len(), measured.samples()])
     }
@@ -247,7 +270,7 @@ impl Motor {
     /// motor's own, each at the gain 0 and in the shape given as (name, parameters): of friction
     /// less gravity and added efforts, and of the effort of the drive; each of shape (gains, n), in
     /// the order of the candidates and of their gains. The motor is left as it was.
-    #[pyo3(signature = (position, current, dt, candidates, *, load=None, threads=1))]
+    #[pyo3(signature = (position, current, dt, candidates, *, load=None, start=None, threads=1))]
     #[allow(clippy::type_complexity, clippy::too_many_arguments)] // keywords of the Python class
     fn signatures<'py>(
         &self,
@@ -257,10 +280,12 @@ impl Motor {
         dt: &Bound<'py, PyAny>,
         candidates: &Bound<'py, PyAny>,
         load: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
         threads: i64,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
         let measured = Measured::read(position, current, dt, load)?;
         let motion = measured.motion()?;
+        let primed = self.start(py, start)?;
         if !(1..=MOST_THREADS).contains(&threads) {
             return Err(input_error(
                 py,
@@ -278,13 +303,14 @@ impl Motor {
             let pair: (String, Bound<'py, PyAny>) = candidate.extract().map_err(|_| {
                 input_error(py, format!("candidates[{k}] is {candidate}; {wanted}"))
             })?;
-            let numbers = parameters_of(&pair.0, &pair.1)?;
+            let numbers = numbers_of(&format!("effect {}", pair.0), &pair.1)?;
             list.push(EffectSpec::candidate(&pair.0, &numbers).or_input_error(py)?);
         }
         let gains = list.iter().map(|effect| effect.record.facts.gains.len()).sum();
         let rows = py.detach(|| {
             let core = self.lock().clone();
-            signatures(core.spec(), core.running(), &motion, &list, threads as usize)
+            let start = Start { running: core.running(), primed: primed.as_deref() };
+            signatures(core.spec(), start, &motion, &list, threads as usize)
         });
         both(py, rows, [gains, measured.samples()])
     }

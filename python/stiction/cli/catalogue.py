@@ -48,6 +48,8 @@ def laws(
         "",
         *_parameters(record.parameters),
     ]
+    if record.start:
+        lines += ["", "what a contact may bring along:", *_parameters(record.start)]
     for option in record.options:
         lines += ["", f"option {option.name}: {option.meaning}"]
         for index, (word, meaning) in enumerate(option.choices):

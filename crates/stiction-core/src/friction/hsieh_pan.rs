@@ -58,6 +58,16 @@ parameters! {
     }
 }
 
+parameters! {
+    /// What a contact of [`HsiehPan`] may bring along.
+    pub struct HsiehPanStart {
+        force: Effort, "force of the spring at the start, on the first loading curve, σ_0",
+            default Value(0.0), neutral Some(0.0), typical 0.1, bounds -1e9, 1e9;
+        hardening: Position, "work hardening at the start, h_0",
+            default Value(0.0), neutral Some(0.0), typical 5e-5, bounds 0.0, 1e6;
+    }
+}
+
 const OPTIONS: &[OptionSpec] = &[
     OptionSpec {
         name: "virgin_curve",
@@ -384,6 +394,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         "loading_rate",
         "loading_time",
     ];
+    const START: &'static [ParameterSpec] = HsiehPanStart::<f64>::SPECS;
     const OPTIONS: &'static [OptionSpec] = OPTIONS;
     const SUMMARY: &'static str =
         "pre-sliding with creep, work hardening and reverse-point memory; breaks away and slides";
@@ -447,6 +458,17 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
             curve: self.curve,
             statistics: Statistics::default(),
         }
+    }
+
+    fn primed(&self, values: &[S]) -> HsiehPanState<S> {
+        let start = HsiehPanStart::from_values(values);
+        let mut state = self.initial();
+        state.spring.place_on_virgin(&self.curve, start.force);
+        state.series = start.force;
+        // As after a long time at this force: its loading rate is 0.
+        state.filtered = start.force;
+        state.hardening = start.hardening;
+        state
     }
 
     fn restore(&self, entries: &[(String, Entry)]) -> Result<HsiehPanState<S>> {

@@ -24,6 +24,18 @@ parameters! {
     }
 }
 
+parameters! {
+    /// What a contact of [`MaxwellSlip`] may bring along.
+    pub struct MaxwellSlipStart {
+        force: Effort, "force of the elements at the start, on the first loading curve; levels off from 98 % of F_c on, below F_c",
+            default Value(0.0), neutral Some(0.0), typical 0.1, bounds -1e9, 1e9;
+    }
+}
+
+/// Shares of F_c by which a force at the start stays below it: where it begins to level off, and
+/// what it approaches. At F_c itself the curve has no slope and no place.
+const LEVELLING: (f64, f64) = (0.02, 0.001);
+
 /// Virgin curve V(x) = F_c·(1 − (1 − κ·y)₊^(1/κ)), y = k_0·|x|/F_c, and Masing's branches
 /// G(d) = 2·V(d/2).
 ///
@@ -35,6 +47,35 @@ struct YieldCurve<S> {
     stiffness: S,
     shape: S,
     inverse_distance: S,
+}
+
+impl<S: Scalar> YieldCurve<S> {
+    /// A force that the curve reaches: itself up to 98 % of F_c, beyond that levelling off with a
+    /// slope that is continuous and never 0, so that a fit finds its way back.
+    fn reachable(&self, force: S) -> S {
+        let (begin, end) = LEVELLING;
+        let s = if force.re() < 0.0 { -1.0 } else { 1.0 };
+        let beyond = force * s / self.coulomb - (1.0 - begin);
+        if beyond.re() <= 0.0 {
+            return force;
+        }
+        let width = begin - end;
+        let short = S::constant(width) / (beyond / width + 1.0) + end;
+        self.coulomb * (-(short - 1.0)) * s
+    }
+
+    /// Where the virgin curve has a reachable force.
+    fn virgin_inverse(&self, force: S) -> S {
+        let s = if force.re() < 0.0 { -1.0 } else { 1.0 };
+        let left = (-(force.re() * s / self.coulomb.re())).ln_1p();
+        let z = self.shape.re() * left;
+        let y = if z.abs() < 1e-8 { -left * (1.0 + 0.5 * z) } else { -z.exp_m1() / self.shape.re() };
+        let mut x = S::constant(y / self.inverse_distance.re());
+        // A Newton step that moves the value by round-off and carries the derivatives.
+        let there = self.virgin(x);
+        x += (force * s - there.force) / there.slope;
+        x * s
+    }
 }
 
 impl<S: Scalar> Loading<S> for YieldCurve<S> {
@@ -154,6 +195,7 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
     type Trial = MaxwellSlipTrial<S>;
 
     const PARAMETERS: &'static [ParameterSpec] = MaxwellSlipParameters::<f64>::SPECS;
+    const START: &'static [ParameterSpec] = MaxwellSlipStart::<f64>::SPECS;
     const OPTIONS: &'static [OptionSpec] = &[];
     const SUMMARY: &'static str =
         "elasto-slide elements in parallel: hysteresis with memory that goes over into sliding";
@@ -180,6 +222,13 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
             spring: SpringState::relaxed(&self.curve),
             statistics: Statistics::default(),
         }
+    }
+
+    fn primed(&self, values: &[S]) -> MaxwellSlipState<S> {
+        let force = self.curve.reachable(MaxwellSlipStart::from_values(values).force);
+        let mut state = self.initial();
+        state.spring.place(&self.curve, self.curve.virgin_inverse(force), force);
+        state
     }
 
     fn restore(&self, entries: &[(String, Entry)]) -> Result<MaxwellSlipState<S>> {

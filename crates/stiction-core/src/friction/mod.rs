@@ -143,6 +143,9 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     const PARAMETERS: &'static [ParameterSpec];
     /// Parameters that a fit leaves alone unless they are stated: terms beyond the core of the law.
     const OPTIONAL: &'static [&'static str] = &[];
+    /// What a contact may bring along from before a recording, in the order of
+    /// [`FrictionLaw::primed`]'s values; at 0, the neutral value of each, it was never moved.
+    const START: &'static [ParameterSpec] = &[];
     /// Options; the first choice of each is the default.
     const OPTIONS: &'static [OptionSpec];
     /// One sentence: what the law is.
@@ -156,6 +159,10 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn check(values: &[f64]) -> Result<()>;
     /// The state of a contact that was never moved.
     fn initial(&self) -> Self::State;
+    /// The state of a contact that brings these values of [`FrictionLaw::START`] along.
+    fn primed(&self, _values: &[S]) -> Self::State {
+        self.initial()
+    }
     /// Rebuilds a state from its entries.
     fn restore(&self, entries: &[(String, Entry)]) -> Result<Self::State>;
     /// Greatest ∂force/∂position at level 1: sets the longest stable step.
@@ -237,6 +244,8 @@ pub struct LawRecord {
     pub parameters: &'static [ParameterSpec],
     /// Parameters that a fit leaves alone unless they are stated.
     pub optional: &'static [&'static str],
+    /// What a contact may bring along from before a recording.
+    pub start: &'static [ParameterSpec],
     /// Options.
     pub options: &'static [OptionSpec],
     /// States that a trajectory can show.
@@ -272,6 +281,7 @@ macro_rules! laws {
             source: <$module::$law<f64> as FrictionLaw<f64>>::SOURCE,
             parameters: <$module::$law<f64> as FrictionLaw<f64>>::PARAMETERS,
             optional: <$module::$law<f64> as FrictionLaw<f64>>::OPTIONAL,
+            start: <$module::$law<f64> as FrictionLaw<f64>>::START,
             options: <$module::$law<f64> as FrictionLaw<f64>>::OPTIONS,
             outputs: <<$module::$law<f64> as FrictionLaw<f64>>::State as LawState<f64>>::OUTPUTS,
         },)*];
@@ -366,6 +376,11 @@ macro_rules! laws {
             /// The state of a contact that was never moved.
             pub fn initial(&self) -> AnyState<S> {
                 match self { $(Self::$law(law) => AnyState::$law(law.initial()),)* }
+            }
+
+            /// The state of a contact that brings these start values along.
+            pub fn primed(&self, values: &[S]) -> AnyState<S> {
+                match self { $(Self::$law(law) => AnyState::$law(law.primed(values)),)* }
             }
 
             /// Rebuilds a state from its entries.

@@ -190,9 +190,14 @@ impl<S: Scalar> SpringState<S> {
 
     /// On the virgin curve at this force, with nothing remembered.
     pub fn place_on_virgin(&mut self, curve: &Curve<S>, force: S) {
-        self.position = curve.virgin_inverse(force);
+        self.place(curve, curve.virgin_inverse(force), force);
+    }
+
+    /// At this point of the virgin curve, with nothing remembered.
+    pub fn place(&mut self, curve: &impl Loading<S>, position: S, force: S) {
+        self.position = position;
         self.force = force;
-        self.slope = curve.virgin(self.position).slope;
+        self.slope = curve.virgin(position).slope;
         self.direction = sign(force.re());
         self.memory.clear();
     }
