@@ -290,3 +290,30 @@ def test_a_steep_stribeck_fall_does_not_chatter():
         assert run.statistics["breakaways"] == 2, integrator
         assert run.statistics["sticks"] == 2, integrator
         assert worst_share(run.position[9::10], exact["position"]) < 0.01, integrator
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_weighted_elements_follow_the_ladder_that_they_stand_for(seed: int) -> None:
+    # Elements that yield evenly (yield_shape 1/2), those of one group as stiff as its weight says.
+    source = np.random.default_rng(seed)
+    weights = dict(
+        zip(("weight_1", "weight_2", "weight_4"), source.uniform(0.2, 4.0, 3).tolist(), strict=True)
+    )
+    coulomb, stiffness = 0.4, 250.0
+    law = st.FrictionModel(
+        "maxwell_slip", coulomb=coulomb, initial_stiffness=stiffness, yield_shape=0.5, **weights
+    )
+    edges = np.array([0.0, 0.25, 0.5, 1.0, 2.0])
+    shares = np.array([weights["weight_1"], weights["weight_2"], 1.0, weights["weight_4"]])
+    yields = (np.arange(4000) + 0.5) / 2000.0
+    elements = shares[np.searchsorted(edges, yields) - 1]
+    elements *= stiffness / elements.sum()
+    yields *= coulomb / (elements @ yields)
+    motion = np.cumsum(source.standard_normal(300)) * 0.3 * coulomb / stiffness
+    held = np.zeros_like(yields)
+    before, dt = 0.0, 1e-3
+    for x in motion:
+        held = np.clip(held + x - before, -yields, yields)
+        force = law.step((x - before) / dt, dt)
+        before = x
+        assert force == pytest.approx(elements @ held, abs=2e-6 * coulomb)

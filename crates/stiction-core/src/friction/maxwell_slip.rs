@@ -1,6 +1,7 @@
 //! Parallel elasto-slide elements without number: pre-sliding hysteresis that ends in sliding.
 
-use super::elements::spring::{Loading, Response, SpringState, Walk, masing};
+use super::elements::spring::{SpringState, Walk};
+use super::elements::yield_curve::YieldCurve;
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
     Statistics,
@@ -8,7 +9,7 @@ use super::{
 use crate::error::Result;
 use crate::parameter::{OptionSpec, ParameterSpec};
 use crate::parameters;
-use crate::scalar::{Scalar, logarithmic_mean};
+use crate::scalar::Scalar;
 
 parameters! {
     /// Parameters of [`MaxwellSlip`].
@@ -19,6 +20,16 @@ parameters! {
             default Value(3000.0), neutral None, typical 3000.0, bounds 1e-9, 1e15;
         yield_shape: One, "spread of the yield points: 1/2 even, 0 exponential, below 0 with a long tail, near 1 all at once, κ",
             default Value(0.0), neutral None, typical 0.2, bounds -2.0, 0.9;
+        weight_1: One, "weight of the elements that yield first, up to 1/4 of the mean yield displacement",
+            default Value(1.0), neutral Some(1.0), typical 1.0, bounds 0.02, 50.0;
+        weight_2: One, "weight of those that yield from 1/4 to 1/2 of it; those from 1/2 to 1 weigh 1",
+            default Value(1.0), neutral Some(1.0), typical 1.0, bounds 0.02, 50.0;
+        weight_4: One, "weight of those that yield from 1 to 2 of it",
+            default Value(1.0), neutral Some(1.0), typical 1.0, bounds 0.02, 50.0;
+        weight_5: One, "weight of those that yield from 2 to 3 of it",
+            default Value(1.0), neutral Some(1.0), typical 1.0, bounds 0.02, 50.0;
+        weight_6: One, "weight of those that yield from 3 of it on",
+            default Value(1.0), neutral Some(1.0), typical 1.0, bounds 0.02, 50.0;
         viscous: Damping, "friction per speed, F_v",
             default Value(0.0), neutral Some(0.0), typical 0.05, bounds 0.0, 1e9;
     }
@@ -32,85 +43,6 @@ parameters! {
     }
 }
 
-/// Shares of F_c by which a force at the start stays below it: where it begins to level off, and
-/// what it approaches. At F_c itself the curve has no slope and no place.
-const LEVELLING: (f64, f64) = (0.02, 0.001);
-
-/// Virgin curve V(x) = F_c·(1 − (1 − κ·y)₊^(1/κ)), y = k_0·|x|/F_c, and Masing's branches
-/// G(d) = 2·V(d/2).
-///
-/// κ → 0 is 1 − e^(−y). The curve is what infinitely many elements give whose yield points are
-/// distributed with density −V''.
-#[derive(Debug, Clone, Copy)]
-struct YieldCurve<S> {
-    coulomb: S,
-    stiffness: S,
-    shape: S,
-    inverse_distance: S,
-}
-
-impl<S: Scalar> YieldCurve<S> {
-    /// A force that the curve reaches: itself up to 98 % of F_c, beyond that levelling off with a
-    /// slope that is continuous and never 0, so that a fit finds its way back.
-    fn reachable(&self, force: S) -> S {
-        let (begin, end) = LEVELLING;
-        let s = if force.re() < 0.0 { -1.0 } else { 1.0 };
-        let beyond = force * s / self.coulomb - (1.0 - begin);
-        if beyond.re() <= 0.0 {
-            return force;
-        }
-        let width = begin - end;
-        let short = S::constant(width) / (beyond / width + 1.0) + end;
-        self.coulomb * (-(short - 1.0)) * s
-    }
-
-    /// Where the virgin curve has a reachable force.
-    fn virgin_inverse(&self, force: S) -> S {
-        let s = if force.re() < 0.0 { -1.0 } else { 1.0 };
-        let left = (-(force.re() * s / self.coulomb.re())).ln_1p();
-        let z = self.shape.re() * left;
-        let y = if z.abs() < 1e-8 { -left * (1.0 + 0.5 * z) } else { -z.exp_m1() / self.shape.re() };
-        let mut x = S::constant(y / self.inverse_distance.re());
-        // A Newton step that moves the value by round-off and carries the derivatives.
-        let there = self.virgin(x);
-        x += (force * s - there.force) / there.slope;
-        x * s
-    }
-}
-
-impl<S: Scalar> Loading<S> for YieldCurve<S> {
-    #[inline]
-    fn initial_stiffness(&self) -> S {
-        self.stiffness
-    }
-
-    #[inline]
-    fn branch(&self, d: S) -> Response<S> {
-        debug_assert!(d.re() >= 0.0, "branch evaluated behind its reverse point: {d:?}");
-        let y = d * 0.5 * self.inverse_distance;
-        let u = self.shape * y;
-        if u.re() >= 1.0 {
-            return Response { force: self.coulomb * 2.0, slope: S::constant(0.0) };
-        }
-        let yielded = -((-(y * logarithmic_mean(u))).exp_m1());
-        let sticking = -(yielded - 1.0);
-        Response {
-            force: self.coulomb * 2.0 * yielded,
-            slope: self.stiffness * sticking / (-(u - 1.0)),
-        }
-    }
-
-    #[inline]
-    fn virgin(&self, x: S) -> Response<S> {
-        masing(self, x)
-    }
-
-    #[inline]
-    fn closes_at_mirror(&self) -> bool {
-        true
-    }
-}
-
 /// Pre-sliding hysteresis with reverse-point memory that goes over into sliding at F_c.
 ///
 /// F = L·σ(x) + F_v·v, σ on [`YieldCurve`] with Masing branches: the limit of a Maxwell-slip model
@@ -118,6 +50,7 @@ impl<S: Scalar> Loading<S> for YieldCurve<S> {
 /// creep or dwell.
 ///
 /// At v = 0 the force stays where it is: no creep, no drift. Memory: reverse points. Passive.
+/// The weights spread the yield points as one likes; with all of them 1 the spread is κ's.
 /// Source: Iwan, J. Appl. Mech. 33 (1966); Lampaert, Al-Bender, Swevers, Physcon 2003; the
 /// one-parameter family of yield distributions is ours.
 #[derive(Debug, Clone)]
@@ -204,12 +137,9 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
 
     fn build(values: &[S], _choices: &[usize]) -> Self {
         let p = MaxwellSlipParameters::from_values(values);
-        let curve = YieldCurve {
-            coulomb: p.coulomb,
-            stiffness: p.initial_stiffness,
-            shape: p.yield_shape,
-            inverse_distance: p.initial_stiffness / p.coulomb,
-        };
+        let weights =
+            [p.weight_1, p.weight_2, S::constant(1.0), p.weight_4, p.weight_5, p.weight_6];
+        let curve = YieldCurve::new(p.coulomb, p.initial_stiffness, p.yield_shape, weights);
         Self { parameters: p, curve }
     }
 

@@ -6,3 +6,4 @@ pub mod plastic;
 pub mod series;
 pub mod spring;
 pub mod stribeck;
+pub mod yield_curve;

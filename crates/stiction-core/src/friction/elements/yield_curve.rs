@@ -1,0 +1,174 @@
+//! First loading of elasto-slide elements without number, their yield points spread as one likes.
+
+use super::spring::{Loading, Response, masing};
+use crate::scalar::{Scalar, logarithmic_mean};
+
+/// Edges of the groups of elements, in units of the mean yield displacement of the plain curve.
+const EDGES: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 3.0];
+/// Groups of elements.
+pub const GROUPS: usize = EDGES.len() + 1;
+
+/// Shares of F_c by which a force at the start stays below it: where it begins to level off, and
+/// what it approaches. At F_c itself the curve has no slope and no place.
+const LEVELLING: (f64, f64) = (0.02, 0.001);
+
+/// What a group of elements, and all that yield later, do: m·v(y) + l·(y − E) + o.
+#[derive(Debug, Clone, Copy)]
+struct Group<S> {
+    weight: S,
+    slope: S,
+    offset: S,
+}
+
+/// Virgin curve of parallel elements and Masing's branches G(d) = 2·V(d/2).
+///
+/// The plain curve is v(y) = 1 − (1 − κ·y)₊^(1/κ), y = k_0·|x|/F_c; κ → 0 is 1 − e^(−y). Its elements
+/// yield with density −v″. Between the edges ¼, ½, 1, 2, 3 that density is multiplied by a weight
+/// for each group, then force and displacement are scaled so that F_c and k_0 stay what they are.
+#[derive(Debug, Clone, Copy)]
+pub struct YieldCurve<S> {
+    coulomb: S,
+    stiffness: S,
+    shape: S,
+    groups: [Group<S>; GROUPS],
+    /// Force per force of the weighted curve.
+    force: S,
+    /// y per displacement.
+    inverse_distance: S,
+}
+
+impl<S: Scalar> YieldCurve<S> {
+    /// The curve that slides at `coulomb` and starts with `stiffness`.
+    pub fn new(coulomb: S, stiffness: S, shape: S, weights: [S; GROUPS]) -> Self {
+        let zero = S::constant(0.0);
+        let edge = |k: usize| if k == 0 { 0.0 } else { EDGES[k - 1] };
+        let at_edge: [(S, S); GROUPS] = std::array::from_fn(|k| plain(S::constant(edge(k)), shape));
+        // Slope of the weighted curve at the upper edge of each group: of those that yield later.
+        let mut later = [zero; GROUPS];
+        let mut left = zero;
+        for k in (0..GROUPS).rev() {
+            later[k] = left;
+            let beyond = if k + 1 < GROUPS { at_edge[k + 1].1 } else { zero };
+            left += weights[k] * (at_edge[k].1 - beyond);
+        }
+        let mut reached = zero;
+        let groups = std::array::from_fn(|k| {
+            let (yielded, _) = at_edge[k];
+            let (beyond, sticking) =
+                if k + 1 < GROUPS { at_edge[k + 1] } else { (S::constant(1.0), zero) };
+            let slope = later[k] - weights[k] * sticking;
+            let group = Group { weight: weights[k], slope, offset: reached - weights[k] * yielded };
+            // Beyond the last edge nothing is left that could slope.
+            let width = if k + 1 < GROUPS { edge(k + 1) - edge(k) } else { 0.0 };
+            reached += weights[k] * (beyond - yielded) + slope * width;
+            group
+        });
+        let force = coulomb / reached;
+        let inverse_distance = stiffness / (force * left);
+        Self { coulomb, stiffness, shape, groups, force, inverse_distance }
+    }
+
+    /// Force and slope of the first loading at x ≥ 0.
+    #[inline]
+    fn loading(&self, x: S) -> Response<S> {
+        let y = x * self.inverse_distance;
+        if (self.shape * y).re() >= 1.0 {
+            return Response { force: self.coulomb, slope: S::constant(0.0) };
+        }
+        let at = y.re();
+        let index = EDGES.iter().filter(|edge| at >= **edge).count();
+        let group = &self.groups[index];
+        let edge = if index == 0 { 0.0 } else { EDGES[index - 1] };
+        let (yielded, sticking) = plain(y, self.shape);
+        Response {
+            force: self.force * (group.weight * yielded + group.slope * (y - edge) + group.offset),
+            slope: self.force * self.inverse_distance * (group.weight * sticking + group.slope),
+        }
+    }
+
+    /// A force that the curve reaches: itself up to 98 % of F_c, beyond that levelling off with a
+    /// slope that is continuous and never 0, so that a fit finds its way back.
+    pub fn reachable(&self, force: S) -> S {
+        let (begin, end) = LEVELLING;
+        let s = if force.re() < 0.0 { -1.0 } else { 1.0 };
+        let beyond = force * s / self.coulomb - (1.0 - begin);
+        if beyond.re() <= 0.0 {
+            return force;
+        }
+        let width = begin - end;
+        let short = S::constant(width) / (beyond / width + 1.0) + end;
+        self.coulomb * (-(short - 1.0)) * s
+    }
+
+    /// Where the virgin curve has a reachable force.
+    pub fn virgin_inverse(&self, force: S) -> S {
+        let s = if force.re() < 0.0 { -1.0 } else { 1.0 };
+        let mut x = S::constant(self.reached_at(force.re() * s) / self.inverse_distance.re());
+        // A Newton step that moves the value by round-off and carries the derivatives.
+        let there = self.loading(x);
+        x += (force * s - there.force) / there.slope;
+        x * s
+    }
+
+    /// y at which the loading has a force, in plain numbers.
+    fn reached_at(&self, force: f64) -> f64 {
+        let target = force / self.force.re();
+        let reached = |y: f64| self.loading(S::constant(y / self.inverse_distance.re())).force.re();
+        let index = EDGES.iter().filter(|edge| reached(**edge) <= force).count();
+        let group = &self.groups[index];
+        if group.slope.re() == 0.0 {
+            // Nothing that yields later differs: the plain curve, inverted.
+            let left = (-(target - group.offset.re()) / group.weight.re()).ln_1p();
+            let z = self.shape.re() * left;
+            let series = -left * (1.0 + 0.5 * z);
+            return if z.abs() < 1e-8 { series } else { -z.exp_m1() / self.shape.re() };
+        }
+        let mut low = if index == 0 { 0.0 } else { EDGES[index - 1] };
+        let mut high = if index < EDGES.len() { EDGES[index] } else { 2.0 * low };
+        while reached(high) < force {
+            high *= 2.0;
+        }
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                return middle;
+            }
+            if reached(middle) < force { low = middle } else { high = middle }
+        }
+    }
+}
+
+/// v(y) and its slope, for κ·y < 1; beyond, everything slides.
+#[inline]
+fn plain<S: Scalar>(y: S, shape: S) -> (S, S) {
+    let u = shape * y;
+    if u.re() >= 1.0 {
+        return (S::constant(1.0), S::constant(0.0));
+    }
+    let yielded = -((-(y * logarithmic_mean(u))).exp_m1());
+    (yielded, -(yielded - 1.0) / (-(u - 1.0)))
+}
+
+impl<S: Scalar> Loading<S> for YieldCurve<S> {
+    #[inline]
+    fn initial_stiffness(&self) -> S {
+        self.stiffness
+    }
+
+    #[inline]
+    fn branch(&self, d: S) -> Response<S> {
+        debug_assert!(d.re() >= 0.0, "branch evaluated behind its reverse point: {d:?}");
+        let half = self.loading(d * 0.5);
+        Response { force: half.force * 2.0, slope: half.slope }
+    }
+
+    #[inline]
+    fn virgin(&self, x: S) -> Response<S> {
+        masing(self, x)
+    }
+
+    #[inline]
+    fn closes_at_mirror(&self) -> bool {
+        true
+    }
+}
