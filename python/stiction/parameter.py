@@ -68,6 +68,8 @@ class Parameter:
         value = number(given["value"], f"{where}.value")
         low = number(given["min"], f"{where}.min") if "min" in given else None
         high = number(given["max"], f"{where}.max") if "max" in given else None
+        if low is not None and high is not None and low > high:
+            raise InputError(f"{where}: min = {low} is above max = {high}; swap them")
         if (low is not None and value < low) or (high is not None and value > high):
             bounds = f"{'-inf' if low is None else low} to {'inf' if high is None else high}"
             raise InputError(
@@ -87,6 +89,10 @@ def number(given: Any, where: str) -> float:
     if isinstance(given, bool) or not isinstance(given, int | float):
         kind = type(given).__name__
         raise InputError(f"{where}: {given!r} is a {kind}; allowed is a number")
-    if math.isnan(given):
+    try:
+        converted = float(given)
+    except OverflowError:  # TOML has no largest integer
+        raise InputError(f"{where}: a whole number beyond 1e308; give a smaller one") from None
+    if math.isnan(converted):
         raise InputError(f"{where}: nan is not a number; give one")
-    return float(given)
+    return converted

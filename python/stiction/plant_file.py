@@ -20,6 +20,9 @@ MOTIONS: Final = ("rotary", "linear")
 INPUTS: Final = ("current_a", "voltage_v", "torque_nm", "force_n")
 """What a drive may be commanded in."""
 
+LEAST_GAIN: Final = 1e-12
+"""Effort per unit of input; no unit of an input is that large."""
+
 _TABLES: Final = ("motion", "drive", "body", "friction", "effects", "sensor", "controller")
 _DRIVE: Final = ("kind", "input", "gain", "limit")
 _BODY: Final = ("inertia", "gravity_amplitude", "gravity_zero_rad", "weight_n")
@@ -44,8 +47,14 @@ class Parts:
     controller: dict[str, Any]
 
 
-def read_toml(path: Path) -> dict[str, Any]:
+def read_toml(path: Path, *, least: str = "[friction] law") -> dict[str, Any]:
     """Read a TOML file.
+
+    Parameters
+    ----------
+    path : Path
+    least : str
+        What an empty file lacks first of all, for the sentence.
 
     Raises
     ------
@@ -65,8 +74,12 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise InputError(f"{path}: is not text in UTF-8; save it as UTF-8") from None
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: is not TOML: {error}; mend that line") from None
+    except ValueError as error:  # an integer of thousands of digits
+        raise InputError(f"{path}: cannot be read as TOML ({error}); mend that number") from None
+    except RecursionError:
+        raise InputError(f"{path}: is nested too deeply; write plain tables") from None
     if not table:
-        raise InputError(f"{path}: is empty; state at least [friction] law")
+        raise InputError(f"{path}: is empty; state at least {least}")
     return table
 
 
@@ -126,8 +139,7 @@ def section(table: Mapping[str, Any], name: str, source: str) -> Mapping[str, An
     """The table ``[name]``, empty where it is not there."""
     given = table.get(name, {})
     if not isinstance(given, Mapping):
-        kind = type(given).__name__
-        raise InputError(f"{source}: {name} is a {kind}; write it as a table, [{name}]")
+        raise InputError(f"{source}: {name} = {given!r} is not a table; write it as [{name}]")
     return given
 
 
@@ -143,8 +155,14 @@ def _drive(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Any]
     for name in ("gain", "limit"):
         if name in given:
             drive[name] = number(given[name], f"{where} {name}")
-    if drive.get("gain") == 0.0:
+    gain = drive.get("gain", 1.0)
+    if gain == 0.0:
         raise InputError(f"{where} gain = 0 moves nothing; give the effort per unit of input")
+    if not LEAST_GAIN <= abs(gain) <= 1.0 / LEAST_GAIN:
+        raise InputError(
+            f"{where} gain = {gain} is out of bounds: allowed are magnitudes from {LEAST_GAIN:g} "
+            f"to {1.0 / LEAST_GAIN:g}"
+        )
     if drive.get("limit", 1.0) <= 0.0:
         raise InputError(f"{where} limit = {drive['limit']} is not above 0")
     return drive

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
@@ -191,13 +192,19 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         ``Plant.load`` and ``Recording.load`` refuse.
     """
     path = Path(path)
-    table = read_toml(path)
+    table = read_toml(path, least='plant = "…" and one [[recordings]]')
     source = str(path)
     known(table, _TABLES, source)
     if plant is None and "plant" in table:
         named = table["plant"]
-        if not isinstance(named, str):
-            raise InputError(f'{source}: plant = {named!r} is not a path; write plant = "…"')
+        if not isinstance(named, str) or not named:
+            raise InputError(
+                f'{source}: plant = {named!r} is not a path; write plant = "plant.toml"'
+            )
+        itself = (path.parent / named).resolve() == path.resolve()
+        if itself or (path.parent / named).is_dir():
+            what = "this file itself" if itself else "a folder"
+            raise InputError(f"{source}: plant = {named!r} is {what}; name the plant's own file")
         plant = Plant.load(path.parent / named)
     columns = section(table, "columns", source)
     entries = table.get("recordings", [])
@@ -210,8 +217,12 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
     for index, entry in enumerate(entries, 1):
         where = f"{source}: [[recordings]] {index}"
         known(entry, _RECORDING, where)
-        if not isinstance(entry.get("file"), str):
-            raise InputError(f'{where}: file is missing; write file = "…"')
+        if "file" not in entry:
+            raise InputError(f'{where}: file is missing; write file = "run.csv"')
+        if not isinstance(entry["file"], str) or not entry["file"]:
+            raise InputError(
+                f'{where}: file = {entry["file"]!r} is not a path; write file = "run.csv"'
+            )
         file = (path.parent / entry["file"]).resolve()
         if file in seen:
             raise InputError(
@@ -222,8 +233,10 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         role = choice(entry["role"], _ROLES, f"{where} role") if "role" in entry else None
         kind = entry.get("kind", "")
         if not isinstance(kind, str):
-            raise InputError(f"{where} kind = {kind!r} is not a word")
+            raise InputError(f'{where} kind = {kind!r} is not text; write kind = "…"')
         start = number(entry.get("start_s", 0.0), f"{where} start_s")
+        if not math.isfinite(start):
+            raise InputError(f"{where} start_s = {start} is not a finite number of seconds")
         own = {**columns, **section(entry, "columns", where)}
         recordings.append(
             load_recording(
@@ -237,7 +250,11 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
                 where=source,
             )
         )
-    return Session(tuple(recordings), plant, _replicates(path, entries, seen))
+    replicates = _replicates(path, entries, seen)
+    try:
+        return Session(tuple(recordings), plant, replicates)
+    except InputError as error:
+        raise InputError(f"{source}: {str(error).removeprefix('session: ')}") from None
 
 
 def _replicates(path: Path, entries: list[dict[str, Any]], seen: dict[Path, int]) -> dict[int, int]:

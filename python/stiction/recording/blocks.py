@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from ..errors import InputError
+from ..errors import InputError, NotEnoughData
 from .units import FloatArray
 
 FEWEST_BLOCKS: Final = 3
@@ -84,7 +84,7 @@ def blocks(
     if span >= (1.0 - SHORT_SHARE) * FEWEST_BLOCKS * block_s:
         number = max(number, FEWEST_BLOCKS)
     if number < FEWEST_BLOCKS:
-        raise InputError(
+        raise NotEnoughData(
             f"session: {name} lasts {span:.3g} s and must be cut into at least {FEWEST_BLOCKS} "
             f"blocks of {block_s:g} s to train and to judge on; record "
             f"{FEWEST_BLOCKS * block_s:g} s or more, or give several recordings roles"

@@ -209,9 +209,15 @@ def _given(value: object) -> str:
 
 
 def _finite(value: object, key: str, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise InputError(f"{where}: {key} is {value!r}; give a finite number")
-    return float(value)
+    try:
+        converted = float(value)
+    except OverflowError:  # TOML has no largest integer
+        converted = math.inf
+    if not math.isfinite(converted):
+        raise InputError(f"{where}: {key} is {converted!r}; give a finite number")
+    return converted
 
 
 def roles_needed() -> str:

@@ -266,7 +266,10 @@ def _check_complete(table: Table, chosen: Mapping[str, _Chosen], drive: str | No
         )
     if drive in CANONICAL and "input" not in chosen:
         raise InputError(_lacks(table, "input", drive or ""))
-    if not {"input", "effort", "friction_coefficient"} & set(chosen):
+    measured = {"effort", "friction_coefficient"}
+    if drive == PRESCRIBED and not measured & set(chosen):
+        raise InputError(_lacks(table, "effort", "torque_nm or force_n"))
+    if not {"input", *measured} & set(chosen):
         raise InputError(_lacks(table, "input", "current_a"))
     if "input" not in chosen and not {"position", "velocity"} & set(chosen):
         raise InputError(_lacks(table, "position", "position_rad"))

@@ -28,6 +28,16 @@ FEWEST_ROWS: Final = 200
 ISOLATED_ROWS: Final = 5
 """More bad stamps in a row than this are a step of the clock, not a slip of the logger."""
 
+STEPS_S: Final = (1e-9, 1e6)
+"""The usual time step lies between these; beyond them the unit of time is wrong."""
+
+PAUSES: Final = (50.0, 1e6)
+"""Steps that a recording spans: at most this many times its rows, where it is more than the second
+number. Beyond, the clock jumps, or its stamps come in bursts."""
+
+LARGEST: Final = 1e30
+"""No SI value of a machine is beyond this; squares and sums of larger ones leave the floats."""
+
 Place = Callable[[int], str]
 _Mask = npt.NDArray[np.bool_]
 
@@ -111,11 +121,19 @@ def mend(
     repairs: list[Repair] = []
     faults: list[str] = []
     time = _mend_time(values["time"], source, place, repairs)
+    _check_steps(time, source, place)
     mended = {"time": time}
     for name, channel in values.items():
         if name == "time":
             continue
         bad = ~np.isfinite(channel)
+        absurd = np.isfinite(channel) & (np.abs(channel) > LARGEST)
+        if absurd.any():
+            row = int(absurd.argmax())
+            raise InputError(
+                f"{source}: {name} is {channel[row]:.6g} at {place(row)}, beyond what any machine "
+                "can do; correct the cell, or empty it to have it filled from its neighbours"
+            )
         number = int(bad.sum())
         if number >= BAD_SHARE * rows:
             fault = (
@@ -180,6 +198,24 @@ def _mend_time(time: FloatArray, source: str, place: Place, repairs: list[Repair
         )
     )
     return mended
+
+
+def _check_steps(time: FloatArray, source: str, place: Place) -> None:
+    """Refuse steps that no machine is sampled in, and pauses that hold no data to speak of."""
+    steps = np.diff(time)
+    usual = float(np.median(steps))
+    if not STEPS_S[0] <= usual <= STEPS_S[1]:
+        raise InputError(
+            f"{source}: the usual time step is {usual:.6g} s, and {STEPS_S[0]:g} s to "
+            f"{STEPS_S[1]:g} s are allowed; check the unit of time"
+        )
+    span = float(time[-1] - time[0])
+    if span > usual * max(PAUSES[0] * len(time), PAUSES[1]):
+        row = int(steps.argmax())
+        raise InputError(
+            f"{source}: time jumps by {steps[row]:.6g} s at {place(row + 1)}, where the usual "
+            f"step is {usual:.6g} s; split the file there, or correct the clock"
+        )
 
 
 def _increasing(time: FloatArray) -> _Mask:

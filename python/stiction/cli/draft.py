@@ -1,0 +1,297 @@
+"""The text of the files that ``stiction init`` writes: every guess with its reason."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Sequence
+from itertools import takewhile
+from pathlib import Path
+from textwrap import wrap
+
+from ..errors import InputError
+from ..recording.columns import CANONICAL
+from ..recording.guess import ColumnGuess, Guess
+from ..wording import listed
+
+__all__ = ["kinds_of", "plant_text", "session_text"]
+
+_WIDTH = 98
+_GAIN_UNIT = {"current_a": "A", "voltage_v": "V"}
+_EXAMPLES = {
+    "time": 'time = { name = "…", unit = "s" }',
+    "position": 'position = { name = "…", unit = "rad" }',
+    "input": 'input = { name = "…", unit = "A" }',
+}
+_ENDS = re.compile(r"[^A-Za-z]+")
+
+
+def plant_text(found: Guess) -> str:
+    """A plant.toml for what was guessed."""
+    effort, body, rate = ("N·m", "kg·m²", "rad") if found.motion == "rotary" else ("N", "kg", "m")
+    other = "linear" if found.motion == "rotary" else "rotary"
+    lines = [
+        *_comment(
+            "A plant, drafted by stiction init. Every line is a guess: read it, correct it, and "
+            "state what you know of the machine. What is left out starts from the data."
+        ),
+        "",
+        "[motion]",
+        *_comment(f"{found.motion}: {found.motion_reason}. The other kind is {other}."),
+        f'kind = "{found.motion}"',
+        "",
+        "[drive]",
+        *_drive(found, effort),
+        "",
+        "[body]",
+        *_body(found, body, effort),
+        "",
+        "[friction]",
+        *_comment(
+            f"Dry friction with true stick, and viscous friction in {effort}·s/{rate}: the "
+            "plainest law. `stiction laws` lists the others, `stiction laws coulomb` the "
+            "parameters of this one. Naming the law is enough to fit it."
+        ),
+        'law = "coulomb"',
+        f"# coulomb = 0.1  # {effort}; a number here is where the fit starts",
+        "",
+        *_sensor(found),
+    ]
+    return "\n".join(lines).rstrip("\n") + "\n"
+
+
+def _drive(found: Guess, effort: str) -> list[str]:
+    if found.prescribed:
+        return [
+            *_comment(
+                f"{found.drive_reason}: the machine is moved, and its effort measured. If that "
+                f"effort drives the machine instead, write input = "
+                f'"{"torque_nm" if effort == "N·m" else "force_n"}" and gain = 1.0 here, and '
+                "input in place of effort in session.toml."
+            ),
+            'kind = "prescribed_motion"',
+        ]
+    own = "torque_nm" if effort == "N·m" else "force_n"
+    if found.drive is None:
+        return [
+            *_comment(
+                f"{found.drive_reason}. Take away the # when session.toml names one: current_a, "
+                f'voltage_v or {own}; or write kind = "prescribed_motion" where the machine is '
+                "moved and its effort measured."
+            ),
+            '# input = "current_a"',
+            f"# gain = 1.0  # {effort} per unit of the input",
+        ]
+    lines = [
+        *_comment(f"{found.drive_reason}. The others are current_a, voltage_v and {own}."),
+        f'input = "{found.drive}"',
+    ]
+    unit = _GAIN_UNIT.get(found.drive)
+    if unit is None:
+        return [*lines, *_comment(f"The input is in {effort} already."), "gain = 1.0"]
+    return [
+        *lines,
+        *_comment(
+            f"TO DO: state the gain in {effort}/{unit} (motor constant, transmission). Inertia and "
+            f"friction scale with it: with 1.0 they come out in {unit} instead of {effort}."
+            + _numbers_beside(found)
+        ),
+        "gain = 1.0",
+    ]
+
+
+def _numbers_beside(found: Guess) -> str:
+    """The file may hold the gain itself, as a single number beside the vectors."""
+    scalars = [one.column for one in found.columns if one.reason == "is a scalar"]
+    if not scalars:
+        return ""
+    return f" The file also holds the single numbers {listed(scalars)}: one may be the gain."
+
+
+def _body(found: Guess, unit: str, effort: str) -> list[str]:
+    if found.prescribed:
+        return [
+            *_comment(
+                f"What of the mass moves between the effort sensor and the friction, in {unit}."
+            ),
+            "inertia = 0.0",
+        ]
+    lines = _comment(
+        f"In {unit}. Left out, it is fitted from the data. Where you know it, take away the #: "
+        "fixed = true keeps it."
+    )
+    lines.append("# inertia = { value = 0.01, fixed = true }")
+    if found.motion == "rotary":
+        lines += _comment(
+            f"A pendulum or an arm under gravity: greatest torque in {effort}, and the angle at "
+            "which it hangs."
+        )
+        return [*lines, "# gravity_amplitude = 0.1", "# gravity_zero_rad = 0.0"]
+    lines += _comment(f"An axis that is not level: the force against positive motion, in {effort}.")
+    return [*lines, "# weight_n = 0.0"]
+
+
+def _sensor(found: Guess) -> list[str]:
+    key = "counts_per_rev" if found.motion == "rotary" else "count_m"
+    if found.counts_per_rev:
+        told = (
+            "The counter runs over after as many."
+            if found.counts_needed
+            else "Steps that the readings of the position come in; it is not fitted."
+        )
+        return ["[sensor]", *_comment(told), f"counts_per_rev = {found.counts_per_rev}"]
+    if not found.counts_needed:
+        return []
+    size = "4096" if found.motion == "rotary" else "1e-6"
+    return [
+        "[sensor]",
+        *_comment(
+            "TO DO: the position is in counts, so state "
+            + ("how many make a turn." if found.motion == "rotary" else "the size of one in m.")
+        ),
+        f"# {key} = {size}",
+    ]
+
+
+def session_text(
+    found: Guess,
+    paths: Sequence[Path],
+    left_out: Sequence[tuple[Path, str]],
+    where: Path,
+) -> str:
+    """A session.toml for what was guessed, to stand in the folder ``where``.
+
+    Raises
+    ------
+    InputError
+        A path that cannot be written in a TOML file.
+    """
+    lines = [
+        *_comment(
+            "Recordings of one machine, drafted by stiction init. Every line is a guess with its "
+            "reason: read it, correct it. Paths are relative to this file."
+        ),
+        "",
+        'plant = "plant.toml"',
+        "",
+        *_comment(
+            "Columns by role. SI value = scale·value + offset, after conversion from the unit; "
+            "scale = -1 flips a sensor."
+        ),
+        "[columns]",
+    ]
+    by_role = found.by_role
+    for role in ("time", "input", "effort", "position"):
+        if role in by_role:
+            lines += _column(by_role[role])
+        elif role in found.missing:
+            lines += _missing(role, found)
+    for role, one in by_role.items():
+        if role not in ("time", "input", "effort", "position"):
+            lines += _column(one)
+    unused = [one for one in found.columns if one.role is None]
+    if unused:
+        lines += ["", "# Not used:"]
+        for one in unused:
+            lines += _comment(f"{_quoted(one.column)}: {one.reason}", "#   ")
+    lines += ["", *_recordings(paths, left_out, where)]
+    return "\n".join(lines) + "\n"
+
+
+def _column(one: ColumnGuess) -> list[str]:
+    lines = ["", *_comment(f"{_printable(one.reason)}.")]
+    if one.alternatives:
+        lines += _comment(f"Instead: {_printable(', '.join(one.alternatives))}.")
+    return [*lines, f"{one.role} = {_column_value(one)}"]
+
+
+def _column_value(one: ColumnGuess) -> str:
+    name = _quoted(one.column)
+    if one.column in CANONICAL and one.scale == 1.0:
+        return name
+    scale = "" if one.scale == 1.0 else f", scale = {one.scale!r}"
+    return f"{{ name = {name}, unit = {_quoted(one.unit or '1')}{scale} }}"
+
+
+def _missing(role: str, found: Guess) -> list[str]:
+    lines = ["", *_comment(f"TO DO: {_printable(found.missing[role])}.")]
+    candidates = [one for one in found.columns if one.candidate == role]
+    for one in candidates:
+        lines += _comment(f"{_printable(one.reason)}:")
+        lines.append(f"# {role} = {_column_value(one)}")
+    return lines if candidates else [*lines, f"# {_EXAMPLES[role]}"]
+
+
+def _recordings(
+    paths: Sequence[Path], left_out: Sequence[tuple[Path, str]], where: Path
+) -> list[str]:
+    kinds = kinds_of(paths)
+    lines = _comment(
+        "Recordings of one machine in one state: with another load or another arm it is another "
+        'session. A recording may have role = "train" (it is fitted), "select" (it decides '
+        'which effects, and how many) or "test" (it is opened once, after the last decision); '
+        "without roles they are dealt."
+        + (" The kinds are from the names of the files." if any(kinds) else "")
+    )
+    for path, kind in zip(paths, kinds, strict=True):
+        lines += ["", "[[recordings]]", f"file = {_quoted(_relative(path, where))}"]
+        lines += [f"kind = {_quoted(kind)}"] if kind else []
+    for path, why in left_out:
+        told = why.removeprefix(f"{path}: ")
+        lines += ["", *_comment(f"Left out: {_printable(told)}")]
+        lines += ["# [[recordings]]", f"# file = {_quoted(_relative(path, where))}"]
+    return lines
+
+
+def kinds_of(paths: Sequence[Path]) -> list[str]:
+    """Kinds of recordings from the words of their file names, "" where they tell none.
+
+    Digits (dates, numbers) and words that all names begin or end with say nothing.  Where no kind
+    occurs twice they say nothing either: each recording would be one of its kind.
+    """
+    names = [[word for word in _ENDS.split(path.stem) if word] for path in paths]
+    start = _shared(names)
+    names = [words[start:] for words in names]
+    end = _shared([words[::-1] for words in names])
+    kinds = ["_".join(words[: len(words) - end]) for words in names]
+    distinct = set(kinds)
+    return kinds if 1 < len(distinct) < len(kinds) else [""] * len(kinds)
+
+
+def _shared(names: Sequence[Sequence[str]]) -> int:
+    """How many words all names begin with."""
+    columns = zip(*names, strict=False)
+    return sum(1 for _ in takewhile(lambda words: len(set(words)) == 1, columns))
+
+
+def _relative(path: Path, where: Path) -> str:
+    full, start = path.resolve(), where.resolve()
+    try:
+        return Path(os.path.relpath(full, start)).as_posix()
+    except ValueError:  # another drive
+        return full.as_posix()
+
+
+def _quoted(text: str) -> str:
+    """A TOML string. JSON's escapes are TOML's, but for one control character."""
+    quoted = json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007F")
+    try:
+        quoted.encode()
+    except UnicodeEncodeError:
+        raise InputError(
+            f"{text!r}: this name is no text in UTF-8, so no TOML file can hold it; rename it"
+        ) from None
+    return quoted
+
+
+def _printable(text: str) -> str:
+    """Text that may stand in a comment: no line ends, no control characters."""
+    one_line = " ".join(text.split())
+    return "".join(letter if letter.isprintable() else "?" for letter in one_line)
+
+
+def _comment(text: str, start: str = "# ") -> list[str]:
+    """A comment of as many lines as it needs."""
+    lines = wrap(_printable(text), _WIDTH - len(start), break_long_words=False)
+    return [(start if k == 0 else start.replace("   ", "     ")) + x for k, x in enumerate(lines)]

@@ -1,0 +1,185 @@
+"""``stiction init``: drafts of plant.toml and session.toml from recordings."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from .. import session as sessions
+from ..errors import InputError
+from ..recording import Table, read_table
+from ..recording.formats import FORMATS
+from ..recording.guess import Guess, guess
+from ..recording.repair import FEWEST_ROWS
+from ..wording import counted, listed
+from .answer import answer, folder
+from .draft import plant_text, session_text
+
+__all__ = ["init"]
+
+_FILES = ("plant.toml", "session.toml")
+
+
+def init(
+    data: Path,
+    *more: Path,
+    out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path(),
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Guess columns and units of recordings; write a commented plant.toml and session.toml.
+
+    Every guess is written with its reason and its alternatives. What could not be guessed is a
+    line that is commented out and says what to do. Files that are there are not overwritten.
+
+    Parameters
+    ----------
+    data
+        CSV, MAT, NPZ, JSON or Parquet file, or a folder of them.
+    more
+        More files with the same columns.
+    out
+        Folder to write into, the present one without it.
+    json
+        Print JSON.
+    """
+    for name in _FILES:
+        if (out / name).exists():
+            raise InputError(
+                f"{out / name}: is there already and is not overwritten; move it away, or give "
+                "another folder with --out"
+            )
+    tables, left_out = _read([data, *more])
+    found = guess(tables)
+    where = folder(out)
+    files = [where / name for name in _FILES]
+    texts = (plant_text(found), session_text(found, [t.path for t in tables], left_out, where))
+    for file, text in zip(files, texts, strict=True):
+        _write(file, text)
+    todo = list(found.missing.values())
+    if found.counts_needed and not found.counts_per_rev:
+        todo.append("state the size of a sensor count under [sensor] of plant.toml")
+    # What the guess does not see (too many empty cells, a clock that jumps) is said at once.
+    if not todo:
+        try:
+            sessions.load(files[1])
+        except InputError as error:
+            todo.append(str(error))
+    result = {
+        **found.to_dict(),
+        "recordings": [str(table.path) for table in tables],
+        "left_out": {str(path): why for path, why in left_out},
+        "to_do": todo,
+        "files": [str(file) for file in files],
+    }
+    answer(_text(found, tables, left_out, todo, files), result, as_json=json)
+
+
+def _read(paths: Sequence[Path]) -> tuple[list[Table], list[tuple[Path, str]]]:
+    """The tables that are guessed about, and files of a folder that are left out, with reasons."""
+    tables: list[Table] = []
+    left_out: list[tuple[Path, str]] = []
+    alone = len(paths) == 1
+    for path in paths:
+        if not path.is_dir():
+            tables.append(_table(path))
+            continue
+        inside = _files_in(path)
+        alone = alone and len(inside) == 1
+        for file in inside:
+            try:
+                tables.append(_table(file))
+            except InputError as error:
+                # One file and nothing else: its fault is the answer.
+                if len(inside) == 1 and len(paths) == 1:
+                    raise
+                left_out.append((file, str(error)))
+    if not tables:
+        faults = listed(why for _, why in left_out[:3])
+        raise InputError(
+            f"{listed(str(path) for path in paths)}: no file in it can be used: {faults}"
+        )
+    return _same_columns(tables, left_out, chosen=not any(path.is_dir() for path in paths))
+
+
+def _files_in(path: Path) -> list[Path]:
+    endings = [suffix for known in FORMATS for suffix in known.suffixes]
+    inside = sorted(
+        file for file in path.iterdir() if file.is_file() and file.suffix.casefold() in endings
+    )
+    if not inside:
+        raise InputError(
+            f"{path}: there is no recording in this folder; the endings known are "
+            f"{', '.join(endings)}"
+        )
+    return inside
+
+
+def _table(path: Path) -> Table:
+    table = read_table(path)
+    rows = max(len(column) for column in table.columns.values())
+    if rows < FEWEST_ROWS:
+        raise InputError(
+            f"{path}: the recording has {counted(rows, 'row')}, and at least {FEWEST_ROWS} are "
+            "needed; record longer or sample faster"
+        )
+    return table
+
+
+def _same_columns(
+    tables: list[Table], left_out: list[tuple[Path, str]], *, chosen: bool
+) -> tuple[list[Table], list[tuple[Path, str]]]:
+    """Those with the commonest columns; other columns are refused where each file was named."""
+    names = [frozenset(table.columns) for table in tables]
+    usual = names[0] if chosen else Counter(names).most_common(1)[0][0]
+    same = []
+    for table, own in zip(tables, names, strict=True):
+        if own == usual:
+            same.append(table)
+            continue
+        lacks, has = listed(sorted(usual - own)), listed(sorted(own - usual))
+        why = f"other columns than the rest: it lacks {lacks}, and has {has} on top"
+        if chosen:
+            raise InputError(
+                f"{table.path}: {why} (compared with {tables[0].path}); recordings of one session "
+                "have the same columns, run init on each kind apart"
+            )
+        left_out.append((table.path, why))
+    return same, left_out
+
+
+def _write(file: Path, text: str) -> None:
+    try:
+        with file.open("x", encoding="utf-8", newline="\n") as opened:
+            opened.write(text)
+    except OSError as error:
+        raise InputError(
+            f"{file}: cannot be written ({error.strerror}); give another folder with --out"
+        ) from None
+
+
+def _text(
+    found: Guess,
+    tables: Sequence[Table],
+    left_out: Sequence[tuple[Path, str]],
+    todo: Sequence[str],
+    files: Sequence[Path],
+) -> str:
+    rows: list[tuple[Any, ...]] = [("column", "role", "unit", "why")]
+    for one in found.columns:
+        unit = "" if one.role is None else f"{one.scale:g}·{one.unit}".removeprefix("1·")
+        rows.append((one.column, one.role or "-", unit, one.reason))
+    widths = [max(len(row[k]) for row in rows) for k in range(3)]
+    lines = [f"guessed from {counted(len(tables), 'recording')}:", ""]
+    lines += ["  ".join([*(f"{row[k]:<{widths[k]}}" for k in range(3)), row[3]]) for row in rows]
+    lines += ["", f"motion: {found.motion} ({found.motion_reason})"]
+    lines += [f"drive: {found.drive or 'not known'} ({found.drive_reason})"]
+    lines += [f"left out: {path}: {why.removeprefix(f'{path}: ')}" for path, why in left_out]
+    lines += ["", *(f"wrote {file}" for file in files)]
+    lines += [f"to do: {sentence}" for sentence in todo]
+    if not todo:
+        lines.append(f"next: read both files, then stiction fit {files[1]}")
+    return "\n".join(lines)

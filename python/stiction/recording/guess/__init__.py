@@ -1,0 +1,8 @@
+"""What the columns of a file are: a guess from their names, their units and their numbers."""
+
+from __future__ import annotations
+
+from .result import ColumnGuess, Guess
+from .roles import guess
+
+__all__ = ["ColumnGuess", "Guess", "guess"]
