@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["InputError"]
+__all__ = ["InputError", "NotEnoughData"]
 
 
 class InputError(ValueError):
@@ -10,4 +10,11 @@ class InputError(ValueError):
 
     The message is one plain sentence: where the fault is, what was given, what is allowed and
     what to do about it.  The command line prints that sentence alone and exits with status 2.
+    """
+
+
+class NotEnoughData(InputError):  # noqa: N818 (it is raised and named as what is the matter)
+    """Data that can be read and do not suffice for what was asked.
+
+    A diagnosis answers it with the verdict ``not_testable``.
     """

@@ -74,9 +74,16 @@ class Kernel:
         """Samples that a result has on either side of its centre, second difference included."""
         return len(self.weights) // 2 + 1
 
-    def mean(self, values: FloatArray) -> FloatArray:
-        """Weighted mean about every sample that has the support; shape (n − 2·half,)."""
-        return np.convolve(values, self.weights, "valid")[1:-1]
+    def mean(self, values: FloatArray, *, every: int = 1) -> FloatArray:
+        """Weighted mean about samples that have the support; shape (n − 2·half,) for all of them.
+
+        ``every`` is the spacing of the results in samples.
+        """
+        if every == 1:
+            return np.convolve(values, self.weights, "valid")[1:-1]
+        windows = np.lib.stride_tricks.sliding_window_view(values, len(self.weights))[1:-1:every]
+        mean: FloatArray = windows @ self.weights[::-1]
+        return mean
 
     def second_derivative(self, values: FloatArray) -> FloatArray:
         """Second difference of the weighted mean over dt²; aligned with ``mean``."""

@@ -7,15 +7,30 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .errors import InputError
-from .motion import SMOOTHING_SHARE, Kernel, count_of, evenly, held, noise_of, play, smooth
+from .errors import InputError, NotEnoughData
+from .motion import (
+    SMOOTHING_SHARE,
+    WIDEST,
+    Kernel,
+    count_of,
+    evenly,
+    held,
+    noise_of,
+    play,
+    smooth,
+)
 from .trajectory import FloatArray
 
 if TYPE_CHECKING:
     from .plant import Plant
     from .recording import Recording
 
-__all__ = ["WeakForm"]
+__all__ = ["Candidate", "Start", "WeakForm"]
+
+Start = dict[str, float] | None
+"""Friction state at the first row of a recording; None where it was never moved."""
+Candidate = tuple[str, dict[str, float]]
+"""An effect that may be missing, with the values of its shape parameters."""
 
 SUPPORTS_S: Final = (0.030, 0.300)
 """Narrowest and widest kernel that is chosen; 28 to 50 ms suit machines sampled at 1 kHz."""
@@ -29,6 +44,11 @@ NOISY_STEP: Final = 0.01
 friction is smoothed; below it smoothing would only smear stops into slow motion."""
 ACCELERATION_SHARE: Final = 0.1
 """Where no inertia is stated: share of the acceleration that may be noise."""
+
+
+FLICKER_SHARE: Final = 0.2
+"""White noise beyond this share of a count makes readings flicker, and a follower with a backlash
+of a count keeps that out. Where they do not flicker it would only be late by half a count."""
 
 
 class WeakForm:
@@ -56,6 +76,10 @@ class WeakForm:
     acceleration : numpy.ndarray, shape (n,)
         rad/s² or m/s², through the kernel.
     kernel : Kernel
+    readings, position : numpy.ndarray, shape (rows,)
+        Position as it was read, on even stamps, and as it drives friction.
+    count : float
+        Step of the readings, 0 where there is none.
 
     Raises
     ------
@@ -81,6 +105,11 @@ class WeakForm:
                 f"{source}: there is no effort; prescribed motion needs an effort column"
             )
         time, self.dt = evenly(recording.time)
+        least = support or max(SUPPORTS_S[0], FEWEST_SAMPLES * self.dt)
+        # Before any kernel is made: at 10 MHz one of 30 ms would have 300 000 samples.
+        possible = support is None or support <= WIDEST * self.dt
+        if possible and recording.duration < 1.5 * least:
+            raise NotEnoughData(_too_few(source, len(time), least))
         x = np.interp(time, recording.time, recording.position)
         u = held(time, recording.time, driving)
         noise = noise_of(x)
@@ -97,21 +126,21 @@ class WeakForm:
                 self.dt, lambda k: noise * k.roughness <= ACCELERATION_SHARE * _rms(k, x)
             )
         if len(time) < 4 * self.kernel.half:
-            raise InputError(
-                f"{source}: {len(time)} samples are too few for a kernel of "
-                f"{self.kernel.support:.3g} s; give a longer recording or a smaller support"
-            )
+            raise NotEnoughData(_too_few(source, len(time), self.kernel.support))
         self.stride = 1 if every is None else max(1, round(every / self.dt))
         load = recording.channels.get("load")
         self.load = np.zeros_like(x) if load is None else held(time, recording.time, load)
         self.effort = u
-        followed = play(x, plant.count or count_of(x))
+        self.count = plant.count or count_of(x)
+        white = max(noise**2 - self.count**2 / 12.0, 0.0)
+        self._flickers = white > (FLICKER_SHARE * self.count) ** 2
         noisy = noise > NOISY_STEP * float(np.sqrt(np.mean(np.diff(x) ** 2)))
-        smoothing = max(self.dt, SMOOTHING_SHARE * self.kernel.support) if noisy else self.dt
-        self.position = smooth(followed, self.dt, smoothing)
+        self._smoothing = max(self.dt, SMOOTHING_SHARE * self.kernel.support) if noisy else self.dt
+        self.readings = x
+        self.position = self.driving(x)
         self.input = np.zeros(len(x) - 1) if self.prescribed else u[:-1]
         self.time = self._thin(time[1:][self.kernel.half : -self.kernel.half])
-        self.acceleration = self._thin(self.kernel.second_derivative(x[1:]))
+        self.acceleration = self.accelerations(x)
 
     def __len__(self) -> int:
         return len(self.time)
@@ -120,6 +149,10 @@ class WeakForm:
     def velocity(self) -> FloatArray:
         """Velocity through the kernel, shape (n,)."""
         return self._mean(np.gradient(self.position, self.dt)[1:])
+
+    def accelerations(self, position: FloatArray) -> FloatArray:
+        """Acceleration of a position at the stamps of the recording, through the kernel."""
+        return self._thin(self.kernel.second_derivative(position[1:]))
 
     def mean(self, values: FloatArray) -> FloatArray:
         """Values at the ends of the samples (shape of ``position[1:]``) through the kernel."""
@@ -134,42 +167,130 @@ class WeakForm:
         drive = gain * np.clip(self.input, -limit, limit)
         return self._mean(_centred(drive) + _centred(self.load[:-1]))
 
-    def efforts(self, plant: Plant) -> tuple[FloatArray, FloatArray]:
-        """Measured effort, and what the plant needs for the measured motion; shape (n,) each."""
-        motor = plant.follower()
-        motor.reset(float(self.position[0]), 0.0)
-        drive, ambient, friction = motor.follow(
-            self.position, self.input, self.dt, load=self.load[:-1]
-        )
+    def driving(self, readings: FloatArray) -> FloatArray:
+        """The motion that drives friction, from readings of a position; same shape."""
+        followed = play(readings, self.count) if self._flickers else readings
+        return smooth(followed, self.dt, self._smoothing)
+
+    def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
+        """Measured effort, and what the plant needs for the measured motion; shape (n,) each.
+
+        ``start`` holds the friction state at the first row (see ``LawRecord.start``); without it
+        the friction was never moved.
+        """
+        drive, needed = self.along(plant, start)
         # Stamps of `follow` are the sample ends. A measured effort belongs to its stamp; a held
         # one is the mean of what held before and after, or it is half a sample late.
         measured = self.effort[1:] if self.prescribed else _centred(drive)
         measured = measured + _centred(self.load[:-1])
-        model = plant.inertia * self.acceleration + self._mean(friction - ambient)
-        return self._mean(measured), model
+        return self._mean(measured), plant.inertia * self.acceleration + self._mean(needed)
 
-    def jacobian(self, plant: Plant, paths: Sequence[str]) -> FloatArray:
-        """Derivatives of measured minus needed effort by parameters; shape (n, parameters)."""
+    def along(
+        self, plant: Plant, start: Start = None, *, position: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Effort of the drive, and friction less gravity and added efforts, at the sample ends.
+
+        Shape of ``position[1:]`` each, before the kernel; ``position`` takes the place of the
+        measured motion.
+        """
+        motion = self.position if position is None else position
+        motor = plant.follower()
+        motor.reset(float(motion[0]), 0.0)
+        drive, ambient, friction = motor.follow(
+            motion,
+            self.input,
+            self.dt,
+            load=self.load[:-1],
+            start=start,
+        )
+        return drive, friction - ambient
+
+    def late(self, plant: Plant) -> FloatArray:
+        """Derivative of the measured effort by a timing offset of its own, per s; shape (n,).
+
+        Input and position are read by different parts of a machine, at instants that nobody
+        calibrated: an offset of a fraction of a sample must not be taken for a delay.
+        """
+        gain = 1.0 if self.prescribed else float(plant.drive.get("gain", 1.0))
+        rate = np.gradient(self.effort, self.dt)[1:]
+        limit = float(plant.drive.get("limit", np.inf))
+        if not self.prescribed and np.isfinite(limit):
+            rate = np.where(np.abs(self.effort[1:]) < limit, rate, 0.0)
+        return -gain * self._mean(rate)
+
+    def jacobian(self, plant: Plant, paths: Sequence[str], start: Start = None) -> FloatArray:
+        """Derivatives of measured minus needed effort by parameters; shape (n, parameters).
+
+        Beside parameters of the plant the paths may name quantities of the start, such as
+        ``start.force``.
+        """
         motor = plant.follower()
         motor.reset(float(self.position[0]), 0.0)
         needed, driven = motor.follow_sensitivity(
-            self.position, self.input, self.dt, list(paths), load=self.load[:-1]
+            self.position,
+            self.input,
+            self.dt,
+            list(paths),
+            load=self.load[:-1],
+            start=start,
         )
-        columns = np.empty((len(self), len(paths)))
-        for k, path in enumerate(paths):
-            columns[:, k] = -self._mean(needed[k])
-            if not self.prescribed and np.any(driven[k]):
-                columns[:, k] += self._mean(_centred(driven[k]))
-            if path == "body.inertia":
-                columns[:, k] -= self.acceleration
+        columns = self._columns(needed, driven)
+        if "body.inertia" in paths:
+            columns[:, list(paths).index("body.inertia")] -= self.acceleration
+        return columns
+
+    def signatures(
+        self, plant: Plant, candidates: Sequence[Candidate], start: Start = None
+    ) -> FloatArray:
+        """Derivatives of measured minus needed effort by the gains of effects that are not there.
+
+        Parameters
+        ----------
+        plant : Plant
+        candidates : sequence of (str, dict)
+            Name of an effect and values of its shape parameters.
+        start : dict, optional
+
+        Returns
+        -------
+        numpy.ndarray, shape (n, gains)
+            In the order of the candidates and of the gains of each.
+        """
+        motor = plant.follower()
+        motor.reset(float(self.position[0]), 0.0)
+        needed, driven = motor.signatures(
+            self.position,
+            self.input,
+            self.dt,
+            list(candidates),
+            load=self.load[:-1],
+            start=start,
+        )
+        return self._columns(needed, driven)
+
+    def _columns(self, needed: FloatArray, driven: FloatArray) -> FloatArray:
+        """Columns of a Jacobian from derivatives at the sample ends, a row each."""
+        columns = np.empty((len(self), len(needed)))
+        for k, (need, drive) in enumerate(zip(needed, driven, strict=True)):
+            gained = -need
+            if not self.prescribed and np.any(drive):
+                gained += _centred(drive)
+            columns[:, k] = self._mean(gained)
         return columns
 
     def _mean(self, values: FloatArray) -> FloatArray:
-        return self._thin(self.kernel.mean(values))
+        return self.kernel.mean(values, every=self.stride)
 
     def _thin(self, values: FloatArray) -> FloatArray:
         thinned: FloatArray = values[:: self.stride]
         return thinned
+
+
+def _too_few(source: str, samples: int, support: float) -> str:
+    return (
+        f"{source}: {samples} samples are too few for a kernel of {support:.3g} s; give a longer "
+        "recording or a smaller support"
+    )
 
 
 def _centred(values: FloatArray) -> FloatArray:

@@ -14,7 +14,7 @@ from tests.reference.coulomb_reference import simulate_coulomb
 
 from stiction import InputError, Plant, Recording, fit
 from stiction.cli import run
-from stiction.weak_form import WeakForm
+from stiction.weak_form import Start, WeakForm
 
 DT = 1e-3
 TRUE = {"inertia": 0.0076, "coulomb": 0.3, "viscous": 0.05}
@@ -194,12 +194,14 @@ def test_interrupting_a_fit_keeps_the_best_so_far(
     calls = 0
     efforts = WeakForm.efforts
 
-    def interrupted(self: WeakForm, machine: Plant) -> tuple[np.ndarray, np.ndarray]:
+    def interrupted(
+        self: WeakForm, machine: Plant, start: Start = None
+    ) -> tuple[np.ndarray, np.ndarray]:
         nonlocal calls
         calls += 1
         if calls == 3:
             raise KeyboardInterrupt
-        return efforts(self, machine)
+        return efforts(self, machine, start)
 
     monkeypatch.setattr(WeakForm, "efforts", interrupted)
     found = fit(plant(), recording)

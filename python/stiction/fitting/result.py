@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
@@ -67,6 +67,10 @@ class FitResult:
     success : bool
     message : str
     evaluations : int
+    timing_offset : float
+        By how much the input was taken to be stamped early, s; bounded by half a sample.
+    starts : Mapping of str to dict
+        Friction state at the first row of each recording that tells of it.
     """
 
     plant: Plant
@@ -85,6 +89,8 @@ class FitResult:
     success: bool
     message: str
     evaluations: int
+    timing_offset: float = 0.0
+    starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> FitParameter:
         """The parameter at a path, or of a bare name where that is unique.
@@ -172,6 +178,10 @@ class FitResult:
             "success": self.success,
             "message": self.message,
             "evaluations": self.evaluations,
+            "nuisances": {
+                "timing_offset_s": self.timing_offset,
+                "starts": {name: dict(start) for name, start in self.starts.items()},
+            },
         }
 
     def to_json(self) -> str:

@@ -2,62 +2,32 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
-from ..errors import InputError
+from ..errors import InputError, NotEnoughData
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.split import BLOCK_S, split
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
+from .minimise import MOST_EVALUATIONS, Solution, launch, minimise
 from .result import FitParameter, FitResult
+from .rows import EVERY_S, Nuisances, Rows, rows_of
 from .start import complete, free_paths
-from .statistics import (
-    CORRELATED_S,
-    correlations,
-    covariance,
-    interval_width,
-    undetermined_directions,
-)
+from .statistics import correlations, covariance, interval_width, undetermined_directions
 from .variables import Variables, unit_of
 
-__all__ = ["fit"]
+__all__ = ["evaluate", "fit", "reweighted"]
 
-EVERY_S: Final = 0.005
-"""Spacing of the residual: the kernel leaves nothing between."""
-WARM_UP_S: Final = 0.2
-"""Left out at the start of a recording: the friction starts from a state that nobody measured."""
-MOST_EVALUATIONS: Final = 60
-CONVERGED: Final = 1e-8
-"""Change of cost, or of parameters, below which nothing more is gained: samples at rest go over
-from stick to slip one by one, so the cost has tiny steps."""
 AT_BOUND: Final = 1e-6
 """A value that has come this much of the way to its bound stands at it."""
-
-_logger = logging.getLogger(__name__)
-
-
-class _Block:
-    """The rows of one recording that are fitted, and those that are held out."""
-
-    def __init__(self, form: WeakForm, recording: Recording, index: int, parts: _Parts) -> None:
-        self.form = form
-        self.weight = 1.0
-        warm = form.time >= recording.time[0] + WARM_UP_S
-        self.train = warm & _rows(form, recording, index, parts.train)
-        self.test = warm & _rows(form, recording, index, parts.test)
-        spacing = form.dt * form.stride
-        self.rows = max(1, round(CORRELATED_S / spacing))
-
-    def residual(self, plant: Plant) -> FloatArray:
-        measured, model = self.form.efforts(plant)
-        return measured - model
+WEIGHT_FLOOR: Final = 0.1
+"""A recording weighs at most this many times less residual than the worst one has."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +42,9 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
 
     Minimises Σ w²·r² over all rows but those that test (see ``Split``), r the measured effort
     minus what the plant needs along the measured motion, both through one kernel, with the exact
-    Jacobian. Recordings are weighted by the residual that a first pass leaves in each.
+    Jacobian. Recordings are weighted by the residual that a first pass leaves in each. The state
+    of friction at the first row of a recording and an offset of up to half a sample between input
+    and position are fitted along as nuisances.
 
     Parameters
     ----------
@@ -99,25 +71,52 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         raise InputError("there are no recordings to fit; give at least one")
     forms = [WeakForm(plant, recording, every=EVERY_S) for recording in recordings]
     parts = _deal(recordings, max(form.kernel.support for form in forms))
-    blocks = [
-        _Block(form, recording, index, parts)
-        for index, (form, recording) in enumerate(zip(forms, recordings, strict=True))
-    ]
-    fitted = [block for block in blocks if block.train.any()]
-    if not fitted:
-        raise InputError("no rows are left to fit after the warm-up; give longer recordings")
-    start = complete(plant, [block.form for block in fitted])
-    paths = free_paths(start)
+    train: list[Rows] = []
+    held: list[Rows] = []
+    for index, (form, recording) in enumerate(zip(forms, recordings, strict=True)):
+        for chosen, own in ((train, parts.train), (held, parts.test)):
+            mask = rows_of(form, recording, index, own)
+            if mask.any():
+                chosen.append(Rows(plant, form, index, mask))
+    if not train:
+        raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
+    starts = complete(plant, [each.form for each in train])
+    paths = free_paths(starts[0])
     if not paths:
         raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
-    variables = Variables.of(start, paths)
-    begin = variables.vector(np.array([start.parameters[path].value for path in paths]))
-    optimiser = _Optimiser(start, variables, fitted, max_evaluations)
-    vector = optimiser.run(begin)
-    if len(fitted) > 1 and not optimiser.interrupted:
-        optimiser.reweight(vector)
-        vector = optimiser.run(vector)
-    return _result(start, variables, vector, begin, blocks, optimiser, parts.described)
+    first = solution = launch(starts, paths, train, most=max_evaluations)
+    evaluations = first.evaluations
+    if len(train) > 1 and not first.interrupted:
+        reweighted(train, first.plant, first.nuisances)
+        solution = minimise(
+            first.plant, paths, train, most=max_evaluations, nuisances=first.nuisances
+        )
+        evaluations += solution.evaluations
+    return evaluate(
+        solution,
+        train,
+        held,
+        begin=first.begin,
+        described=parts.described,
+        evaluations=evaluations,
+        names=[_name(recording, k) for k, recording in enumerate(recordings)],
+    )
+
+
+def _name(recording: Recording, index: int) -> str:
+    return recording.path.name if recording.path is not None else f"recording {index + 1}"
+
+
+def reweighted(rows: Sequence[Rows], plant: Plant, nuisances: Nuisances) -> None:
+    """Weights each recording by one over the residual that is left in it."""
+    sizes = [_size(each.residual(plant, nuisances)[each.mask]) for each in rows]
+    floor = WEIGHT_FLOOR * max(sizes)
+    for each, size in zip(rows, sizes, strict=True):
+        each.weight = 1.0 / max(size, floor, 1e-300)
+
+
+def _size(residual: FloatArray) -> float:
+    return float(np.sqrt(np.mean(residual**2)))
 
 
 def _deal(recordings: Sequence[Recording], support: float) -> _Parts:
@@ -132,114 +131,46 @@ def _deal(recordings: Sequence[Recording], support: float) -> _Parts:
     return _Parts((*dealt.train, *dealt.select), dealt.test, dealt.describe())
 
 
-def _rows(
-    form: WeakForm, recording: Recording, index: int, parts: Sequence[Part]
-) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    chosen = np.zeros(len(form), dtype=bool)
-    for part in parts:
-        if part.recording == index:
-            first, last = recording.time[part.start], recording.time[part.stop - 1]
-            chosen |= (form.time >= first) & (form.time <= last)
-    return chosen
-
-
-class _Optimiser:
-    """Trust-region least squares that remembers the best vector it saw."""
-
-    def __init__(
-        self, plant: Plant, variables: Variables, blocks: Sequence[_Block], most: int
-    ) -> None:
-        self.plant, self.variables, self.blocks, self.most = plant, variables, blocks, most
-        self.evaluations = 0
-        self.interrupted = False
-        self.message = ""
-        self.success = False
-        self._best: tuple[float, FloatArray] | None = None
-
-    def run(self, begin: FloatArray) -> FloatArray:
-        from scipy.optimize import least_squares
-
-        self._best = None
-        size = np.maximum(np.abs(begin), 1e-3 * np.max(np.abs(begin)) * (begin == 0.0))
-        try:
-            found = least_squares(
-                self.residual,
-                begin,
-                jac=self.jacobian,
-                bounds=self.variables.bounds(),
-                x_scale=np.where(size > 0.0, size, 1.0),
-                max_nfev=self.most,
-                ftol=CONVERGED,
-                xtol=CONVERGED,
-                gtol=1e-14,
-            )
-        except KeyboardInterrupt:
-            if self._best is None:
-                raise
-            self.interrupted, self.success = True, False
-            self.message = "interrupted: these are the best values so far"
-            return self._best[1]
-        self.success = bool(found.status > 0)
-        self.message = (
-            "the fit has converged"
-            if self.success
-            else f"stopped after {self.most} evaluations: these are the best values so far"
-        )
-        return np.asarray(found.x)
-
-    def residual(self, vector: FloatArray) -> FloatArray:
-        plant = self.variables.plant(self.plant, vector)
-        rows = [b.weight * b.residual(plant)[b.train] for b in self.blocks]
-        # A runaway trial must look bad, not break the optimiser.
-        residual: FloatArray = np.nan_to_num(np.concatenate(rows), nan=1e6, posinf=1e6, neginf=-1e6)
-        self.evaluations += 1
-        power = float(residual @ residual)
-        if self._best is None or power < self._best[0]:
-            self._best = (power, np.array(vector))
-        _logger.debug("evaluation %d: %g", self.evaluations, power)
-        return residual
-
-    def jacobian(self, vector: FloatArray) -> FloatArray:
-        plant = self.variables.plant(self.plant, vector)
-        rows = [b.weight * self.columns(plant, b) for b in self.blocks]
-        columns: FloatArray = np.nan_to_num(self.variables.chain(np.vstack(rows), vector))
-        return columns
-
-    def columns(self, plant: Plant, block: _Block) -> FloatArray:
-        columns: FloatArray = block.form.jacobian(plant, self.variables.paths)[block.train]
-        return columns
-
-    def reweight(self, vector: FloatArray) -> None:
-        plant = self.variables.plant(self.plant, vector)
-        sizes = [float(np.sqrt(np.mean(b.residual(plant)[b.train] ** 2))) for b in self.blocks]
-        floor = 0.1 * max(sizes)
-        for block, size in zip(self.blocks, sizes, strict=True):
-            block.weight = 1.0 / max(size, floor, 1e-300)
-
-
-def _result(
-    start: Plant,
-    variables: Variables,
-    vector: FloatArray,
+def evaluate(
+    solution: Solution,
+    train: Sequence[Rows],
+    held: Sequence[Rows],
+    *,
     begin: FloatArray,
-    blocks: Sequence[_Block],
-    optimiser: _Optimiser,
     described: str,
+    evaluations: int,
+    names: Sequence[str],
 ) -> FitResult:
-    plant = variables.plant(start, vector)
-    fitted = optimiser.blocks
-    jacobians = [block.weight * optimiser.columns(plant, block) for block in fitted]
-    residuals = [block.weight * block.residual(plant)[block.train] for block in fitted]
-    matrix, pieces = covariance(jacobians, residuals, [block.rows for block in fitted])
-    flat = undetermined_directions(jacobians, variables.paths)
+    """What a solution says: values, intervals, what was not determined, errors.
+
+    Parameters
+    ----------
+    solution : Solution
+    train, held : sequence of Rows
+        Fitted and held-out rows.
+    begin : numpy.ndarray, shape (p,)
+        Vector from which the first minimisation started.
+    described : str
+        The split in words.
+    evaluations : int
+    names : sequence of str
+        Of the recordings.
+    """
+    plant, variables, nuisances = solution.plant, solution.variables, solution.nuisances
+    paths = variables.paths
+    jacobians = _jacobians(solution, train)
+    residuals = [each.weight * each.residual(plant, nuisances)[each.mask] for each in train]
+    matrix, pieces = covariance(jacobians, residuals, [each.per_block for each in train])
+    matrix = matrix[: len(paths), : len(paths)]
+    flat = undetermined_directions([j[:, : len(paths)] for j in jacobians], paths)
     dead = {path for group in flat for path in group}
-    values, starts = variables.values(vector), variables.values(begin)
+    values, starts = variables.values(solution.vector), variables.values(begin)
     errors = np.sqrt(np.maximum(np.diag(matrix), 0.0))
-    sides = _sides(variables, vector, begin, errors)
+    sides = _sides(variables, solution.vector, begin, errors)
     width = interval_width(pieces)
     parameters = {}
-    for k, path in enumerate(variables.paths):
-        error = float("inf") if path in dead else float(np.sqrt(max(matrix[k, k], 0.0)))
+    for k, path in enumerate(paths):
+        error = float("inf") if path in dead else float(errors[k])
         value = float(values[k])
         parameters[path] = FitParameter(
             value=value,
@@ -249,27 +180,46 @@ def _result(
             at_bound=sides[k],
             start=float(starts[k]),
         )
-    train = _errors(plant, [(block, block.train) for block in fitted])
-    held = [(block, block.test) for block in blocks if block.test.any()]
-    heldout = _errors(plant, held) if held else None
+    fitted = _errors(plant, train, nuisances)
+    heldout = _errors(plant, held, nuisances) if held else None
     return FitResult(
         plant=plant,
         parameters=parameters,
         covariance=matrix,
         correlations=correlations(matrix),
         bounds_hit=_bound_sentences(parameters),
-        undetermined=_undetermined_sentences(parameters, flat, blocks),
-        r2=train[2],
-        train_rms=train[0],
-        train_relative=train[1],
+        undetermined=_undetermined_sentences(parameters, flat, train),
+        r2=fitted[2],
+        train_rms=fitted[0],
+        train_relative=fitted[1],
         heldout_rms=heldout[0] if heldout else None,
         heldout_relative=heldout[1] if heldout else None,
         unit=plant.effort_unit,
         split=described,
-        success=optimiser.success,
-        message=optimiser.message,
-        evaluations=optimiser.evaluations,
+        success=solution.success,
+        message=solution.message,
+        evaluations=evaluations,
+        timing_offset=nuisances.timing,
+        starts={names[index]: dict(start) for index, start in nuisances.starts.items()},
     )
+
+
+def _jacobians(solution: Solution, rows: Sequence[Rows]) -> list[FloatArray]:
+    """Weighted derivatives by parameters, then by nuisances: they take their share of evidence."""
+    paths, nuisances = list(solution.variables.paths), solution.nuisances
+    starts = [(k, name) for k, own in nuisances.starts.items() for name in own]
+    jacobians = []
+    for each in rows:
+        own = [j for j, (k, _) in enumerate(starts) if k == each.index]
+        wanted = [*paths, *(f"start.{starts[j][1]}" for j in own)]
+        found = each.jacobian(solution.plant, wanted, nuisances)[each.mask]
+        block = np.zeros((len(found), len(paths) + 1 + len(starts)))
+        block[:, : len(paths)] = found[:, : len(paths)]
+        block[:, len(paths)] = each.late[each.mask]
+        for column, j in enumerate(own):
+            block[:, len(paths) + 1 + j] = found[:, len(paths) + column]
+        jacobians.append(each.weight * block)
+    return jacobians
 
 
 def _sides(
@@ -291,15 +241,12 @@ def _sides(
     return sides
 
 
-def _errors(
-    plant: Plant, rows: Sequence[tuple[_Block, np.ndarray[Any, np.dtype[np.bool_]]]]
-) -> tuple[float, float, float]:
+def _errors(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> tuple[float, float, float]:
     """rms, relative 2-norm and r² over some rows."""
     measured, residual = [], []
-    for block, chosen in rows:
-        effort, model = block.form.efforts(plant)
-        measured.append(effort[chosen])
-        residual.append((effort - model)[chosen])
+    for each in rows:
+        measured.append(each.form.measured(plant)[each.mask])
+        residual.append(each.residual(plant, nuisances)[each.mask])
     u, r = np.concatenate(measured), np.concatenate(residual)
     power = float(r @ r)
     about_mean = float(np.sum((u - u.mean()) ** 2))
@@ -323,12 +270,12 @@ def _bound_sentences(parameters: dict[str, FitParameter]) -> tuple[str, ...]:
 def _undetermined_sentences(
     parameters: dict[str, FitParameter],
     flat: Sequence[Sequence[str]],
-    blocks: Sequence[_Block],
+    rows: Sequence[Rows],
 ) -> tuple[str, ...]:
     sentences = []
     for group in flat:
         if len(group) == 1:
-            sentences.append(f"{group[0]} is not determined by these data{_why(group[0], blocks)}")
+            sentences.append(f"{group[0]} is not determined by these data{_why(group[0], rows)}")
         else:
             names = ", ".join(group)
             sentences.append(
@@ -340,13 +287,13 @@ def _undetermined_sentences(
         if path not in told and p.stderr > abs(p.value) and p.value != 0.0:
             sentences.append(
                 f"{path} is not determined by these data: its standard error {p.stderr:.2g} "
-                f"exceeds its value{_why(path, blocks)}"
+                f"exceeds its value{_why(path, rows)}"
             )
     return tuple(sentences)
 
 
-def _why(path: str, blocks: Sequence[_Block]) -> str:
-    speeds = np.concatenate([np.abs(block.form.velocity[block.train]) for block in blocks])
+def _why(path: str, rows: Sequence[Rows]) -> str:
+    speeds = np.concatenate([np.abs(each.form.velocity[each.mask]) for each in rows])
     moving = speeds[speeds > 0.0]
     if len(moving) == 0:
         return ": nothing moves"

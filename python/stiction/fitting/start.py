@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from ..errors import InputError
+from ..errors import NotEnoughData
 from ..parameter import Parameter
 from ..plant import Plant
 from ..trajectory import FloatArray
@@ -17,14 +17,25 @@ from .variables import records
 
 __all__ = ["complete", "free_paths"]
 
-REACHES: Final = (3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2)
+REACHES: Final = tuple(10.0 ** (-6.0 + 0.25 * k) for k in range(18))
 """Pre-sliding reaches tried as shares of the range of motion, where no stiffness is stated."""
+TRIED: Final = 4
+"""Reaches from which a fit starts."""
+SLIDING_SHARE: Final = 0.1
+"""Share of the rms speed above which a machine slides for sure."""
 ABOVE_COULOMB: Final = 1.1
 """Break-away over Coulomb friction to start from."""
 
 
-def complete(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
-    """The plant with every core parameter stated, from the data where the file is silent.
+HARDENED: Final = 0.3
+"""Creep under a held Coulomb friction to start from, in reaches."""
+
+
+def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
+    """Plants with every core parameter stated, from the data where the file is silent.
+
+    Several where a stiffness had to be guessed, the likeliest first: a fit may get caught from one
+    of them and not from another.
 
     A regression of the measured effort on acceleration, direction, speed and a constant gives
     inertia, Coulomb and viscous friction; a stiffness comes from the pre-sliding reach that
@@ -32,7 +43,7 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
 
     Raises
     ------
-    InputError
+    NotEnoughData
         The data do not move, so they say nothing of the machine.
     """
     inertia, coulomb, viscous = _regression(plant, forms)
@@ -59,8 +70,8 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
         stated = _ordered(stated, silent)
     whole = replace(plant, body=body, friction=replace(plant.friction, parameters=stated))
     if "initial_stiffness" in silent:
-        whole = _stiffness(whole, forms, coulomb, silent)
-    return whole
+        return _stiffness(whole, forms, coulomb, silent)
+    return [whole]
 
 
 def free_paths(plant: Plant) -> list[str]:
@@ -76,22 +87,29 @@ def free_paths(plant: Plant) -> list[str]:
 def _regression(plant: Plant, forms: Sequence[WeakForm]) -> tuple[float, float, float]:
     """Inertia, Coulomb and viscous friction that fit the measured effort best."""
     blocks, efforts = [], []
+    # One scale for all: a recording of small loops slides nowhere, however fast it turns.
+    scale = max(float(np.sqrt(np.mean(form.velocity**2))) for form in forms)
+    if scale == 0.0:
+        raise NotEnoughData("nothing moves in the recordings to fit; record a motion")
     for form in forms:
         speed = form.velocity
-        scale = float(np.sqrt(np.mean(speed**2)))
-        if scale == 0.0:
-            continue
-        direction = np.tanh(speed / (0.02 * scale))
-        columns = [form.acceleration, direction, speed, np.ones_like(speed)]
+        # At rest and around it friction is whatever holds: rows that slide tell its level.
+        sliding = np.abs(speed) > SLIDING_SHARE * scale
+        columns = [
+            form.acceleration,
+            np.sign(speed),
+            speed,
+            np.ones_like(speed),
+            form.late(plant),
+        ]
         if "gravity_amplitude" in plant.body:
             angle = form.mean(form.position[1:])
             columns += [np.sin(angle), np.cos(angle)]
-        blocks.append(np.column_stack(columns))
-        efforts.append(form.measured(plant))
-    if not blocks:
-        raise InputError("nothing moves in the recordings to fit; record a motion")
+        blocks.append(np.column_stack(columns)[sliding])
+        efforts.append(form.measured(plant)[sliding])
     matrix, effort = np.vstack(blocks), np.concatenate(efforts)
-    solved = np.linalg.lstsq(matrix, effort, rcond=None)[0]
+    scales = np.maximum(np.sqrt(np.mean(matrix**2, axis=0)), 1e-300)
+    solved = np.linalg.lstsq(matrix / scales, effort, rcond=None)[0] / scales
     level = float(np.sqrt(np.mean(effort**2)))
     accelerating = float(np.sqrt(np.mean(matrix[:, 0] ** 2)))
     # A sign that no machine has means that the data do not tell: then a share of the effort.
@@ -112,8 +130,10 @@ def _ordered(stated: dict[str, Parameter], silent: list[str]) -> dict[str, Param
     return stated
 
 
-def _stiffness(plant: Plant, forms: Sequence[WeakForm], coulomb: float, silent: list[str]) -> Plant:
-    """The plant with the pre-sliding reach that leaves the least residual."""
+def _stiffness(
+    plant: Plant, forms: Sequence[WeakForm], coulomb: float, silent: list[str]
+) -> list[Plant]:
+    """The plants with the pre-sliding reaches that leave the least residual."""
     span = max(float(np.ptp(form.position)) for form in forms)
 
     def tried(reach: float) -> Plant:
@@ -123,7 +143,7 @@ def _stiffness(plant: Plant, forms: Sequence[WeakForm], coulomb: float, silent: 
         if "decay_distance" in silent:
             values["decay_distance"] = reach
         if "hardening_coefficient" in silent:
-            values["hardening_coefficient"] = 0.1 * reach / coulomb**2
+            values["hardening_coefficient"] = HARDENED * reach / coulomb**2
         if "damping" in silent:
             # Lightly damped: a tenth of critical.
             inertia = plant.inertia
@@ -132,7 +152,8 @@ def _stiffness(plant: Plant, forms: Sequence[WeakForm], coulomb: float, silent: 
         return plant.with_values(own)
 
     plants = [tried(share * span) for share in REACHES]
-    return min(plants, key=lambda p: sum(_power(form.efforts(p)) for form in forms))
+    powers = [sum(_power(form.efforts(p)) for form in forms) for p in plants]
+    return [plants[k] for k in np.argsort(powers, kind="stable")[:TRIED]]
 
 
 def _power(efforts: tuple[FloatArray, FloatArray]) -> float:

@@ -61,16 +61,17 @@ def interval_width(blocks: int) -> float:
 
     B blocks are B independent pieces of evidence, however many rows they hold.
     """
-    from scipy.stats import t
+    from scipy.special import stdtrit
 
-    return float(t.ppf(0.975, max(1, blocks - 1)))
+    return float(stdtrit(max(1, blocks - 1), 0.975))
 
 
 def correlations(covariance: FloatArray) -> FloatArray:
-    """Correlation matrix; 0 where a parameter has no variance."""
+    """Correlation matrix; 0 where a parameter has no variance, or one that nothing tells."""
     size = np.sqrt(np.diag(covariance))
-    size[size == 0.0] = np.inf
-    return np.asarray(covariance / np.outer(size, size))
+    size[(size == 0.0) | ~np.isfinite(size)] = np.inf
+    known = np.where(np.isfinite(covariance), covariance, 0.0)
+    return np.asarray(known / np.outer(size, size))
 
 
 def undetermined_directions(

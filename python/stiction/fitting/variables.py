@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from ..trajectory import FloatArray
 
 __all__ = ["Variables", "records", "unit_of"]
 
+Mask = np.ndarray[Any, np.dtype[np.bool_]]
+
 RATIOS: Final = {
     "friction.final_stiffness": "friction.initial_stiffness",
     "friction.coulomb": "friction.breakaway",
@@ -22,6 +24,11 @@ RATIOS: Final = {
 """The lesser of an ordered pair is varied as a share of the greater: box bounds cannot express
 the order."""
 SHARES: Final = (1e-3, 1.0 - 1e-3)
+LINEAR: Final = ("coulomb", "breakaway", "viscous", "order")
+"""Positive parameters that are varied as they are: the residual is linear in them, or they may well
+be 0. The others are varied by their logarithm: a stiffness or a rate is known to a factor."""
+LEAST_SHARE: Final = 1e-6
+"""A parameter varied by its logarithm stays above this share of where it starts."""
 
 _BODY: Final = {
     "body.inertia": (1e-12, math.inf, ("kg·m²", "kg")),
@@ -63,33 +70,47 @@ class Variables:
         Bounds of the parameters themselves.
     ratio_of : Mapping of int to int
         Index of a parameter that is varied as a share of another one.
+    logarithmic : numpy.ndarray of bool, shape (p,)
+        Which are varied by their logarithm.
     """
 
     paths: tuple[str, ...]
     lower: FloatArray
     upper: FloatArray
     ratio_of: Mapping[int, int]
+    logarithmic: Mask
 
     @classmethod
     def of(cls, plant: Plant, paths: Sequence[str]) -> Variables:
         """The variables of the parameters at these paths."""
         known = records(plant)
-        lower, upper = [], []
+        least, most = [], []
         for path in paths:
             low, high = _BODY[path][:2] if path in _BODY else known[path].bounds
             stated = plant.parameters[path]
-            lower.append(low if stated.min is None else max(low, stated.min))
-            upper.append(high if stated.max is None else min(high, stated.max))
+            least.append(low if stated.min is None else max(low, stated.min))
+            most.append(high if stated.max is None else min(high, stated.max))
         ratios = {
             index: paths.index(RATIOS[path])
             for index, path in enumerate(paths)
             if path in RATIOS and RATIOS[path] in paths
         }
-        return cls(tuple(paths), np.array(lower), np.array(upper), ratios)
+        begin = np.array([plant.parameters[path].value for path in paths])
+        lower, upper = np.array(least), np.array(most)
+        positive = (lower >= 0.0) & (begin > 0.0)
+        chosen = [
+            not path.startswith("body.") and path.rsplit(".", 1)[-1] not in LINEAR for path in paths
+        ]
+        logarithmic = positive & np.array(chosen, dtype=bool)
+        logarithmic[list(ratios)] = False
+        lower = np.where(logarithmic, np.maximum(lower, LEAST_SHARE * begin), lower)
+        return cls(tuple(paths), lower, upper, ratios, logarithmic)
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Bounds of the vector."""
         lower, upper = self.lower.copy(), self.upper.copy()
+        lower[self.logarithmic] = np.log(lower[self.logarithmic])
+        upper[self.logarithmic] = np.log(upper[self.logarithmic])
         for child in self.ratio_of:
             lower[child], upper[child] = SHARES
         return lower, upper
@@ -99,21 +120,26 @@ class Variables:
         vector = np.array(values, dtype=np.float64)
         for child, parent in self.ratio_of.items():
             vector[child] = values[child] / values[parent]
+        own = np.maximum(vector[self.logarithmic], self.lower[self.logarithmic])
+        vector[self.logarithmic] = np.log(own)
         return np.asarray(np.clip(vector, *self.bounds()))
 
     def values(self, vector: FloatArray) -> FloatArray:
         """Parameter values of a vector."""
         values = np.array(vector, dtype=np.float64)
+        values[self.logarithmic] = np.exp(vector[self.logarithmic])
         for child, parent in self.ratio_of.items():
-            values[child] = vector[child] * vector[parent]
-        return values
+            values[child] = vector[child] * values[parent]
+        return np.asarray(np.clip(values, self.lower, self.upper))
 
     def chain(self, jacobian: FloatArray, vector: FloatArray) -> FloatArray:
         """Derivatives by the vector from derivatives by the parameters."""
         columns = jacobian.copy()
+        values = self.values(vector)
         for child, parent in self.ratio_of.items():
             columns[:, parent] += jacobian[:, child] * vector[child]
-            columns[:, child] = jacobian[:, child] * vector[parent]
+            columns[:, child] = jacobian[:, child] * values[parent]
+        columns[:, self.logarithmic] *= values[self.logarithmic]
         return columns
 
     def plant(self, plant: Plant, vector: FloatArray) -> Plant:

@@ -10,7 +10,7 @@ parameters! {
     /// Parameters of [`Stribeck`].
     pub struct StribeckParameters {
         excess: One, "friction at rest above that at high speed, as a share of the latter",
-            default Value(0.0), neutral Some(0.0), typical 0.3, bounds -0.99, 10.0;
+            default Value(0.0), neutral Some(0.0), typical 0.3, bounds 0.0, 10.0;
         velocity: Velocity, "speed scale of the fall",
             default Value(0.1), neutral None, typical 0.1, bounds 1e-9, 1e6;
         exponent: One, "shape of the fall",
@@ -20,7 +20,7 @@ parameters! {
 
 /// Level 1 + e·exp(−|v/v_s|^δ).
 ///
-/// Neutral: e = 0.
+/// Neutral: e = 0. A level that rises with speed is no Stribeck effect, so e is not negative.
 /// Source: Stribeck (1902), in the form of Bo, Pavelescu, Wear 82 (1982).
 #[derive(Debug, Clone)]
 pub struct Stribeck<S>(StribeckParameters<S>);

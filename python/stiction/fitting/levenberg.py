@@ -1,0 +1,164 @@
+"""Levenberg-Marquardt within bounds, for many rows and few columns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ..trajectory import FloatArray
+
+__all__ = ["Minimum", "escaped", "levenberg_marquardt"]
+
+FIRST_DAMPING: Final = 1e-3
+"""Damping to start with, in units of the scaled normal matrix's diagonal."""
+WORTH_ESCAPING: Final = 1e-3
+"""Share of the sum of squares for which a start from beyond a kink is worth while."""
+LEAST_DAMPING, MOST_DAMPING = 1e-12, 1e12
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Where the iteration ended.
+
+    Attributes
+    ----------
+    x : numpy.ndarray, shape (p,)
+    cost : float
+        Sum of squares.
+    converged : bool
+    """
+
+    x: FloatArray
+    cost: float
+    converged: bool
+
+
+def levenberg_marquardt(
+    residual: Callable[[FloatArray], FloatArray],
+    jacobian: Callable[[FloatArray], FloatArray],
+    begin: FloatArray,
+    bounds: tuple[FloatArray, FloatArray],
+    scale: FloatArray,
+    *,
+    most: int,
+    tolerance: float,
+) -> Minimum:
+    """Minimise Σr² within bounds.
+
+    The normal matrix is formed at once (n·p² operations against the decomposition of all rows,
+    which costs ten times that) with columns scaled by their norms; what stands at a bound and is
+    pushed against it is held, the step of the others is cut at theirs.
+
+    Parameters
+    ----------
+    residual, jacobian : callable
+        Of x; shapes (n,) and (n, p).
+    begin : numpy.ndarray, shape (p,)
+    bounds : pair of numpy.ndarray, shape (p,)
+    scale : numpy.ndarray, shape (p,)
+        Typical size of each variable: a column without slope is measured by it.
+    most : int
+        Evaluations of the residual at most.
+    tolerance : float
+        Relative change of cost, and of the step, below which nothing more is gained.
+
+    Notes
+    -----
+    Damping after Nielsen, Damping parameter in Marquardt's method, IMM-REP-1999-05.
+    """
+    low, high = bounds
+    x = np.clip(begin, low, high)
+    left = residual(x)
+    cost = float(left @ left)
+    spent = 1
+    damping, growth = FIRST_DAMPING, 2.0
+    largest = np.zeros(len(x))
+    while True:
+        slopes = jacobian(x)
+        gradient = slopes.T @ left
+        normal = slopes.T @ slopes
+        # Scales only grow (Moré 1978): a slope that fades must not make a step run away.
+        largest = np.maximum(largest, np.sqrt(np.diag(normal)))
+        size = np.where(largest > 0.0, largest, 1.0 / scale)
+        held = ((x <= low) & (gradient > 0.0)) | ((x >= high) & (gradient < 0.0))
+        free = np.flatnonzero(~held)
+        if len(free) == 0 or cost == 0.0:
+            return Minimum(x, cost, True)
+        while True:
+            if spent >= most:
+                return Minimum(x, cost, False)
+            step = _step(normal, gradient, size, free, damping)
+            tried = np.clip(x + step, low, high)
+            moved = tried - x
+            if np.all(np.abs(moved) <= tolerance * (np.abs(x) + tolerance * scale)):
+                return Minimum(x, cost, True)
+            after = residual(tried)
+            spent += 1
+            power = float(after @ after)
+            promised = _promised(gradient, normal, moved)
+            if power < cost:
+                gained = (cost - power) / promised if promised > 0.0 else 0.0
+                damping *= max(1.0 / 3.0, 1.0 - (2.0 * min(gained, 1.0) - 1.0) ** 3)
+                damping, growth = max(damping, LEAST_DAMPING), 2.0
+                flat = cost - power <= tolerance * cost
+                x, left, cost = tried, after, power
+                if flat:
+                    return Minimum(x, cost, True)
+                break
+            # What a step cut at a bound promises says nothing of how much there is to gain.
+            if _promised(gradient, normal, step) <= tolerance * cost:
+                return Minimum(x, cost, True)
+            damping, growth = damping * growth, 2.0 * growth
+            if damping > MOST_DAMPING:
+                return Minimum(x, cost, True)
+
+
+def escaped(
+    residual: Callable[[FloatArray], FloatArray],
+    jacobian: Callable[[FloatArray], FloatArray],
+    found: Minimum,
+    bounds: tuple[FloatArray, FloatArray],
+) -> FloatArray | None:
+    """A better point some way along the flattest directions, None where there is none.
+
+    Samples that go over from stick to slip put a kink into the sum of squares, and an iteration
+    that follows slopes ends at it. What lies beyond is looked at: steps along the directions in
+    which the sum of squares rises least, as long as would raise it by a few per cent if there were
+    no kink.
+    """
+    slopes = jacobian(found.x)
+    size = np.sqrt(np.sum(slopes**2, axis=0))
+    size[size == 0.0] = np.inf
+    curves, directions = np.linalg.eigh((slopes / size).T @ (slopes / size))
+    best, cost = None, found.cost * (1.0 - WORTH_ESCAPING)
+    for curve, direction in zip(curves, directions.T, strict=True):
+        if curve <= 0.0:
+            continue
+        for share in (0.003, 0.03, 0.3):
+            step = float(np.sqrt(share * found.cost / curve)) * direction / size
+            for sign in (-1.0, 1.0):
+                tried = np.clip(found.x + sign * step, *bounds)
+                left = residual(tried)
+                power = float(left @ left)
+                if power < cost:
+                    best, cost = tried, power
+    return best
+
+
+def _promised(gradient: FloatArray, normal: FloatArray, step: FloatArray) -> float:
+    """What a step would take off the sum of squares if the residual were linear."""
+    return -float(2.0 * gradient @ step + step @ normal @ step)
+
+
+def _step(
+    normal: FloatArray, gradient: FloatArray, size: FloatArray, free: np.ndarray, damping: float
+) -> FloatArray:
+    """The damped step of the free variables; 0 for the others."""
+    scaled = normal[np.ix_(free, free)] / np.outer(size[free], size[free])
+    scaled[np.diag_indices(len(free))] += damping
+    step = np.zeros(len(gradient))
+    step[free] = -np.linalg.solve(scaled, gradient[free] / size[free]) / size[free]
+    return step

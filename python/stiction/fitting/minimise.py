@@ -1,0 +1,240 @@
+"""Weighted least squares over rows: parameters of the plant and nuisances of the recordings."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from ..plant import Plant
+from ..trajectory import FloatArray
+from .levenberg import Minimum, escaped, levenberg_marquardt
+from .rows import TIMING_SHARE, Nuisances, Rows, Start, start_quantities, told_starts
+from .variables import Variables
+
+__all__ = ["MOST_EVALUATIONS", "Solution", "launch", "minimise"]
+
+MOST_EVALUATIONS: Final = 60
+CONVERGED: Final = 1e-8
+"""Change of cost, or of parameters, below which nothing more is gained: samples at rest go over
+from stick to slip one by one, so the cost has tiny steps."""
+FEW_EVALUATIONS: Final = 14
+"""After so many it shows which of several starts leads on."""
+MOST_ESCAPES: Final = 4
+"""Starts from beyond a kink, for laws that stick without a spring."""
+START_TIMES: Final = 2.0
+"""A force at the start is at most this many times the greatest effort that was measured."""
+RUNAWAY: Final = 1e6
+
+_logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Where a minimisation ended.
+
+    Attributes
+    ----------
+    plant : Plant
+    variables : Variables
+    vector, begin : numpy.ndarray, shape (p,)
+        Of the variables, at the end and at the start.
+    nuisances : Nuisances
+    success, interrupted : bool
+    message : str
+    evaluations : int
+    power : float
+        Σ w²·r² at the end.
+    """
+
+    plant: Plant
+    variables: Variables
+    vector: FloatArray
+    begin: FloatArray
+    nuisances: Nuisances
+    success: bool
+    interrupted: bool
+    message: str
+    evaluations: int
+    power: float
+
+
+def minimise(
+    plant: Plant,
+    paths: Sequence[str],
+    rows: Sequence[Rows],
+    *,
+    most: int = MOST_EVALUATIONS,
+    nuisances: Nuisances | None = None,
+    converged: float = CONVERGED,
+) -> Solution:
+    """Minimise Σ w²·r² over the rows by parameters of the plant and by nuisances.
+
+    Parameters
+    ----------
+    plant : Plant
+        States every path; its values are the start.
+    paths : sequence of str
+    rows : sequence of Rows
+        With their weights.
+    most : int
+        Evaluations of the residual at most.
+    nuisances : Nuisances, optional
+        Where the nuisances start.
+    converged : float
+        Relative change of cost or parameters at which it ends.
+
+    Returns
+    -------
+    Solution
+        The best so far after Ctrl-C or too many evaluations, and ``success`` False.
+    """
+    return _Minimiser(plant, paths, rows, most, nuisances or Nuisances(), converged).run()
+
+
+def launch(
+    plants: Sequence[Plant], paths: Sequence[str], rows: Sequence[Rows], *, most: int
+) -> Solution:
+    """Minimise from each of several starts for a while, then to the end from the best of them."""
+    first = []
+    for plant in plants:
+        first.append(minimise(plant, paths, rows, most=min(FEW_EVALUATIONS, most)))
+        if first[-1].interrupted:
+            break
+    best = min(first, key=lambda solution: solution.power)
+    if best.interrupted or best.success:
+        return best
+    whole = minimise(best.plant, paths, rows, most=most, nuisances=best.nuisances)
+    spent = sum(solution.evaluations for solution in first)
+    return replace(whole, begin=best.begin, evaluations=whole.evaluations + spent)
+
+
+class _Minimiser:
+    """Least squares that remembers the best vector it saw."""
+
+    def __init__(
+        self,
+        plant: Plant,
+        paths: Sequence[str],
+        rows: Sequence[Rows],
+        most: int,
+        nuisances: Nuisances,
+        converged: float,
+    ) -> None:
+        self.plant, self.rows, self.most, self.converged = plant, rows, most, converged
+        self.variables = Variables.of(plant, paths)
+        self.begin = self.variables.vector(np.array([plant.parameters[p].value for p in paths]))
+        self.starts = told_starts(plant, rows)
+        self.primed = sorted({k for k, _ in self.starts})
+        self.evaluations = 0
+        self._best: tuple[float, FloatArray] | None = None
+        before = [(nuisances.start(rows[k].index) or {}).get(name, 0.0) for k, name in self.starts]
+        self.full = np.concatenate([self.begin, [nuisances.timing], before])
+
+    def run(self) -> Solution:
+        lower, upper = self.variables.bounds()
+        late = TIMING_SHARE * min(each.form.dt for each in self.rows)
+        most = START_TIMES * max(float(np.max(np.abs(each.form.effort))) for each in self.rows)
+        span = max(float(np.ptp(each.form.position)) for each in self.rows)
+        reach = {"force": (-most, most), "hardening": (0.0, span)}
+        low = [reach[name][0] for _, name in self.starts]
+        high = [reach[name][1] for _, name in self.starts]
+        bounds = (
+            np.concatenate([lower, [-late], low]),
+            np.concatenate([upper, [late], high]),
+        )
+        begin = np.clip(self.full, *bounds)
+        own = np.abs(begin[: len(self.begin)])
+        size = np.where(own > 0.0, own, 1e-3 * max(float(np.max(own, initial=0.0)), 1e-300))
+        size[self.variables.logarithmic] = 1.0
+        scales = {"force": max(float(np.std(each.form.effort)) for each in self.rows)}
+        starts = [scales.get(name, 1e-4) for _, name in self.starts]
+        scale = np.concatenate([np.where(size > 0.0, size, 1.0), [late], starts])
+        interrupted = False
+        try:
+            found = self.descend(begin, bounds, scale)
+            for _ in range(MOST_ESCAPES if not start_quantities(self.plant) else 0):
+                beyond = escaped(self.residual, self.jacobian, found, bounds)
+                if beyond is None:
+                    break
+                found = self.descend(beyond, bounds, scale)
+            full, success = found.x, found.converged
+            message = (
+                "the fit has converged"
+                if success
+                else f"stopped after {self.most} evaluations: these are the best values so far"
+            )
+        except KeyboardInterrupt:
+            if self._best is None:
+                raise
+            full, success, interrupted = self._best[1], False, True
+            message = "interrupted: these are the best values so far"
+        plant, nuisances = self.split(full)
+        return Solution(
+            plant,
+            self.variables,
+            full[: len(self.begin)],
+            self.begin,
+            nuisances,
+            success,
+            interrupted,
+            message,
+            self.evaluations,
+            self._best[0] if self._best is not None else float("inf"),
+        )
+
+    def descend(
+        self, begin: FloatArray, bounds: tuple[FloatArray, FloatArray], scale: FloatArray
+    ) -> Minimum:
+        """Follows the slopes from one point."""
+        return levenberg_marquardt(
+            self.residual,
+            self.jacobian,
+            begin,
+            bounds,
+            np.where(scale > 0.0, scale, 1.0),
+            most=self.most,
+            tolerance=self.converged,
+        )
+
+    def split(self, full: FloatArray) -> tuple[Plant, Nuisances]:
+        """Plant and nuisances of a full vector."""
+        count = len(self.begin)
+        starts: dict[int, Start] = {self.rows[k].index: {} for k in self.primed}
+        for (k, name), value in zip(self.starts, full[count + 1 :].tolist(), strict=True):
+            starts[self.rows[k].index][name] = value
+        plant = self.variables.plant(self.plant, full[:count])
+        return plant, Nuisances(float(full[count]), starts)
+
+    def residual(self, full: FloatArray) -> FloatArray:
+        plant, nuisances = self.split(full)
+        rows = [each.weight * each.residual(plant, nuisances)[each.mask] for each in self.rows]
+        # A runaway trial must look bad, not break the optimiser.
+        residual: FloatArray = np.nan_to_num(
+            np.concatenate(rows), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY
+        )
+        self.evaluations += 1
+        power = float(residual @ residual)
+        if self._best is None or power < self._best[0]:
+            self._best = (power, np.array(full))
+        _logger.debug("evaluation %d: %g", self.evaluations, power)
+        return residual
+
+    def jacobian(self, full: FloatArray) -> FloatArray:
+        plant, nuisances = self.split(full)
+        count = len(self.begin)
+        blocks = []
+        for k, each in enumerate(self.rows):
+            own = [(j, f"start.{name}") for j, (of, name) in enumerate(self.starts) if of == k]
+            paths = [*self.variables.paths, *(path for _, path in own)]
+            found = each.jacobian(plant, paths, nuisances)[each.mask]
+            block = np.zeros((len(found), len(full)))
+            block[:, :count] = self.variables.chain(found[:, :count], full[:count])
+            block[:, count] = each.late[each.mask]
+            for column, (j, _) in enumerate(own):
+                block[:, count + 1 + j] = found[:, count + column]
+            blocks.append(each.weight * block)
+        return np.nan_to_num(np.vstack(blocks))

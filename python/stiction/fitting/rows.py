@@ -1,0 +1,124 @@
+"""Rows of a recording that are fitted, and what a recording brings along beside the plant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from ..catalogue import laws
+from ..plant import Plant
+from ..recording import Part, Recording
+from ..trajectory import FloatArray
+from ..weak_form import WeakForm
+from .statistics import CORRELATED_S
+
+__all__ = ["EVERY_S", "Mask", "Nuisances", "Rows", "Start", "rows_of", "start_quantities"]
+
+EVERY_S: Final = 0.005
+"""Spacing of the residual: the kernel leaves nothing between."""
+WARM_UP_S: Final = 0.2
+"""Left out at the start of a recording: what the fitted start does not tell is forgotten then."""
+TIMING_SHARE: Final = 0.5
+"""Bound of the timing offset in samples: more than this is a delay of the machine."""
+TOLD: Final = 0.01
+"""A start quantity is fitted where it changes any row by this share of the residual."""
+
+Mask = np.ndarray[Any, np.dtype[np.bool_]]
+Start = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Nuisances:
+    """What is fitted along and belongs to recordings, not to the machine.
+
+    Attributes
+    ----------
+    timing : float
+        By how much the input is stamped early, s; one for all recordings.
+    starts : Mapping of int to dict
+        Friction state at the first row, by the index of the recording.
+    """
+
+    timing: float = 0.0
+    starts: Mapping[int, Start] = field(default_factory=dict)
+
+    def start(self, index: int) -> Start | None:
+        """Start of a recording, None where it was never moved as far as anybody knows."""
+        return self.starts.get(index)
+
+
+class Rows:
+    """One recording through a kernel, and which of its rows count.
+
+    Attributes
+    ----------
+    form : WeakForm
+    index : int
+        Of the recording in its session.
+    mask : numpy.ndarray of bool, shape (n,)
+    weight : float
+    late : numpy.ndarray, shape (n,)
+        Derivative of the measured effort by the timing offset, 1/s.
+    per_block : int
+        Rows over which residuals are taken as correlated.
+    """
+
+    def __init__(self, plant: Plant, form: WeakForm, index: int, mask: Mask) -> None:
+        self.form, self.index, self.mask = form, index, mask
+        self.weight = 1.0
+        self.late = form.late(plant)
+        self.per_block = max(1, round(CORRELATED_S / (form.dt * form.stride)))
+
+    def residual(self, plant: Plant, nuisances: Nuisances) -> FloatArray:
+        """Measured minus needed effort of every row; shape (n,)."""
+        measured, model = self.form.efforts(plant, nuisances.start(self.index))
+        return measured + nuisances.timing * self.late - model
+
+    def jacobian(self, plant: Plant, paths: Sequence[str], nuisances: Nuisances) -> FloatArray:
+        """Derivatives of the residual by parameters and start quantities; shape (n, paths)."""
+        return self.form.jacobian(plant, paths, nuisances.start(self.index))
+
+
+def warm(form: WeakForm, recording: Recording) -> Mask:
+    """Rows after the warm-up."""
+    after: Mask = form.time >= recording.time[0] + WARM_UP_S
+    return after
+
+
+def rows_of(form: WeakForm, recording: Recording, index: int, parts: Sequence[Part]) -> Mask:
+    """Rows of a form that lie in these parts, the warm-up left out."""
+    chosen = np.zeros(len(form), dtype=bool)
+    for part in parts:
+        if part.recording == index:
+            first, last = recording.time[part.start], recording.time[part.stop - 1]
+            chosen |= (form.time >= first) & (form.time <= last)
+    return chosen & warm(form, recording)
+
+
+def start_quantities(plant: Plant) -> tuple[str, ...]:
+    """Names of what the law of a plant remembers from before a recording."""
+    law = next(record for record in laws() if record.name == plant.friction.law)
+    return tuple(quantity.name for quantity in getattr(law, "start", ()))
+
+
+def told_starts(plant: Plant, rows: Sequence[Rows]) -> list[tuple[int, str]]:
+    """Starts that the rows tell of: index into ``rows`` and quantity."""
+    names = start_quantities(plant)
+    if not names:
+        return []
+    told = []
+    virgin = Nuisances(starts={each.index: dict.fromkeys(names, 0.0) for each in rows})
+    for k, each in enumerate(rows):
+        left = each.residual(plant, virgin)[each.mask]
+        columns = each.jacobian(plant, [f"start.{name}" for name in names], virgin)[each.mask]
+        size = float(np.sqrt(np.mean(left**2)))
+        # A quantity in its own unit: what it may do is its slope times a typical size.
+        scales = {"force": float(np.sqrt(np.mean(each.form.effort**2)))}
+        for name, column in zip(names, columns.T, strict=True):
+            typical = scales.get(name, 0.1 * float(np.ptp(each.form.position)))
+            if np.max(np.abs(column)) * typical > TOLD * size:
+                told.append((k, name))
+    return told
