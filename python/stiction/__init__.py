@@ -17,12 +17,14 @@ from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     from .catalogue import effects, laws
+    from .diagnosis import Diagnosis, diagnose
     from .fitting import FitResult, fit
     from .plant import Plant
     from .recording import Recording
     from .session import Session, load
 
 __all__ = [
+    "Diagnosis",
     "FitResult",
     "FrictionModel",
     "InputError",
@@ -32,6 +34,7 @@ __all__ = [
     "Session",
     "Trajectory",
     "__version__",
+    "diagnose",
     "effects",
     "fit",
     "laws",
@@ -40,10 +43,12 @@ __all__ = [
 
 # Imported on first use, so that `import stiction` costs little more than numpy.
 _LAZY = {
+    "Diagnosis": "diagnosis",
     "FitResult": "fitting",
     "Plant": "plant",
     "Recording": "recording",
     "Session": "session",
+    "diagnose": "diagnosis",
     "effects": "catalogue",
     "fit": "fitting",
     "laws": "catalogue",

@@ -7,7 +7,9 @@ import cyclopts
 from .. import __version__
 from .catalogue import effects, laws
 from .demo import demo
+from .diagnose import diagnose
 from .fit import fit
+from .init import init
 from .paper import paper
 from .simulate import simulate
 
@@ -22,6 +24,6 @@ def build() -> cyclopts.App:
         version=f"stiction {__version__}",
         help_format="plaintext",
     )
-    for verb in (demo, simulate, fit, laws, effects, paper):
+    for verb in (init, demo, simulate, fit, diagnose, laws, effects, paper):
         app.command(verb)
     return app

@@ -1,0 +1,102 @@
+"""``stiction diagnose``: what a simulation of a machine is missing."""
+
+from __future__ import annotations
+
+import logging
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from .. import session as sessions
+from ..diagnosis import SURROGATES
+from ..diagnosis import diagnose as run
+from ..diagnosis.result import Diagnosis
+from ..errors import InputError
+from .answer import answer, folder
+
+__all__ = ["diagnose", "progress", "told"]
+
+
+def diagnose(
+    session: Path,
+    *,
+    without: tuple[str, ...] = (),
+    laws: str = "",
+    surrogates: int = SURROGATES,
+    seed: int = 0,
+    threads: int | None = None,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Find out what a simulation of the machine is missing, add it and measure the gain.
+
+    Writes report.html, findings.json, the extended plant.toml and figures.
+
+    Parameters
+    ----------
+    session
+        Session file: names the plant, the columns and the recordings.
+    without
+        Effect that is not tried; may be given several times.
+    laws
+        Other laws to compare with the plant's: "all", or names with commas between.
+    surrogates
+        Replays of the fitted plant with noise alone, which thresholds come from.
+    seed
+        Of everything random.
+    threads
+        Recordings looked at side by side; results do not depend on it.
+    out
+        Folder for the results, ./<session>-diagnosis/ without it.
+    json
+        Print JSON.
+    """
+    loaded = sessions.load(session, keep_faulty=True)
+    if loaded.plant is None:
+        raise InputError(f'{session}: plant is missing; write plant = "plant.toml"')
+    where = folder(Path(f"{session.stem}-diagnosis") if out is None else out)
+    names = [name.strip() for name in laws.split(",") if name.strip()]
+    with progress():
+        found = run(
+            loaded.plant,
+            loaded,
+            without=without,
+            laws=names,
+            surrogates=surrogates,
+            seed=seed,
+            threads=threads,
+        )
+    report = found.save(where)
+    answer(f"{found}\n\n{told(found, report)}", found.to_dict(), as_json=json)
+    if not found.success:
+        raise KeyboardInterrupt
+
+
+def told(found: Diagnosis, report: Path) -> str:
+    """Where the answer is, in words."""
+    return f"{found.split}\n\nreport: {report}" if found.split else f"report: {report}"
+
+
+@contextmanager
+def progress() -> Iterator[None]:
+    """Shows on stderr what is being done, on a terminal only."""
+    logger = logging.getLogger("stiction.diagnosis")
+    if not sys.stderr.isatty():
+        yield
+        return
+    handler = logging.StreamHandler(sys.stderr)
+    handler.setFormatter(logging.Formatter("%(message)s …"))
+    level, passed = logger.level, logger.propagate
+    logger.addHandler(handler)
+    logger.setLevel(logging.INFO)
+    logger.propagate = False
+    try:
+        yield
+    finally:
+        logger.removeHandler(handler)
+        logger.setLevel(level)
+        logger.propagate = passed

@@ -1,0 +1,8 @@
+"""Diagnosis: what a simulation gets wrong, its cause by name, and what naming it gained."""
+
+from __future__ import annotations
+
+from .pipeline import SURROGATES, diagnose
+from .result import Diagnosis
+
+__all__ = ["SURROGATES", "Diagnosis", "diagnose"]

@@ -1,0 +1,150 @@
+"""What may be missing: effects of the catalogue, their shapes on a grid scaled from the data."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Final
+
+import numpy as np
+
+from ..catalogue import EffectRecord, effects
+from ..errors import InputError
+from ..plant import Plant
+from ..wording import did_you_mean, listed
+from .evidence import Evidence
+
+__all__ = ["Candidate", "Scales", "candidates", "left_out", "present", "scales_of"]
+
+FEWEST_SPEEDS: Final = (0.02, 0.90)
+"""Quantiles of the moving speeds that bound the grid of a speed."""
+STILL: Final = 1e-3
+"""Share of the greatest speed below which a machine counts as still."""
+MOST_ORDERS: Final = 48
+"""Orders tried at most."""
+ORDER_STEP: Final = 0.5
+"""Spacing of orders where the machine does not turn fully, in periods over its range."""
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Sizes of a session in which shapes are measured.
+
+    Attributes
+    ----------
+    speeds : tuple of float
+        Lowest and highest usual speed, rad/s or m/s.
+    orders : tuple of float
+        Orders that the range of motion can show, 1/rad or 1/m.
+    whole_turns : bool
+        Orders are whole numbers: the machine turns at least once.
+    """
+
+    speeds: tuple[float, float]
+    orders: tuple[float, ...]
+    whole_turns: bool
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect with values of its shape parameters.
+
+    Attributes
+    ----------
+    record : EffectRecord
+    shape : dict
+        Value of every shape parameter.
+    free : tuple of str
+        Shape parameters that a refit varies.
+    """
+
+    record: EffectRecord
+    shape: dict[str, float]
+    free: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.record.name
+
+    @property
+    def parameters(self) -> int:
+        """How many parameters it adds to a fit."""
+        return len(self.record.gains) + len(self.free)
+
+
+def scales_of(evidence: Evidence) -> Scales:
+    """Sizes of the motion in the rows that may be looked at."""
+    speeds = np.concatenate([np.abs(r.form.velocity[r.mask]) for r in evidence.shown])
+    moving = speeds[speeds > STILL * float(np.max(speeds, initial=0.0))]
+    low, high = np.quantile(moving, FEWEST_SPEEDS) if len(moving) else (1.0, 1.0)
+    positions = [r.form.position for r in evidence.shown]
+    least = min(float(p.min()) for p in positions)
+    span = max(float(p.max()) for p in positions) - least
+    whole = evidence.plant.motion == "rotary" and span >= 2.0 * math.pi
+    if whole:
+        orders = tuple(float(k) for k in range(1, MOST_ORDERS + 1))
+    elif span > 0.0:
+        step = ORDER_STEP * 2.0 * math.pi / span
+        orders = tuple(step * k for k in range(1, MOST_ORDERS + 1))
+    else:
+        orders = (1.0,)
+    return Scales((float(low), float(max(high, low * 1.01))), orders, whole)
+
+
+def left_out(without: Sequence[str]) -> tuple[str, ...]:
+    """The names of effects that are not to be tried.
+
+    Raises
+    ------
+    InputError
+        A name that no effect has.
+    """
+    known = [record.name for record in effects()]
+    for name in without:
+        if name not in known:
+            raise InputError(
+                f"--without {name}: there is no such effect{did_you_mean(name, known)}; "
+                f"there are {listed(known)}"
+            )
+    return tuple(without)
+
+
+def candidates(record: EffectRecord, scales: Scales) -> list[Candidate]:
+    """An effect at every point of the grid of its shapes."""
+    return list(_grid(record, scales))
+
+
+def present(plant: Plant, record: EffectRecord) -> bool:
+    """Whether the plant holds the effect already, as an effect or as a part of its law."""
+    if any(effect.name == record.name for effect in plant.effects):
+        return True
+    return any(term in plant.friction.parameters for term in record.law_terms)
+
+
+def _grid(record: EffectRecord, scales: Scales) -> Iterator[Candidate]:
+    shapes = record.shapes
+    axes = []
+    free = []
+    for shape in shapes:
+        values, fitted = _axis(shape.scale, shape.grid, scales)
+        bounds = next(p.bounds for p in record.parameters if p.name == shape.parameter)
+        axes.append(sorted({float(np.clip(v, *bounds)) for v in values}))
+        if shape.fitted and fitted:
+            free.append(shape.parameter)
+    for point in product(*axes):
+        yield Candidate(
+            record, dict(zip((s.parameter for s in shapes), point, strict=True)), tuple(free)
+        )
+
+
+def _axis(scale: str, grid: Sequence[float], scales: Scales) -> tuple[Sequence[float], bool]:
+    """Values along one shape, and whether a refit may vary it."""
+    if scale == "order":
+        return scales.orders, not scales.whole_turns
+    if scale == "speed":
+        low, high = scales.speeds
+        return [low * (high / low) ** share for share in grid], True
+    return grid, True

@@ -1,0 +1,184 @@
+"""The decision: which candidate is accepted, and which others these data cannot tell from it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ..trajectory import FloatArray
+from .candidates import Candidate
+from .model import Model
+from .screen import Score
+
+__all__ = ["Choice", "Trial", "choose", "heldout_gain", "judge", "log_gain"]
+
+LEAST_GAIN: Final = 0.025
+"""Held-out gain below which an effect is not worth a name."""
+LEAST_Z: Final = 2.0
+"""Held-out gain over its standard error over blocks of 1 s."""
+PENALTY: Final = 0.004
+"""Of log-gain per parameter: flexible wrong effects imitate right ones."""
+NEAR: Final = 0.15
+"""Within this share of the winner's log-gain another candidate is not told apart."""
+DECIDED_Z: Final = 2.0
+"""Difference to the winner over its standard error that tells two candidates apart."""
+ALIKE: Final = 0.5
+"""Cosine of two contributions above which they explain the same."""
+LEAST_STRENGTH: Final = 3.5
+"""Gains over their standard errors (the root of Wald's statistic), from residuals correlated within
+blocks: one number that no number of rows makes large by itself."""
+LEAST_SIZE: Final = 0.001
+"""Contribution, as a share of the friction, below which an effect is of no relevance."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A candidate, refitted together with the base.
+
+    Attributes
+    ----------
+    score : Score
+    model : Model
+        The base with the effect.
+    gain : float
+        Held-out gain over the base.
+    z : float
+        Of the held-out gain over blocks.
+    worth : float
+        Log-gain on train plus log-gain held out, less 0.004 per parameter.
+    size : float
+        rms of the effort that the effect contributes, as a share of the friction's.
+    reason : str
+        Why it was refused, "" where it was not.
+    """
+
+    score: Score
+    model: Model
+    gain: float
+    z: float
+    worth: float
+    size: float
+    reason: str
+
+    @property
+    def candidate(self) -> Candidate:
+        """The effect."""
+        return self.score.candidate
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.candidate.name
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The accepted candidate of one round.
+
+    Attributes
+    ----------
+    winner : Trial
+    rivals : tuple of Trial
+        Others that explain the same about as well, likeliest first.
+    """
+
+    winner: Trial
+    rivals: tuple[Trial, ...]
+
+    @property
+    def decided(self) -> bool:
+        """Whether the data tell the winner from all others."""
+        return not self.rivals
+
+
+def judge(base: Model, score: Score, model: Model, size: float) -> Trial:
+    """Compares a refitted candidate with the base it was added to."""
+    gain, z = heldout_gain(base, model)
+    explained = 1.0 - model.power / base.power if base.power > 0.0 else 0.0
+    reason = ""
+    strength = model.strength(score.candidate)
+    if explained <= 0.0:
+        reason = "fits no better than without it"
+    elif explained <= score.threshold:
+        reason = (
+            f"explains {100 * explained:.2f} % of the residual, and noise alone reaches "
+            f"{100 * score.threshold:.2f} %"
+        )
+    elif gain <= 0.0:
+        reason = "does not help on rows held out"
+    elif gain <= LEAST_GAIN:
+        reason = f"gains {100 * gain:.2f} % on rows held out, below {100 * LEAST_GAIN:.2f} %"
+    elif z <= LEAST_Z:
+        reason = f"its held-out gain is {z:.2f} standard errors, below {LEAST_Z:.2f}"
+    elif strength < LEAST_STRENGTH:
+        reason = f"its strength is {strength:.2f} standard errors, below {LEAST_STRENGTH:.2f}"
+    elif size < LEAST_SIZE:
+        reason = (
+            f"contributes {100 * size:.2g} % of the friction, below the {100 * LEAST_SIZE:.2g} % "
+            "that matter"
+        )
+    worth = log_gain(base, model) - PENALTY * score.candidate.parameters
+    return Trial(score, model, gain, z, worth, size, reason)
+
+
+def heldout_gain(base: Model, model: Model) -> tuple[float, float]:
+    """Share of the held-out power that a model removes, and that over its standard error."""
+    before, after = base.blocks[1], model.blocks[1]
+    seen = before > 0.0
+    difference = before[seen] - after[seen]
+    total = float(before.sum())
+    if total <= 0.0 or len(difference) < 2:
+        return 0.0, 0.0
+    return float(difference.sum()) / total, _z(difference)
+
+
+def log_gain(base: Model, model: Model) -> float:
+    """Logarithm of the power before over that after, on train and held out, added."""
+    total = 0.0
+    for before, after in zip(base.blocks, model.blocks, strict=True):
+        if before.sum() > 0.0 and after.sum() > 0.0:
+            total += math.log(float(before.sum()) / float(after.sum()))
+    return total
+
+
+def choose(trials: Sequence[Trial]) -> Choice | None:
+    """The accepted candidate worth most, and those that are not told from it."""
+    accepted = sorted((t for t in trials if not t.reason), key=lambda t: -t.worth)
+    if not accepted:
+        return None
+    winner, *others = accepted
+    rivals = [other for other in others if _alike(winner, other) and not _told(winner, other)]
+    return Choice(winner, tuple(rivals))
+
+
+def _alike(one: Trial, other: Trial) -> bool:
+    """Whether two candidates explain the same part of the residual."""
+    a, b = one.score.signature, other.score.signature
+    norm = float(np.linalg.norm(a) * np.linalg.norm(b))
+    return norm > 0.0 and abs(float(a @ b)) > ALIKE * norm
+
+
+def _told(winner: Trial, other: Trial) -> bool:
+    """Whether the data tell the winner from another candidate."""
+    if other.worth >= (1.0 - NEAR) * winner.worth:
+        return False
+    difference = sum(
+        (
+            after - before
+            for after, before in zip(other.model.blocks, winner.model.blocks, strict=True)
+        ),
+        start=np.zeros(1),
+    )
+    return _z(difference[difference != 0.0]) >= DECIDED_Z
+
+
+def _z(values: FloatArray) -> float:
+    """Sum over its standard error, values being independent."""
+    if len(values) < 2:
+        return 0.0
+    error = float(np.std(values, ddof=1)) * math.sqrt(len(values))
+    return float(values.sum()) / error if error > 0.0 else 0.0

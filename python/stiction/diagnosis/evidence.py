@@ -1,0 +1,226 @@
+"""The rows of a session by what they may be used for; those that test stay sealed until the end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Final, TypeVar
+
+import numpy as np
+
+from ..errors import NotEnoughData
+from ..fitting.rows import EVERY_S, Mask, Nuisances, Rows, rows_of
+from ..plant import Plant
+from ..recording import Part, Recording
+from ..recording.split import BLOCK_S, Split, name_of, split
+from ..trajectory import FloatArray
+from ..weak_form import WeakForm
+
+__all__ = ["Cells", "Evidence", "Plan", "SealedError"]
+
+BLOCK: Final = 1.0
+"""Length of the blocks over which residuals are taken as correlated, s."""
+
+_Item = TypeVar("_Item")
+_Result = TypeVar("_Result")
+
+
+class SealedError(RuntimeError):
+    """The rows that test were asked for before the last decision, or twice."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """One way to decide: fitted on some of the stacked rows, judged on others.
+
+    Attributes
+    ----------
+    fit, held : numpy.ndarray of bool, shape (n,)
+    """
+
+    fit: Mask
+    held: Mask
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Where each stacked row comes from.
+
+    Attributes
+    ----------
+    block : numpy.ndarray of int, shape (n,)
+        Blocks of 1 s of one recording, numbered from 0.
+    recording : numpy.ndarray of int, shape (n,)
+    kind : numpy.ndarray of int, shape (n,)
+        Index into ``kinds``.
+    kinds : tuple of str
+    """
+
+    block: np.ndarray
+    recording: np.ndarray
+    kind: np.ndarray
+    kinds: tuple[str, ...]
+
+    def of(self, mask: Mask) -> Cells:
+        """The same of some of the rows."""
+        return Cells(self.block[mask], self.recording[mask], self.kind[mask], self.kinds)
+
+
+class Evidence:
+    """A session seen through kernels, and who may look at which rows.
+
+    Parameters
+    ----------
+    plant : Plant
+        For its kind of motion, drive and sensor.
+    recordings : sequence of Recording
+    threads : int, optional
+        Recordings looked at side by side; results do not depend on it.
+
+    Attributes
+    ----------
+    train : list of Rows
+        Fitted on.
+    split : Split
+    names : list of str
+    shown : list of Rows
+        Fitted on or decided on: all that may be looked at before the last decision.
+    fitted : numpy.ndarray of bool, shape (n,)
+        Which of the stacked rows of ``shown`` are fitted on.
+    weights : numpy.ndarray, shape (n,)
+        Of the stacked rows.
+    plans : list of Plan
+    cells : Cells
+
+    Raises
+    ------
+    NotEnoughData
+        A recording too short for its kernel, nothing to train on or to decide on.
+    """
+
+    def __init__(
+        self, plant: Plant, recordings: Sequence[Recording], *, threads: int | None = None
+    ) -> None:
+        self.plant = plant
+        self.recordings = list(recordings)
+        self.threads = threads
+        self.names = [name_of(recording, k) for k, recording in enumerate(self.recordings)]
+        self.forms = self.each(lambda r: WeakForm(plant, r, every=EVERY_S), self.recordings)
+        self.support = max(form.kernel.support for form in self.forms)
+        self.split: Split = split(self.recordings, edge_s=min(self.support, 0.25 * BLOCK_S))
+        self.train = self._rows(plant, self.split.train)
+        if not self.train:
+            raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
+        self._select = self._masks(self.split.select)
+        self._sealed = True
+        # What may be looked at before the last decision: train and select, one under the other.
+        shown = self._masks((*self.split.train, *self.split.select))
+        self.shown = [Rows(plant, f, k, m) for k, (f, m) in enumerate(shown) if m.any()]
+        self.cells = self._cells(self.shown)
+        self.fitted = self._stacked(self._masks(self.split.train))
+        self.plans = self._plans()
+        self._weights = [1.0] * len(self.recordings)
+        self.weights = np.ones(len(self.fitted))
+
+    def each(self, work: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
+        """Results of some work on each item, in their order, on as many threads as allowed."""
+        if self.threads == 1 or len(items) < 2:
+            return [work(item) for item in items]
+        with ThreadPoolExecutor(self.threads) as pool:
+            return list(pool.map(work, items))
+
+    def residual(self, plant: Plant, nuisances: Nuisances) -> FloatArray:
+        """Weighted residual of all rows that may be looked at; shape (n,)."""
+        return np.concatenate(
+            self.each(lambda e: e.weight * e.residual(plant, nuisances)[e.mask], self.shown)
+        )
+
+    def stack(self, work: Callable[[Rows], FloatArray]) -> FloatArray:
+        """Weighted columns of all rows that may be looked at, one recording under the other."""
+
+        def columns(rows: Rows) -> FloatArray:
+            found: FloatArray = rows.weight * work(rows)[rows.mask]
+            return found
+
+        return np.concatenate(self.each(columns, self.shown))
+
+    def weigh(self) -> None:
+        """Carries the weights of train over to all other rows, by recording or by kind."""
+        own = {rows.index: rows.weight for rows in self.train}
+        by_kind: dict[str, list[float]] = {}
+        for index, weight in own.items():
+            by_kind.setdefault(self.recordings[index].kind, []).append(weight)
+        usual = float(np.median(list(own.values())))
+        self._weights = []
+        for index, recording in enumerate(self.recordings):
+            same = by_kind.get(recording.kind)
+            kind = float(np.median(same)) if same else usual
+            self._weights.append(own.get(index, kind))
+        for rows in self.shown:
+            rows.weight = self._weights[rows.index]
+        self.weights = np.concatenate([np.full(int(r.mask.sum()), r.weight) for r in self.shown])
+
+    def open_test(self) -> list[Rows]:
+        """The rows that test: once, after the last decision.
+
+        Raises
+        ------
+        SealedError
+            The second time.
+        """
+        if not self._sealed:
+            raise SealedError("the test rows were opened already")
+        self._sealed = False
+        rows = self._rows(self.plant, self.split.test)
+        for each in rows:
+            each.weight = self._weights[each.index]
+        return rows
+
+    def cells_of(self, rows: Sequence[Rows]) -> Cells:
+        """Where the rows that count come from."""
+        return self._cells(rows)
+
+    def _rows(self, plant: Plant, parts: Sequence[Part]) -> list[Rows]:
+        masks = self._masks(parts)
+        return [Rows(plant, form, k, mask) for k, (form, mask) in enumerate(masks) if mask.any()]
+
+    def _masks(self, parts: Sequence[Part]) -> list[tuple[WeakForm, Mask]]:
+        return [
+            (form, rows_of(form, recording, k, parts))
+            for k, (form, recording) in enumerate(zip(self.forms, self.recordings, strict=True))
+        ]
+
+    def _stacked(self, masks: Sequence[tuple[WeakForm, Mask]]) -> Mask:
+        stacked: Mask = np.concatenate([masks[rows.index][1][rows.mask] for rows in self.shown])
+        return stacked
+
+    def _plans(self) -> list[Plan]:
+        if self.split.select:
+            return [Plan(self.fitted, self._stacked(self._select))]
+        plans = []
+        for fold in self.split.folds:
+            fit, held = self._stacked(self._masks(fold.fit)), self._stacked(self._masks(fold.held))
+            if fit.any() and held.any():
+                plans.append(Plan(fit, held))
+        if not plans:
+            raise NotEnoughData(
+                "session: nothing is left to decide on besides what is fitted; add a recording "
+                'with role = "select", or longer ones'
+            )
+        return plans
+
+    def _cells(self, rows: Sequence[Rows]) -> Cells:
+        kinds = tuple(dict.fromkeys(recording.kind for recording in self.recordings))
+        block, recording, kind = [], [], []
+        offset = 0
+        for each in rows:
+            time = each.form.time[each.mask]
+            own = np.floor((time - time[0]) / BLOCK).astype(np.int64)
+            _, own = np.unique(own, return_inverse=True)
+            block.append(own + offset)
+            offset += int(own.max()) + 1
+            recording.append(np.full(len(time), each.index))
+            name = self.recordings[each.index].kind
+            kind.append(np.full(len(time), kinds.index(name)))
+        return Cells(np.concatenate(block), np.concatenate(recording), np.concatenate(kind), kinds)

@@ -1,0 +1,197 @@
+"""A plant fitted to the rows of train, what it leaves, and how its parameters change that."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+
+from ..fitting.minimise import Solution, minimise
+from ..fitting.rows import TIMING_SHARE, Nuisances, Rows
+from ..fitting.start import free_paths
+from ..parameter import Parameter
+from ..plant import Effect, Plant
+from ..trajectory import FloatArray
+from .candidates import Candidate
+from .evidence import Evidence, Plan
+from .regression import step
+
+__all__ = ["Model", "fitted", "stepped", "with_effect", "without_effect"]
+
+REFIT_EVALUATIONS: Final = 12
+"""A refit starts from the base and an estimate of the gain: it needs few steps."""
+REFIT_CONVERGED: Final = 1e-6
+FLAT: Final = 1e-8
+"""Directions of the base with less than this share of the strongest one are left alone."""
+INSIDE: Final = 0.98
+"""A timing offset beyond this share of its bound is held by the bound."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A fitted plant and its residual.
+
+    Attributes
+    ----------
+    evidence : Evidence
+    solution : Solution
+    """
+
+    evidence: Evidence
+    solution: Solution
+
+    @property
+    def plant(self) -> Plant:
+        """The fitted plant."""
+        return self.solution.plant
+
+    @property
+    def nuisances(self) -> Nuisances:
+        """The fitted nuisances."""
+        return self.solution.nuisances
+
+    @cached_property
+    def residual(self) -> FloatArray:
+        """Weighted residual of the rows that may be looked at; shape (n,)."""
+        return np.nan_to_num(self.evidence.residual(self.plant, self.nuisances))
+
+    @cached_property
+    def columns(self) -> FloatArray:
+        """Derivatives of ``residual`` by what was fitted and does not stand at a bound."""
+        paths = list(self.solution.variables.paths)
+        starts = [(k, name) for k, own in self.nuisances.starts.items() for name in own]
+
+        def block(rows: Rows) -> FloatArray:
+            own = [j for j, (k, _) in enumerate(starts) if k == rows.index]
+            wanted = [*paths, *(f"start.{starts[j][1]}" for j in own)]
+            found = rows.jacobian(self.plant, wanted, self.nuisances)
+            whole = np.zeros((len(found), len(paths) + len(starts) + 1))
+            whole[:, : len(paths)] = found[:, : len(paths)]
+            for column, j in enumerate(own):
+                whole[:, len(paths) + j] = found[:, len(paths) + column]
+            if self._timing_is_free:
+                whole[:, -1] = rows.late
+            return whole
+
+        return np.nan_to_num(self.evidence.stack(block))
+
+    def strength(self, candidate: Candidate) -> float:
+        """Gains of an effect over their standard errors: √(γᵀC⁻¹γ), C over blocks of 1 s."""
+        paths = list(self.solution.variables.paths)
+        own = [paths.index(f"effects.{candidate.name}.{name}") for name in candidate.record.gains]
+        fit, block = self.evidence.fitted, self.evidence.cells.block
+        columns, residual = self.columns[fit], self.residual[fit]
+        scale = np.sqrt(np.sum(columns**2, axis=0))
+        live = np.flatnonzero(scale > 0.0)
+        scaled = columns[:, live] / scale[live]
+        bread = np.linalg.pinv(scaled.T @ scaled, rcond=FLAT, hermitian=True)
+        _, index = np.unique(block[fit], return_inverse=True)
+        pushes = np.zeros((int(index.max()) + 1, len(live)))
+        np.add.at(pushes, index, scaled * residual[:, None])
+        covariance = bread @ pushes.T @ pushes @ bread
+        places = [int(np.flatnonzero(live == k)[0]) for k in own if k in live]
+        if len(places) < len(own):
+            return 0.0
+        effect = next(each for each in self.plant.effects if each.name == candidate.name)
+        gains = np.array([effect.parameters[name].value for name in candidate.record.gains])
+        gains *= scale[own]
+        matrix = covariance[np.ix_(places, places)]
+        return float(np.sqrt(max(gains @ np.linalg.pinv(matrix, hermitian=True) @ gains, 0.0)))
+
+    @property
+    def _timing_is_free(self) -> bool:
+        least = min(rows.form.dt for rows in self.evidence.train)
+        return abs(self.nuisances.timing) < INSIDE * TIMING_SHARE * least
+
+    def held(self, plan: Plan) -> FloatArray:
+        """Residual of the rows that a plan holds out, fitted on those that it fits.
+
+        Where the plan fits all of train that is the residual itself; in a fold it is corrected by
+        one Gauss-Newton step from the fit to all of train.
+        """
+        if np.array_equal(plan.fit, self.evidence.fitted):
+            return self.residual[plan.held]
+        return step(self.columns, self.residual, plan)
+
+    @cached_property
+    def power(self) -> float:
+        """Weighted power of the residual over the fitted rows."""
+        own = self.residual[self.evidence.fitted]
+        return float(own @ own)
+
+    @cached_property
+    def blocks(self) -> tuple[FloatArray, FloatArray]:
+        """Power of the residual in each block of 1 s: fitted, and held out over all plans."""
+        block = self.evidence.cells.block
+        number = int(block.max()) + 1
+        fit, held = self.evidence.fitted, np.zeros(number)
+        train: FloatArray = np.zeros(number)
+        train += np.bincount(block[fit], self.residual[fit] ** 2, number)
+        for plan in self.evidence.plans:
+            held += np.bincount(block[plan.held], self.held(plan) ** 2, number)
+        return train, held
+
+
+def fitted(
+    evidence: Evidence,
+    plant: Plant,
+    nuisances: Nuisances | None = None,
+    *,
+    most: int = REFIT_EVALUATIONS,
+    converged: float = REFIT_CONVERGED,
+) -> Model:
+    """The plant fitted to the rows of train, with the weights these have."""
+    solution = minimise(
+        plant,
+        free_paths(plant),
+        evidence.train,
+        most=most,
+        nuisances=nuisances,
+        converged=converged,
+    )
+    return Model(evidence, solution)
+
+
+def stepped(model: Model, explained: FloatArray) -> Plant:
+    """The plant of a model, moved to where it is best once something else explains a part.
+
+    One Gauss-Newton step over the fitted rows; a refit that starts there has little left to do.
+
+    Parameters
+    ----------
+    model : Model
+    explained : numpy.ndarray, shape (n,)
+        Part of the residual that an effect takes over.
+    """
+    paths = list(model.solution.variables.paths)
+    fit = model.evidence.fitted
+    columns = model.columns[fit]
+    scale = np.sqrt(np.sum(columns**2, axis=0))
+    scale[scale == 0.0] = 1.0
+    left = (model.residual - explained)[fit]
+    moved = -np.linalg.lstsq(columns / scale, left, rcond=FLAT)[0] / scale
+    values = model.solution.variables.values(model.solution.vector) + moved[: len(paths)]
+    variables = model.solution.variables
+    kept = np.clip(values, variables.lower, variables.upper)
+    return variables.plant(model.plant, variables.vector(kept))
+
+
+def without_effect(plant: Plant, name: str) -> Plant:
+    """The plant without an effect."""
+    return replace(plant, effects=tuple(each for each in plant.effects if each.name != name))
+
+
+def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> Plant:
+    """The plant with one more effect, which starts from these gains."""
+    parameters = {
+        name: Parameter(float(value))
+        for name, value in zip(candidate.record.gains, gains, strict=True)
+    }
+    for name, value in candidate.shape.items():
+        parameters[name] = Parameter(value, fixed=name not in candidate.free)
+    effect = Effect(candidate.name, MappingProxyType(parameters))
+    return replace(plant, effects=(*plant.effects, effect))

@@ -1,0 +1,76 @@
+"""How noisy the channels of a recording are, as far as the recording itself tells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ..fitting.rows import Nuisances, Rows
+from ..motion import noise_of
+from ..plant import Plant
+from ..trajectory import FloatArray
+
+__all__ = ["Noise", "measure_noise"]
+
+LAG_SHARE: Final = 1.0 / 3.0
+"""Lag of the second difference that tells noise from misfit, as a share of the kernel's support:
+motion and friction hardly change over it, white noise through the kernel does."""
+GAUSSIAN: Final = 1.4826
+"""Standard deviation over median magnitude."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """White noise of a recording, per sample.
+
+    Attributes
+    ----------
+    position : float
+        Beside the rounding to counts, rad or m.
+    count : float
+        Step of the readings, 0 where there is none.
+    effort : float
+        Of the effort that acted, or of its reading, N·m or N.
+    """
+
+    position: float
+    count: float
+    effort: float
+
+
+def measure_noise(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
+    """Noise of one recording, from what changes too fast for a machine.
+
+    Position: third differences, less what rounding makes. Effort: second differences of the
+    residual over a third of the kernel, less what the position noise makes in the inertia term.
+    The median over all rows keeps reversals and other misfit out.
+    """
+    form = rows.form
+    count = form.count
+    white = max(noise_of(form.readings) ** 2 - count**2 / 12.0, 0.0)
+    position = float(np.sqrt(white))
+    lag = max(1, round(LAG_SHARE * form.kernel.support / (form.dt * form.stride)))
+    residual = rows.residual(plant, nuisances)
+    bend = residual[: -2 * lag] - 2.0 * residual[lag:-lag] + residual[2 * lag :]
+    bend = bend[rows.mask[lag:-lag]]
+    if len(bend) == 0:
+        return Noise(position, count, 0.0)
+    variance = (GAUSSIAN * float(np.median(np.abs(bend)))) ** 2
+    samples = lag * form.stride
+    weights = np.convolve(form.kernel.weights, [0.5, 0.5])
+    inertial = np.convolve(form.kernel.weights, [1.0, -2.0, 1.0]) / form.dt**2
+    inertia = plant.inertia
+    moved = position**2 + (count**2 / 12.0 if noise_of(form.readings) > 0.0 else 0.0)
+    made = inertia**2 * moved * _bent(inertial, samples)
+    effort = max(variance - made, 0.0) / _bent(weights, samples)
+    return Noise(position, count, float(np.sqrt(effort)))
+
+
+def _bent(weights: FloatArray, lag: int) -> float:
+    """Variance that white noise of size 1 has in a second difference of its weighted mean."""
+    taps = np.zeros(len(weights) + 2 * lag)
+    for shift, factor in ((0, 1.0), (lag, -2.0), (2 * lag, 1.0)):
+        taps[shift : shift + len(weights)] += factor * weights
+    return float(np.sum(taps**2))

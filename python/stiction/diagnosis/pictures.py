@@ -1,0 +1,73 @@
+"""What the figures of a diagnosis are drawn from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..errors import InputError
+from ..trajectory import FloatArray
+from .omnibus import Rest
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from .result import Diagnosis
+
+__all__ = ["Pictures", "Stretch", "before_and_after"]
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A recording's rows that test, with what both models leave of its effort.
+
+    Attributes
+    ----------
+    name : str
+    time, effort, before, after : numpy.ndarray, shape (n,)
+        s, and N·m or N; NaN between rows that do not belong together.
+    """
+
+    name: str
+    time: FloatArray
+    effort: FloatArray
+    before: FloatArray
+    after: FloatArray
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """What the figures show.
+
+    Attributes
+    ----------
+    stretches : tuple of Stretch
+        Held-out recordings, the one with the largest improvement first.
+    before, after : Rest
+        Residual in every coordinate, of the baseline and of the extended plant.
+    effort_unit, position_unit : str
+    floor : float
+        rms that noise alone would leave, N·m or N.
+    """
+
+    stretches: tuple[Stretch, ...]
+    before: Rest
+    after: Rest
+    effort_unit: str
+    position_unit: str
+    floor: float
+
+
+def before_and_after(diagnosis: Diagnosis) -> Figure:
+    """The residual before and after, on a recording held out, and in its own coordinate.
+
+    Raises
+    ------
+    InputError
+        There are no pictures: nothing could be fitted.
+    """
+    from ..report.figures import headline
+
+    if diagnosis.pictures is None:
+        raise InputError(f"there is nothing to draw: {diagnosis.sentence}")
+    return headline(diagnosis)

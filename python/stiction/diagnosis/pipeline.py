@@ -1,0 +1,440 @@
+"""The way of a diagnosis: checks, base, surrogates, selection, rest, gain, verdict."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, Final
+
+import numpy as np
+
+from .. import __version__
+from ..catalogue import laws as all_laws
+from ..errors import InputError, NotEnoughData
+from ..fitting.minimise import MOST_EVALUATIONS, launch
+from ..fitting.result import FitResult
+from ..fitting.solve import evaluate, reweighted
+from ..fitting.start import complete, free_paths
+from ..plant import Friction, Plant
+from ..recording import Check, Recording
+from ..recording.checks import check
+from ..recording.split import name_of
+from ..session import Session
+from ..trajectory import FloatArray
+from ..wording import did_you_mean, listed
+from .advice import advise
+from .candidates import left_out
+from .coordinates import looks
+from .evidence import Evidence
+from .gain import Gain, TestResiduals, gain_of, open_residuals
+from .model import Model, fitted
+from .noise import Noise
+from .omnibus import Rest, rest
+from .pictures import Pictures, Stretch
+from .replay import surrogate_residuals
+from .result import Cause, Diagnosis, LawRow, ModelSummary, Unexplained, Verdict
+from .rounds import Search, search, summary_rows
+from .words import sentence, what
+
+__all__ = ["SURROGATES", "diagnose"]
+
+SURROGATES: Final = 24
+"""Replays of the base with noise; more make thresholds smoother and cost in proportion."""
+WORTH_SHARE: Final = 0.25
+"""What is left counts against the names where it is worth this share of what they gained."""
+BASE_EVALUATIONS: Final = MOST_EVALUATIONS
+
+_logger = logging.getLogger(__name__)
+
+
+def diagnose(
+    plant: Plant | None,
+    session: Session | Sequence[Recording] | Recording,
+    *,
+    without: Sequence[str] = (),
+    laws: Sequence[str] = (),
+    surrogates: int = SURROGATES,
+    seed: int = 0,
+    threads: int | None = None,
+) -> Diagnosis:
+    """Find out what a simulation of a machine is missing.
+
+    The base is fitted to the rows of train, every effect of the catalogue is screened by its
+    efficient score against surrogates of this very data set, the best are refitted and accepted on
+    rows held out, until nothing passes. The gain is then measured once on rows that test.
+
+    Parameters
+    ----------
+    plant : Plant or None
+        Naming the law is enough; None takes that of the session.
+    session : Session, sequence of Recording, or Recording
+    without : sequence of str
+        Effects that are not tried.
+    laws : sequence of str
+        Other laws to compare with the plant's, or ``("all",)``.
+    surrogates : int
+        Replays of the base with noise alone, from 4 on.
+    seed : int
+        Same data and seed, same findings, at any number of threads.
+    threads : int, optional
+        Recordings looked at side by side; as many as there are processors without it.
+
+    Returns
+    -------
+    Diagnosis
+        After Ctrl-C the best so far, with ``success`` False.
+
+    Raises
+    ------
+    InputError
+        An unknown effect or law, a number out of its bounds, no plant, no recordings, the same
+        recording fitted and judged on.
+    """
+    began = time.perf_counter()
+    whole = _session(session)
+    machine = plant if plant is not None else whole.plant
+    if machine is None:
+        raise InputError('session: plant is missing; write plant = "plant.toml", or give one')
+    _check_numbers(surrogates, seed, threads)
+    unwanted = left_out(without)
+    others = _law_names(laws, machine.friction.law)
+    checks = [(name_of(r, k), c) for k, r in enumerate(whole) for c in check(r)]
+    data: dict[str, Any] = {
+        "checks": [{"recording": name, **c.to_dict()} for name, c in checks],
+        "split": None,
+        "hashes": list(whole.hashes),
+        "noise": [],
+    }
+    found = Diagnosis(
+        verdict="not_testable",
+        sentence="",
+        plant=machine,
+        data=data,
+        version=__version__,
+        seed=seed,
+    )
+    fault = _fault(checks, whole)
+    if fault:
+        found = replace(
+            found, verdict="data_fault", sentence=fault, advice=advise((), (), (), checks)
+        )
+    else:
+        try:
+            found = _testable(found, whole, unwanted, others, surrogates, threads, checks)
+        except NotEnoughData as error:
+            told = str(error)
+            found = replace(found, sentence=f"These data cannot be tested: {told}.")
+    return replace(found, seconds=time.perf_counter() - began)
+
+
+def _session(session: Session | Sequence[Recording] | Recording) -> Session:
+    if isinstance(session, Session):
+        return session
+    recordings = [session] if isinstance(session, Recording) else list(session)
+    if not recordings:
+        raise InputError("session: there are no recordings to diagnose; give at least one")
+    return Session(recordings)
+
+
+def _check_numbers(surrogates: int, seed: int, threads: int | None) -> None:
+    for name, given, least in (
+        ("surrogates", surrogates, 4),
+        ("seed", seed, 0),
+        ("threads", 1 if threads is None else threads, 1),
+    ):
+        if isinstance(given, bool) or not isinstance(given, int) or given < least:
+            raise InputError(
+                f"{name} = {given!r} is out of bounds: give a whole number from {least}"
+            )
+
+
+def _law_names(wanted: Sequence[str], own: str) -> list[str]:
+    """Laws to compare with the plant's own."""
+    known = [record.name for record in all_laws()]
+    if list(wanted) == ["all"]:
+        return [name for name in known if name != own]
+    for name in wanted:
+        if name not in known:
+            raise InputError(
+                f"laws: '{name}' is unknown{did_you_mean(name, known)}; known are all, "
+                f"{listed(known)}"
+            )
+    return [name for name in dict.fromkeys(wanted) if name != own]
+
+
+def _fault(checks: Sequence[tuple[str, Check]], session: Session) -> str:
+    """Why the data cannot be used, in one sentence; "" where they can."""
+    faults = [(name, c) for name, c in checks if c.verdict == "fault"]
+    for index, recording in enumerate(session):
+        faults += [
+            (name_of(recording, index), Check("missing cells", "fault", told))
+            for told in recording.faults
+            if not any(name == name_of(recording, index) for name, _ in faults)
+        ]
+    if not faults:
+        return ""
+    name, first = faults[0]
+    more = f" (and {len(faults) - 1} more, see the data checks)" if len(faults) > 1 else ""
+    return f"The data cannot be used: {name}: {first.what}{more}; {first.try_ or 'record again'}."
+
+
+def _testable(
+    found: Diagnosis,
+    session: Session,
+    without: Sequence[str],
+    others: Sequence[str],
+    surrogates: int,
+    threads: int | None,
+    checks: Sequence[tuple[str, Check]],
+) -> Diagnosis:
+    """The diagnosis of data that can be used."""
+    _logger.info("looking through %d recordings", len(session))
+    evidence = Evidence(found.plant, session.recordings, threads=threads)
+    found = replace(found, split=evidence.split.describe())
+    data = {**found.data, "split": evidence.split.to_dict()}
+    _logger.info("fitting the base")
+    base = _base(evidence, found.plant)
+    _logger.info("replaying it with noise, %d times", surrogates)
+    null, noises = surrogate_residuals(evidence, base.plant, base.nuisances, surrogates, found.seed)
+    data["noise"] = [_noise_entry(evidence, index, noise) for index, noise in noises.items()]
+    _logger.info("screening the effects")
+    selection = search(evidence, base, null, without=without)
+    final = selection.models[-1]
+    clocks = session.starts
+    seen = looks(evidence, clocks, evidence.shown)
+    left = rest(evidence, seen, final.residual, null)
+    before = left if final is base else rest(evidence, seen, base.residual, null)
+    rivals = [] if selection.interrupted else [_base_of_law(evidence, base, law) for law in others]
+    # Every decision is taken: now, and once, the rows that test.
+    _logger.info("opening the test rows")
+    models = [*selection.models, *(model for model in rivals if model is not None)]
+    test = open_residuals(evidence, [(m.plant, m.nuisances) for m in models])
+    return _concluded(
+        replace(found, data=data),
+        evidence,
+        selection,
+        (before, left),
+        (others, rivals),
+        test,
+        null,
+        checks,
+    )
+
+
+def _base(evidence: Evidence, plant: Plant) -> Model:
+    """The plant fitted twice: the second time with recordings weighted by what is left in each."""
+    starts = complete(plant, [rows.form for rows in evidence.train])
+    paths = free_paths(starts[0])
+    first = Model(evidence, launch(starts, paths, evidence.train, most=BASE_EVALUATIONS))
+    if len(evidence.train) > 1:
+        reweighted(evidence.train, first.plant, first.nuisances)
+    else:
+        evidence.train[0].weight = 1.0 / max(np.sqrt(np.mean(first.residual**2)), 1e-300)
+    evidence.weigh()
+    return fitted(evidence, first.plant, first.nuisances, most=BASE_EVALUATIONS)
+
+
+def _base_of_law(evidence: Evidence, base: Model, law: str) -> Model | None:
+    """The plant with another law, fitted with the same weights; None where it cannot be."""
+    _logger.info("fitting law %s", law)
+    bare = replace(base.plant, friction=Friction(law))
+    try:
+        starts = complete(bare, [rows.form for rows in evidence.train])
+        paths = free_paths(starts[0])
+        return Model(evidence, launch(starts, paths, evidence.train, most=BASE_EVALUATIONS))
+    except InputError as error:
+        _logger.info("%s: %s", law, error)
+        return None
+
+
+def _noise_entry(evidence: Evidence, index: int, noise: Noise) -> dict[str, Any]:
+    return {
+        "recording": evidence.names[index],
+        "position": noise.position,
+        "count": noise.count,
+        "effort": noise.effort,
+    }
+
+
+def _concluded(
+    found: Diagnosis,
+    evidence: Evidence,
+    selection: Search,
+    rests: tuple[Rest, Rest],
+    compared: tuple[Sequence[str], Sequence[Model | None]],
+    test: TestResiduals | None,
+    null: FloatArray,
+    checks: Sequence[tuple[str, Check]],
+) -> Diagnosis:
+    """Verdict and words, from everything that was measured."""
+    base, final = selection.models[0], selection.models[-1]
+    floor = _floor(evidence, null)
+    results = {id(m): _evaluated(evidence, m) for m in (base, final)}
+    baseline = _summary(evidence, base, results[id(base)], test, 0, floor)
+    extended = _summary(evidence, final, results[id(final)], test, len(selection.choices), floor)
+    causes = []
+    for k, choice in enumerate(selection.choices):
+        record = choice.winner.candidate.record
+        own = {
+            path: p
+            for path, p in results[id(final)].parameters.items()
+            if path.startswith(f"effects.{record.name}.")
+        }
+        causes.append(
+            Cause(
+                name=record.name,
+                family=record.family,
+                decided=choice.decided,
+                look_alikes=tuple(rival.name for rival in choice.rivals),
+                parameters=own,
+                gain=None if test is None else gain_of(test, k, k + 1, found.seed),
+                what=what(record, own),
+                means=record.means,
+                try_=record.remedy,
+                coordinate=record.coordinate,
+            )
+        )
+    gain = None
+    if causes and test is not None:
+        gain = gain_of(test, 0, len(causes), found.seed)
+    unexplained = tuple(Unexplained(view.coordinate.name, view.share) for view in rests[1].flagged)
+    verdict = _verdict(causes, base, final, unexplained, selection)
+    reason = "These data cannot be tested: the base imitates every effect, so none could be seen."
+    return replace(
+        found,
+        verdict=verdict,
+        sentence=sentence(verdict, causes, gain, unexplained, reason),
+        plant=final.plant,
+        effects=tuple(causes),
+        gain=gain,
+        candidates=summary_rows(selection),
+        laws=_law_rows(compared, len(selection.models), test, found.seed),
+        baseline=baseline,
+        extended=extended,
+        unexplained=unexplained,
+        advice=advise(causes, unexplained, selection.blind, checks),
+        success=not selection.interrupted,
+        message=(
+            "interrupted: this is the best so far"
+            if selection.interrupted
+            else "the diagnosis is complete"
+        ),
+        pictures=Pictures(
+            stretches=_stretches(evidence, test, base, final),
+            before=rests[0],
+            after=rests[1],
+            effort_unit=final.plant.effort_unit,
+            position_unit=final.plant.position_unit,
+            floor=floor,
+        ),
+    )
+
+
+def _verdict(
+    causes: Sequence[Cause],
+    base: Model,
+    final: Model,
+    unexplained: Sequence[Unexplained],
+    selection: Search,
+) -> Verdict:
+    if not causes and len(selection.blind) == len(selection.rows) and selection.rows:
+        return "not_testable"
+    if unexplained:
+        before, after = float(base.blocks[1].sum()), float(final.blocks[1].sum())
+        named = before - after
+        if unexplained[0].share * after > WORTH_SHARE * named:
+            return "unexplained"
+    if any(not cause.decided for cause in causes):
+        return "ambiguous"
+    return "missing_effect" if causes else "nothing_missing"
+
+
+def _evaluated(evidence: Evidence, model: Model) -> FitResult:
+    return evaluate(
+        model.solution,
+        evidence.train,
+        [],
+        begin=model.solution.begin,
+        described=evidence.split.describe(),
+        evaluations=model.solution.evaluations,
+        names=evidence.names,
+    )
+
+
+def _summary(
+    evidence: Evidence,
+    model: Model,
+    result: FitResult,
+    test: TestResiduals | None,
+    index: int,
+    floor: float,
+) -> ModelSummary:
+    select = None
+    if evidence.split.select:
+        (plan,) = evidence.plans
+        select = float(np.sqrt(np.mean((model.residual / evidence.weights)[plan.held] ** 2)))
+    return ModelSummary(
+        plant=model.plant,
+        parameters=result.parameters,
+        unit=result.unit,
+        train_rms=result.train_rms,
+        select_rms=select,
+        heldout_rms=None if test is None else test.rms(index),
+        train_relative=result.train_relative,
+        heldout_relative=None if test is None else test.relative(index),
+        noise_floor_rms=floor,
+        remarks=(*result.bounds_hit, *result.undetermined),
+    )
+
+
+def _floor(evidence: Evidence, null: FloatArray) -> float:
+    """rms of what noise and rounding leave over the rows fitted."""
+    physical = (null / evidence.weights[:, None])[evidence.fitted]
+    return float(np.sqrt(np.mean(physical**2)))
+
+
+def _law_rows(
+    compared: tuple[Sequence[str], Sequence[Model | None]],
+    first: int,
+    test: TestResiduals | None,
+    seed: int,
+) -> tuple[LawRow, ...]:
+    rows = []
+    index = first
+    for law, model in zip(*compared, strict=False):
+        if model is None:
+            rows.append(LawRow(law, None, "could not be fitted to these data"))
+            continue
+        gain: Gain | None = None if test is None else gain_of(test, 0, index, seed)
+        index += 1
+        if gain is None:
+            reason = "fitted, and no rows were left to test on"
+        elif gain.ci95[0] > 0.0:
+            reason = f"explains {100 * gain.value:.1f} % more than the plant's law"
+        elif gain.ci95[1] < 0.0:
+            reason = f"explains {-100 * gain.value:.1f} % less than the plant's law"
+        else:
+            reason = "explains about as much as the plant's law"
+        rows.append(LawRow(law, gain, reason))
+    return tuple(sorted(rows, key=lambda r: -(r.gain.value if r.gain else -1e300)))
+
+
+def _stretches(
+    evidence: Evidence, test: TestResiduals | None, base: Model, final: Model
+) -> tuple[Stretch, ...]:
+    """Held-out recordings with what both models leave; those of train where none tests."""
+    rows = evidence.shown if test is None else test.rows
+    stretches = []
+    for each in rows:
+        form, mask = each.form, each.mask
+        both = [np.where(mask, each.residual(m.plant, m.nuisances), np.nan) for m in (base, final)]
+        measured = np.where(mask, form.measured(base.plant), np.nan)
+        started = evidence.recordings[each.index].time[0]
+        stretches.append(
+            Stretch(evidence.names[each.index], form.time - started, measured, both[0], both[1])
+        )
+    return tuple(
+        sorted(stretches, key=lambda s: float(np.nansum(s.after**2) - np.nansum(s.before**2)))
+    )

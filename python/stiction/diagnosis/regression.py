@@ -1,0 +1,64 @@
+"""Linear regression of the residual on what may be missing, the base projected off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ..trajectory import FloatArray
+from .evidence import Plan
+
+__all__ = ["Base", "Projected", "project", "step"]
+
+FLAT: Final = 1e-8
+"""Directions of the base with less than this share of the strongest one are dropped."""
+
+
+@dataclass(frozen=True)
+class Projected:
+    """Columns with the base projected off over the rows that are fitted.
+
+    The same combination of base columns is taken off the rows held out, so that both belong to one
+    fit.
+
+    Attributes
+    ----------
+    fit, held : numpy.ndarray, shape (n_fit, k), (n_held, k)
+    """
+
+    fit: FloatArray
+    held: FloatArray
+
+
+class Base:
+    """The columns of the base, orthogonalised over the fitted rows of a plan."""
+
+    def __init__(self, columns: FloatArray, plan: Plan) -> None:
+        scale = np.sqrt(np.sum(columns[plan.fit] ** 2, axis=0))
+        live = scale > 0.0
+        self._columns = columns[:, live] / scale[live]
+        fit = self._columns[plan.fit]
+        left, sizes, right = np.linalg.svd(fit, full_matrices=False)
+        kept = sizes > FLAT * sizes[0] if len(sizes) else np.zeros(0, dtype=bool)
+        self._left = left[:, kept]
+        self._inverse = right[kept].T / sizes[kept]
+        self._held = self._columns[plan.held]
+        self._plan = plan
+
+    def project(self, columns: FloatArray) -> Projected:
+        """Columns of all rows, shape (n, k) or (n,), without what the base explains."""
+        fit, held = columns[self._plan.fit], columns[self._plan.held]
+        share = self._left.T @ fit
+        return Projected(fit - self._left @ share, held - self._held @ (self._inverse @ share))
+
+
+def project(base: FloatArray, plan: Plan) -> Base:
+    """The base of a plan, ready to be projected off."""
+    return Base(base, plan)
+
+
+def step(columns: FloatArray, residual: FloatArray, plan: Plan) -> FloatArray:
+    """Residual of the held rows after one Gauss-Newton step on the fitted ones; shape (n_held,)."""
+    return Base(columns, plan).project(residual).held

@@ -1,0 +1,339 @@
+"""What a diagnosis returns: verdict, causes, models before and after, gain, and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from ..fitting.result import FitParameter
+from ..plant import Plant
+from .gain import Gain
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from .pictures import Pictures
+
+__all__ = [
+    "Advice",
+    "CandidateRow",
+    "Cause",
+    "Diagnosis",
+    "LawRow",
+    "ModelSummary",
+    "Unexplained",
+    "Verdict",
+]
+
+SCHEMA = 1
+
+Verdict = Literal[
+    "data_fault",
+    "not_testable",
+    "unexplained",
+    "ambiguous",
+    "missing_effect",
+    "nothing_missing",
+]
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One effect that the plant lacks.
+
+    Attributes
+    ----------
+    name, family : str
+        Effect, and the class that it belongs to.
+    decided : bool
+        Whether the data tell it from its look-alikes.
+    look_alikes : tuple of str
+        Effects that explain the same about as well.
+    parameters : Mapping of str to FitParameter
+        By path.
+    gain : Gain or None
+        Over the test rows, beside the model that holds the causes before it.
+    what, means, try_ : str
+        The finding in words.
+    coordinate : str
+        Coordinate in which the residual showed it.
+    """
+
+    name: str
+    family: str
+    decided: bool
+    look_alikes: tuple[str, ...]
+    parameters: Mapping[str, FitParameter]
+    gain: Gain | None
+    what: str
+    means: str
+    try_: str
+    coordinate: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """As an entry of ``effects``."""
+        return {
+            "name": self.name,
+            "class": self.family,
+            "decided": self.decided,
+            "look_alikes": list(self.look_alikes),
+            "parameters": {
+                path: {"value": p.value, "ci95": list(p.ci95), "unit": p.unit}
+                for path, p in self.parameters.items()
+            },
+            "heldout_gain": None if self.gain is None else self.gain.value,
+            "heldout_gain_ci95": None if self.gain is None else list(self.gain.ci95),
+        }
+
+
+@dataclass(frozen=True)
+class CandidateRow:
+    """One effect that was tried.
+
+    Attributes
+    ----------
+    name : str
+    score, threshold : float or None
+        Share of the residual that it would explain, and what noise alone may reach.
+    select_gain : float or None
+        Gain on the rows that decide.
+    reason : str
+        Why it was accepted or refused.
+    """
+
+    name: str
+    score: float | None
+    threshold: float | None
+    select_gain: float | None
+    reason: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """As an entry of ``candidates``."""
+        return {
+            "name": self.name,
+            "score": self.score,
+            "threshold": self.threshold,
+            "select_gain": self.select_gain,
+            "reason": self.reason,
+        }
+
+
+@dataclass(frozen=True)
+class LawRow:
+    """Another law in place of the plant's."""
+
+    law: str
+    gain: Gain | None
+    reason: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """As an entry of ``laws``."""
+        return {
+            "law": self.law,
+            "heldout_gain": None if self.gain is None else self.gain.value,
+            "heldout_gain_ci95": None if self.gain is None else list(self.gain.ci95),
+            "reason": self.reason,
+        }
+
+
+@dataclass(frozen=True)
+class ModelSummary:
+    """A fitted model: parameters and errors, in units of effort.
+
+    Attributes
+    ----------
+    plant : Plant
+    parameters : Mapping of str to FitParameter
+    unit : str
+    train_rms, select_rms, heldout_rms : float or None
+        Residual; None where there are no such rows.
+    train_relative, heldout_relative : float or None
+        2-norm of the residual over that of the measured effort.
+    noise_floor_rms : float
+        Residual that noise and rounding alone would leave.
+    remarks : tuple of str
+        Bounds that were hit, parameters that the data do not determine.
+    """
+
+    plant: Plant
+    parameters: Mapping[str, FitParameter]
+    unit: str
+    train_rms: float
+    select_rms: float | None
+    heldout_rms: float | None
+    train_relative: float
+    heldout_relative: float | None
+    noise_floor_rms: float
+    remarks: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As ``baseline`` and ``extended``."""
+        return {
+            "law": self.plant.friction.law,
+            "effects": [effect.name for effect in self.plant.effects],
+            "parameters": {
+                path: {
+                    "value": p.value,
+                    "ci95": list(p.ci95),
+                    "unit": p.unit,
+                    "at_bound": p.at_bound,
+                }
+                for path, p in self.parameters.items()
+            },
+            "unit": self.unit,
+            "train_rms": self.train_rms,
+            "select_rms": self.select_rms,
+            "heldout_rms": self.heldout_rms,
+            "noise_floor_rms": self.noise_floor_rms,
+            "replay": None,
+        }
+
+
+@dataclass(frozen=True)
+class Unexplained:
+    """Something that is left and has no name: where it shows, and its share of what is left."""
+
+    coordinate: str
+    share: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """As an entry of ``unexplained``."""
+        return {"coordinate": self.coordinate, "share": self.share}
+
+
+@dataclass(frozen=True)
+class Advice:
+    """An experiment worth recording next."""
+
+    experiment: str
+    reason: str
+    separates: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As an entry of ``advice``."""
+        return {
+            "experiment": self.experiment,
+            "reason": self.reason,
+            "separates": list(self.separates),
+        }
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What a simulation of a machine is missing, and what that is worth.
+
+    Attributes
+    ----------
+    verdict : str
+        data_fault, not_testable, unexplained, ambiguous, missing_effect or nothing_missing.
+    sentence : str
+        The same in words.
+    effects : tuple of Cause
+        Best first.
+    gain : Gain or None
+        All of them beside the baseline, over rows that nobody looked at before.
+    candidates : tuple of CandidateRow
+    laws : tuple of LawRow
+    baseline, extended : ModelSummary or None
+        None where nothing could be fitted.
+    unexplained : tuple of Unexplained
+    advice : tuple of Advice
+    data : dict
+        ``checks``, ``split``, ``hashes``, ``noise``.
+    plant : Plant
+        Extended, complete, ready to simulate; as given where nothing could be fitted.
+    success : bool
+        False where it was interrupted: what is here is the best so far.
+    message : str
+    version : str
+    seed : int
+    seconds : float
+        How long it took.
+    split : str
+        Which rows trained, decided and tested, in words; "" where nothing was split.
+    pictures : Pictures or None
+        What the figures are drawn from.
+    """
+
+    verdict: Verdict
+    sentence: str
+    plant: Plant
+    effects: tuple[Cause, ...] = ()
+    gain: Gain | None = None
+    candidates: tuple[CandidateRow, ...] = ()
+    laws: tuple[LawRow, ...] = ()
+    baseline: ModelSummary | None = None
+    extended: ModelSummary | None = None
+    unexplained: tuple[Unexplained, ...] = ()
+    advice: tuple[Advice, ...] = ()
+    data: Mapping[str, Any] = field(default_factory=dict)
+    success: bool = True
+    message: str = "the diagnosis is complete"
+    version: str = ""
+    seed: int = 0
+    seconds: float = 0.0
+    split: str = field(default="", repr=False)
+    pictures: Pictures | None = field(default=None, repr=False, compare=False)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of findings.json."""
+        return {
+            "schema": SCHEMA,
+            "verdict": self.verdict,
+            "sentence": self.sentence,
+            "effects": [cause.to_dict() for cause in self.effects],
+            "gain": None if self.gain is None else self.gain.to_dict(),
+            "candidates": [row.to_dict() for row in self.candidates],
+            "laws": [row.to_dict() for row in self.laws],
+            "baseline": None if self.baseline is None else self.baseline.to_dict(),
+            "extended": None if self.extended is None else self.extended.to_dict(),
+            "unexplained": [left.to_dict() for left in self.unexplained],
+            "advice": [each.to_dict() for each in self.advice],
+            "data": dict(self.data),
+            "version": self.version,
+            "seed": self.seed,
+            "seconds": self.seconds,
+        }
+
+    def to_json(self) -> str:
+        """findings.json as text."""
+        from ..json_text import json_of
+
+        return json_of(self.to_dict())
+
+    def save(self, folder: str | Path) -> Path:
+        """Write report.html, findings.json, plant.toml and figures; returns the report's path.
+
+        Raises
+        ------
+        InputError
+            The folder cannot be made.
+        """
+        from ..report import write
+
+        return write(self, Path(folder))
+
+    def plot(self) -> Figure:
+        """The residual before and after, on rows held out.
+
+        Raises
+        ------
+        InputError
+            Nothing could be fitted, so there is nothing to draw.
+        """
+        from .pictures import before_and_after
+
+        return before_and_after(self)
+
+    def __str__(self) -> str:
+        from .words import summary
+
+        return summary(self)
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        return "".join(f"<p>{escape(line)}</p>" for line in str(self).splitlines() if line)

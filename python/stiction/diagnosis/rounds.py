@@ -1,0 +1,266 @@
+"""Forward selection: screen, refit the best, decide, go on until nothing passes."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+
+from ..catalogue import EffectRecord, effects
+from ..trajectory import FloatArray
+from .candidates import Candidate, candidates, present, scales_of
+from .decide import (
+    LEAST_GAIN,
+    LEAST_STRENGTH,
+    Choice,
+    Trial,
+    choose,
+    heldout_gain,
+    judge,
+)
+from .evidence import Evidence
+from .model import Model, fitted, stepped, with_effect, without_effect
+from .result import CandidateRow
+from .screen import Problem, Score, Signatures, screen
+
+__all__ = ["MOST_EFFECTS", "Search", "search"]
+
+MOST_EFFECTS: Final = 4
+"""Effects added at most: who lacks more than that needs another law."""
+REFITTED: Final = 5
+"""Candidates refitted in a round."""
+CAUTIOUS: Final = 0.1
+"""Share of the screened gain to start from where the whole of it leads astray."""
+
+_logger = logging.getLogger(__name__)
+
+
+@dataclass
+class Search:
+    """What the selection found.
+
+    Attributes
+    ----------
+    models : list of Model
+        The baseline, then the model after each accepted effect.
+    choices : list of Choice
+        One for each accepted effect.
+    rows : dict of str to CandidateRow
+        Every effect that was looked at.
+    blind : list of EffectRecord
+        Effects that these data could not show.
+    interrupted : bool
+    """
+
+    models: list[Model]
+    choices: list[Choice] = field(default_factory=list)
+    rows: dict[str, CandidateRow] = field(default_factory=dict)
+    blind: list[EffectRecord] = field(default_factory=list)
+    interrupted: bool = False
+
+
+def search(
+    evidence: Evidence, base: Model, null: FloatArray, *, without: Sequence[str] = ()
+) -> Search:
+    """Adds effects to a base as long as one passes.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    base : Model
+    null : numpy.ndarray, shape (n, surrogates)
+        Residuals of the surrogates.
+    without : sequence of str
+        Effects that are not tried.
+    """
+    found = Search([base])
+    bias = null.mean(axis=1)
+    number = null.shape[1]
+    # Each surrogate less the mean of the others, as the residual is less the mean of them all.
+    centred = (null - bias[:, None]) * (number / (number - 1) if number > 1 else 1.0)
+    try:
+        tried = _candidates(evidence, base, without, found)
+        if not tried:
+            return found
+        signatures = Signatures.of(evidence, base.plant, base.nuisances, tried)
+        friction = _friction(evidence, base)
+        dropped: set[str] = set()
+        while len(found.choices) < MOST_EFFECTS:
+            choice = _round(evidence, found, signatures, centred, bias, friction)
+            if choice is None or choice.winner.name in dropped:
+                break
+            found.choices.append(choice)
+            found.models.append(choice.winner.model)
+            _logger.info("found %s", choice.winner.name)
+            dropped |= _drop(evidence, found)
+            if choice.winner.model.solution.interrupted:
+                found.interrupted = True
+                break
+    except KeyboardInterrupt:
+        found.interrupted = True
+    return found
+
+
+def _candidates(
+    evidence: Evidence, base: Model, without: Sequence[str], found: Search
+) -> list[Candidate]:
+    """What to try, and a row for each effect that is not tried."""
+    scales = scales_of(evidence)
+    channels = set.intersection(*(set(r.channels) for r in evidence.recordings))
+    tried: list[Candidate] = []
+    for record in effects():
+        if record.name in without:
+            continue
+        missing = [name for name in record.channels if name not in channels]
+        if present(base.plant, record):
+            own = any(effect.name == record.name for effect in base.plant.effects)
+            reason = "part of the plant" if own else "part of the law"
+        elif missing:
+            reason = f"not testable: no channel {missing[0]} was recorded"
+            found.blind.append(record)
+        else:
+            tried += candidates(record, scales)
+            continue
+        found.rows[record.name] = CandidateRow(record.name, None, None, None, reason)
+    return tried
+
+
+def _round(
+    evidence: Evidence,
+    found: Search,
+    signatures: Signatures,
+    centred: FloatArray,
+    bias: FloatArray,
+    friction: float,
+) -> Choice | None:
+    base = found.models[-1]
+    problem = Problem(base.residual - bias, base.columns, centred, evidence.fitted, evidence.plans)
+    taken = {choice.winner.name for choice in found.choices}
+    scores = [score for score in screen(problem, signatures) if score.candidate.name not in taken]
+    for score in scores:
+        # Later rounds tell of what is left; what an effect is told by is its first one.
+        if not found.choices:
+            found.rows[score.candidate.name] = _screened(score)
+            if not score.testable:
+                found.blind.append(score.candidate.record)
+    passing = [s for s in scores if s.testable and s.score > s.threshold and s.heldout > 0.0]
+    trials = []
+    for score in passing[:REFITTED]:
+        _logger.info("refitting with %s", score.candidate.name)
+        model = _refit(evidence, base, signatures, score)
+        size = _size(signatures, score, model, friction)
+        trials.append(judge(base, score, model, size))
+    for score in passing[REFITTED:]:
+        row = found.rows[score.candidate.name]
+        found.rows[row.name] = replace(row, reason="others explain more")
+    choice = choose(trials)
+    for trial in trials:
+        if choice is not None or not found.choices:
+            found.rows[trial.name] = _tried(trial, choice)
+    return choice
+
+
+def _drop(evidence: Evidence, found: Search) -> set[str]:
+    """Takes out earlier effects that are not needed beside the latest one.
+
+    What explains a part of the residual first may be a mimic of what explains the whole of it.
+    """
+    dropped = set()
+    for choice in found.choices[:-1]:
+        whole = found.models[-1]
+        name = choice.winner.name
+        if whole.strength(choice.winner.candidate) >= LEAST_STRENGTH:
+            continue
+        less = fitted(evidence, without_effect(whole.plant, name), whole.nuisances)
+        if heldout_gain(less, whole)[0] > LEAST_GAIN:
+            continue
+        latest = found.choices[-1].winner.name
+        _logger.info("%s is not needed beside %s", name, latest)
+        row = found.rows[name]
+        found.rows[name] = replace(row, reason=f"not needed beside {latest}")
+        kept = [each for each in found.choices if each is not choice]
+        # Each entry is measured beside those before it: the chain is made anew.
+        models = [found.models[0]]
+        plants = [less.plant]
+        for later in reversed(kept[1:]):
+            plants.append(without_effect(plants[-1], later.winner.name))
+        models += [fitted(evidence, plant, whole.nuisances) for plant in reversed(plants[1:])]
+        found.models[:] = [*models, less]
+        found.choices[:] = kept
+        dropped.add(name)
+    return dropped
+
+
+def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score) -> Model:
+    """The base with an effect, fitted from where the screening says; from near 0 if that fails."""
+    index = signatures.candidates.index(score.candidate)
+    explained = signatures.columns[:, signatures.slices[index]] @ score.gains
+    start = with_effect(stepped(base, explained), score.candidate, score.gains.tolist())
+    model = fitted(evidence, start, base.nuisances)
+    if model.power < base.power:
+        return model
+    start = with_effect(base.plant, score.candidate, (CAUTIOUS * score.gains).tolist())
+    other = fitted(evidence, start, base.nuisances)
+    return min(model, other, key=lambda each: each.power)
+
+
+def _screened(score: Score) -> CandidateRow:
+    if not score.testable:
+        reason = (
+            f"not testable: the base imitates all but {100 * score.left:.1g} % of it on these data"
+        )
+    elif score.score <= score.threshold:
+        reason = "explains no more than noise does"
+    else:
+        reason = "does not help on rows held out"
+    return CandidateRow(score.candidate.name, score.score, score.threshold, score.heldout, reason)
+
+
+def _tried(trial: Trial, choice: Choice | None) -> CandidateRow:
+    score = trial.score
+    if trial.reason:
+        reason = trial.reason
+    elif choice is None or trial is choice.winner:
+        reason = "accepted"
+    elif trial in choice.rivals:
+        reason = f"these data cannot tell it from {choice.winner.name}"
+    else:
+        reason = f"{choice.winner.name} explains more"
+    return CandidateRow(trial.name, score.score, score.threshold, trial.gain, reason)
+
+
+def _friction(evidence: Evidence, base: Model) -> float:
+    """Weighted rms of what the base needs beside inertia: friction, gravity, added efforts."""
+    needed = evidence.stack(
+        lambda rows: rows.form.mean(
+            rows.form.along(base.plant, base.nuisances.start(rows.index))[1]
+        )
+    )
+    return float(np.sqrt(np.mean(needed**2)))
+
+
+def _size(signatures: Signatures, score: Score, model: Model, friction: float) -> float:
+    """rms of what an effect contributes after its refit, over that of the friction."""
+    index = signatures.candidates.index(score.candidate)
+    effect = model.plant.effects[-1]
+    gains = np.array([effect.parameters[name].value for name in score.candidate.record.gains])
+    contributed = signatures.columns[:, signatures.slices[index]] @ gains
+    return float(np.sqrt(np.mean(contributed**2))) / max(friction, 1e-300)
+
+
+def summary_rows(found: Search) -> tuple[CandidateRow, ...]:
+    """Every effect: accepted ones in their order, then by score."""
+    accepted: Mapping[str, int] = {c.winner.name: k for k, c in enumerate(found.choices)}
+    return tuple(
+        sorted(
+            found.rows.values(),
+            key=lambda row: (
+                accepted.get(row.name, len(accepted)),
+                -(row.score if row.score is not None else -1.0),
+                row.name,
+            ),
+        )
+    )

@@ -1,0 +1,219 @@
+"""Efficient scores (Rao): what each effect would explain, without refitting anything."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ..catalogue import EffectRecord
+from ..fitting.rows import Nuisances
+from ..plant import Plant
+from ..trajectory import FloatArray
+from .candidates import Candidate
+from .evidence import Evidence, Plan
+from .regression import project
+
+__all__ = ["NULL_DEVIATIONS", "NULL_TIMES", "Problem", "Score", "Signatures", "screen"]
+
+NULL_TIMES: Final = 1.3
+"""A score counts above this many times the greatest one that the surrogates reach."""
+NULL_DEVIATIONS: Final = 5.0
+"""And above the surrogates' mean by this many standard deviations."""
+LEAST_LEFT: Final = 0.01
+"""Share of a signature's power that must be left beside the base for it to be testable."""
+
+
+@dataclass(frozen=True)
+class Signatures:
+    """Derivatives of what the plant needs by the gains of candidates, at zero gain.
+
+    The residual is what is measured less what is needed: a signature that resembles it is missing.
+
+    Attributes
+    ----------
+    candidates : tuple of Candidate
+    columns : numpy.ndarray, shape (n, gains)
+        Weighted, of the rows that may be looked at.
+    slices : tuple of slice
+        Columns of each candidate.
+    """
+
+    candidates: tuple[Candidate, ...]
+    columns: FloatArray
+    slices: tuple[slice, ...]
+
+    @classmethod
+    def of(
+        cls,
+        evidence: Evidence,
+        plant: Plant,
+        nuisances: Nuisances,
+        candidates: Sequence[Candidate],
+    ) -> Signatures:
+        """Signatures along the measured motion of every recording."""
+        wanted = [(each.name, dict(each.shape)) for each in candidates]
+        columns = evidence.stack(
+            lambda rows: rows.form.signatures(plant, wanted, nuisances.start(rows.index))
+        )
+        slices, at = [], 0
+        for each in candidates:
+            slices.append(slice(at, at + len(each.record.gains)))
+            at += len(each.record.gains)
+        return cls(tuple(candidates), -np.nan_to_num(columns), tuple(slices))
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is to be explained, and by what it is explained already.
+
+    Attributes
+    ----------
+    residual : numpy.ndarray, shape (n,)
+        Weighted, less the bias that the surrogates show.
+    base : numpy.ndarray, shape (n, p)
+        Derivatives by the parameters of the base and by nuisances.
+    null : numpy.ndarray, shape (n, surrogates)
+        Residuals of the surrogates, each less the mean of the others.
+    fitted : numpy.ndarray of bool, shape (n,)
+    plans : sequence of Plan
+    """
+
+    residual: FloatArray
+    base: FloatArray
+    null: FloatArray
+    fitted: np.ndarray
+    plans: Sequence[Plan]
+
+
+@dataclass(frozen=True)
+class Score:
+    """How much of the residual one effect would explain, at the best point of its grid.
+
+    Attributes
+    ----------
+    candidate : Candidate
+    gains : numpy.ndarray, shape (q,)
+        Estimated gains.
+    score : float
+        ΔR²: share of the residual's power over the fitted rows.
+    threshold : float
+        What the score must exceed: from the surrogates of this data set.
+    heldout : float
+        Share of the power over the rows held out, with the gains of the fitted ones.
+    left : float
+        Share of the signature's power that the base cannot imitate.
+    signature : numpy.ndarray, shape (n_fit,)
+        What the effect contributes, base projected off.
+    """
+
+    candidate: Candidate
+    gains: FloatArray
+    score: float
+    threshold: float
+    heldout: float
+    left: float
+    signature: FloatArray
+
+    @property
+    def testable(self) -> bool:
+        """Whether these data could show the effect at all."""
+        return self.left >= LEAST_LEFT
+
+
+def screen(problem: Problem, signatures: Signatures) -> list[Score]:
+    """The score of every effect at its best shape, highest first.
+
+    With S⊥ = S − QQᵀS (Q spans the base): η = (S⊥ᵀS⊥)⁻¹·S⊥ᵀr, ΔR² = ηᵀS⊥ᵀr/(r⊥ᵀr⊥). The same is
+    computed for every surrogate, with its maximum over the grid: shapes mean nothing where the
+    effect is absent (Davies, Biometrika 64 (1977)), so no table of chi-square applies.
+    """
+    whole = Plan(problem.fitted, problem.fitted)
+    base = project(problem.base, whole)
+    residual = base.project(problem.residual).fit
+    null = base.project(problem.null).fit
+    columns = base.project(signatures.columns).fit
+    power = float(residual @ residual)
+    null_power = np.maximum(np.sum(null**2, axis=0), 1e-300)
+    raw = signatures.columns[problem.fitted]
+    best: dict[str, tuple[float, int, FloatArray]] = {}
+    nulls: dict[str, FloatArray] = {}
+    for index, (candidate, own) in enumerate(
+        zip(signatures.candidates, signatures.slices, strict=True)
+    ):
+        part = columns[:, own]
+        directions, gains = _solve(part, residual)
+        if directions is None:
+            score, at_null = 0.0, np.zeros(null.shape[1])
+        else:
+            gains = _bounded(candidate.record, gains)
+            explained = part @ gains
+            score = (2.0 * float(explained @ residual) - float(explained @ explained)) / power
+            at_null = np.sum((directions.T @ null) ** 2, axis=0) / null_power
+        name = candidate.name
+        nulls[name] = np.maximum(nulls.get(name, np.zeros(null.shape[1])), at_null)
+        if name not in best or score > best[name][0]:
+            best[name] = (score, index, gains)
+    heldout = _heldout(problem, signatures, [index for _, index, _ in best.values()])
+    scores = []
+    for name, (score, index, gains) in best.items():
+        own = signatures.slices[index]
+        part, whole_part = columns[:, own], raw[:, own]
+        total = float(np.sum(whole_part**2))
+        scores.append(
+            Score(
+                candidate=signatures.candidates[index],
+                gains=gains,
+                score=score,
+                threshold=_threshold(nulls[name]),
+                heldout=heldout[index],
+                left=float(np.sum(part**2)) / total if total > 0.0 else 0.0,
+                signature=part @ gains,
+            )
+        )
+    return sorted(scores, key=lambda s: -s.score)
+
+
+def _threshold(null: FloatArray) -> float:
+    """What the surrogates never reach, with a margin."""
+    spread = float(np.std(null, ddof=1)) if len(null) > 1 else 0.0
+    return max(NULL_TIMES * float(np.max(null)), float(np.mean(null)) + NULL_DEVIATIONS * spread)
+
+
+def _solve(part: FloatArray, residual: FloatArray) -> tuple[FloatArray | None, FloatArray]:
+    """An orthonormal basis of the columns, and the gains that fit best."""
+    size = np.sqrt(np.sum(part**2, axis=0))
+    if not np.all(size > 0.0):
+        return None, np.zeros(part.shape[1])
+    directions, triangle = np.linalg.qr(part / size)
+    if np.min(np.abs(np.diag(triangle))) < 1e-8:
+        return None, np.zeros(part.shape[1])
+    gains: FloatArray = np.linalg.solve(triangle, directions.T @ residual) / size
+    return directions, gains
+
+
+def _bounded(record: EffectRecord, gains: FloatArray) -> FloatArray:
+    """Gains within their bounds: a delay is not negative."""
+    bounds: Mapping[str, tuple[float, float]] = {p.name: p.bounds for p in record.parameters}
+    low, high = np.array([bounds[name] for name in record.gains]).T
+    clipped: FloatArray = np.clip(gains, low, high)
+    return clipped
+
+
+def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) -> dict[int, float]:
+    """Share of the held-out power that each chosen candidate removes, over all plans."""
+    before = 0.0
+    after = dict.fromkeys(chosen, 0.0)
+    for plan in problem.plans:
+        base = project(problem.base, plan)
+        residual = base.project(problem.residual)
+        before += float(residual.held @ residual.held)
+        for index in chosen:
+            part = base.project(signatures.columns[:, signatures.slices[index]])
+            _, gains = _solve(part.fit, residual.fit)
+            gains = _bounded(signatures.candidates[index].record, gains)
+            left = residual.held - part.held @ gains
+            after[index] += float(left @ left)
+    return {index: 1.0 - after[index] / before if before > 0.0 else 0.0 for index in chosen}

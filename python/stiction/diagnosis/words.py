@@ -1,0 +1,140 @@
+"""The sentences of a diagnosis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from ..catalogue import EffectRecord
+from ..fitting.result import FitParameter
+from ..wording import counted
+
+if TYPE_CHECKING:
+    from .gain import Gain
+    from .result import Cause, Diagnosis, Unexplained, Verdict
+
+__all__ = ["gain_words", "joined", "sentence", "shown_rows", "summary", "value_words", "what"]
+
+MOST_ROWS = 5
+"""Candidates that the command line shows."""
+
+
+def joined(words: Sequence[str], last: str = "and") -> str:
+    """``"a"``, ``"a and b"``, ``"a, b and c"``."""
+    if len(words) < 2:
+        return "".join(words)
+    return f"{', '.join(words[:-1])} {last} {words[-1]}"
+
+
+def value_words(name: str, parameter: FitParameter) -> str:
+    """A parameter with its interval: ``"bias 3.1 N (2.6 to 3.6)"``."""
+    low, high = parameter.ci95
+    unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+    return f"{name} {parameter.value:.4g}{unit} ({low:.3g} to {high:.3g})"
+
+
+def gain_words(gain: Gain | None) -> str:
+    """A gain with its interval, in per cent."""
+    if gain is None:
+        return "not measured: no rows were left to test on"
+    low, high = gain.ci95
+    return (
+        f"{100 * gain.value:.1f} % of the residual's power on held-out rows "
+        f"(95 %: {100 * low:.1f} to {100 * high:.1f} %)"
+    )
+
+
+def what(record: EffectRecord, parameters: Mapping[str, FitParameter]) -> str:
+    """What was found of an effect, with its fitted values."""
+    values = [value_words(path.rsplit(".", 1)[-1], p) for path, p in parameters.items()]
+    return f"{record.summary}: {', '.join(values)}" if values else record.summary
+
+
+def sentence(
+    verdict: Verdict,
+    effects: Sequence[Cause],
+    gain: Gain | None,
+    unexplained: Sequence[Unexplained],
+    reason: str,
+) -> str:
+    """The verdict in words."""
+    if verdict in ("data_fault", "not_testable"):
+        return reason
+    named = joined([_cause(cause) for cause in effects])
+    gained = f" Adding {'it' if len(effects) == 1 else 'them'} removes {gain_words(gain)}."
+    if verdict == "nothing_missing":
+        return (
+            "Nothing is missing: no effect of the catalogue explains more than noise, and what is "
+            "left shows in no coordinate."
+        )
+    rest = joined([f"{left.coordinate} ({100 * left.share:.0f} %)" for left in unexplained[:3]])
+    if verdict == "unexplained":
+        if not effects:
+            return (
+                "Something is missing that no effect of the catalogue explains: the residual still "
+                f"depends on {rest}."
+            )
+        return (
+            f"The simulation lacks {named}, and something without a name: what is left still "
+            f"depends on {rest}.{gained}"
+        )
+    return f"The simulation lacks {named}.{gained}"
+
+
+def _cause(cause: Cause) -> str:
+    if cause.decided:
+        return cause.name
+    return f"{cause.name} or {joined(cause.look_alikes, 'or')}, which these data cannot tell apart"
+
+
+def shown_rows(diagnosis: Diagnosis) -> list[str]:
+    """The first candidates as lines of a table."""
+    rows = [("candidate", "score", "threshold", "gain", "reason")]
+    rows += [
+        (
+            row.name,
+            _percent(row.score),
+            _percent(row.threshold),
+            _percent(row.select_gain),
+            row.reason,
+        )
+        for row in diagnosis.candidates[:MOST_ROWS]
+    ]
+    widths = [max(len(row[k]) for row in rows) for k in range(4)]
+    return [
+        "  ".join([*(f"{row[k]:<{widths[k]}}" for k in range(4)), row[4]]).rstrip() for row in rows
+    ]
+
+
+def _percent(share: float | None) -> str:
+    return "" if share is None else f"{100 * share:.1f} %"
+
+
+def summary(diagnosis: Diagnosis) -> str:
+    """What the command line prints: sentence, findings, candidates, next experiment."""
+    lines = [diagnosis.sentence]
+    if not diagnosis.success:
+        lines.append(diagnosis.message)
+    for cause in diagnosis.effects:
+        lines += ["", f"{cause.name}: {cause.what}"]
+        lines += [f"  means: {cause.means}", f"  try: {cause.try_}"]
+        lines.append(f"  gain: {gain_words(cause.gain)}")
+    before, after = diagnosis.baseline, diagnosis.extended
+    if before is not None and before.heldout_relative is not None and after is not None:
+        told = f"effort error held out: {100 * before.heldout_relative:.2f} %"
+        if diagnosis.effects and after.heldout_relative is not None:
+            told += f" before, {100 * after.heldout_relative:.2f} % after"
+        lines += ["", told]
+    if diagnosis.laws:
+        lines.append("")
+        for row in diagnosis.laws:
+            lines.append(f"law {row.law}: {row.reason}")
+    if diagnosis.candidates:
+        lines += ["", *shown_rows(diagnosis)]
+        more = len(diagnosis.candidates) - MOST_ROWS
+        if more > 0:
+            lines.append(f"and {counted(more, 'other')} in findings.json")
+    if diagnosis.advice:
+        first = diagnosis.advice[0]
+        lines += ["", f"record next: {first.experiment} ({first.reason})"]
+    return "\n".join(lines)

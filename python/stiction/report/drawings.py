@@ -1,0 +1,187 @@
+"""All figures of a report: as files, and as elements of the page with words for each."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from . import figures
+from .numbers import isolated, percent, plain
+from .scale import scale_of
+from .svg import inline, text_of
+from .views import fitting_view
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+    from matplotlib.figure import Figure
+
+    from ..diagnosis.result import Diagnosis
+
+__all__ = ["Drawing", "Drawings", "draw"]
+
+
+class _Drawn(Protocol):
+    def __call__(self, diagnosis: Diagnosis, *, narrow: bool) -> Figure: ...
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure in a page.
+
+    Attributes
+    ----------
+    name : str
+        Of the file, without its ending.
+    caption : str
+        What to see in it.
+    wide, narrow : Markup
+        For screens and paper, and for phones.
+    """
+
+    name: str
+    caption: str
+    wide: Markup
+    narrow: Markup
+
+
+Drawings = dict[str, Drawing]
+"""By name; figures that a diagnosis has no data for are not there."""
+
+
+@dataclass(frozen=True)
+class _Order:
+    """A figure to draw: its name, how, what it is called and what to see in it."""
+
+    name: str
+    draw: _Drawn
+    label: str
+    caption: str
+
+
+def draw(diagnosis: Diagnosis, folder: Path) -> Drawings:
+    """Draw every figure that the diagnosis has data for, and write each as SVG into ``folder``."""
+    made: Drawings = {}
+    for order in _orders(diagnosis):
+        wide = text_of(order.draw(diagnosis, narrow=False))
+        (folder / f"{order.name}.svg").write_text(wide, encoding="utf-8")
+        narrow = text_of(order.draw(diagnosis, narrow=True))
+        made[order.name] = Drawing(
+            order.name,
+            order.caption,
+            inline(wide, order.name, order.label),
+            inline(narrow, f"{order.name}-narrow", order.label),
+        )
+    return made
+
+
+def cause_name(index: int, name: str) -> str:
+    """Name of the figure of a cause, counted from 0."""
+    return f"cause-{index + 1}-{re.sub(r'[^a-z0-9_]', '_', name.lower())}"
+
+
+def _orders(diagnosis: Diagnosis) -> Iterator[_Order]:
+    pictures = diagnosis.pictures
+    if pictures is not None:
+        if pictures.stretches:
+            yield _headline(diagnosis)
+        for index in range(len(diagnosis.effects)):
+            if pictures.before.views:
+                yield _cause(diagnosis, index)
+        if pictures.after.views:
+            yield _coordinates(diagnosis)
+    if any(row.score is not None for row in diagnosis.candidates):
+        yield _Order(
+            "candidates",
+            figures.candidates,
+            "Bars of the share of the residual that each effect would explain, with a mark for "
+            "what noise alone reaches.",
+            "Blue: accepted. Grey: refused, for the reason in the table.",
+        )
+    models = (diagnosis.baseline, diagnosis.extended)
+    fitted = all(model is not None and math.isfinite(model.train_rms) for model in models)
+    if pictures is not None and fitted:
+        noise = scale_of(diagnosis).text(pictures.floor)
+        yield _Order(
+            "errors",
+            figures.errors,
+            "Residual before and after, by what rows are for and by recording, beside the noise.",
+            f"The grey zone is what noise alone would leave, about {noise} rms."
+            + (" Recordings by name are held out." if len(pictures.stretches) > 1 else ""),
+        )
+
+
+def _headline(diagnosis: Diagnosis) -> _Order:
+    pictures = diagnosis.pictures
+    assert pictures is not None
+    stretch = pictures.stretches[0]
+    tested = diagnosis.extended is not None and diagnosis.extended.heldout_rms is not None
+    rows = "rows held out: fitted on nothing, decided on nothing" if tested else (
+        "rows that were fitted, as none are left to test on"
+    )  # fmt: skip
+    band = scale_of(diagnosis).text(figures.FLOOR_TIMES * pictures.floor)
+    if diagnosis.effects:
+        label = "Measured effort, and what is not explained of it before and after, over time."
+        shown = "Measured effort, and what the model leaves of it before and after"
+    else:
+        label = "Measured effort, and what the model does not explain of it, over time."
+        shown = "Measured effort, and what the model leaves of it"
+    return _Order(
+        "before-after",
+        figures.headline,
+        label,
+        f"{shown}, in {isolated(stretch.name)}: {rows}. Gaps are rows used otherwise. "
+        f"Grey band: what noise alone would leave, ±{band} (twice its rms).",
+    )
+
+
+def _cause(diagnosis: Diagnosis, index: int) -> _Order:
+    pictures = diagnosis.pictures
+    assert pictures is not None
+    cause = diagnosis.effects[index]
+    view = fitting_view(cause.coordinate, pictures.before)
+    after = next(v for v in pictures.after.views if v.coordinate.name == view.coordinate.name)
+    share, left, noise = (
+        percent(max(each, 0.0)) for each in (view.share, after.share, view.threshold)
+    )
+    caption = (
+        f"Mean residual over {view.coordinate.name}, on the rows that decide. Before, "
+        f"{share} of the residual follows this curve; with all causes added, {left} of what is "
+        f"left does; noise alone reaches {noise}."
+    )
+    if view.coordinate.odd:
+        caption += " A residual that opposes the motion counts as positive."
+    if index > 0:
+        caption += " “Before” lacks all causes, so it also holds what those above explain."
+    if "order" in {path.rsplit(".", 1)[-1] for path in cause.parameters}:
+        caption += (
+            f" Each point is the mean over 1/{len(view.at)} of the rows: a pattern that repeats "
+            "within that width is averaged out here, though not in the fit."
+        )
+
+    def drawn(diagnosis: Diagnosis, *, narrow: bool) -> Figure:
+        return figures.cause(diagnosis, index, narrow=narrow)
+
+    label = f"{plain(cause.name)}: mean residual over {view.coordinate.name}, before and after."
+    return _Order(cause_name(index, cause.name), drawn, label, caption)
+
+
+def _coordinates(diagnosis: Diagnosis) -> _Order:
+    both = bool(diagnosis.effects)
+    shares = "before → after" if both else "now"
+    return _Order(
+        "coordinates",
+        figures.coordinates,
+        "Mean residual over every coordinate"
+        + (", before and after," if both else "")
+        + " with the band of noise alone.",
+        "Mean residual over each coordinate, on the rows that decide; all vertical axes "
+        f"are alike. Per cent: share of the residual that follows the curve ({shares}), and what "
+        "noise alone reaches. "
+        + ("A share may rise while its curve falls, as less is left in all. " if both else "")
+        + "Over speed, over distance and time since the reversal, and where it "
+        "says “along the motion”, a residual that opposes the motion counts as positive.",
+    )

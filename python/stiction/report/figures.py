@@ -1,0 +1,478 @@
+"""The figures of a report.
+
+Each is drawn wide for a screen or paper, and again ``narrow`` for a phone, where the wide one would
+be too small to read.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import (
+    FuncFormatter,
+    LogLocator,
+    MaxNLocator,
+    NullLocator,
+    SymmetricalLogLocator,
+)
+
+from ..errors import InputError
+from ..plot import (
+    ACCENT,
+    FAINT,
+    INK,
+    MEASURED,
+    SIMULATED,
+    SMALL,
+    TEXT,
+    WIDTH,
+    figure,
+    legend,
+    thinned,
+)
+from .numbers import NO_BREAK, percent, tick, tick_of_ten
+from .scale import Scale, scale_of
+from .views import fitting_view
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..diagnosis.omnibus import View
+    from ..diagnosis.pictures import Pictures
+    from ..diagnosis.result import Diagnosis, ModelSummary
+
+__all__ = ["candidates", "cause", "coordinates", "errors", "headline"]
+
+NARROW: Final = 3.9
+"""Width of a figure for a phone, inches: text keeps its size on 360 pixels."""
+BEFORE, AFTER, BAND, REFUSED = ACCENT, SIMULATED, "#dde1e5", "#b9c0c7"
+"""Orange and blue are told apart by people who do not see red and green alike."""
+FLOOR_TIMES: Final = 2.0
+"""The band of noise over time is this many times its rms: 95 % of it."""
+MOST_RECORDINGS: Final = 24
+"""Recordings that a figure shows one by one."""
+LONGEST_NAME, LONGEST_NARROW_NAME = 30, 16
+LOGARITHMIC: Final = ("speed", "distance since the reversal", "time since the reversal")
+WIDE_RANGE: Final = 50.0
+"""These, where they span more than this, are drawn over their logarithm."""
+TOGETHER: Final = 0.012
+"""Stretches nearer than this share of the axis are drawn as one."""
+STEPS: Final = (1, 2, 5, 10)
+_GRID_LEFT, _GRID_RIGHT, _GRID_TOP = 0.6, 0.1, 0.3
+_GRID_PANEL, _GRID_GAP, _GRID_TITLE = 0.92, 0.88, 0.42
+"""Inches: margins, height of a panel, from panel to panel, and of that what its title takes."""
+
+
+def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
+    """Measured effort, and what both models leave of it, over time.
+
+    The held-out recording with the largest improvement; the band is what noise alone leaves.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    narrow : bool
+        For a phone.
+
+    Raises
+    ------
+    InputError
+        Nothing could be fitted, so there is nothing to draw.
+    """
+    pictures = _pictures(diagnosis)
+    if not pictures.stretches:
+        raise InputError(f"there is nothing to draw: {diagnosis.sentence}")
+    stretch, scale = pictures.stretches[0], scale_of(diagnosis)
+    left = [("before", stretch.before, BEFORE), ("after", stretch.after, AFTER)]
+    if not diagnosis.effects:
+        left = [("left", stretch.after, AFTER)]
+    drawn, (upper, *lower) = figure(
+        1 + len(left),
+        height=1.25 + (1.2 if narrow else 1.1) * (1 + len(left)),
+        width=NARROW if narrow else WIDTH,
+        sharex=True,
+        height_ratios=(0.8, *(1.0 for _ in left)),
+    )
+    buckets = 350 if narrow else 700
+    upper.plot(*thinned(stretch.time, stretch.effort, buckets), color=MEASURED, linewidth=0.9)
+    _named(upper, "measured effort", narrow)
+    upper.set_ylabel(f"effort ({pictures.effort_unit})")
+    band = FLOOR_TIMES * scale.factor * pictures.floor
+    span = max(scale.factor * _extent([values for _, values, _ in left]), 1.3 * band)
+    for panel, (name, values, colour) in zip(lower, left, strict=True):
+        panel.axhspan(-band, band, color=BAND, linewidth=0.0, zorder=0.5)
+        shown = thinned(stretch.time, scale.factor * values, buckets)
+        panel.plot(*shown, color=colour, linewidth=0.8)
+        panel.set_ylim(-1.08 * span, 1.08 * span)
+        panel.set_ylabel(f"residual ({scale.unit})")
+        _named(panel, f"{name}: {scale.text(_rms(values))} rms not explained", narrow)
+    lower[-1].set_xlabel("time in the recording (s)")
+    upper.set_xlim(min(0.0, float(stretch.time[0])), float(stretch.time[-1]))
+    for panel in (upper, *lower):
+        _ticks(panel, 5 if narrow else 9, 4 if narrow else 5)
+    if not narrow:
+        _note(lower[0], "band: noise alone")
+    drawn.align_ylabels()
+    return drawn
+
+
+def cause(diagnosis: Diagnosis, index: int, *, narrow: bool = False) -> Figure:
+    """The residual over the coordinate in which a cause shows, before and after.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    index : int
+        Which of ``diagnosis.effects``.
+    narrow : bool
+        For a phone.
+    """
+    pictures = _pictures(diagnosis)
+    before = fitting_view(diagnosis.effects[index].coordinate, pictures.before)
+    drawn, (panel,) = figure(height=3.3 if narrow else 3.1, width=NARROW if narrow else WIDTH)
+    after = {view.coordinate.name: view for view in pictures.after.views}
+    scale = scale_of(diagnosis)
+    _curves(panel, before, after[before.coordinate.name], scale, size=3.5)
+    panel.set_xlabel(_axis(before, pictures))
+    panel.set_ylabel(f"mean residual ({scale.unit})")
+    _ticks(panel, 4 if narrow else 8, 6)
+    _legend_above(panel, 3)
+    return drawn
+
+
+def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
+    """The residual over every coordinate, before and after, with what noise alone reaches.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    narrow : bool
+        For a phone.
+    """
+    pictures = _pictures(diagnosis)
+    # Sorted by what is left: what still needs a name stands first.
+    before = {view.coordinate.name: view for view in pictures.before.views}
+    views = pictures.after.views
+    columns = 2 if narrow else 3
+    rows = -(-len(views) // columns)
+    drawn, panels = figure(
+        rows,
+        columns,
+        height=_GRID_TOP + rows * (_GRID_PANEL + _GRID_GAP),
+        width=NARROW if narrow else WIDTH,
+    )
+    _grid(drawn, rows)
+    both, scale = bool(diagnosis.effects), scale_of(diagnosis)
+    shown = (*views, *(before.values() if both else ()))
+    parts = [part for view in shown for part in (view.mean, view.low, view.high)]
+    span = scale.factor * _extent(parts)
+    for position, (panel, view) in enumerate(zip(panels, views, strict=False)):
+        first = before[view.coordinate.name]
+        _curves(panel, first if both else view, view if both else None, scale, size=2.0)
+        panel.set_ylim(-1.1 * span, 1.1 * span)
+        _ticks(panel, 2 if narrow else 4, 4)
+        panel.tick_params(labelsize=SMALL - 1.0)
+        if position % columns:
+            panel.tick_params(labelleft=False)
+        axis = _axis(view, pictures)
+        # On a phone the title above has to do for the name.
+        panel.set_xlabel(axis[axis.rindex("(") :] if narrow else axis, fontsize=SMALL)
+        title = _panel_title(first, view, both=both, narrow=narrow)
+        size = SMALL - 1.0 if narrow else SMALL
+        panel.set_title(title, fontsize=size, loc="left", color=INK, pad=4.0)
+    for panel in panels[len(views) :]:
+        panel.set_axis_off()
+    drawn.supylabel(f"mean residual ({scale.unit})", x=0.0, fontsize=TEXT)
+    handles, labels = panels[0].get_legend_handles_labels()
+    keywords = {"frameon": False, "fontsize": SMALL, "handlelength": 1.6, "columnspacing": 1.2}
+    drawn.legend(handles, labels, loc="upper left", ncols=3, borderaxespad=0.1, **keywords)
+    return drawn
+
+
+def candidates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
+    """What every effect would explain, beside what noise alone reaches.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    narrow : bool
+        For a phone.
+    """
+    rows = [row for row in diagnosis.candidates if row.score is not None]
+    if not rows:
+        raise InputError("no candidate has a score, so there is nothing to draw")
+    rows.sort(key=lambda row: -(row.score or 0.0))
+    drawn, (panel,) = figure(height=0.95 + 0.27 * len(rows), width=NARROW if narrow else WIDTH)
+    at = np.arange(len(rows))
+    scores = np.array([100.0 * max(row.score or 0.0, 0.0) for row in rows])
+    accepted = {effect.name for effect in diagnosis.effects}
+    colours = [SIMULATED if row.name in accepted else REFUSED for row in rows]
+    panel.barh(at, scores, color=colours, height=0.62)
+    marks = np.array([100.0 * (row.threshold or 0.0) for row in rows])
+    panel.plot(
+        marks,
+        at,
+        linestyle="",
+        marker="|",
+        ms=11,
+        mew=1.6,
+        color=INK,
+        label="what noise alone reaches",
+    )
+    for place, score, mark in zip(at, scores, marks, strict=True):
+        _beside(panel, percent(score / 100.0), max(score, mark), float(place))
+    longest = LONGEST_NARROW_NAME + 11 if narrow else LONGEST_NAME
+    panel.set_yticks(at, [shortened(row.name.replace("_", " "), longest) for row in rows])
+    panel.invert_yaxis()
+    panel.grid(False, axis="y")
+    panel.set_xlim(0.0, 1.18 * max(float(scores.max()), float(marks.max()), 1.0))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g} %"))
+    panel.set_xlabel("share of the residual explained" if narrow else
+                     "share of the residual that it would explain")  # fmt: skip
+    panel.xaxis.set_major_locator(MaxNLocator(4 if narrow else 6, steps=STEPS))
+    _legend_above(panel, 1)
+    return drawn
+
+
+def errors(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
+    """Residual rms before and after, by what rows are for and by held-out recording.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    narrow : bool
+        For a phone.
+    """
+    pictures = _pictures(diagnosis)
+    rows = _error_rows(diagnosis, LONGEST_NARROW_NAME if narrow else LONGEST_NAME)
+    if not rows:
+        raise InputError(f"there is nothing to draw: {diagnosis.sentence}")
+    drawn, (panel,) = figure(height=1.0 + 0.3 * len(rows), width=NARROW if narrow else WIDTH)
+    at = np.arange(len(rows))
+    scale = scale_of(diagnosis)
+    floor = scale.factor * pictures.floor
+    one = scale.factor * np.array([before for _, before, _ in rows])
+    two = scale.factor * np.array([after for _, _, after in rows])
+    panel.axvspan(0.0, floor, color=BAND, linewidth=0.0, zorder=0.5, label="noise alone")
+    if diagnosis.effects:
+        panel.hlines(at, one, two, color=FAINT, linewidth=1.4, zorder=1.5)
+        panel.plot(one, at, "o", color=BEFORE, ms=6, label="before")
+    panel.plot(two, at, "s", color=AFTER, ms=6, label="after" if diagnosis.effects else "residual")
+    panel.set_yticks(at, [name for name, _, _ in rows])
+    panel.set_ylim(len(rows) - 0.4, -0.6)
+    panel.grid(False, axis="y")
+    panel.set_xlim(0.0, 1.08 * max(_extent([one, two]), floor))
+    panel.set_xlabel(f"residual, rms ({scale.unit})")
+    panel.xaxis.set_major_locator(MaxNLocator(4 if narrow else 7, steps=STEPS))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
+    _legend_above(panel, 3)
+    return drawn
+
+
+def shortened(name: str, longest: int) -> str:
+    """A name as it can be drawn: not too long, and only characters that the font has.
+
+    A dollar sign would begin a formula; a character without a glyph would draw a box and warn.
+    """
+    shown = "".join(c if _has_glyph(c) else "?" for c in name)
+    if len(shown) > longest:
+        half = (longest - 1) // 2
+        shown = f"{shown[: longest - 1 - half]}…{shown[-half:]}"
+    return shown.replace("$", r"\$")
+
+
+def _has_glyph(character: str) -> bool:
+    # Latin, Greek and Cyrillic: what the font of the figures covers without gaps.
+    code = ord(character)
+    return character.isprintable() and (code < 0x250 or 0x386 <= code < 0x460 or code == 0x2026)
+
+
+def _pictures(diagnosis: Diagnosis) -> Pictures:
+    if diagnosis.pictures is None:
+        raise InputError(f"there is nothing to draw: {diagnosis.sentence}")
+    return diagnosis.pictures
+
+
+def _curves(panel: Axes, before: View, after: View | None, scale: Scale, *, size: float) -> None:
+    """Mean residuals and the band of the surrogates, over one coordinate."""
+    at, *curves = _merged(before, after)
+    low, high, *means = (scale.factor * curve for curve in curves)
+    if _logarithmic(before):
+        # A coordinate that begins at 0 is linear up to the first stretch that does not.
+        least = float(at[at > 0.0].min())
+        panel.set_xscale(
+            "log" if at.min() > 0.0 else "symlog",
+            **({} if at.min() > 0.0 else {"linthresh": least, "linscale": 0.3}),
+        )
+    panel.axhline(0.0, color=FAINT, linewidth=0.7)
+    panel.fill_between(at, low, high, color=BAND, linewidth=0.0, label="noise alone, 95 %")
+    keywords: dict[str, Any] = {"ms": size, "linewidth": 1.1}
+    if after is None:
+        panel.plot(at, means[0], "-s", color=AFTER, label="what is left", **keywords)
+        return
+    panel.plot(at, means[0], "-o", color=BEFORE, label="before", **keywords)
+    panel.plot(at, means[1], "-s", color=AFTER, label="after", **keywords)
+
+
+def _merged(before: View, after: View | None) -> list[np.ndarray]:
+    """Centres, band and means, with stretches that would lie on one another drawn as their mean.
+
+    Stretches hold equally many rows each, so that where a machine runs at one speed many of them
+    have the same place.
+    """
+    parts = [before.at, before.low, before.high, before.mean]
+    if after is not None:
+        parts.append(after.mean)
+    seen = np.isfinite(before.at)
+    columns = np.array([part[seen] for part in parts])
+    along = columns[0]
+    if _logarithmic(before):
+        along = np.log(np.maximum(along, float(along[along > 0.0].min())))
+    reach = TOGETHER * float(np.ptp(along)) if along.size else 0.0
+    group = np.zeros(along.size, dtype=np.int64)
+    first = 0
+    for k in range(1, along.size):
+        if along[k] - along[first] > reach:
+            first = k
+        group[k] = group[k - 1] + (first == k)
+    counts = np.maximum(np.bincount(group), 1)
+    return [np.bincount(group, weights=column) / counts for column in columns]
+
+
+def _logarithmic(view: View) -> bool:
+    at = view.at[np.isfinite(view.at)]
+    if view.coordinate.name not in LOGARITHMIC or not at.size:
+        return False
+    rising = at[at > 0.0]
+    return bool(at.min() >= 0.0 and rising.size and at.max() > WIDE_RANGE * rising.min())
+
+
+def _panel_title(before: View, after: View, *, both: bool, narrow: bool) -> str:
+    shares = f"{_share(before)} → {_share(after)}" if both else _share(after)
+    noise = f"noise: {_share_of(max(after.threshold, 0.0))}"
+    name = after.coordinate.name
+    if narrow:
+        name = name.replace("along the motion", "(along)")
+        return f"{name}\n{shares.replace(f'{NO_BREAK}% →', ' →')} ({noise})"
+    return f"{name}\n{shares} ({noise})"
+
+
+def _ticks(panel: Axes, across: int, up: int) -> None:
+    """So many ticks at most, written without powers at the end of an axis."""
+    kind = panel.get_xscale()
+    if kind == "linear":
+        panel.xaxis.set_major_locator(MaxNLocator(across, steps=STEPS))
+        panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
+    else:
+        if kind == "log":
+            panel.xaxis.set_major_locator(LogLocator(numticks=across))
+        else:
+            locator = SymmetricalLogLocator(panel.xaxis.get_transform())
+            locator.set_params(numticks=across)
+            panel.xaxis.set_major_locator(locator)
+        panel.xaxis.set_minor_locator(NullLocator())
+        panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: tick_of_ten(value)))
+    panel.yaxis.set_major_locator(MaxNLocator(up, steps=STEPS))
+    panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
+
+
+def _grid(drawn: Figure, rows: int) -> None:
+    """Places the panels of a grid by hand: arranging that many takes longer than drawing them."""
+    width, height = drawn.get_size_inches()
+    drawn.set_layout_engine(None)
+    drawn.subplots_adjust(
+        left=_GRID_LEFT / width,
+        right=1.0 - _GRID_RIGHT / width,
+        top=1.0 - (_GRID_TOP + _GRID_TITLE) / height,
+        bottom=(_GRID_GAP - _GRID_TITLE) / height,
+        hspace=_GRID_GAP / _GRID_PANEL if rows > 1 else 0.0,
+        wspace=0.14,
+    )
+
+
+def _share(view: View) -> str:
+    return _share_of(max(view.share, 0.0))
+
+
+def _share_of(share: float) -> str:
+    return percent(share, 0 if share >= 0.0995 else 1)
+
+
+def _axis(view: View, pictures: Pictures) -> str:
+    quantity_name, _, unit = view.coordinate.axis.format(
+        x=pictures.position_unit, f=pictures.effort_unit
+    ).rpartition(", ")
+    return f"{quantity_name} ({unit})"
+
+
+def _error_rows(diagnosis: Diagnosis, longest: int) -> list[tuple[str, float, float]]:
+    """Name, rms before and rms after, of each kind of rows and of each held-out recording."""
+    before, after = diagnosis.baseline, diagnosis.extended
+    rows = []
+    if before is not None and after is not None:
+        for name, key in (
+            ("rows fitted", "train_rms"),
+            ("rows that decided", "select_rms"),
+            ("rows held out", "heldout_rms"),
+        ):
+            one, two = _error(before, key), _error(after, key)
+            if one is not None and two is not None:
+                rows.append((name, one, two))
+    stretches = _pictures(diagnosis).stretches
+    if len(stretches) > 1:
+        for stretch in stretches[:MOST_RECORDINGS]:
+            name = shortened(stretch.name, longest)
+            rows.append((name, _rms(stretch.before), _rms(stretch.after)))
+    return [row for row in rows if math.isfinite(row[1]) and math.isfinite(row[2])]
+
+
+def _error(model: ModelSummary, key: str) -> float | None:
+    value: float | None = getattr(model, key)
+    return value
+
+
+def _rms(values: np.ndarray) -> float:
+    seen = values[np.isfinite(values)]
+    return float(np.sqrt(np.mean(seen**2))) if seen.size else math.nan
+
+
+def _extent(parts: Sequence[np.ndarray]) -> float:
+    """Greatest magnitude of all that is finite, 1 where there is nothing."""
+    greatest = [float(np.max(np.abs(p[np.isfinite(p)]))) for p in parts if np.isfinite(p).any()]
+    return max(greatest, default=0.0) or 1.0
+
+
+def _named(panel: Axes, text: str, narrow: bool) -> None:
+    panel.set_title(text, loc="left", fontsize=SMALL if narrow else TEXT, color=INK, pad=3.0)
+
+
+def _note(panel: Axes, text: str) -> None:
+    """A remark above the right end of a panel."""
+    panel.set_title(text, loc="right", fontsize=SMALL - 1.0, color=MEASURED, pad=3.0)
+
+
+def _beside(panel: Axes, text: str, x: float, y: float) -> None:
+    panel.annotate(
+        text,
+        (x, y),
+        xytext=(6, 0),
+        textcoords="offset points",
+        va="center",
+        fontsize=SMALL,
+        color=INK,
+    )
+
+
+def _legend_above(panel: Axes, columns: int) -> None:
+    legend(
+        panel,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=columns,
+        borderaxespad=0.1,
+        columnspacing=1.2,
+    )

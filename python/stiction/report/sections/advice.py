@@ -1,0 +1,31 @@
+"""What to record next."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .section import Section
+
+if TYPE_CHECKING:
+    from ...diagnosis.result import Diagnosis
+    from ..drawings import Drawings
+
+__all__ = ["build"]
+
+
+def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
+    """Experiments, the most useful first; None where there is nothing to advise."""
+    rows = [
+        {"experiment": each.experiment, "reason": each.reason}
+        for each in diagnosis.advice
+        # What to do about a fault stands beside the fault, on the first screen.
+        if diagnosis.verdict != "data_fault" or each.experiment not in _remedies(diagnosis)
+    ]
+    if not rows:
+        return None
+    return Section("advice", "What to record next", {"rows": rows})
+
+
+def _remedies(diagnosis: Diagnosis) -> set[str]:
+    checks = diagnosis.data.get("checks") or ()
+    return {check["try"] for check in checks if check["verdict"] == "fault"}

@@ -1,0 +1,35 @@
+"""Every effect that was tried, and why it was accepted or refused."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..numbers import percent, plain
+from .section import Section
+
+if TYPE_CHECKING:
+    from ...diagnosis.result import Diagnosis
+    from ..drawings import Drawings
+
+__all__ = ["build"]
+
+
+def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
+    """All candidates in their order; None where none were tried."""
+    if not diagnosis.candidates:
+        return None
+    accepted = {effect.name for effect in diagnosis.effects}
+    rows = [
+        {
+            "name": row.name,
+            "title": plain(row.name),
+            "score": percent(row.score),
+            "threshold": percent(row.threshold),
+            "gain": percent(row.select_gain),
+            "reason": row.reason,
+            "accepted": row.name in accepted,
+        }
+        for row in diagnosis.candidates
+    ]
+    content = {"rows": rows, "picture": drawings.get("candidates")}
+    return Section("candidates", "All effects that were tried", content)

@@ -1,0 +1,115 @@
+"""The data: what was checked, which rows were used for what, and how noisy they are."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+from ...wording import counted
+from ..numbers import duration, quantity
+from .section import Section
+
+if TYPE_CHECKING:
+    from ...diagnosis.result import Diagnosis
+    from ..drawings import Drawings
+
+__all__ = ["build"]
+
+PURPOSES: Final = (
+    ("train", "fits the parameters"),
+    ("select", "decides which effects are added"),
+    ("test", "held out: opened once, after the last decision"),
+)
+SHOWN: Final = 6
+"""Recordings that a line lists before it counts the others."""
+
+
+def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
+    """Checks, split, noise and hashes."""
+    data = diagnosis.data
+    checks = data.get("checks") or ()
+    names = list(dict.fromkeys(check["recording"] for check in checks))
+    hashes = list(data.get("hashes") or ())
+    if len(names) != len(hashes):
+        names = [f"recording {k + 1}" for k in range(len(hashes))]
+    plant = diagnosis.plant
+    # Faults that make the data useless stand on the first screen already.
+    hidden = {"fine", "fault"} if diagnosis.verdict == "data_fault" else {"fine"}
+    content = {
+        "remarkable": _grouped([c for c in checks if c["verdict"] not in hidden]),
+        "above": diagnosis.verdict == "data_fault" and any(c["verdict"] == "fault" for c in checks),
+        "fine": _grouped([check for check in checks if check["verdict"] == "fine"]),
+        "passed": _passed(checks),
+        "split": _split(data.get("split")),
+        "noise": [_noise(entry, plant.position_unit, plant.effort_unit) for entry in data["noise"]]
+        if data.get("noise")
+        else [],
+        "hashes": list(zip(names, hashes, strict=True)),
+    }
+    return Section("data", "The data", content) if any(content.values()) else None
+
+
+def _passed(checks: Sequence[Mapping[str, str]]) -> str:
+    if not checks:
+        return ""
+    fine = sum(check["verdict"] == "fine" for check in checks)
+    if fine == len(checks):
+        return f"All {counted(fine, 'check')} passed."
+    return f"{fine} of {counted(len(checks), 'check')} passed."
+
+
+def _grouped(checks: Sequence[Mapping[str, str]]) -> list[dict[str, Any]]:
+    """Checks that say the same of several recordings, together; faults first."""
+    groups: dict[tuple[str, ...], list[dict[str, str]]] = {}
+    for check in checks:
+        key = (check["name"], check["verdict"], check["means"], check["try"])
+        groups.setdefault(key, []).append({"recording": check["recording"], "what": check["what"]})
+    rows = [
+        {"name": name, "verdict": verdict, "means": means, "try": remedy, "found": found}
+        for (name, verdict, means, remedy), found in groups.items()
+    ]
+    return sorted(rows, key=lambda row: row["verdict"] != "fault")
+
+
+def _split(split: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    if not split:
+        return None
+    roles = []
+    for role, purpose in PURPOSES:
+        parts = split.get(role) or ()
+        if not parts:
+            folds = split.get("folds") or ()
+            if role == "select" and folds:
+                what = f"{counted(len(folds), 'fold')} over train, each left out in turn"
+                roles.append({"role": role, "purpose": purpose, "what": what, "lasting": ""})
+            continue
+        lasting = sum(part["seconds"][1] - part["seconds"][0] for part in parts)
+        roles.append(
+            {
+                "role": role,
+                "purpose": purpose,
+                "what": _pieces([part["name"] for part in parts]),
+                "lasting": duration(lasting),
+            }
+        )
+    return {"rules": list(split.get("rules") or ()), "roles": roles}
+
+
+def _pieces(names: Sequence[str]) -> str:
+    pieces = Counter(names)
+    words = [
+        name if number == 1 else f"{number} blocks of {name}" for name, number in pieces.items()
+    ]
+    more = len(words) - SHOWN
+    return ", ".join(words[:SHOWN]) + (f" and {counted(more, 'other')}" if more > 0 else "")
+
+
+def _noise(entry: Mapping[str, Any], position: str, effort: str) -> dict[str, str]:
+    count = entry["count"]
+    return {
+        "recording": entry["recording"],
+        "position": quantity(entry["position"], position, 2),
+        "count": quantity(count, position, 3) if count else "none seen",
+        "effort": quantity(entry["effort"], effort, 2),
+    }

@@ -1,0 +1,70 @@
+"""What is left when everything that has a name is added."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ..numbers import percent
+from ..scale import scale_of
+from ..views import HINTS
+from .section import Section
+
+if TYPE_CHECKING:
+    from ...diagnosis.result import Diagnosis
+    from ..drawings import Drawings
+
+__all__ = ["build"]
+
+
+def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
+    """The residual in every coordinate; None where nothing was fitted."""
+    pictures = diagnosis.pictures
+    if pictures is None and not diagnosis.unexplained:
+        return None
+    before = {} if pictures is None else {v.coordinate.name: v for v in pictures.before.views}
+    views = () if pictures is None else pictures.after.views
+    limits = {view.coordinate.name: max(view.threshold, 0.0) for view in views}
+    left = [
+        {
+            "coordinate": each.coordinate,
+            "share": percent(each.share),
+            "limit": percent(limits.get(each.coordinate)),
+            "hint": HINTS.get(each.coordinate, ""),
+        }
+        for each in diagnosis.unexplained
+    ]
+    rows = [
+        {
+            "coordinate": view.coordinate.name,
+            "before": percent(max(before[view.coordinate.name].share, 0.0)),
+            "after": percent(max(view.share, 0.0)),
+            "limit": percent(max(view.threshold, 0.0)),
+            "flagged": view.flagged,
+        }
+        for view in views
+    ]
+    content = {
+        "left": left,
+        "rows": rows,
+        "both": bool(diagnosis.effects),
+        "level": _level(diagnosis),
+        "picture": drawings.get("coordinates"),
+    }
+    return Section("rest", "What is left", content)
+
+
+def _level(diagnosis: Diagnosis) -> dict[str, Any] | None:
+    """How large the rest is beside the noise."""
+    model = diagnosis.extended
+    if model is None:
+        return None
+    held_out = model.heldout_rms is not None
+    rms = model.heldout_rms if model.heldout_rms is not None else model.train_rms
+    noise = model.noise_floor_rms
+    share = (noise / rms) ** 2 if rms > 0.0 else 1.0
+    return {
+        "rms": scale_of(diagnosis).text(rms),
+        "noise": scale_of(diagnosis).text(noise),
+        "rows": "on held-out rows" if held_out else "on the rows fitted",
+        "share": percent(share, 0) if share < 0.995 else "",
+    }

@@ -1,0 +1,96 @@
+"""The first screen: what was found, and what it is worth."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from ..numbers import digits, percent, percent_between
+from ..scale import scale_of
+from .section import Section
+
+if TYPE_CHECKING:
+    from ...diagnosis.gain import Gain
+    from ...diagnosis.result import Diagnosis
+    from ..drawings import Drawings
+
+__all__ = ["build"]
+
+TITLES: Final = {
+    "data_fault": "The data cannot be used",
+    "not_testable": "These data cannot be tested",
+    "unexplained": "Something is missing that no known effect explains",
+    "ambiguous": "Something is missing, and these data leave more than one name for it",
+    "missing_effect": "The simulation lacks an effect that is known by name",
+    "nothing_missing": "Nothing is missing from the simulation",
+}
+NAMED_IN_PART: Final = "The simulation lacks a known effect, and something that has no name"
+SEVERAL: Final = "The simulation lacks effects that are known by name"
+
+
+def build(diagnosis: Diagnosis, drawings: Drawings) -> Section:
+    """Verdict, gain with its interval, and the picture before and after."""
+    faults = [
+        check
+        for check in diagnosis.data.get("checks", ())
+        if diagnosis.verdict == "data_fault" and check["verdict"] == "fault"
+    ]
+    content = {
+        "sentence": diagnosis.sentence,
+        "verdict": diagnosis.verdict,
+        "message": "" if diagnosis.success else diagnosis.message,
+        "gain": None if diagnosis.gain is None else _gain(diagnosis.gain),
+        "unmeasured": bool(diagnosis.effects) and diagnosis.gain is None,
+        "errors": _errors(diagnosis),
+        "faults": faults,
+        "picture": drawings.get("before-after"),
+    }
+    return Section("verdict", _title(diagnosis), content)
+
+
+def _title(diagnosis: Diagnosis) -> str:
+    if diagnosis.verdict == "unexplained" and diagnosis.effects:
+        return NAMED_IN_PART
+    if diagnosis.verdict == "missing_effect" and len(diagnosis.effects) > 1:
+        return SEVERAL
+    return TITLES[diagnosis.verdict]
+
+
+def _gain(gain: Gain) -> dict[str, Any]:
+    low, high = gain.ci95
+    # A bar from no gain to all of it; further to the left where the interval goes there.
+    least = max(min(0.0, low, gain.value), -1.0)
+    span = 1.0 - least
+
+    def along(share: float) -> float:
+        return round(100.0 * (min(max(share, least), 1.0) - least) / span, 2)
+
+    return {
+        "value": percent(gain.value),
+        "interval": percent_between(low, high),
+        "bar": {"low": along(low), "high": along(high), "at": along(gain.value)},
+        "zero": along(0.0),
+        "uncertain": low <= 0.0,
+    }
+
+
+def _errors(diagnosis: Diagnosis) -> dict[str, Any] | None:
+    before, after = diagnosis.baseline, diagnosis.extended
+    if before is None or after is None:
+        return None
+    tested = before.heldout_rms is not None
+    one = before.heldout_rms if tested else before.train_rms
+    two = after.heldout_rms if tested else after.train_rms
+    relative = [
+        model.heldout_relative if tested else model.train_relative for model in (before, after)
+    ]
+    scale = scale_of(diagnosis)
+    floor = after.noise_floor_rms
+    return {
+        "rows": "on held-out rows" if tested else "on the rows fitted",
+        "both": bool(diagnosis.effects),
+        "before": digits(None if one is None else scale.factor * one),
+        "after": scale.text(two),
+        "relative": [percent(share, 2) for share in relative],
+        "floor": scale.text(floor),
+        "within": two is not None and two <= floor,
+    }

@@ -1,0 +1,465 @@
+"""Reports open anywhere, say all that was found, and look the same every time."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.diagnosis import Diagnosis
+from stiction.diagnosis.coordinates import COORDINATES
+from stiction.diagnosis.gain import Gain
+from stiction.diagnosis.omnibus import Rest, View
+from stiction.diagnosis.pictures import Pictures, Stretch
+from stiction.diagnosis.result import (
+    Advice,
+    CandidateRow,
+    Cause,
+    LawRow,
+    ModelSummary,
+    Unexplained,
+    Verdict,
+)
+from stiction.fitting.result import FitParameter
+from stiction.report import write
+from stiction.report.figures import headline, shortened
+from stiction.report.numbers import between, digits, percent, quantity, tick
+
+LARGEST_REPORT = 5_000_000  # bytes; what an e-mail carries
+HOSTILE = "<script>alert(1)</script>&\"' $x^2$ -->]]> \u202e名.csv"
+FITTED: tuple[Verdict, ...] = ("unexplained", "ambiguous", "missing_effect", "nothing_missing")
+VERDICTS: tuple[Verdict, ...] = (*FITTED, "not_testable", "data_fault")
+# Each further coordinate costs time and shows nothing new.
+SEEN = {"speed", "position", "effort", "distance since the reversal", "time since the reversal"}
+VOID = {"meta", "br", "hr", "img", "link", "input", "wbr"}
+
+
+def plant(*, effects: bool = False) -> st.Plant:
+    table = {
+        "motion": {"kind": "rotary"},
+        "drive": {"input": "torque_nm"},
+        "body": {"inertia": 0.0076},
+        "friction": {"law": "coulomb", "coulomb": 0.3, "viscous": 0.05},
+    }
+    if effects:
+        table["effects"] = [{"name": "torque_bias", "bias": 0.02}]
+    return st.Plant.from_dict(table)
+
+
+def parameter(value: float, half: float, unit: str, at_bound: str = "") -> FitParameter:
+    return FitParameter(value, half / 2, (value - half, value + half), unit, at_bound, value)
+
+
+def model(*, effects: bool, held_out: float | None = 0.02) -> ModelSummary:
+    own = {
+        "body.inertia": parameter(0.0076, 0.0002, "kg·m²"),
+        "friction.coulomb": parameter(0.3, 0.004, "N·m", "lower"),
+        "friction.viscous": parameter(0.001, 0.02, "N·m·s/rad"),
+    }
+    if effects:
+        own["effects.torque_bias.bias"] = parameter(0.02, 0.003, "N·m")
+    return ModelSummary(
+        plant=plant(effects=effects),
+        parameters=own,
+        unit="N·m",
+        train_rms=0.01 if effects else 0.02,
+        select_rms=0.011 if effects else 0.021,
+        heldout_rms=held_out,
+        train_relative=0.03 if effects else 0.06,
+        heldout_relative=None if held_out is None else 0.03,
+        noise_floor_rms=0.008,
+        remarks=("friction.viscous is not determined by these data: its standard error 0.01",),
+    )
+
+
+def rest(size: float) -> Rest:
+    """Views with repeated places, zeros and many decades, as machines that run steadily give."""
+    at = np.linspace(-1.0, 1.0, 24).round(1)
+    places = {
+        "speed": np.geomspace(1e-4, 10.0, 24),
+        "distance since the reversal": np.concatenate([[0.0], np.geomspace(1e-7, 1e-2, 23)]),
+        "time since the reversal": np.full(24, 0.5),
+    }
+    return Rest(
+        tuple(
+            View(
+                coordinate,
+                places.get(coordinate.name, at),
+                size * np.sin(3.0 * at + k),
+                np.full(24, -0.002),
+                np.full(24, 0.002),
+                share=size * (12 - k),
+                threshold=0.02 - 0.01 * k,
+            )
+            for k, coordinate in enumerate(COORDINATES)
+            if coordinate.name in SEEN
+        )
+    )
+
+
+def pictures(*, effects: bool, names: tuple[str, ...]) -> Pictures:
+    time = np.arange(4000) * 0.005
+    gap = np.where((time > 4.0) & (time < 6.0), np.nan, 1.0)
+    noise = 0.008 * np.random.default_rng(1).standard_normal(4000) * gap
+    before = noise + 0.02 * np.sin(time) if effects else noise
+    effort = 0.4 * np.sin(2.0 * time) * gap
+    return Pictures(
+        stretches=tuple(Stretch(name, time, effort, before, noise) for name in names),
+        before=rest(0.02 if effects else 0.001),
+        after=rest(0.001),
+        effort_unit="N·m",
+        position_unit="rad",
+        floor=0.008,
+    )
+
+
+def cause(*, decided: bool) -> Cause:
+    return Cause(
+        name="torque_bias",
+        family="offset",
+        decided=decided,
+        look_alikes=() if decided else ("direction_asymmetry",),
+        parameters={"effects.torque_bias.bias": parameter(0.02, 0.003, "N·m")},
+        gain=Gain(0.412, (0.35, 0.47)),
+        what="constant effort, at rest as well as in motion: bias 0.02 N·m (0.017 to 0.023)",
+        means="a constant effort pulls one way, at rest too",
+        try_="add it as a feed-forward",
+        coordinate="everywhere, also at rest",
+    )
+
+
+def data(name: str, *, fault: bool = False) -> dict[str, object]:
+    def check(what: str, verdict: str) -> dict[str, str]:
+        told = {"means": f"{what} means", "try": f"{what} try"}
+        return {"recording": name, "name": what, "verdict": verdict, "what": f"{what} told"} | told
+
+    part = {"recording": 0, "name": name, "rows": [0, 4000], "seconds": [0.0, 20.0]}
+    split = {"rules": ["The rule of the split."], "train": [part, part], "select": [],
+             "test": [part], "folds": [{"fit": [part], "held": [part]}] * 2}  # fmt: skip
+    return {
+        "checks": [
+            check("gaps", "fine"),
+            check("spikes", "note"),
+            check("stuck channel", "fault" if fault else "fine"),
+        ],
+        "split": None if fault else split,
+        "hashes": ["d29e801c" * 8],
+        "noise": []
+        if fault
+        else [{"recording": name, "position": 2.1e-8, "count": 0.0, "effort": 0.011}],
+    }
+
+
+def diagnosis(verdict: Verdict, *, name: str = "run.csv", names: int = 2) -> Diagnosis:
+    """A small diagnosis of each kind."""
+    if verdict not in FITTED:
+        fault = verdict == "data_fault"
+        return Diagnosis(
+            verdict=verdict,
+            sentence=f"The data cannot be used: {name}: stuck channel told.",
+            plant=plant(),
+            data=data(name, fault=fault),
+            advice=(Advice("stuck channel try", f"{name}: stuck channel told", ()),),
+            version="0.1.0",
+        )
+    effects = verdict != "nothing_missing"
+    reason = "noise alone reaches it"
+    return Diagnosis(
+        verdict=verdict,
+        sentence=f"The sentence of {verdict}: 41.2 % of the residual's power.",
+        plant=plant(effects=effects),
+        effects=(cause(decided=verdict != "ambiguous"),) if effects else (),
+        gain=Gain(0.412, (0.35, 0.47)) if effects else None,
+        candidates=(
+            CandidateRow("torque_bias", 0.4, 0.03, 0.41, "accepted" if effects else reason),
+            CandidateRow("cogging", -0.001, 0.05, None, reason),
+            CandidateRow("stribeck", None, None, None, "part of the law"),
+        ),
+        laws=(
+            LawRow("maxwell_slip", Gain(0.01, (-0.02, 0.03)), "explains about as much"),
+            LawRow("hsieh_pan", None, "could not be fitted to these data"),
+        ),
+        baseline=model(effects=False, held_out=0.02),
+        extended=model(effects=effects, held_out=0.01),
+        unexplained=(Unexplained("speed", 0.34),) if verdict == "unexplained" else (),
+        advice=(Advice("slow full turns", "it tells cogging apart", ("cogging",)),),
+        data=data(name),
+        version="0.1.0",
+        pictures=pictures(effects=effects, names=tuple(f"{k} {name}" for k in range(names))),
+    )
+
+
+def undrawn(verdict: Verdict, *, name: str = "run.csv") -> Diagnosis:
+    """Without most of its figures, which take the time."""
+    return replace(diagnosis(verdict, name=name), pictures=None)
+
+
+class Page(HTMLParser):
+    """Tags that balance, identifiers, addresses and the text in between."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.ids: list[str] = []
+        self.addresses: list[str] = []
+        self.tags: list[str] = []
+        self.text = ""
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.handle_startendtag(tag, attrs)
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        for name, value in attrs:
+            assert not name.startswith("on"), f"{tag} runs {name}"
+            if name == "id":
+                self.ids.append(value or "")
+            if name in ("src", "href", "xlink:href", "srcset", "action"):
+                self.addresses.append(value or "")
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, text: str) -> None:
+        self.text += text
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The report of each verdict."""
+    folder = tmp_path_factory.mktemp("reports")
+    return {verdict: write(diagnosis(verdict), folder / verdict) for verdict in VERDICTS}
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_report_opens_without_a_network(pages: dict[str, Path], verdict: Verdict) -> None:
+    assert pages[verdict].name == "report.html"
+    text = pages[verdict].read_text("utf-8")
+    assert len(text.encode()) < LARGEST_REPORT
+    page = Page(text)
+    assert page.open == []
+    assert len(page.ids) == len(set(page.ids))
+    assert "script" not in page.tags
+    assert "link" not in page.tags
+    files = {path.relative_to(pages[verdict].parent).as_posix()
+             for path in pages[verdict].parent.rglob("*")}  # fmt: skip
+    for address in page.addresses:
+        assert address.removeprefix("#") in page.ids if address[0] == "#" else address in files
+    assert not re.search(r"https?:|@import|url\((?!#)", text)
+    for used in re.findall(r"url\(#([^)]*)\)", text):
+        assert used in page.ids
+    assert '<html lang="en">' in text
+    assert 'name="viewport" content="width=device-width' in text
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_report_says_all_that_was_found(pages: dict[str, Path], verdict: Verdict) -> None:
+    found = diagnosis(verdict)
+    text = Page(pages[verdict].read_text("utf-8")).text
+    assert found.sentence in text
+    for each in found.effects:
+        for said in (each.name, each.means, each.try_, *each.look_alikes):
+            assert said.replace("_", " ") in text.replace("_", " ")
+        assert "0.0200" in text
+        assert "0.0170 to 0.0230" in text
+    if found.gain is not None:
+        assert "41.2\u00a0%" in text
+        assert "35.0 to 47.0\u00a0%" in text
+    for row in found.candidates:
+        assert row.name.replace("_", " ") in text
+        assert row.reason in text
+    for law in found.laws:
+        assert law.law in text
+        assert law.reason in text
+    for left in found.unexplained:
+        assert left.coordinate in text
+        assert "34.0\u00a0%" in text
+    for advice in found.advice:
+        assert advice.experiment[1:] in text
+        assert advice.reason in text
+    for check in found.data["checks"]:
+        assert check["what"] in text
+    assert found.data["hashes"][0] in text
+    for model in filter(None, (found.baseline, found.extended)):
+        assert model.remarks[0] in text
+        assert "at its lower bound" in text
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_files_beside_the_report_are_whole(pages: dict[str, Path], verdict: Verdict) -> None:
+    folder = pages[verdict].parent
+    found = diagnosis(verdict)
+    assert json.loads((folder / "findings.json").read_text("utf-8")) == json.loads(found.to_json())
+    assert st.Plant.load(folder / "plant.toml") == found.plant
+    names = {"report.html", "findings.json", "plant.toml", "figures"}
+    assert {path.name for path in folder.iterdir()} == names
+    figures = sorted(path.stem for path in (folder / "figures").iterdir())
+    drawn = ["before-after", "candidates", "coordinates", "errors"]
+    assert figures == ([] if found.pictures is None else
+                       sorted([*drawn, *["cause-1-torque_bias"] * len(found.effects)]))  # fmt: skip
+    for path in (folder / "figures").iterdir():
+        root = ElementTree.parse(path).getroot()
+        assert root.tag == "{http://www.w3.org/2000/svg}svg"
+        assert not list(root.iter("{http://www.w3.org/2000/svg}image"))
+
+
+def test_figures_in_the_page_are_named_for_those_who_do_not_see_them(
+    pages: dict[str, Path],
+) -> None:
+    text = pages["missing_effect"].read_text("utf-8")
+    drawings = re.findall(r"<svg[^>]*>", text)
+    assert len(drawings) == 2 * 5 + 1  # each for screens and for phones, and the bar of the gain
+    for drawing in drawings:
+        assert 'role="img"' in drawing
+        assert re.search(r'aria-label="[^"]{20,}"', drawing)
+
+
+def test_same_diagnosis_gives_the_same_bytes(pages: dict[str, Path], tmp_path: Path) -> None:
+    first = pages["missing_effect"].parent
+    (tmp_path / "figures").mkdir()
+    (tmp_path / "report.html").write_text("an earlier report")
+    write(diagnosis("missing_effect"), tmp_path)
+    files = [path.relative_to(first) for path in first.rglob("*") if path.is_file()]
+    assert len(files) == 8
+    for file in files:
+        assert (tmp_path / file).read_bytes() == (first / file).read_bytes()
+
+
+def test_names_of_files_cannot_break_the_page(tmp_path: Path) -> None:
+    for verdict in ("unexplained", "data_fault"):
+        path = write(diagnosis(verdict, name=HOSTILE), tmp_path / verdict)
+        text = path.read_text("utf-8")
+        page = Page(text)
+        assert "script" not in page.tags
+        assert HOSTILE in page.text
+        for figure in (path.parent / "figures").glob("*.svg"):
+            ElementTree.parse(figure)
+
+
+def test_names_that_are_no_text_are_shown_by_their_bytes(tmp_path: Path) -> None:
+    name = os.fsdecode(b"run\xff.csv")
+    found = undrawn("nothing_missing", name=name)
+    path = write(found, tmp_path)
+    assert r"run\udcff.csv" in path.read_text("utf-8")
+    findings = json.loads((tmp_path / "findings.json").read_text("utf-8"))
+    assert findings["data"]["checks"][0]["recording"] == name
+
+
+def test_an_interrupted_diagnosis_says_so_first(tmp_path: Path) -> None:
+    found = replace(
+        undrawn("missing_effect"),
+        success=False,
+        message="interrupted: this is the best so far",
+    )
+    text = Page(write(found, tmp_path).read_text("utf-8")).text
+    told = text.index("Interrupted: this is the best so far")
+    assert told < text.index(found.sentence)
+
+
+def test_without_rows_to_test_on_no_gain_is_claimed(tmp_path: Path) -> None:
+    whole = undrawn("missing_effect")
+    found = replace(
+        whole,
+        gain=None,
+        effects=(replace(whole.effects[0], gain=None),),
+        baseline=model(effects=False, held_out=None),
+        extended=model(effects=True, held_out=None),
+    )
+    text = Page(write(found, tmp_path).read_text("utf-8")).text
+    assert "not measured" in text
+    assert "on the rows fitted" in text
+
+
+def test_a_refused_effect_that_scored_as_high_is_named_beside_the_cause(tmp_path: Path) -> None:
+    whole = undrawn("missing_effect")
+    rival = CandidateRow("direction_asymmetry", 0.5, 0.07, 0.3, "its gain is uncertain")
+    found = replace(whole, candidates=(*whole.candidates, rival))
+    text = Page(write(found, tmp_path).read_text("utf-8")).text
+    assert "But direction asymmetry scored as high before being refused" in text
+    assert "cogging scored" not in text
+
+
+def test_a_gain_that_may_be_nothing_is_not_praised(tmp_path: Path) -> None:
+    found = replace(undrawn("missing_effect"), gain=Gain(0.03, (-0.4, 0.2)))
+    text = Page(write(found, tmp_path).read_text("utf-8")).text
+    assert "do not prove an improvement" in text
+    assert "−40.0 to 20.0\u00a0%" in text
+
+
+def test_a_second_report_leaves_nothing_of_the_first_but_what_is_not_its_own(
+    tmp_path: Path,
+) -> None:
+    write(undrawn("missing_effect"), tmp_path)
+    figures = tmp_path / "figures"
+    for name in ("my own.svg", "cause-1-torque_bias.svg"):
+        (figures / name).write_text("<svg/>")
+    assert (figures / "candidates.svg").exists()
+    write(diagnosis("data_fault"), tmp_path)
+    assert [path.name for path in figures.iterdir()] == ["my own.svg"]
+
+
+def test_a_write_that_stops_half_way_leaves_the_old_report(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = diagnosis("data_fault")
+    write(found, tmp_path)
+    before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
+
+    def stopped(*_: object) -> str:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("stiction.report.page.render", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        write(replace(found, seed=7), tmp_path)
+    assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == before
+    assert {p.name for p in tmp_path.iterdir() if p.is_dir()} == {"figures"}
+
+
+def test_a_file_in_place_of_the_folder_is_refused_in_a_sentence(tmp_path: Path) -> None:
+    taken = tmp_path / "taken"
+    taken.write_text("")
+    with pytest.raises(st.InputError, match="cannot be made a folder"):
+        write(diagnosis("data_fault"), taken)
+
+
+def test_names_that_cannot_be_drawn_are_drawn_in_part() -> None:
+    assert shortened("run.csv", 30) == "run.csv"
+    assert shortened("$a$ 名\udcff\n", 30) == r"\$a\$ ???"
+    assert shortened("a_long_name_of_a_recording.csv", 15) == "a_long_…ing.csv"
+
+
+def test_a_headline_is_drawn_only_from_pictures() -> None:
+    drawn = headline(diagnosis("missing_effect"))
+    assert len(drawn.axes) == 3
+    assert len(headline(diagnosis("nothing_missing")).axes) == 2
+    with pytest.raises(st.InputError, match="nothing to draw"):
+        headline(diagnosis("data_fault"))
+    assert all(panel.get_ylabel().endswith("N·m)") for panel in drawn.axes)
+    assert drawn.axes[-1].get_xlabel() == "time in the recording (s)"
+
+
+def test_numbers_have_as_many_digits_as_are_known() -> None:
+    assert between(94.756, 93.455, 96.057) == ("94.8", "93.5 to 96.1")
+    assert between(-0.0336, -0.066, -0.00112) == ("−0.034", "−0.066 to −0.001")
+    assert between(2.1e-8, 1.9e-8, 2.3e-8) == ("2.10×10⁻⁸", "(1.90 to 2.30)×10⁻⁸")
+    assert between(3.0, -np.inf, np.inf) == ("3.00", "not determined")
+    assert between(0.0, 0.0, 0.0) == ("0.000", "0.000 to 0.000")
+    assert digits(0.000123456) == "0.000123"
+    assert digits(1234567.0) == "1.23×10⁶"
+    assert digits(None) == digits(np.nan) == "not known"
+    assert quantity(0.5, "1") == "0.500"
+    assert percent(-0.0001) == "0.0\u00a0%"
+    assert tick(1e-7) == "1×10⁻⁷"
+    assert tick(0.30000000000000004) == "0.3"
