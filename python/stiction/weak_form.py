@@ -48,7 +48,10 @@ ACCELERATION_SHARE: Final = 0.1
 
 FLICKER_SHARE: Final = 0.2
 """White noise beyond this share of a count makes readings flicker, and a follower with a backlash
-of a count keeps that out. Where they do not flicker it would only be late by half a count."""
+keeps that out. Where they do not flicker it would only be late by half a count."""
+BACKLASH_TIMES: Final = 4.0
+"""Width of that backlash in standard deviations of the noise, a count at least: noise turns a slow
+motion round for a sample, and dry friction would turn with it."""
 
 
 class WeakForm:
@@ -132,8 +135,9 @@ class WeakForm:
         self.load = np.zeros_like(x) if load is None else held(time, recording.time, load)
         self.effort = u
         self.count = plant.count or count_of(x)
-        white = max(noise**2 - self.count**2 / 12.0, 0.0)
-        self._flickers = white > (FLICKER_SHARE * self.count) ** 2
+        white = float(np.sqrt(max(noise**2 - self.count**2 / 12.0, 0.0)))
+        flickers = white > FLICKER_SHARE * self.count
+        self._backlash = max(self.count, BACKLASH_TIMES * white) if flickers else 0.0
         noisy = noise > NOISY_STEP * float(np.sqrt(np.mean(np.diff(x) ** 2)))
         self._smoothing = max(self.dt, SMOOTHING_SHARE * self.kernel.support) if noisy else self.dt
         self.readings = x
@@ -169,8 +173,7 @@ class WeakForm:
 
     def driving(self, readings: FloatArray) -> FloatArray:
         """The motion that drives friction, from readings of a position; same shape."""
-        followed = play(readings, self.count) if self._flickers else readings
-        return smooth(followed, self.dt, self._smoothing)
+        return smooth(play(readings, self._backlash), self.dt, self._smoothing)
 
     def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
         """Measured effort, and what the plant needs for the measured motion; shape (n,) each.

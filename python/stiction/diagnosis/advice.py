@@ -10,7 +10,7 @@ from ..recording import Check
 from .result import Advice, Cause, Unexplained
 from .words import joined
 
-__all__ = ["advise"]
+__all__ = ["NO_COORDINATE", "advise"]
 
 BY_COORDINATE: Final = {
     "velocity": "two-way ramps of constant speed over three decades, without rests",
@@ -27,6 +27,8 @@ BY_COORDINATE: Final = {
     "long rest",
 }
 """An experiment that shows more of what depends on a coordinate."""
+NO_COORDINATE: Final = "nothing that was looked at"
+"""Where more is left than noise and it shows in no coordinate."""
 
 
 def advise(
@@ -59,6 +61,8 @@ def advise(
                 reason = f"it tells {joined(names)} apart"
                 advice.append(Advice(experiment, reason, names))
     for left in unexplained[:2]:
+        if left.coordinate == NO_COORDINATE:
+            continue
         experiment = BY_COORDINATE[left.coordinate]
         if all(experiment != given.experiment for given in advice):
             reason = (

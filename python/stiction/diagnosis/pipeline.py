@@ -24,7 +24,7 @@ from ..recording.split import name_of
 from ..session import Session
 from ..trajectory import FloatArray
 from ..wording import did_you_mean, listed
-from .advice import advise
+from .advice import NO_COORDINATE, advise
 from .candidates import left_out
 from .coordinates import looks
 from .evidence import Evidence
@@ -33,7 +33,8 @@ from .model import Model, fitted
 from .noise import Noise
 from .omnibus import Rest, rest
 from .pictures import Pictures, Stretch
-from .replay import surrogate_residuals
+from .regression import refitted
+from .replay import centre, surrogate_residuals
 from .result import Cause, Diagnosis, LawRow, ModelSummary, Unexplained, Verdict
 from .rounds import Search, search, summary_rows
 from .words import sentence, what
@@ -44,6 +45,9 @@ SURROGATES: Final = 24
 """Replays of the base with noise; more make thresholds smoother and cost in proportion."""
 WORTH_SHARE: Final = 0.25
 """What is left counts against the names where it is worth this share of what they gained."""
+MOST_EXCESS: Final = 0.8
+"""Share of what is left that noise may fail to explain before it counts as unexplained, where it
+shows in no coordinate: a law is no exact image of a machine."""
 BASE_EVALUATIONS: Final = MOST_EVALUATIONS
 
 _logger = logging.getLogger(__name__)
@@ -198,14 +202,17 @@ def _testable(
     base = _base(evidence, found.plant)
     _logger.info("replaying it with noise, %d times", surrogates)
     null, noises = surrogate_residuals(evidence, base.plant, base.nuisances, surrogates, found.seed)
+    # What a fit would have taken up is no sign of anything.
+    null = refitted(base.columns, null, evidence.fitted)
     data["noise"] = [_noise_entry(evidence, index, noise) for index, noise in noises.items()]
     _logger.info("screening the effects")
     selection = search(evidence, base, null, without=without)
     final = selection.models[-1]
     clocks = session.starts
     seen = looks(evidence, clocks, evidence.shown)
-    left = rest(evidence, seen, final.residual, null)
-    before = left if final is base else rest(evidence, seen, base.residual, null)
+    bias, centred = centre(null)
+    left = rest(evidence, seen, final.residual - bias, centred)
+    before = left if final is base else rest(evidence, seen, base.residual - bias, centred)
     rivals = [] if selection.interrupted else [_base_of_law(evidence, base, law) for law in others]
     # Every decision is taken: now, and once, the rows that test.
     _logger.info("opening the test rows")
@@ -300,6 +307,9 @@ def _concluded(
     if causes and test is not None:
         gain = gain_of(test, 0, len(causes), found.seed)
     unexplained = tuple(Unexplained(view.coordinate.name, view.share) for view in rests[1].flagged)
+    excess = _excess(evidence, final, null)
+    if not unexplained and excess > MOST_EXCESS:
+        unexplained = (Unexplained(NO_COORDINATE, excess),)
     verdict = _verdict(causes, base, final, unexplained, selection)
     reason = "These data cannot be tested: the base imitates every effect, so none could be seen."
     return replace(
@@ -387,6 +397,16 @@ def _summary(
         noise_floor_rms=floor,
         remarks=(*result.bounds_hit, *result.undetermined),
     )
+
+
+def _excess(evidence: Evidence, model: Model, null: FloatArray) -> float:
+    """Share of the power left that noise and rounding do not explain, over rows that decide."""
+    held = np.zeros(len(evidence.fitted), dtype=bool)
+    for plan in evidence.plans:
+        held |= plan.held
+    power = float(np.sum(model.residual[held] ** 2))
+    noise = float(np.mean(np.sum(null[held] ** 2, axis=0)))
+    return 1.0 - noise / power if power > 0.0 else 0.0
 
 
 def _floor(evidence: Evidence, null: FloatArray) -> float:

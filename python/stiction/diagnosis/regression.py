@@ -7,10 +7,11 @@ from typing import Final
 
 import numpy as np
 
+from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .evidence import Plan
 
-__all__ = ["Base", "Projected", "project", "step"]
+__all__ = ["Base", "Projected", "project", "refitted", "step"]
 
 FLAT: Final = 1e-8
 """Directions of the base with less than this share of the strongest one are dropped."""
@@ -62,3 +63,9 @@ def project(base: FloatArray, plan: Plan) -> Base:
 def step(columns: FloatArray, residual: FloatArray, plan: Plan) -> FloatArray:
     """Residual of the held rows after one Gauss-Newton step on the fitted ones; shape (n_held,)."""
     return Base(columns, plan).project(residual).held
+
+
+def refitted(columns: FloatArray, residuals: FloatArray, fitted: Mask) -> FloatArray:
+    """Residuals of all rows once the base was fitted to each over the fitted rows; same shape."""
+    everywhere = Plan(fitted, np.ones_like(fitted))
+    return Base(columns, everywhere).project(residuals).held

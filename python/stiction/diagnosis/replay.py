@@ -14,7 +14,7 @@ from ..weak_form import WeakForm
 from .evidence import Evidence
 from .noise import Noise, measure_noise
 
-__all__ = ["surrogate_residuals"]
+__all__ = ["centre", "surrogate_residuals"]
 
 SMOOTHING_SHARE: Final = 1.0 / 3.0
 """Support over which the measured motion is smoothed to stand for the true one, as a share of the
@@ -83,6 +83,13 @@ def _replayed(
         residual += plant.inertia * (accelerated - form.accelerations(readings))
         columns[:, k] = residual[rows.mask]
     return columns
+
+
+def centre(null: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """What all surrogates have in common, and each of them less the mean of the others."""
+    number = null.shape[1]
+    bias: FloatArray = null.mean(axis=1)
+    return bias, (null - bias[:, None]) * (number / (number - 1) if number > 1 else 1.0)
 
 
 def true_motion(form: WeakForm) -> FloatArray:

@@ -23,6 +23,7 @@ from .decide import (
 )
 from .evidence import Evidence
 from .model import Model, fitted, stepped, with_effect, without_effect
+from .replay import centre
 from .result import CandidateRow
 from .screen import Problem, Score, Signatures, screen
 
@@ -77,10 +78,7 @@ def search(
         Effects that are not tried.
     """
     found = Search([base])
-    bias = null.mean(axis=1)
-    number = null.shape[1]
-    # Each surrogate less the mean of the others, as the residual is less the mean of them all.
-    centred = (null - bias[:, None]) * (number / (number - 1) if number > 1 else 1.0)
+    bias, centred = centre(null)
     try:
         tried = _candidates(evidence, base, without, found)
         if not tried:
@@ -139,7 +137,11 @@ def _round(
     base = found.models[-1]
     problem = Problem(base.residual - bias, base.columns, centred, evidence.fitted, evidence.plans)
     taken = {choice.winner.name for choice in found.choices}
-    scores = [score for score in screen(problem, signatures) if score.candidate.name not in taken]
+    scores = [
+        score
+        for score in screen(problem, signatures, friction)
+        if score.candidate.name not in taken
+    ]
     for score in scores:
         # Later rounds tell of what is left; what an effect is told by is its first one.
         if not found.choices:
@@ -210,7 +212,9 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
 def _screened(score: Score) -> CandidateRow:
     if not score.testable:
         reason = (
-            f"not testable: the base imitates all but {100 * score.left:.1g} % of it on these data"
+            "not testable: the base imitates "
+            + ("all" if score.left < 1e-4 else f"all but {100 * score.left:.1g} %")
+            + " of it on these data"
         )
     elif score.score <= score.threshold:
         reason = "explains no more than noise does"

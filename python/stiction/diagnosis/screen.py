@@ -22,8 +22,8 @@ NULL_TIMES: Final = 1.3
 """A score counts above this many times the greatest one that the surrogates reach."""
 NULL_DEVIATIONS: Final = 5.0
 """And above the surrogates' mean by this many standard deviations."""
-LEAST_LEFT: Final = 0.01
-"""Share of a signature's power that must be left beside the base for it to be testable."""
+SEEN_SIZE: Final = 0.02
+"""An effect whose effort is this share of the friction must be seen, or it is not testable."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +105,8 @@ class Score:
         Share of the power over the rows held out, with the gains of the fitted ones.
     left : float
         Share of the signature's power that the base cannot imitate.
+    visible : float
+        Score that the effect would have if its effort were 2 % of the friction.
     signature : numpy.ndarray, shape (n_fit,)
         What the effect contributes, base projected off.
     """
@@ -115,27 +117,30 @@ class Score:
     threshold: float
     heldout: float
     left: float
+    visible: float
     signature: FloatArray
 
     @property
     def testable(self) -> bool:
         """Whether these data could show the effect at all."""
-        return self.left >= LEAST_LEFT
+        return max(self.score, self.visible) > self.threshold
 
 
-def screen(problem: Problem, signatures: Signatures) -> list[Score]:
+def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Score]:
     """The score of every effect at its best shape, highest first.
 
     With S⊥ = S − QQᵀS (Q spans the base): η = (S⊥ᵀS⊥)⁻¹·S⊥ᵀr, ΔR² = ηᵀS⊥ᵀr/(r⊥ᵀr⊥). The same is
     computed for every surrogate, with its maximum over the grid: shapes mean nothing where the
     effect is absent (Davies, Biometrika 64 (1977)), so no table of chi-square applies.
+
+    ``friction`` is the weighted rms of the friction, against which sizes are measured.
     """
     whole = Plan(problem.fitted, problem.fitted)
     base = project(problem.base, whole)
     residual = base.project(problem.residual).fit
     null = base.project(problem.null).fit
     columns = base.project(signatures.columns).fit
-    power = float(residual @ residual)
+    power = max(float(residual @ residual), 1e-300)
     null_power = np.maximum(np.sum(null**2, axis=0), 1e-300)
     raw = signatures.columns[problem.fitted]
     best: dict[str, tuple[float, int, FloatArray]] = {}
@@ -162,6 +167,7 @@ def screen(problem: Problem, signatures: Signatures) -> list[Score]:
         own = signatures.slices[index]
         part, whole_part = columns[:, own], raw[:, own]
         total = float(np.sum(whole_part**2))
+        left = float(np.sum(part**2)) / total if total > 0.0 else 0.0
         scores.append(
             Score(
                 candidate=signatures.candidates[index],
@@ -169,7 +175,8 @@ def screen(problem: Problem, signatures: Signatures) -> list[Score]:
                 score=score,
                 threshold=_threshold(nulls[name]),
                 heldout=heldout[index],
-                left=float(np.sum(part**2)) / total if total > 0.0 else 0.0,
+                left=left,
+                visible=left * len(residual) * (SEEN_SIZE * friction) ** 2 / power,
                 signature=part @ gains,
             )
         )

@@ -77,8 +77,15 @@ def sentence(
         return (
             f"The simulation lacks {named}, and something without a name: what is left still "
             f"depends on {rest}.{gained}"
+            f"{_unconfirmed(effects)}"
         )
-    return f"The simulation lacks {named}.{gained}"
+    return f"The simulation lacks {named}.{gained}{_unconfirmed(effects)}"
+
+
+def _unconfirmed(effects: Sequence[Cause]) -> str:
+    """What the rows that test do not bear out, "" where they bear out everything."""
+    names = [c.name for c in effects if c.gain is not None and c.gain.ci95[0] <= 0.0]
+    return f" The test rows do not confirm {joined(names)}." if names else ""
 
 
 def _cause(cause: Cause) -> str:

@@ -148,8 +148,11 @@ def _stiffness(
             # Lightly damped: a tenth of critical.
             inertia = plant.inertia
             values["damping"] = 0.2 * float(np.sqrt(inertia * values["initial_stiffness"]))
+        bounds = {path: record.bounds for path, record in records(plant).items()}
         own = {f"friction.{name}": value for name, value in values.items()}
-        return plant.with_values(own)
+        return plant.with_values(
+            {path: float(np.clip(value, *bounds[path])) for path, value in own.items()}
+        )
 
     plants = [tried(share * span) for share in REACHES]
     powers = [sum(_power(form.efforts(p)) for form in forms) for p in plants]
