@@ -11,12 +11,11 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from .. import session as sessions
 from ..diagnosis import SURROGATES
 from ..diagnosis import diagnose as run
 from ..diagnosis.result import Diagnosis
-from ..errors import InputError
 from .answer import answer, folder
+from .sessions import loaded, mended, spoken_of
 
 __all__ = ["diagnose", "progress", "told"]
 
@@ -55,15 +54,13 @@ def diagnose(
     json
         Print JSON.
     """
-    loaded = sessions.load(session, keep_faulty=True)
-    if loaded.plant is None:
-        raise InputError(f'{session}: plant is missing; write plant = "plant.toml"')
+    recordings, plant = loaded(session, keep_faulty=True)
     where = folder(Path(f"{session.stem}-diagnosis") if out is None else out)
     names = [name.strip() for name in laws.split(",") if name.strip()]
-    with progress():
+    with progress(), spoken_of(session, recordings, plant):
         found = run(
-            loaded.plant,
-            loaded,
+            plant,
+            recordings,
             without=without,
             laws=names,
             surrogates=surrogates,
@@ -71,7 +68,8 @@ def diagnose(
             threads=threads,
         )
     report = found.save(where)
-    answer(f"{found}\n\n{told(found, report)}", found.to_dict(), as_json=json)
+    text = "\n".join([*mended(recordings), f"{found}\n\n{told(found, report)}"])
+    answer(text, found.to_dict(), as_json=json)
     if not found.success:
         raise KeyboardInterrupt
 

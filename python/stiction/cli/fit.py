@@ -6,14 +6,12 @@ import math
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 from cyclopts import Parameter
 
-from .. import session as sessions
 from ..errors import InputError
 from ..fitting import fit as run
-from ..recording.split import name_of
 from .answer import answer, folder
+from .sessions import loaded, mended, spoken_of
 
 __all__ = ["fit"]
 
@@ -38,24 +36,14 @@ def fit(
     json
         Print JSON.
     """
-    loaded = sessions.load(session)
-    if loaded.plant is None:
-        raise InputError(f'{session}: plant is missing; write plant = "plant.toml"')
-    try:
-        # Absurd numbers are refused below, in words.
-        with np.errstate(all="ignore"):
-            result = run(loaded.plant, loaded)
+    recordings, plant = loaded(session)
+    with spoken_of(session, recordings, plant):
+        result = run(plant, recordings)
         if not math.isfinite(result.train_rms):
             raise InputError(
                 "the effort residual is not a finite number; check units, and values far beyond "
                 "what the machine can do"
             )
-    except InputError as error:
-        # What is said of all recordings together names no file: then it is about the session.
-        told = str(error).removeprefix("session: ")
-        named = [*(str(recording.path) for recording in loaded), loaded.plant.source]
-        known = any(name in told for name in named)
-        raise InputError(told if known else f"{session}: {told}") from None
     where = folder(Path(f"{session.stem}-fit") if out is None else out)
     files = [where / "plant.toml", where / "fit.json", where / "fit.html"]
     result.plant.save(files[0])
@@ -67,10 +55,6 @@ def fit(
     )
     files[2].write_text(page, encoding="utf-8")
     wrote = "\n".join(f"wrote {file}" for file in files)
-    mended = [
-        f"{name_of(recording, index)}: {repair}"
-        for index, recording in enumerate(loaded)
-        for repair in recording.quality
-    ]
-    told = "\n".join([*mended, str(result)])
-    answer(f"{told}\n\n{wrote}", {**result.to_dict(), "repairs": mended}, as_json=json)
+    repairs = mended(recordings)
+    told = "\n".join([*repairs, str(result)])
+    answer(f"{told}\n\n{wrote}", {**result.to_dict(), "repairs": repairs}, as_json=json)

@@ -106,7 +106,10 @@ def diagnose(
     others = _law_names(laws, machine.friction.law)
     checks = [(name_of(r, k), c) for k, r in enumerate(whole) for c in check(r)]
     data: dict[str, Any] = {
-        "checks": [{"recording": name, **c.to_dict()} for name, c in checks],
+        "checks": [
+            *({"recording": name, **c.to_dict()} for name, c in _repairs(whole)),
+            *({"recording": name, **c.to_dict()} for name, c in checks),
+        ],
         "split": None,
         "hashes": list(whole.hashes),
         "noise": [],
@@ -168,20 +171,25 @@ def _law_names(wanted: Sequence[str], own: str) -> list[str]:
     return [name for name in dict.fromkeys(wanted) if name != own]
 
 
+def _repairs(session: Session) -> list[tuple[str, Check]]:
+    """What was mended on reading."""
+    means = "these rows were filled in from their neighbours"
+    return [
+        (name_of(recording, index), Check("repair", "note", str(repair), means, ""))
+        for index, recording in enumerate(session)
+        for repair in recording.quality
+    ]
+
+
 def _fault(checks: Sequence[tuple[str, Check]], session: Session) -> str:
     """Why the data cannot be used, in one sentence; "" where they can."""
-    faults = [(name, c) for name, c in checks if c.verdict == "fault"]
-    for index, recording in enumerate(session):
-        faults += [
-            (name_of(recording, index), Check("missing cells", "fault", told))
-            for told in recording.faults
-            if not any(name == name_of(recording, index) for name, _ in faults)
-        ]
-    if not faults:
+    # What could not be mended on reading is a whole sentence, which names file and remedy itself.
+    told = [sentence for recording in session for sentence in recording.faults]
+    told += [f"{name}: {c.what}; {c.try_}" for name, c in checks if c.verdict == "fault"]
+    if not told:
         return ""
-    name, first = faults[0]
-    more = f" (and {len(faults) - 1} more, see the data checks)" if len(faults) > 1 else ""
-    return f"The data cannot be used: {name}: {first.what}{more}; {first.try_ or 'record again'}."
+    more = f" ({len(told) - 1} more stand among the data checks)" if len(told) > 1 else ""
+    return f"The data cannot be used: {told[0].rstrip('.')}.{more}"
 
 
 def _testable(

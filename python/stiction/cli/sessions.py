@@ -1,0 +1,54 @@
+"""What every verb that takes a session does with it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from .. import session as sessions
+from ..errors import InputError
+from ..plant import Plant
+from ..recording.split import name_of
+from ..session import Session
+
+__all__ = ["loaded", "mended", "spoken_of"]
+
+
+def loaded(path: Path, *, keep_faulty: bool = False) -> tuple[Session, Plant]:
+    """A session file and the plant that it names.
+
+    Raises
+    ------
+    InputError
+        As for ``stiction.load``; a session without a plant.
+    """
+    session = sessions.load(path, keep_faulty=keep_faulty)
+    if session.plant is None:
+        raise InputError(f'{path}: plant is missing; write plant = "plant.toml"')
+    return session, session.plant
+
+
+@contextmanager
+def spoken_of(path: Path, session: Session, plant: Plant) -> Iterator[None]:
+    """Lets refusals name a file: the session's where they speak of all recordings together."""
+    try:
+        # Absurd numbers are refused in words, not by warnings.
+        with np.errstate(all="ignore"):
+            yield
+    except InputError as error:
+        told = str(error).removeprefix("session: ")
+        named = [*(str(recording.path) for recording in session), plant.source]
+        known = any(name in told for name in named)
+        raise InputError(told if known else f"{path}: {told}") from None
+
+
+def mended(session: Session) -> list[str]:
+    """What was repaired on reading, a sentence each."""
+    return [
+        f"{name_of(recording, index)}: {repair}"
+        for index, recording in enumerate(session)
+        for repair in recording.quality
+    ]
