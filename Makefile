@@ -10,12 +10,15 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 OUT ?= stiction-demo
+BLIND ?= target/blind
+NUMBER ?= 200
+SEED ?= 0
 SOURCES := Cargo.toml Cargo.lock pyproject.toml $(shell find crates -name '*.rs' -o -name Cargo.toml)
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 export CARGO_TERM_PROGRESS_WHEN := never
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test lint rust-tests python-tests wheel bench format clean toolchain
+.PHONY: demo test lint rust-tests python-tests blind wheel bench format clean toolchain
 
 demo: $(READY)
 	$(BIN)/stiction demo --out $(OUT)
@@ -56,6 +59,11 @@ rust-tests: $(READY)
 
 python-tests: $(READY)
 	$(BIN)/pytest --quiet
+
+# Scores of the diagnosis on sessions with a hidden truth; goes on where it was interrupted.
+blind: $(READY)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.blind --number $(NUMBER) --seed $(SEED) \
+		--out $(BLIND)/scores.jsonl
 
 wheel: $(READY)
 	$(BIN)/maturin build --quiet --release --out dist

@@ -98,6 +98,7 @@ def rest(size: float) -> Rest:
                 np.full(24, 0.002),
                 share=size * (12 - k),
                 threshold=0.02 - 0.01 * k,
+                size=0.02,
             )
             for k, coordinate in enumerate(COORDINATES)
             if coordinate.name in SEEN

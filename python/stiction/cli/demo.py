@@ -1,4 +1,4 @@
-"""``stiction demo``: what the package can do, run and drawn."""
+"""``stiction demo``: a diagnosis of the session that ships with the package."""
 
 from __future__ import annotations
 
@@ -7,38 +7,65 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from ..paper import StickSlip, stick_slip
-from .answer import answer
-from .paper import Section, paper_command, render_json, render_text
-from .paper import write_figure as write
+from .. import demo_session
+from ..diagnosis import diagnose as run
+from ..wording import counted
+from .answer import answer, folder
+from .diagnose import progress, told
 
 __all__ = ["demo"]
-
-FAST = 1.0
-"""Above the critical speed of the demo's rig, rad/s: the stick-slip is gone."""
 
 
 def demo(
     *,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("stiction-demo"),
+    copy: Path | None = None,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Run the paper's experiments and a stick-slip run, with figures.
+    """Diagnose recordings of a simulated motor in which one physical effect is hidden.
+
+    They ship with the package. Writes report.html, findings.json, the extended plant.toml and
+    figures.
 
     Parameters
     ----------
     out
-        Folder for the figures and numbers.json.
+        Folder for the results.
+    copy
+        Folder to lay the recordings and their session file out in, to be edited; nothing is
+        diagnosed then.
     json
         Print JSON.
     """
-    sections = paper_command(out)
-    slow = next(s.result for s in sections if isinstance(s.result, StickSlip))
-    smooth = stick_slip(FAST, duration=2.0)
-    sections.append(Section("smooth-sliding", smooth, write(out, "smooth-sliding", smooth.plot())))
-    closing = (
-        f"Pulled at {slow.speed:g} rad/s the rotor sticks and slips ({slow.breakaways} "
-        f"break-aways); pulled at {smooth.speed:g} rad/s it slides smoothly after "
-        f"{smooth.breakaways} break-away.\nFigures and numbers.json are in {out}."
+    if copy is not None:
+        _copied(copy, as_json=json)
+        return
+    session = demo_session.load()
+    where = folder(out)
+    with progress():
+        found = run(None, session)
+    report = found.save(where)
+    seconds = sum(recording.duration for recording in session)
+    text = (
+        f"{counted(len(session), 'recording')}, {seconds:.0f} s, of a simulated motor with "
+        "friction. Its plant.toml\nnames a friction law and nothing else; one physical effect is "
+        f"hidden in the recordings.\n\n{found}\n\nhidden was: {demo_session.hidden()}\n\n"
+        f"{told(found, report)}\n"
+        "next: stiction demo --copy my-motor lays these recordings out as files to change"
     )
-    answer(f"{render_text(sections)}\n\n{closing}", render_json(sections), as_json=json)
+    answer(text, found.to_dict(), as_json=json)
+    if not found.success:
+        raise KeyboardInterrupt
+
+
+def _copied(where: Path, *, as_json: bool) -> None:
+    """Lay the session out and say what comes next."""
+    files = demo_session.copy(where)
+    recordings = [file for file in files if file.suffix == ".csv"]
+    texts = [file for file in files if file.suffix != ".csv"]
+    command = f"stiction diagnose {files[0]}"
+    lines = [f"wrote {file}" for file in texts]
+    lines += [f"wrote {counted(len(recordings), 'recording')} as CSV beside them"]
+    lines += [f"next: {command}"]
+    data = {"files": [str(file) for file in files], "next": command}
+    answer("\n".join(lines), data, as_json=as_json)

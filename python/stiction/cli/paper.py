@@ -1,4 +1,4 @@
-"""``stiction paper``: every experiment of the paper, drawn and in numbers."""
+"""``stiction paper``: every experiment of the paper, and how stick-slip ends, in numbers."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from cyclopts import Parameter
 from ..paper import (
     ILLUSTRATIVE_RIG,
     Result,
+    StickSlip,
     dahl_on_static_1,
     experiment_1,
     experiment_2,
@@ -34,6 +35,9 @@ NOTE = (
     'The rig is illustrative: its numbers are not the authors\'. "prototype" is an independent '
     "prototype of the same equations on the same rig."
 )
+
+FAST = 1.0
+"""Above the critical speed of the illustrative rig on its spring, rad/s: the stick-slip is gone."""
 
 # Slow ramps need no finer samples: finer ones move no position by 1e-4 arc-seconds.
 _RAMP_STEP = 2.5e-4
@@ -63,7 +67,7 @@ def paper(
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("stiction-paper"),
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Run and draw every experiment of the paper on the illustrative rig.
+    """Run and draw every experiment of the paper on the illustrative rig, and stick-slip.
 
     Parameters
     ----------
@@ -73,7 +77,17 @@ def paper(
         Print JSON.
     """
     sections = paper_command(out)
-    answer(render_text(sections), render_json(sections), as_json=json)
+    slow = next(s.result for s in sections if isinstance(s.result, StickSlip))
+    smooth = stick_slip(FAST, duration=2.0)
+    figures = write_figure(out, "smooth-sliding", smooth.plot())
+    sections.append(Section("smooth-sliding", smooth, figures))
+    _write_numbers(out, sections)
+    closing = (
+        f"Pulled at {slow.speed:g} rad/s the rotor sticks and slips ({slow.breakaways} "
+        f"break-aways); pulled at {smooth.speed:g} rad/s it slides smoothly after "
+        f"{smooth.breakaways} break-away.\nFigures and numbers.json are in {out}."
+    )
+    answer(f"{render_text(sections)}\n\n{closing}", render_json(sections), as_json=json)
 
 
 def paper_command(out: Path) -> list[Section]:
@@ -121,11 +135,15 @@ def paper_command(out: Path) -> list[Section]:
     add("hardening-cycles", hardening_cycles())
     add("loop-areas", loop_areas())
     add("stick-slip", stick_slip())
+    _write_numbers(out, sections)
+    return sections
+
+
+def _write_numbers(out: Path, sections: Sequence[Section]) -> None:
     (out / "numbers.json").write_text(
         json_text.dumps(render_json(sections), indent=2, ensure_ascii=False) + "\n",
         encoding="utf-8",
     )
-    return sections
 
 
 def render_text(sections: Iterable[Section]) -> str:

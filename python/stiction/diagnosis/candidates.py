@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 from typing import Final
 
@@ -24,6 +24,8 @@ STILL: Final = 1e-3
 """Share of the greatest speed below which a machine counts as still."""
 MOST_ORDERS: Final = 48
 """Orders tried at most."""
+WIDER: Final = 1.5
+"""A refit may leave the grid of a speed by this factor."""
 ORDER_STEP: Final = 0.5
 """Spacing of orders where the machine does not turn fully, in periods over its range."""
 
@@ -58,11 +60,14 @@ class Candidate:
         Value of every shape parameter.
     free : tuple of str
         Shape parameters that a refit varies.
+    limits : dict
+        Least and greatest value of those, where the data give one.
     """
 
     record: EffectRecord
     shape: dict[str, float]
     free: tuple[str, ...]
+    limits: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -128,16 +133,20 @@ def _grid(record: EffectRecord, scales: Scales) -> Iterator[Candidate]:
     shapes = record.shapes
     axes = []
     free = []
+    limits = {}
     for shape in shapes:
         values, fitted = _axis(shape.scale, shape.grid, scales)
         bounds = next(p.bounds for p in record.parameters if p.name == shape.parameter)
         axes.append(sorted({float(np.clip(v, *bounds)) for v in values}))
         if shape.fitted and fitted:
             free.append(shape.parameter)
+            if shape.scale == "speed":
+                # Beyond its own grid a shape turns into another effect: a fall that takes all
+                # speeds is curved viscous friction.
+                limits[shape.parameter] = (min(axes[-1]) / WIDER, max(axes[-1]) * WIDER)
     for point in product(*axes):
-        yield Candidate(
-            record, dict(zip((s.parameter for s in shapes), point, strict=True)), tuple(free)
-        )
+        names = (s.parameter for s in shapes)
+        yield Candidate(record, dict(zip(names, point, strict=True)), tuple(free), limits)
 
 
 def _axis(scale: str, grid: Sequence[float], scales: Scales) -> tuple[Sequence[float], bool]:

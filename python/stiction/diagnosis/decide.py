@@ -161,11 +161,20 @@ def log_gain(base: Model, model: Model) -> float:
 
 def choose(trials: Sequence[Trial]) -> Choice | None:
     """The accepted candidate worth most, and those that are not told from it."""
-    accepted = sorted((t for t in trials if not t.reason), key=lambda t: -t.worth)
+    ranked = sorted(trials, key=lambda t: -t.worth)
+    accepted = [trial for trial in ranked if not trial.reason]
     if not accepted:
         return None
-    winner, *others = accepted
-    rivals = [other for other in others if _alike(winner, other) and not _told(winner, other)]
+    winner = accepted[0]
+    # Who falls short by a little on its own may still be what the winner imitates.
+    rivals = [
+        other
+        for other in ranked
+        if other is not winner
+        and other.gain > 0.0
+        and _alike(winner, other)
+        and not _told(winner, other)
+    ]
     return Choice(winner, tuple(rivals))
 
 

@@ -192,6 +192,7 @@ def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> P
         for name, value in zip(candidate.record.gains, gains, strict=True)
     }
     for name, value in candidate.shape.items():
-        parameters[name] = Parameter(value, fixed=name not in candidate.free)
+        low, high = candidate.limits.get(name, (None, None))
+        parameters[name] = Parameter(value, low, high, fixed=name not in candidate.free)
     effect = Effect(candidate.name, MappingProxyType(parameters))
     return replace(plant, effects=(*plant.effects, effect))

@@ -20,6 +20,9 @@ FEWEST_ROWS: Final = 8
 """Rows that a stretch needs to have a mean."""
 FLAG_TIMES, FLAG_ABOVE = 1.3, 0.02
 """A smoother is flagged above 1.3 times the surrogates' 99 % quantile and .02 above it."""
+LEAST_SIZE: Final = 0.003
+"""What is left in a coordinate matters from this share of the friction on: no law's curve is an
+image of a contact to better than that."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,8 @@ class View:
         Held-out share of the power that a smoother over the coordinate removes.
     threshold : float
         What noise alone may reach.
+    size : float
+        rms of what the smoother removes, as a share of the friction's.
     """
 
     coordinate: Coordinate
@@ -45,11 +50,12 @@ class View:
     high: FloatArray
     share: float
     threshold: float
+    size: float
 
     @property
     def flagged(self) -> bool:
-        """Whether something is left that noise does not explain."""
-        return self.share > self.threshold
+        """Whether something is left that noise does not explain and that matters."""
+        return self.share > self.threshold and self.size > LEAST_SIZE
 
 
 @dataclass(frozen=True)
@@ -64,7 +70,13 @@ class Rest:
         return tuple(view for view in self.views if view.flagged)
 
 
-def rest(evidence: Evidence, seen: Sequence[Look], residual: FloatArray, null: FloatArray) -> Rest:
+def rest(
+    evidence: Evidence,
+    seen: Sequence[Look],
+    residual: FloatArray,
+    null: FloatArray,
+    friction: float,
+) -> Rest:
     """Looks at a residual in every coordinate.
 
     A smoother is the mean over stretches of a coordinate, taken from the fitted rows of each plan
@@ -77,6 +89,8 @@ def rest(evidence: Evidence, seen: Sequence[Look], residual: FloatArray, null: F
         Of each recording in ``evidence.shown``.
     residual : numpy.ndarray, shape (n,)
     null : numpy.ndarray, shape (n, surrogates)
+    friction : float
+        Weighted rms of the friction, against which sizes are measured.
     """
     masks = [rows.mask for rows in evidence.shown]
 
@@ -96,6 +110,7 @@ def rest(evidence: Evidence, seen: Sequence[Look], residual: FloatArray, null: F
                 residual * side,
                 null * side[:, None],
                 evidence.weights,
+                friction,
             )
         )
     return Rest(tuple(sorted(views, key=lambda view: -view.share)))
@@ -108,15 +123,18 @@ def _view(
     residual: FloatArray,
     null: FloatArray,
     weights: FloatArray,
+    friction: float,
 ) -> View:
     edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)[1:-1]))
     index = np.searchsorted(edges, values)
     bins = len(edges) + 1
     both = np.column_stack([residual, null])
     removed, total = np.zeros(both.shape[1]), np.zeros(both.shape[1])
+    rows = 0
     for plan in plans:
         curve = _means(index[plan.fit], both[plan.fit], bins)
         held = both[plan.held]
+        rows += len(held)
         total += np.sum(held**2, axis=0)
         removed += np.sum(held**2 - (held - curve[index[plan.held]]) ** 2, axis=0)
     shares = removed / np.maximum(total, 1e-300)
@@ -137,6 +155,7 @@ def _view(
         high,
         float(shares[0]),
         max(FLAG_TIMES * usual, usual + FLAG_ABOVE, FLAG_ABOVE),
+        float(np.sqrt(max(removed[0], 0.0) / rows)) / max(friction, 1e-300),
     )
 
 

@@ -36,7 +36,7 @@ from .pictures import Pictures, Stretch
 from .regression import refitted
 from .replay import centre, surrogate_residuals
 from .result import Cause, Diagnosis, LawRow, ModelSummary, Unexplained, Verdict
-from .rounds import Search, search, summary_rows
+from .rounds import Search, friction_of, search, summary_rows
 from .words import sentence, what
 
 __all__ = ["SURROGATES", "diagnose"]
@@ -122,14 +122,15 @@ def diagnose(
         version=__version__,
         seed=seed,
     )
-    fault = _fault(checks, whole)
-    if fault:
+    usable, fault = _usable(checks, whole)
+    if usable is None:
         found = replace(
             found, verdict="data_fault", sentence=fault, advice=advise((), (), (), checks)
         )
     else:
         try:
-            found = _testable(found, whole, unwanted, others, surrogates, threads, checks)
+            found = _testable(found, usable, unwanted, others, surrogates, threads, checks)
+            found = replace(found, sentence=f"{found.sentence} {fault}".rstrip())
         except NotEnoughData as error:
             told = str(error)
             found = replace(found, sentence=f"These data cannot be tested: {told}.")
@@ -181,15 +182,29 @@ def _repairs(session: Session) -> list[tuple[str, Check]]:
     ]
 
 
-def _fault(checks: Sequence[tuple[str, Check]], session: Session) -> str:
-    """Why the data cannot be used, in one sentence; "" where they can."""
+def _usable(checks: Sequence[tuple[str, Check]], session: Session) -> tuple[Session | None, str]:
+    """The recordings without a fault, None where too few are left, and in words what is wrong."""
+    names = [name_of(recording, index) for index, recording in enumerate(session)]
     # What could not be mended on reading is a whole sentence, which names file and remedy itself.
-    told = [sentence for recording in session for sentence in recording.faults]
-    told += [f"{name}: {c.what}; {c.try_}" for name, c in checks if c.verdict == "fault"]
+    told = {
+        name: sentence
+        for name, recording in zip(names, session, strict=True)
+        for sentence in recording.faults
+    }
+    for name, c in checks:
+        if c.verdict == "fault":
+            told.setdefault(name, f"{name}: {c.what}; {c.try_}")
     if not told:
-        return ""
+        return session, ""
+    kept = [r for name, r in zip(names, session, strict=True) if name not in told]
+    first = next(iter(told.values())).rstrip(".")
     more = f" ({len(told) - 1} more stand among the data checks)" if len(told) > 1 else ""
-    return f"The data cannot be used: {told[0].rstrip('.')}.{more}"
+    roles = {recording.role for recording in session}
+    lost = {role for role in roles if role and role not in {r.role for r in kept}}
+    if 2 * len(kept) < len(names) or "train" in lost:
+        return None, f"The data cannot be used: {first}.{more}"
+    left_out = "1 recording is" if len(told) == 1 else f"{len(told)} recordings are"
+    return Session(kept, session.plant), f"{left_out} left out: {first}.{more}"
 
 
 def _testable(
@@ -219,8 +234,11 @@ def _testable(
     clocks = session.starts
     seen = looks(evidence, clocks, evidence.shown)
     bias, centred = centre(null)
-    left = rest(evidence, seen, final.residual - bias, centred)
-    before = left if final is base else rest(evidence, seen, base.residual - bias, centred)
+    friction = friction_of(evidence, base)
+    left = rest(evidence, seen, final.residual - bias, centred, friction)
+    before = left
+    if final is not base:
+        before = rest(evidence, seen, base.residual - bias, centred, friction)
     rivals = [] if selection.interrupted else [_base_of_law(evidence, base, law) for law in others]
     # Every decision is taken: now, and once, the rows that test.
     _logger.info("opening the test rows")

@@ -48,6 +48,10 @@ class Base:
         self._held = self._columns[plan.held]
         self._plan = plan
 
+    def off(self, fit: FloatArray) -> FloatArray:
+        """Columns of the fitted rows alone, without what the base explains; same shape."""
+        return fit - self._left @ (self._left.T @ fit)
+
     def project(self, columns: FloatArray) -> Projected:
         """Columns of all rows, shape (n, k) or (n,), without what the base explains."""
         fit, held = columns[self._plan.fit], columns[self._plan.held]

@@ -27,12 +27,16 @@ from .replay import centre
 from .result import CandidateRow
 from .screen import Problem, Score, Signatures, screen
 
-__all__ = ["MOST_EFFECTS", "Search", "search"]
+__all__ = ["MOST_EFFECTS", "Search", "friction_of", "search", "summary_rows"]
 
 MOST_EFFECTS: Final = 4
 """Effects added at most: who lacks more than that needs another law."""
 REFITTED: Final = 5
 """Candidates refitted in a round."""
+MOST_RENEWALS: Final = 2
+"""Times that the base is replaced by a better fit of itself."""
+WORTH_RENEWING: Final = 0.005
+"""Share of its residual's power that makes that worth while."""
 CAUTIOUS: Final = 0.1
 """Share of the screened gain to start from where the whole of it leads astray."""
 
@@ -84,10 +88,14 @@ def search(
         if not tried:
             return found
         signatures = Signatures.of(evidence, base.plant, base.nuisances, tried)
-        friction = _friction(evidence, base)
+        friction = friction_of(evidence, base)
         dropped: set[str] = set()
+        renewed = 0
         while len(found.choices) < MOST_EFFECTS:
             choice = _round(evidence, found, signatures, centred, bias, friction)
+            if choice is not None and renewed < MOST_RENEWALS and _renew(evidence, found, choice):
+                renewed += 1
+                continue
             if choice is None or choice.winner.name in dropped:
                 break
             found.choices.append(choice)
@@ -135,7 +143,14 @@ def _round(
     friction: float,
 ) -> Choice | None:
     base = found.models[-1]
-    problem = Problem(base.residual - bias, base.columns, centred, evidence.fitted, evidence.plans)
+    problem = Problem(
+        base.residual - bias,
+        base.columns,
+        centred,
+        evidence.cells.block,
+        evidence.fitted,
+        evidence.plans,
+    )
     taken = {choice.winner.name for choice in found.choices}
     scores = [
         score
@@ -163,6 +178,21 @@ def _round(
         if choice is not None or not found.choices:
             found.rows[trial.name] = _tried(trial, choice)
     return choice
+
+
+def _renew(evidence: Evidence, found: Search, choice: Choice) -> bool:
+    """Whether the base alone does better from where the winner led it; then it is replaced.
+
+    A fit that was caught looks as if an effect had freed it: what the base can do by itself is no
+    effect's gain.
+    """
+    model, base = choice.winner.model, found.models[-1]
+    alone = fitted(evidence, without_effect(model.plant, choice.winner.name), model.nuisances)
+    if alone.power > (1.0 - WORTH_RENEWING) * base.power:
+        return False
+    _logger.info("the base does better from another start")
+    found.models[-1] = alone
+    return True
 
 
 def _drop(evidence: Evidence, found: Search) -> set[str]:
@@ -236,7 +266,7 @@ def _tried(trial: Trial, choice: Choice | None) -> CandidateRow:
     return CandidateRow(trial.name, score.score, score.threshold, trial.gain, reason)
 
 
-def _friction(evidence: Evidence, base: Model) -> float:
+def friction_of(evidence: Evidence, base: Model) -> float:
     """Weighted rms of what the base needs beside inertia: friction, gravity, added efforts."""
     needed = evidence.stack(
         lambda rows: rows.form.mean(

@@ -22,6 +22,8 @@ NULL_TIMES: Final = 1.3
 """A score counts above this many times the greatest one that the surrogates reach."""
 NULL_DEVIATIONS: Final = 5.0
 """And above the surrogates' mean by this many standard deviations."""
+FLIPS: Final = 7
+"""Seed of the signs by which blocks are turned round: always the same."""
 SEEN_SIZE: Final = 0.02
 """An effect whose effort is this share of the friction must be seen, or it is not testable."""
 
@@ -76,7 +78,9 @@ class Problem:
     base : numpy.ndarray, shape (n, p)
         Derivatives by the parameters of the base and by nuisances.
     null : numpy.ndarray, shape (n, surrogates)
-        Residuals of the surrogates, each less the mean of the others.
+        Residuals in which nothing is to be found.
+    block : numpy.ndarray of int, shape (n,)
+        Block of 1 s of each row.
     fitted : numpy.ndarray of bool, shape (n,)
     plans : sequence of Plan
     """
@@ -84,6 +88,7 @@ class Problem:
     residual: FloatArray
     base: FloatArray
     null: FloatArray
+    block: np.ndarray
     fitted: np.ndarray
     plans: Sequence[Plan]
 
@@ -135,45 +140,50 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
 
     ``friction`` is the weighted rms of the friction, against which sizes are measured.
     """
-    whole = Plan(problem.fitted, problem.fitted)
-    base = project(problem.base, whole)
+    base = project(problem.base, Plan(problem.fitted, problem.fitted))
     residual = base.project(problem.residual).fit
     null = base.project(problem.null).fit
     columns = base.project(signatures.columns).fit
     power = max(float(residual @ residual), 1e-300)
-    null_power = np.maximum(np.sum(null**2, axis=0), 1e-300)
-    raw = signatures.columns[problem.fitted]
-    best: dict[str, tuple[float, int, FloatArray]] = {}
-    nulls: dict[str, FloatArray] = {}
-    for index, (candidate, own) in enumerate(
-        zip(signatures.candidates, signatures.slices, strict=True)
+    tried = [
+        _tried(candidate, columns[:, own], residual)
+        for candidate, own in zip(signatures.candidates, signatures.slices, strict=True)
+    ]
+    best: dict[str, int] = {}
+    for index, (candidate, (score, _, _)) in enumerate(
+        zip(signatures.candidates, tried, strict=True)
     ):
-        part = columns[:, own]
-        directions, gains = _solve(part, residual)
-        if directions is None:
-            score, at_null = 0.0, np.zeros(null.shape[1])
-        else:
-            gains = _bounded(candidate.record, gains)
-            explained = part @ gains
-            score = (2.0 * float(explained @ residual) - float(explained @ explained)) / power
-            at_null = np.sum((directions.T @ null) ** 2, axis=0) / null_power
-        name = candidate.name
-        nulls[name] = np.maximum(nulls.get(name, np.zeros(null.shape[1])), at_null)
-        if name not in best or score > best[name][0]:
-            best[name] = (score, index, gains)
-    heldout = _heldout(problem, signatures, [index for _, index, _ in best.values()])
+        if candidate.name not in best or score > tried[best[candidate.name]][0]:
+            best[candidate.name] = index
+    strongest = max(best.values(), key=lambda index: tried[index][0])
+    unexplained = residual - columns[:, signatures.slices[strongest]] @ tried[strongest][1]
+    flips = base.off(_flipped(unexplained, problem.block[problem.fitted], null.shape[1]))
+    null_power = np.maximum(np.sum(null**2, axis=0), 1e-300)
+    thresholds: dict[str, float] = {}
+    for name in best:
+        reached = [
+            (directions.T @ null, directions.T @ flips)
+            for candidate, (_, _, directions) in zip(signatures.candidates, tried, strict=True)
+            if candidate.name == name and directions is not None
+        ]
+        thresholds[name] = _threshold(
+            [np.sum(noise**2, axis=0) / null_power for noise, _ in reached],
+            [np.sum(turned**2, axis=0) / power for _, turned in reached],
+        )
+    heldout = _heldout(problem, signatures, list(best.values()))
+    raw = signatures.columns[problem.fitted]
     scores = []
-    for name, (score, index, gains) in best.items():
-        own = signatures.slices[index]
-        part, whole_part = columns[:, own], raw[:, own]
-        total = float(np.sum(whole_part**2))
+    for name, index in best.items():
+        score, gains, _ = tried[index]
+        part, whole = columns[:, signatures.slices[index]], raw[:, signatures.slices[index]]
+        total = float(np.sum(whole**2))
         left = float(np.sum(part**2)) / total if total > 0.0 else 0.0
         scores.append(
             Score(
                 candidate=signatures.candidates[index],
                 gains=gains,
                 score=score,
-                threshold=_threshold(nulls[name]),
+                threshold=thresholds[name],
                 heldout=heldout[index],
                 left=left,
                 visible=left * len(residual) * (SEEN_SIZE * friction) ** 2 / power,
@@ -183,10 +193,44 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     return sorted(scores, key=lambda s: -s.score)
 
 
-def _threshold(null: FloatArray) -> float:
-    """What the surrogates never reach, with a margin."""
+def _tried(
+    candidate: Candidate, part: FloatArray, residual: FloatArray
+) -> tuple[float, FloatArray, FloatArray | None]:
+    """Score, gains, and an orthonormal basis of a candidate's columns."""
+    directions, gains = _solve(part, residual)
+    if directions is None:
+        return 0.0, gains, None
+    gains = _bounded(candidate.record, gains)
+    explained = part @ gains
+    power = max(float(residual @ residual), 1e-300)
+    score = (2.0 * float(explained @ residual) - float(explained @ explained)) / power
+    return score, gains, directions
+
+
+def _flipped(residual: FloatArray, block: np.ndarray, number: int) -> FloatArray:
+    """The residual with the sign of each block drawn anew, a number of times.
+
+    Surrogates hold noise alone. What a law's own curve misses is no noise: it lasts longer and
+    resembles more. Turned round block by block it keeps that, and explains nothing as a whole
+    (wild bootstrap over blocks, Wu, Ann. Statist. 14 (1986)).
+    """
+    source = np.random.default_rng(FLIPS)
+    signs = source.choice([-1.0, 1.0], (int(block.max()) + 1, number))
+    flipped: FloatArray = residual[:, None] * signs[block]
+    return flipped
+
+
+def _threshold(noise: Sequence[FloatArray], turned: Sequence[FloatArray]) -> float:
+    """What neither surrogates nor turned blocks reach, over the whole grid, with a margin."""
+    if not noise:
+        return 0.0
+    null, flips = np.max(noise, axis=0), np.max(turned, axis=0)
     spread = float(np.std(null, ddof=1)) if len(null) > 1 else 0.0
-    return max(NULL_TIMES * float(np.max(null)), float(np.mean(null)) + NULL_DEVIATIONS * spread)
+    return max(
+        NULL_TIMES * float(np.max(null)),
+        float(np.mean(null)) + NULL_DEVIATIONS * spread,
+        NULL_TIMES * float(np.max(flips)),
+    )
 
 
 def _solve(part: FloatArray, residual: FloatArray) -> tuple[FloatArray | None, FloatArray]:

@@ -40,7 +40,7 @@ impl<S: Scalar> Effect<S> for DirectionAsymmetry<S> {
         look_alikes: &["torque_bias"],
         experiment: "pre-sliding loops and rests at zero input; a change of load",
         gains: &["coulomb", "viscous"],
-        shapes: &[Shape { parameter: "velocity", scale: Scale::Speed, grid: &[-0.2], fitted: false }],
+        shapes: &[Shape { parameter: "velocity", scale: Scale::Speed, grid: &[-0.2, 0.15, 0.4], fitted: true }],
         law_terms: &[],
     };
 

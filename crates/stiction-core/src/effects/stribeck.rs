@@ -43,7 +43,7 @@ impl<S: Scalar> Effect<S> for Stribeck<S> {
             Shape {
                 parameter: "velocity",
                 scale: Scale::Speed,
-                grid: &[0.1, 0.25, 0.4, 0.55, 0.7, 0.85],
+                grid: &[0.1, 0.25, 0.4, 0.55, 0.7],
                 fitted: true,
             },
             Shape { parameter: "exponent", scale: Scale::One, grid: &[2.0], fitted: false },
