@@ -47,11 +47,11 @@ def demo(
     report = found.save(where)
     seconds = sum(recording.duration for recording in session)
     text = (
-        f"{counted(len(session), 'recording')}, {seconds:.0f} s, of a simulated motor with "
-        "friction. Its plant.toml\nnames a friction law and nothing else; one physical effect is "
-        f"hidden in the recordings.\n\n{found}\n\nhidden was: {demo_session.hidden()}\n\n"
+        f"{counted(len(session), 'recording')} ({seconds:.0f} s) of a simulated motor. Its plant "
+        "file names a friction law and nothing else;\none physical effect is hidden in the "
+        f"recordings.\n\n{found}\n\nwhat was hidden: {demo_session.hidden()}\n\n"
         f"{told(found, report)}\n"
-        "next: stiction demo --copy my-motor lays these recordings out as files to change"
+        "next: stiction demo --copy my-motor lays the recordings out as files, for you to change"
     )
     answer(text, found.to_dict(), as_json=json)
     if not found.success:
@@ -65,7 +65,7 @@ def _copied(where: Path, *, as_json: bool) -> None:
     texts = [file for file in files if file.suffix != ".csv"]
     command = f"stiction diagnose {files[0]}"
     lines = [f"wrote {file}" for file in texts]
-    lines += [f"wrote {counted(len(recordings), 'recording')} as CSV beside them"]
+    lines += [f"wrote {counted(len(recordings), 'recording')} as CSV into {recordings[0].parent}"]
     lines += [f"next: {command}"]
     data = {"files": [str(file) for file in files], "next": command}
     answer("\n".join(lines), data, as_json=as_json)

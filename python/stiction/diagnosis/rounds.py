@@ -33,6 +33,8 @@ MOST_EFFECTS: Final = 4
 """Effects added at most: who lacks more than that needs another law."""
 REFITTED: Final = 5
 """Candidates refitted in a round."""
+IMITATED: Final = 0.1
+"""Share of a signature beside the base below which the base is what hides it."""
 MOST_RENEWALS: Final = 2
 """Times that the base is replaced by a better fit of itself."""
 WORTH_RENEWING: Final = 0.005
@@ -240,12 +242,11 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
 
 
 def _screened(score: Score) -> CandidateRow:
-    if not score.testable:
-        reason = (
-            "not testable: the base imitates "
-            + ("all" if score.left < 1e-4 else f"all but {100 * score.left:.1g} %")
-            + " of it on these data"
-        )
+    if not score.testable and score.left > IMITATED:
+        reason = "not testable: 2 % of the friction would not show beside what else is left"
+    elif not score.testable:
+        share = "all" if score.left < 1e-4 else f"all but {100 * score.left:.1g} %"
+        reason = f"not testable: the base imitates {share} of it on these data"
     elif score.score <= score.threshold:
         reason = "explains no more than noise does"
     else:

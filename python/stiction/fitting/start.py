@@ -27,7 +27,7 @@ ABOVE_COULOMB: Final = 1.1
 """Break-away over Coulomb friction to start from."""
 
 
-HARDENED: Final = 0.3
+HARDENED: Final = 1.0
 """Creep under a held Coulomb friction to start from, in reaches."""
 
 
