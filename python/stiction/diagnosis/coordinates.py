@@ -28,6 +28,8 @@ class Look:
         Through the kernel; ``rate`` is that of the effort, ``time`` the session clock.
     direction : numpy.ndarray, shape (n,)
         Of the motion, −1 or 1; the last one where the machine rests.
+    angle : numpy.ndarray, shape (n,)
+        Position within a turn; over a stroke of a linear machine the position itself.
     travelled, elapsed : numpy.ndarray, shape (n,)
         Distance and time since the direction last changed.
     """
@@ -39,6 +41,7 @@ class Look:
     effort: FloatArray
     rate: FloatArray
     direction: FloatArray
+    angle: FloatArray
     travelled: FloatArray
     elapsed: FloatArray
 
@@ -57,12 +60,15 @@ class Coordinate:
         The residual is counted along the motion: friction that is too low is positive both ways.
     values : callable
         From a ``Look`` to numpy.ndarray, shape (n,).
+    slow : bool
+        It changes over the session, not within a recording.
     """
 
     name: str
     axis: str
     odd: bool
     values: Callable[[Look], FloatArray]
+    slow: bool = False
 
 
 COORDINATES: Final = (
@@ -70,6 +76,8 @@ COORDINATES: Final = (
     Coordinate("speed", "speed, {x}/s", True, lambda look: np.abs(look.velocity)),
     Coordinate("position", "position, {x}", False, lambda look: look.position),
     Coordinate("position along the motion", "position, {x}", True, lambda look: look.position),
+    Coordinate("angle", "angle in the turn, rad", False, lambda look: look.angle),
+    Coordinate("angle along the motion", "angle in the turn, rad", True, lambda look: look.angle),
     Coordinate("acceleration", "acceleration, {x}/s²", False, lambda look: look.acceleration),
     Coordinate("effort", "measured effort, {f}", False, lambda look: look.effort),
     Coordinate("rate of the effort", "rate of the effort, {f}/s", False, lambda look: look.rate),
@@ -82,8 +90,10 @@ COORDINATES: Final = (
     Coordinate(
         "time since the reversal", "time since the reversal, s", True, lambda look: look.elapsed
     ),
-    Coordinate("session time", "session clock, s", False, lambda look: look.time),
-    Coordinate("session time along the motion", "session clock, s", True, lambda look: look.time),
+    Coordinate("session time", "session clock, s", False, lambda look: look.time, slow=True),
+    Coordinate(
+        "session time along the motion", "session clock, s", True, lambda look: look.time, slow=True
+    ),
 )
 """Coordinates in which the rest is looked at."""
 
@@ -118,6 +128,7 @@ def _look(evidence: Evidence, clock: float, rows: Rows) -> Look:
         effort=effort,
         rate=np.gradient(effort, spacing),
         direction=direction,
+        angle=np.mod(position, 2.0 * np.pi) if evidence.plant.motion == "rotary" else position,
         travelled=np.abs(position - position[last]),
         elapsed=since * spacing,
     )

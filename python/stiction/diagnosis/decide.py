@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .candidates import Candidate
 from .model import Model
@@ -22,6 +23,8 @@ LEAST_Z: Final = 2.0
 """Held-out gain over its standard error over blocks of 1 s."""
 TELLING: Final = 0.01
 """Blocks that change by less than this share of the mean change count for neither side."""
+TOUCHED: Final = 0.01
+"""Blocks with less than this share of an effect's mean power are none of its business."""
 PENALTY: Final = 0.004
 """Of log-gain per parameter: flexible wrong effects imitate right ones."""
 NEAR: Final = 0.15
@@ -97,9 +100,15 @@ class Choice:
         return not self.rivals
 
 
-def judge(base: Model, score: Score, model: Model, size: float) -> Trial:
-    """Compares a refitted candidate with the base it was added to."""
-    gain, z = heldout_gain(base, model)
+def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size: float) -> Trial:
+    """Compares a refitted candidate with the base it was added to.
+
+    ``contributed`` is what the effect explains of each row, shape (n,): blocks in which it can do
+    nothing say nothing of it.
+    """
+    block = base.evidence.cells.block
+    power = np.bincount(block, contributed**2, int(block.max()) + 1)
+    gain, z = heldout_gain(base, model, power > TOUCHED * float(np.mean(power)))
     explained = 1.0 - model.power / base.power if base.power > 0.0 else 0.0
     reason = ""
     strength = model.strength(score.candidate)
@@ -127,15 +136,19 @@ def judge(base: Model, score: Score, model: Model, size: float) -> Trial:
     return Trial(score, model, gain, z, worth, size, reason)
 
 
-def heldout_gain(base: Model, model: Model) -> tuple[float, float]:
-    """Share of the held-out power that a model removes, and that over its standard error."""
+def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tuple[float, float]:
+    """Share of the held-out power that a model removes, and that over its standard error.
+
+    ``touched`` says which blocks the second figure is taken over, all without it.
+    """
     before, after = base.blocks[1], model.blocks[1]
     seen = before > 0.0
-    difference = before[seen] - after[seen]
     total = float(before.sum())
+    gained = float((before - after)[seen].sum())
+    difference = (before - after)[seen if touched is None else seen & touched]
     if total <= 0.0 or len(difference) < 2:
         return 0.0, 0.0
-    return float(difference.sum()) / total, max(_z(difference), _sign_z(difference))
+    return gained / total, max(_z(difference), _sign_z(difference))
 
 
 def _sign_z(values: FloatArray) -> float:

@@ -25,7 +25,7 @@ from ..session import Session
 from ..trajectory import FloatArray
 from ..wording import did_you_mean, listed
 from .advice import NO_COORDINATE, advise
-from .candidates import left_out
+from .candidates import left_out, scales_of
 from .coordinates import looks
 from .evidence import Evidence
 from .gain import Gain, TestResiduals, gain_of, open_residuals
@@ -45,7 +45,7 @@ SURROGATES: Final = 24
 """Replays of the base with noise; more make thresholds smoother and cost in proportion."""
 WORTH_SHARE: Final = 0.25
 """What is left counts against the names where it is worth this share of what they gained."""
-MOST_EXCESS: Final = 0.8
+MOST_EXCESS: Final = 0.75
 """Share of what is left that noise may fail to explain before it counts as unexplained, where it
 shows in no coordinate: a law is no exact image of a machine."""
 BASE_EVALUATIONS: Final = MOST_EVALUATIONS
@@ -235,10 +235,11 @@ def _testable(
     seen = looks(evidence, clocks, evidence.shown)
     bias, centred = centre(null)
     friction = friction_of(evidence, base)
-    left = rest(evidence, seen, final.residual - bias, centred, friction)
+    orders = scales_of(evidence).orders
+    left = rest(evidence, seen, orders, final.residual - bias, centred, friction)
     before = left
     if final is not base:
-        before = rest(evidence, seen, base.residual - bias, centred, friction)
+        before = rest(evidence, seen, orders, base.residual - bias, centred, friction)
     rivals = [] if selection.interrupted else [_base_of_law(evidence, base, law) for law in others]
     # Every decision is taken: now, and once, the rows that test.
     _logger.info("opening the test rows")

@@ -170,8 +170,9 @@ def _round(
     for score in passing[:REFITTED]:
         _logger.info("refitting with %s", score.candidate.name)
         model = _refit(evidence, base, signatures, score)
-        size = _size(signatures, score, model, friction)
-        trials.append(judge(base, score, model, size))
+        contributed = _contributed(signatures, score, model)
+        size = float(np.sqrt(np.mean(contributed**2))) / max(friction, 1e-300)
+        trials.append(judge(base, score, model, contributed, size))
     for score in passing[REFITTED:]:
         row = found.rows[score.candidate.name]
         found.rows[row.name] = replace(row, reason="others explain more")
@@ -277,13 +278,13 @@ def friction_of(evidence: Evidence, base: Model) -> float:
     return float(np.sqrt(np.mean(needed**2)))
 
 
-def _size(signatures: Signatures, score: Score, model: Model, friction: float) -> float:
-    """rms of what an effect contributes after its refit, over that of the friction."""
+def _contributed(signatures: Signatures, score: Score, model: Model) -> FloatArray:
+    """What an effect explains of every row after its refit; shape (n,)."""
     index = signatures.candidates.index(score.candidate)
     effect = model.plant.effects[-1]
     gains = np.array([effect.parameters[name].value for name in score.candidate.record.gains])
-    contributed = signatures.columns[:, signatures.slices[index]] @ gains
-    return float(np.sqrt(np.mean(contributed**2))) / max(friction, 1e-300)
+    contributed: FloatArray = signatures.columns[:, signatures.slices[index]] @ gains
+    return contributed
 
 
 def summary_rows(found: Search) -> tuple[CandidateRow, ...]:

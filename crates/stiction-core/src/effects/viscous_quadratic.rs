@@ -9,7 +9,7 @@ parameters! {
     /// Parameters of [`ViscousQuadratic`].
     pub struct ViscousQuadraticParameters {
         quadratic: QuadraticDamping, "friction per speed squared",
-            default Value(0.0), neutral Some(0.0), typical 0.01, bounds -1e9, 1e9;
+            default Value(0.0), neutral Some(0.0), typical 0.01, bounds 0.0, 1e9;
     }
 }
 

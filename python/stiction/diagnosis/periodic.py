@@ -1,0 +1,135 @@
+"""What repeats: over position, order by order, and over time, frequency by frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from ..trajectory import FloatArray
+from .coordinates import Coordinate, Look
+from .evidence import Cells, Plan
+from .view import FLAG_ABOVE, View, limit, means
+
+__all__ = ["FREQUENCY", "ORDERS", "frequency_view", "order_view"]
+
+PHASES: Final = 24
+"""Stretches of a period."""
+LOWEST_LINE: Final = 10
+"""Hz; what is slower comes with the motion, not with time."""
+NEIGHBOURS: Final = (2, 8)
+"""A line stands above the frequencies this many Hz from it."""
+
+
+def _phase(_: Look) -> FloatArray:
+    raise NotImplementedError("an order has its own phase")
+
+
+ORDERS: Final = (
+    Coordinate("order over position", "phase of the order that stands out, rad", False, _phase),
+    Coordinate(
+        "order over position along the motion",
+        "phase of the order that stands out, rad",
+        True,
+        _phase,
+    ),
+)
+"""Residual that repeats with position, however many times a turn, and the same along the motion."""
+FREQUENCY: Final = Coordinate("frequency", "frequency, Hz", False, _phase)
+"""Residual that repeats with time."""
+
+
+def order_view(
+    coordinate: Coordinate,
+    orders: Sequence[float],
+    position: FloatArray,
+    plans: Sequence[Plan],
+    both: FloatArray,
+    weights: FloatArray,
+    friction: float,
+) -> View:
+    """The best order over position: fitted rows choose it, those held out judge it.
+
+    Parameters
+    ----------
+    coordinate : Coordinate
+    orders : sequence of float
+        Tried, 1/rad or 1/m.
+    position : numpy.ndarray, shape (n,)
+    plans : sequence of Plan
+    both : numpy.ndarray, shape (n, 1 + surrogates)
+        Weighted residual, then those of the surrogates; each chooses its own best order.
+    weights : numpy.ndarray, shape (n,)
+    friction : float
+        Weighted rms of the friction.
+    """
+    explained = np.zeros((len(orders), both.shape[1]))
+    removed = np.zeros_like(explained)
+    total = np.zeros(both.shape[1])
+    rows = 0
+    for plan in plans:
+        held = both[plan.held]
+        total += np.sum(held**2, axis=0)
+        rows += len(held)
+        for k, order in enumerate(orders):
+            waves = np.column_stack([np.cos(order * position), np.sin(order * position)])
+            own = waves[plan.fit]
+            pushed = own.T @ both[plan.fit]
+            gains = np.linalg.lstsq(own.T @ own, pushed, rcond=None)[0]
+            explained[k] += np.sum(gains * pushed, axis=0)
+            curve = waves[plan.held] @ gains
+            removed[k] += np.sum(held**2 - (held - curve) ** 2, axis=0)
+    best = np.argmax(explained, axis=0)
+    own = removed[best, np.arange(both.shape[1])]
+    shares = own / np.maximum(total, 1e-300)
+    phase = np.mod(orders[int(best[0])] * position, 2.0 * np.pi)
+    index = np.minimum((phase / (2.0 * np.pi) * PHASES).astype(np.int64), PHASES - 1)
+    curves = means(index, both / weights[:, None], PHASES)
+    low, high = np.quantile(curves[:, 1:], [0.025, 0.975], axis=1)
+    at = (np.arange(PHASES) + 0.5) * 2.0 * np.pi / PHASES
+    size = float(np.sqrt(max(own[0], 0.0) / max(rows, 1))) / max(friction, 1e-300)
+    return View(coordinate, at, curves[:, 0], low, high, float(shares[0]), limit(shares[1:]), size)
+
+
+def frequency_view(cells: Cells, spacing: float, both: FloatArray, friction: float) -> View | None:
+    """The frequency that stands out of its neighbours most; None where no block is whole.
+
+    Spectra of blocks of 1 s, averaged. A line's share is what it holds above its neighbours.
+    """
+    length = round(1.0 / spacing)
+    starts = [
+        rows[0]
+        for rows in np.split(np.arange(len(cells.block)), np.flatnonzero(np.diff(cells.block)) + 1)
+        if len(rows) >= length
+    ]
+    if not starts or length < 4 * NEIGHBOURS[1]:
+        return None
+    window = np.hanning(length)[:, None]
+    spectrum = np.zeros((length // 2 + 1, both.shape[1]))
+    for start in starts:
+        piece = both[start : start + length]
+        spectrum += np.abs(np.fft.rfft(window * piece, axis=0)) ** 2
+    spectrum /= len(starts)
+    total = np.maximum(spectrum.sum(axis=0), 1e-300)
+    near, far = NEIGHBOURS
+    lines = np.zeros_like(spectrum)
+    for k in range(LOWEST_LINE, len(spectrum) - 1):
+        around = [j for d in range(near, far + 1) for j in (k - d, k + d) if 1 <= j < len(spectrum)]
+        floor = np.median(spectrum[around], axis=0)
+        lines[k] = np.sum(spectrum[k - 1 : k + 2] - floor, axis=0)
+    shares = np.max(lines, axis=0) / total
+    amplitudes = np.sqrt(spectrum)
+    low, high = np.quantile(amplitudes[:, 1:], [0.025, 0.975], axis=1)
+    power = float(np.mean(both[:, 0] ** 2))
+    size = float(np.sqrt(max(shares[0], 0.0) * power)) / max(friction, 1e-300)
+    return View(
+        FREQUENCY,
+        np.arange(len(spectrum)) / (length * spacing),
+        amplitudes[:, 0],
+        low,
+        high,
+        float(shares[0]),
+        max(limit(shares[1:]), FLAG_ABOVE),
+        size,
+    )
