@@ -13,7 +13,7 @@ from ..plant import Plant
 from ..trajectory import FloatArray
 from .evidence import Cells, Evidence
 
-__all__ = ["Gain", "TestResiduals", "gain_of", "open_residuals"]
+__all__ = ["Gain", "HeldOut", "gain_of", "open_residuals"]
 
 RESAMPLES: Final = 2000
 
@@ -38,7 +38,7 @@ class Gain:
 
 
 @dataclass(frozen=True)
-class TestResiduals:
+class HeldOut:
     """Residuals of several plants over the rows that test.
 
     Attributes
@@ -69,9 +69,7 @@ class TestResiduals:
         return float(np.sqrt(np.mean((self.residuals[index] / self.weights) ** 2)))
 
 
-def open_residuals(
-    evidence: Evidence, models: Sequence[tuple[Plant, Nuisances]]
-) -> TestResiduals | None:
+def open_residuals(evidence: Evidence, models: Sequence[tuple[Plant, Nuisances]]) -> HeldOut | None:
     """Opens the rows that test for all plants at once; None where there are none."""
     rows = evidence.open_test()
     if not rows:
@@ -84,15 +82,15 @@ def open_residuals(
     residuals = tuple(left(plant, nuisances) for plant, nuisances in models)
     weights = np.concatenate([np.full(int(e.mask.sum()), e.weight) for e in rows])
     effort = np.concatenate([e.weight * e.form.measured(evidence.plant)[e.mask] for e in rows])
-    return TestResiduals(residuals, weights, effort, evidence.cells_of(rows), tuple(rows))
+    return HeldOut(residuals, weights, effort, evidence.cells_of(rows), tuple(rows))
 
 
-def gain_of(test: TestResiduals, before: int, after: int, seed: int) -> Gain:
+def gain_of(test: HeldOut, before: int, after: int, seed: int) -> Gain:
     """1 − Σw·r²(after)/Σw·r²(before), with an interval.
 
     Parameters
     ----------
-    test : TestResiduals
+    test : HeldOut
     before, after : int
         Which plants.
     seed : int

@@ -28,7 +28,7 @@ from .advice import NO_COORDINATE, advise
 from .candidates import left_out, scales_of
 from .coordinates import looks
 from .evidence import Evidence
-from .gain import Gain, TestResiduals, gain_of, open_residuals
+from .gain import Gain, HeldOut, gain_of, open_residuals
 from .model import Model, fitted
 from .noise import Noise
 from .omnibus import Rest, rest
@@ -298,7 +298,7 @@ def _concluded(
     selection: Search,
     rests: tuple[Rest, Rest],
     compared: tuple[Sequence[str], Sequence[Model | None]],
-    test: TestResiduals | None,
+    test: HeldOut | None,
     null: FloatArray,
     checks: Sequence[tuple[str, Check]],
 ) -> Diagnosis:
@@ -404,7 +404,7 @@ def _summary(
     evidence: Evidence,
     model: Model,
     result: FitResult,
-    test: TestResiduals | None,
+    test: HeldOut | None,
     index: int,
     floor: float,
 ) -> ModelSummary:
@@ -445,7 +445,7 @@ def _floor(evidence: Evidence, null: FloatArray) -> float:
 def _law_rows(
     compared: tuple[Sequence[str], Sequence[Model | None]],
     first: int,
-    test: TestResiduals | None,
+    test: HeldOut | None,
     seed: int,
 ) -> tuple[LawRow, ...]:
     rows = []
@@ -469,7 +469,7 @@ def _law_rows(
 
 
 def _stretches(
-    evidence: Evidence, test: TestResiduals | None, base: Model, final: Model
+    evidence: Evidence, test: HeldOut | None, base: Model, final: Model
 ) -> tuple[Stretch, ...]:
     """Held-out recordings with what both models leave; those of train where none tests."""
     rows = evidence.shown if test is None else test.rows

@@ -26,8 +26,8 @@ FEW_EVALUATIONS: Final = 14
 MOST_ESCAPES: Final = 4
 """Starts from beyond a kink, for laws that stick without a spring."""
 SHRINKING: Final = 10.0
-"""Rows that a factor e of a shape parameter away from its neutral value weighs as much as: about one
-independent piece of evidence, for neighbouring rows share a kernel."""
+"""Rows that a factor e of a shape parameter away from its neutral value weighs as much as: about a
+single independent piece of evidence, for neighbouring rows share a kernel."""
 START_TIMES: Final = 2.0
 """A force at the start is at most this many times the greatest effort that was measured."""
 RUNAWAY: Final = 1e6

@@ -1,0 +1,198 @@
+"""The pieces of a diagnosis, each alone: seal, projection, scores, gain, verdict in words."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.diagnosis.candidates import candidates, left_out, present, scales_of
+from stiction.diagnosis.evidence import Evidence, Plan, SealedError
+from stiction.diagnosis.gain import Gain, HeldOut, gain_of
+from stiction.diagnosis.noise import measure_noise
+from stiction.diagnosis.regression import project
+from stiction.diagnosis.replay import centre, surrogate_residuals
+from stiction.diagnosis.words import joined, sentence
+from stiction.fitting.levenberg import escaped, levenberg_marquardt
+from stiction.fitting.rows import Nuisances
+from stiction.fitting.statistics import interval_width
+
+DT = 1e-3
+COUNT = 2.0 * math.pi / 2**18
+
+
+def recorded(seed: int, *, seconds: float = 7.0, noise: float = 0.004, **labels: object):
+    """A machine of the core, moved by sines: pieces are looked at here, not what they find."""
+    source = np.random.default_rng(seed)
+    time = np.arange(round(seconds / DT)) * DT
+    waves = [0.3 * np.sin(w * time + source.uniform(0, 6)) for w in (2.0, 5.3, 13.0)]
+    effort = np.sum(waves, axis=0)
+    motor = st.Motor(0.006, friction=st.FrictionModel("maxwell_slip", coulomb=0.25, viscous=0.02))
+    position = np.concatenate([[0.0], motor.simulate(effort[:-1], DT).position])
+    measured = effort + noise * source.standard_normal(len(time))
+    return st.Recording(time, measured, np.round(position / COUNT) * COUNT, **labels)
+
+
+def true_plant() -> st.Plant:
+    return st.Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm"},
+            "body": {"inertia": 0.006},
+            "friction": {
+                "law": "maxwell_slip",
+                "coulomb": 0.25,
+                "initial_stiffness": 3000.0,
+                "viscous": 0.02,
+            },
+        }
+    )
+
+
+@pytest.fixture(scope="module")
+def evidence() -> Evidence:
+    roles = ("train", "select", "test")
+    return Evidence(true_plant(), [recorded(k, role=role) for k, role in enumerate(roles)])
+
+
+def test_the_rows_that_test_are_opened_once() -> None:
+    sealed = Evidence(
+        true_plant(), [recorded(k, role=r) for k, r in enumerate(("train", "select", "test"))]
+    )
+    assert all(rows.index != 2 for rows in sealed.shown)
+    sealed.weigh()
+    assert [rows.index for rows in sealed.open_test()] == [2]
+    with pytest.raises(SealedError):
+        sealed.open_test()
+
+
+def test_without_select_the_recordings_of_train_are_left_out_in_turn() -> None:
+    several = [recorded(k, role="train", kind="sines") for k in range(3)]
+    folds = Evidence(true_plant(), [*several, recorded(9, role="test")]).plans
+    assert len(folds) == 3
+    for plan in folds:
+        assert not np.any(plan.fit & plan.held)
+    assert np.all(np.sum([plan.held for plan in folds], axis=0) == 1)
+
+
+def test_surrogates_hold_the_noise_that_the_recording_holds(evidence: Evidence) -> None:
+    evidence.weigh()
+    plant, none = true_plant(), Nuisances()
+    for rows in evidence.shown:
+        # Counts that the contact feels look like noise of the effort too: never less than it is.
+        assert 0.0036 < measure_noise(rows, plant, none).effort < 0.0056
+        assert measure_noise(rows, plant, none).count == pytest.approx(COUNT, rel=1e-6)
+    null, noises = surrogate_residuals(evidence, plant, none, 8, 3)
+    again, _ = surrogate_residuals(evidence, plant, none, 8, 3)
+    assert np.array_equal(null, again)
+    assert sorted(noises) == [0, 1]
+    real = evidence.residual(plant, none)
+    assert np.std(null) == pytest.approx(np.std(real), rel=0.25)
+    bias, centred = centre(null)
+    assert np.allclose(centred.sum(axis=1), 0.0, atol=1e-12)
+    assert bias.shape == real.shape
+
+
+def test_projection_takes_off_what_the_base_explains_and_the_same_from_held_rows() -> None:
+    source = np.random.default_rng(0)
+    base = source.standard_normal((200, 3))
+    fit = np.arange(200) < 120
+    projected = project(base, Plan(fit, ~fit)).project(base @ np.array([1.0, -2.0, 3.0]))
+    assert np.allclose(projected.fit, 0.0, atol=1e-10)
+    assert np.allclose(projected.held, 0.0, atol=1e-10)
+    other = project(base, Plan(fit, ~fit)).project(source.standard_normal(200))
+    assert np.allclose(base[fit].T @ other.fit, 0.0, atol=1e-10)
+
+
+def test_every_effect_has_candidates_within_its_bounds(evidence: Evidence) -> None:
+    scales = scales_of(evidence)
+    assert scales.speeds[0] < scales.speeds[1]
+    for record in st.effects():
+        found = candidates(record, scales)
+        assert found, record.name
+        for each in found:
+            assert set(each.shape) == {shape.parameter for shape in record.shapes}
+            for parameter in record.parameters:
+                if parameter.name in each.shape:
+                    low, high = parameter.bounds
+                    assert low <= each.shape[parameter.name] <= high
+
+
+def test_an_effect_that_the_law_holds_is_not_offered_again() -> None:
+    stribeck = next(record for record in st.effects() if record.name == "stribeck")
+    table = {"drive": {"input": "torque_nm"}, "friction": {"law": "coulomb", "coulomb": 0.3}}
+    assert not present(st.Plant.from_dict(table), stribeck)
+    table["friction"] |= {"breakaway": 0.4, "stribeck_velocity": 0.1}
+    assert present(st.Plant.from_dict(table), stribeck)
+
+
+def test_unknown_names_are_refused_with_the_nearest_one() -> None:
+    with pytest.raises(st.InputError, match="did you mean 'cogging'"):
+        left_out(("coging",))
+    with pytest.raises(st.InputError, match="did you mean 'coulomb'"):
+        st.diagnose(true_plant(), recorded(0), laws=("coulom",))
+    for wrong in ({"surrogates": 2}, {"seed": -1}, {"threads": 0}):
+        with pytest.raises(st.InputError, match=next(iter(wrong))):
+            st.diagnose(true_plant(), recorded(0), **wrong)
+
+
+def test_a_gain_is_the_share_of_power_removed_with_an_interval_that_holds_it() -> None:
+    source = np.random.default_rng(1)
+    before = source.standard_normal(4000)
+    blocks = np.repeat(np.arange(20), 200)
+    from stiction.diagnosis.evidence import Cells
+
+    cells = Cells(blocks, blocks * 0, blocks * 0, ("",))
+    test = HeldOut((before, 0.5 * before), np.ones(4000), before, cells, ())
+    gain = gain_of(test, 0, 1, seed=0)
+    assert gain.value == pytest.approx(0.75)
+    assert gain.ci95 == pytest.approx((0.75, 0.75))
+    assert gain_of(test, 0, 0, seed=0).value == 0.0
+
+
+def test_the_minimum_is_found_within_bounds_and_beyond_a_kink() -> None:
+    def residual(x: np.ndarray) -> np.ndarray:
+        return np.array([10.0 * (x[1] - x[0] ** 2), 1.0 - x[0]])
+
+    def jacobian(x: np.ndarray) -> np.ndarray:
+        return np.array([[-20.0 * x[0], 10.0], [-1.0, 0.0]])
+
+    wide = (np.full(2, -np.inf), np.full(2, np.inf))
+    keywords = {"most": 200, "tolerance": 1e-12}
+    start, scale = np.array([-1.2, 1.0]), np.ones(2)
+    found = levenberg_marquardt(residual, jacobian, start, wide, scale, **keywords)
+    assert found.converged
+    assert found.x == pytest.approx([1.0, 1.0], abs=1e-6)
+    tight = (np.array([-2.0, -2.0]), np.array([0.5, 2.0]))
+    found = levenberg_marquardt(residual, jacobian, start, tight, scale, **keywords)
+    assert found.x == pytest.approx([0.5, 0.25], abs=1e-6)
+
+    def kinked(x: np.ndarray) -> np.ndarray:
+        return np.array([x[0] - 2.0, 0.3 if x[0] < 1.0 else 0.0, 3.0])
+
+    caught = levenberg_marquardt(
+        kinked, lambda x: np.array([[0.0], [0.0], [1e-9]]), np.zeros(1),
+        (np.full(1, -9.0), np.full(1, 9.0)), np.ones(1), **keywords,
+    )  # fmt: skip
+    beyond = escaped(
+        kinked,
+        lambda x: np.array([[1.0], [0.0], [0.0]]),
+        caught,
+        (np.full(1, -9.0), np.full(1, 9.0)),
+    )
+    assert beyond is not None
+    assert beyond[0] > 1.0
+
+
+def test_intervals_are_students() -> None:
+    assert interval_width(2) == pytest.approx(12.706, abs=1e-3)
+    assert interval_width(10_000) == pytest.approx(1.960, abs=1e-3)
+
+
+def test_words_join_and_say_what_was_not_confirmed() -> None:
+    assert joined(["a"]) == "a"
+    assert joined(["a", "b", "c"], "or") == "a, b or c"
+    assert "Nothing is missing" in sentence("nothing_missing", (), None, (), "")
+    assert sentence("not_testable", (), None, (), "too short") == "too short"
+    assert Gain(0.5, (0.4, 0.6)).to_dict() == {"value": 0.5, "ci95": [0.4, 0.6]}
