@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 from cyclopts import Parameter
@@ -48,7 +49,7 @@ def demo(
     seconds = sum(recording.duration for recording in session)
     text = (
         f"{counted(len(session), 'recording')} ({seconds:.0f} s) of a simulated motor. Its plant "
-        "file names a friction law and nothing else;\none physical effect is hidden in the "
+        "file names a friction law and no effect;\none physical effect is hidden in the "
         f"recordings.\n\n{found}\n\nwhat was hidden: {demo_session.hidden()}\n\n"
         f"{told(found, report)}\n"
         "next: stiction demo --copy my-motor lays the recordings out as files, for you to change"
@@ -63,7 +64,7 @@ def _copied(where: Path, *, as_json: bool) -> None:
     files = demo_session.copy(where)
     recordings = [file for file in files if file.suffix == ".csv"]
     texts = [file for file in files if file.suffix != ".csv"]
-    command = f"stiction diagnose {files[0]}"
+    command = f"stiction diagnose {quote(str(files[0]))}"
     lines = [f"wrote {file}" for file in texts]
     lines += [f"wrote {counted(len(recordings), 'recording')} as CSV into {recordings[0].parent}"]
     lines += [f"next: {command}"]

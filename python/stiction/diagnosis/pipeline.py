@@ -17,7 +17,7 @@ from ..fitting.minimise import MOST_EVALUATIONS, launch
 from ..fitting.result import FitResult
 from ..fitting.solve import evaluate, reweighted
 from ..fitting.start import complete, free_paths
-from ..plant import Friction, Plant
+from ..plant import Effect, Friction, Plant
 from ..recording import Check, Recording
 from ..recording.checks import check
 from ..recording.split import name_of
@@ -324,7 +324,7 @@ def _concluded(
                 look_alikes=tuple(rival.name for rival in choice.rivals),
                 parameters=own,
                 gain=None if test is None else gain_of(test, k, k + 1, found.seed),
-                what=what(record, own),
+                what=what(record, own, _effect(final.plant, record.name)),
                 means=record.means,
                 try_=record.remedy,
                 coordinate=record.coordinate,
@@ -367,6 +367,11 @@ def _concluded(
             floor=floor,
         ),
     )
+
+
+def _effect(plant: Plant, name: str) -> Effect:
+    """The effect of a plant by its name."""
+    return next(effect for effect in plant.effects if effect.name == name)
 
 
 def _verdict(
@@ -459,9 +464,9 @@ def _law_rows(
         if gain is None:
             reason = "fitted, and no rows were left to test on"
         elif gain.ci95[0] > 0.0:
-            reason = f"explains {100 * gain.value:.1f} % more than the plant's law"
+            reason = f"explains {100 * gain.value:.1f} % of what the plant's law leaves"
         elif gain.ci95[1] < 0.0:
-            reason = f"explains {-100 * gain.value:.1f} % less than the plant's law"
+            reason = f"leaves {1.0 - gain.value:.3g} times the power that the plant's law leaves"
         else:
             reason = "explains about as much as the plant's law"
         rows.append(LawRow(law, gain, reason))

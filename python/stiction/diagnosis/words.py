@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
 from ..fitting.result import FitParameter
+from ..plant import Effect
 from ..wording import counted
 
 if TYPE_CHECKING:
@@ -44,9 +45,14 @@ def gain_words(gain: Gain | None) -> str:
     )
 
 
-def what(record: EffectRecord, parameters: Mapping[str, FitParameter]) -> str:
-    """What was found of an effect, with its fitted values."""
+def what(record: EffectRecord, parameters: Mapping[str, FitParameter], effect: Effect) -> str:
+    """What was found of an effect, with its fitted values, and orders that were chosen."""
     values = [value_words(path.rsplit(".", 1)[-1], p) for path, p in parameters.items()]
+    values += [
+        f"{shape.parameter} {effect.parameters[shape.parameter].value:g}"
+        for shape in record.shapes
+        if shape.scale == "order" and effect.parameters[shape.parameter].fixed
+    ]
     return f"{record.summary}: {', '.join(values)}" if values else record.summary
 
 
@@ -61,6 +67,8 @@ def sentence(
     if verdict in ("data_fault", "not_testable"):
         return reason
     named = joined([_cause(cause) for cause in effects])
+    if len(effects) == 1:
+        named += f" ({effects[0].what.partition(':')[0]})"
     gained = f" Adding {'it' if len(effects) == 1 else 'them'} removes {gain_words(gain)}."
     if verdict == "nothing_missing":
         return (
