@@ -203,6 +203,18 @@ def test_parameter_tables_of_the_theory_match_the_catalogue() -> None:
             )
 
 
+def test_files_quoted_as_complete_are_the_files() -> None:
+    quoted = 0
+    for page in sorted((REPOSITORY / "docs").glob("*.md")):
+        for path, code in re.findall(
+            r"`([\w/.-]+\.rs)`, complete:\n\n```rust\n(.*?)```", page.read_text("utf-8"), re.S
+        ):
+            if (REPOSITORY / path).exists():
+                assert code == (REPOSITORY / path).read_text("utf-8"), f"{page.name}: {path}"
+                quoted += 1
+    assert quoted
+
+
 def test_the_figure_is_small() -> None:
     for figure in re.findall(r"!\[.*?\]\((.*?)\)", README.read_text("utf-8")):
         assert (REPOSITORY / figure).stat().st_size < LARGEST_FIGURE

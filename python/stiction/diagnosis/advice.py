@@ -20,7 +20,7 @@ BY_COORDINATE: Final = {
     "angle": "slow full turns both ways, twice",
     "angle along the motion": "slow full turns both ways, twice",
     "order over position": "slow full turns (or full strokes) both ways, twice",
-    "order over position along the motion": "slow full turns (or full strokes) both ways, twice",
+    "order along the motion": "slow full turns (or full strokes) both ways, twice",
     "frequency": "5 s of rest and 5 s of constant speed, with what runs nearby on and off",
     "acceleration": "sines of one speed at different frequencies, so that accelerations differ",
     "effort": "large efforts at low acceleration, and the same accelerations with a known load",

@@ -188,7 +188,10 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
         and _alike(winner, other)
         and not _told(winner, other)
     ]
-    return Choice(winner, tuple(rivals))
+    likeliest = max((winner, *rivals), key=lambda trial: trial.worth)
+    if likeliest is not winner:
+        rivals = [winner, *(other for other in rivals if other is not likeliest)]
+    return Choice(likeliest, tuple(rivals))
 
 
 def _alike(one: Trial, other: Trial) -> bool:

@@ -95,7 +95,7 @@ def rest(
         for coordinate in ORDERS
     ]
     form = evidence.shown[0].form
-    lines = frequency_view(evidence.cells, form.dt * form.stride, both, friction)
+    lines = frequency_view(evidence.cells, form.dt * form.stride, both, evidence.weights, friction)
     if lines is not None:
         views.append(lines)
     return Rest(tuple(sorted(views, key=lambda view: -view.share)))

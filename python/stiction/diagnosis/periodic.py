@@ -27,10 +27,10 @@ def _phase(_: Look) -> FloatArray:
 
 
 ORDERS: Final = (
-    Coordinate("order over position", "phase of the order that stands out, rad", False, _phase),
+    Coordinate("order over position", "phase of the best order, rad", False, _phase),
     Coordinate(
-        "order over position along the motion",
-        "phase of the order that stands out, rad",
+        "order along the motion",
+        "phase of the best order, rad",
         True,
         _phase,
     ),
@@ -92,7 +92,9 @@ def order_view(
     return View(coordinate, at, curves[:, 0], low, high, float(shares[0]), limit(shares[1:]), size)
 
 
-def frequency_view(cells: Cells, spacing: float, both: FloatArray, friction: float) -> View | None:
+def frequency_view(
+    cells: Cells, spacing: float, both: FloatArray, weights: FloatArray, friction: float
+) -> View | None:
     """The frequency that stands out of its neighbours most; None where no block is whole.
 
     Spectra of blocks of 1 s, averaged. A line's share is what it holds above its neighbours.
@@ -107,9 +109,13 @@ def frequency_view(cells: Cells, spacing: float, both: FloatArray, friction: flo
         return None
     window = np.hanning(length)[:, None]
     spectrum = np.zeros((length // 2 + 1, both.shape[1]))
+    effort = np.zeros_like(spectrum)
     for start in starts:
-        piece = both[start : start + length]
-        spectrum += np.abs(np.fft.rfft(window * piece, axis=0)) ** 2
+        rows = slice(start, start + length)
+        held = np.abs(np.fft.rfft(window * both[rows], axis=0)) ** 2
+        spectrum += held
+        # In units of effort for the eye; the weight is one number within a recording.
+        effort += held / weights[start] ** 2
     spectrum /= len(starts)
     total = np.maximum(spectrum.sum(axis=0), 1e-300)
     near, far = NEIGHBOURS
@@ -119,7 +125,7 @@ def frequency_view(cells: Cells, spacing: float, both: FloatArray, friction: flo
         floor = np.median(spectrum[around], axis=0)
         lines[k] = np.sum(spectrum[k - 1 : k + 2] - floor, axis=0)
     shares = np.max(lines, axis=0) / total
-    amplitudes = np.sqrt(spectrum)
+    amplitudes = 2.0 * np.sqrt(effort / len(starts)) / float(window.sum())
     low, high = np.quantile(amplitudes[:, 1:], [0.025, 0.975], axis=1)
     power = float(np.mean(both[:, 0] ** 2))
     size = float(np.sqrt(max(shares[0], 0.0) * power)) / max(friction, 1e-300)
