@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import stiction as st
+from stiction.cli import run
 from stiction.diagnosis.candidates import candidates, left_out, present, scales_of
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import Gain, HeldOut, gain_of
@@ -196,3 +199,57 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
     assert "Nothing is missing" in sentence("nothing_missing", (), None, (), "")
     assert sentence("not_testable", (), None, (), "too short") == "too short"
     assert Gain(0.5, (0.4, 0.6)).to_dict() == {"value": 0.5, "ci95": [0.4, 0.6]}
+
+
+def test_an_interrupted_diagnosis_keeps_the_best_so_far(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("stiction.diagnosis.rounds.screen", interrupted)
+    recordings = [recorded(k, role=role) for k, role in enumerate(("train", "select", "test"))]
+    found = st.diagnose(true_plant(), recordings, surrogates=4)
+    assert not found.success
+    assert "interrupted" in found.message
+    assert found.baseline is not None
+    true_plant().save(tmp_path / "plant.toml")
+    lines = ['plant = "plant.toml"']
+    for k, recording in enumerate(recordings):
+        columns = {"time_s": recording.time, "torque_nm": recording.input}
+        np.savez(tmp_path / f"{k}.npz", **columns, position_rad=recording.position)
+        lines.append(f'[[recordings]]\nfile = "{k}.npz"\nrole = "{recording.role}"')
+    (tmp_path / "session.toml").write_text("\n".join(lines))
+    arguments = ["diagnose", str(tmp_path / "session.toml"), "--surrogates", "4"]
+    assert run([*arguments, "-o", str(tmp_path / "out")]) == 130
+    assert "interrupted" in capsys.readouterr().err
+    written = json.loads((tmp_path / "out" / "findings.json").read_text("utf-8"))
+    assert written["baseline"]["law"] == "maxwell_slip"
+    assert (tmp_path / "out" / "report.html").exists()
+
+
+def test_findings_hold_every_field_that_others_build_on() -> None:
+    recordings = [recorded(k, role=role) for k, role in enumerate(("train", "select", "test"))]
+    found = st.diagnose(true_plant(), recordings, surrogates=4, laws=("coulomb",)).to_dict()
+    assert list(found) == [
+        "schema", "verdict", "sentence", "effects", "gain", "candidates", "laws", "baseline",
+        "extended", "unexplained", "advice", "data", "version", "seed", "seconds",
+    ]  # fmt: skip
+    assert found["schema"] == 1
+    assert {row["name"] for row in found["candidates"]} == {e.name for e in st.effects()}
+    for row in found["candidates"]:
+        assert set(row) == {"name", "score", "threshold", "select_gain", "reason"}
+        assert row["reason"]
+    assert [set(row) for row in found["laws"]] == [
+        {"law", "heldout_gain", "heldout_gain_ci95", "reason"}
+    ]
+    for model in (found["baseline"], found["extended"]):
+        assert set(model) == {
+            "law", "effects", "parameters", "unit", "train_rms", "select_rms", "heldout_rms",
+            "noise_floor_rms", "replay",
+        }  # fmt: skip
+        for parameter in model["parameters"].values():
+            assert set(parameter) == {"value", "ci95", "unit", "at_bound"}
+    assert set(found["data"]) == {"checks", "split", "hashes", "noise"}
+    if not found["effects"]:
+        assert found["extended"] == found["baseline"]
