@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from ..fitting.minimise import Solution, minimise
-from ..fitting.rows import TIMING_SHARE, Nuisances, Rows
+from ..fitting.rows import Nuisances, Rows, timing_bound
 from ..fitting.start import free_paths
 from ..parameter import Parameter
 from ..plant import Effect, Plant
@@ -104,8 +104,7 @@ class Model:
 
     @property
     def _timing_is_free(self) -> bool:
-        least = min(rows.form.dt for rows in self.evidence.train)
-        return abs(self.nuisances.timing) < INSIDE * TIMING_SHARE * least
+        return abs(self.nuisances.timing) < INSIDE * timing_bound(self.plant, self.evidence.train)
 
     def held(self, plan: Plan) -> FloatArray:
         """Residual of the rows that a plan holds out, fitted on those that it fits.

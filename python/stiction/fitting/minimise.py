@@ -12,7 +12,7 @@ import numpy as np
 from ..plant import Plant
 from ..trajectory import FloatArray
 from .levenberg import Minimum, escaped, levenberg_marquardt
-from .rows import TIMING_SHARE, Nuisances, Rows, Start, start_quantities, told_starts
+from .rows import Nuisances, Rows, Start, start_quantities, timing_bound, told_starts
 from .variables import Variables, records
 
 __all__ = ["MOST_EVALUATIONS", "Solution", "launch", "minimise"]
@@ -155,7 +155,7 @@ class _Minimiser:
 
     def run(self) -> Solution:
         lower, upper = self.variables.bounds()
-        late = TIMING_SHARE * min(each.form.dt for each in self.rows)
+        late = timing_bound(self.plant, self.rows)
         most = START_TIMES * max(float(np.max(np.abs(each.form.effort))) for each in self.rows)
         span = max(float(np.ptp(each.form.position)) for each in self.rows)
         reach = {"force": (-most, most), "hardening": (0.0, span)}

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..catalogue import laws
+from ..catalogue import effects, laws
 from ..plant import Plant
 from ..recording import Part, Recording
 from ..trajectory import FloatArray
@@ -102,6 +102,17 @@ def start_quantities(plant: Plant) -> tuple[str, ...]:
     """Names of what the law of a plant remembers from before a recording."""
     law = next(record for record in laws() if record.name == plant.friction.law)
     return tuple(quantity.name for quantity in getattr(law, "start", ()))
+
+
+def timing_bound(plant: Plant, rows: Sequence[Rows]) -> float:
+    """Greatest timing offset, s: half a sample, or 0 where the plant has a delay of its own.
+
+    Both at once would be one number twice: then the delay holds the whole of it.
+    """
+    late = {record.name for record in effects() if "input delay" in record.hooks}
+    if any(effect.name in late for effect in plant.effects):
+        return 0.0
+    return TIMING_SHARE * min(each.form.dt for each in rows)
 
 
 def told_starts(plant: Plant, rows: Sequence[Rows]) -> list[tuple[int, str]]:
