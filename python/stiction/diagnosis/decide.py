@@ -12,6 +12,7 @@ import numpy as np
 from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .candidates import Candidate
+from .influence import limited
 from .model import Model
 from .screen import Score
 
@@ -141,7 +142,7 @@ def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tupl
 
     ``touched`` says which blocks the second figure is taken over, all without it.
     """
-    before, after = base.blocks[1], model.blocks[1]
+    before, after = limited(base.blocks[1], model.blocks[1])
     seen = before > 0.0
     total = float(before.sum())
     gained = float((before - after)[seen].sum())
@@ -166,7 +167,8 @@ def _sign_z(values: FloatArray) -> float:
 def log_gain(base: Model, model: Model) -> float:
     """Logarithm of the power before over that after, on train and held out, added."""
     total = 0.0
-    for before, after in zip(base.blocks, model.blocks, strict=True):
+    for whole, less in zip(base.blocks, model.blocks, strict=True):
+        before, after = limited(whole, less)
         if before.sum() > 0.0 and after.sum() > 0.0:
             total += math.log(float(before.sum()) / float(after.sum()))
     return total
@@ -205,13 +207,10 @@ def _told(winner: Trial, other: Trial) -> bool:
     """Whether the data tell the winner from another candidate."""
     if other.worth >= (1.0 - NEAR) * winner.worth:
         return False
-    difference = sum(
-        (
-            after - before
-            for after, before in zip(other.model.blocks, winner.model.blocks, strict=True)
-        ),
-        start=np.zeros(1),
-    )
+    difference = np.zeros(len(winner.model.blocks[0]))
+    for worse, better in zip(other.model.blocks, winner.model.blocks, strict=True):
+        after, before = limited(worse, better)
+        difference += after - before
     return _z(difference[difference != 0.0]) >= DECIDED_Z
 
 

@@ -14,6 +14,7 @@ from ..plant import Plant
 from ..trajectory import FloatArray
 from .candidates import Candidate
 from .evidence import Evidence, Plan
+from .influence import limited
 from .regression import project
 
 __all__ = ["NULL_DEVIATIONS", "NULL_TIMES", "Problem", "Score", "Signatures", "screen"]
@@ -255,16 +256,22 @@ def _bounded(record: EffectRecord, gains: FloatArray) -> FloatArray:
 
 def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) -> dict[int, float]:
     """Share of the held-out power that each chosen candidate removes, over all plans."""
-    before = 0.0
-    after = dict.fromkeys(chosen, 0.0)
+    number = int(problem.block.max()) + 1
+    before = np.zeros(number)
+    after = {index: np.zeros(number) for index in chosen}
     for plan in problem.plans:
         base = project(problem.base, plan)
         residual = base.project(problem.residual)
-        before += float(residual.held @ residual.held)
+        block = problem.block[plan.held]
+        before += np.bincount(block, residual.held**2, number)
         for index in chosen:
             part = base.project(signatures.columns[:, signatures.slices[index]])
             _, gains = _solve(part.fit, residual.fit)
             gains = _bounded(signatures.candidates[index].record, gains)
             left = residual.held - part.held @ gains
-            after[index] += float(left @ left)
-    return {index: 1.0 - after[index] / before if before > 0.0 else 0.0 for index in chosen}
+            after[index] += np.bincount(block, left**2, number)
+    shares = {}
+    for index in chosen:
+        one, two = limited(before, after[index])
+        shares[index] = 1.0 - float(two.sum() / one.sum()) if one.sum() > 0.0 else 0.0
+    return shares
