@@ -436,9 +436,15 @@ def _excess(evidence: Evidence, model: Model, null: FloatArray) -> float:
     held = np.zeros(len(evidence.fitted), dtype=bool)
     for plan in evidence.plans:
         held |= plan.held
-    power = float(np.sum(model.residual[held] ** 2))
-    noise = float(np.mean(np.sum(null[held] ** 2, axis=0)))
-    return 1.0 - noise / power if power > 0.0 else 0.0
+    recording = evidence.cells.recording
+    ratios = []
+    for index in np.unique(recording[held]):
+        rows = held & (recording == index)
+        power = float(np.sum(model.residual[rows] ** 2))
+        noise = float(np.mean(np.sum(null[rows] ** 2, axis=0)))
+        ratios.append(noise / power if power > 0.0 else 1.0)
+    # The middle one: a single recording in which the model lost its track says nothing of the rest.
+    return 1.0 - float(np.median(ratios))
 
 
 def _floor(evidence: Evidence, null: FloatArray) -> float:
