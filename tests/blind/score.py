@@ -1,0 +1,154 @@
+"""Diagnoses one session and compares what it says with what was hidden."""
+
+from __future__ import annotations
+
+import math
+from datetime import UTC, datetime
+
+import numpy as np
+
+import stiction as st
+from stiction.diagnosis.evidence import Evidence
+from stiction.diagnosis.gain import open_residuals
+from stiction.diagnosis.model import fitted
+from stiction.fitting.solve import reweighted
+from stiction.session import Session
+
+# Gains of the library's effects from amplitude and shape of the reference plant's.
+STRENGTHS = {
+    "stribeck": lambda a, s: {"excess": a},
+    "viscous_quadratic": lambda a, s: {"quadratic": a / s["velocity"] ** 2},
+    "direction_asymmetry": lambda a, s: {
+        "coulomb": a * s["sign"],
+        "viscous": a * s["sign"] * s["viscous_part"],
+    },
+    "torque_bias": lambda a, s: {"bias": a * s["sign"]},
+    "position_dependent_friction": lambda a, s: _wave(a, s),
+    "cogging": lambda a, s: _wave(a, s),
+    "torque_constant_ripple": lambda a, s: _wave(a, s),
+    "input_delay": lambda a, s: {"delay": a * s["sign"]},
+}
+
+
+def _wave(amplitude, shape):
+    phase = shape["phase"]
+    return {"cosine": amplitude * math.cos(phase), "sine": amplitude * math.sin(phase)}
+
+
+def as_session(made, torque=None):
+    """A reference session as a user would have it; `torque` takes the place of what was logged."""
+    recordings = []
+    for index, r in enumerate(made.recordings):
+        effort = r.torque_nm if torque is None else torque[index]
+        known = {} if r.reference_rad is None else {"reference": r.reference_rad}
+        recordings.append(
+            st.Recording(
+                r.time_s,
+                effort,
+                r.position_rad,
+                role=r.role,
+                kind=r.kind,
+                start_s=r.start_s,
+                **known,
+            )
+        )
+    return Session(recordings)
+
+
+def as_plant(made):
+    """What a user states of the machine: the law, the drive and the encoder."""
+    return st.Plant.from_dict(
+        {
+            "motion": {"kind": "rotary"},
+            "drive": {"input": "torque_nm", "gain": 1.0},
+            "friction": {"law": made.spec.base},
+            "sensor": {"counts_per_rev": made.spec.counts_per_rev},
+        }
+    )
+
+
+def scored(case, made, threads=1):
+    """Verdict, truth and comparison of one case: a line of the results."""
+    plant, session = as_plant(made), as_session(made)
+    found = st.diagnose(plant, session, without=case.without, threads=threads)
+    families = {record.name: record.family for record in st.effects()}
+    names = [effect.name for effect in made.effects]
+    return {
+        "key": case.key,
+        "at": datetime.now(UTC).isoformat(timespec="seconds"),
+        "kind": case.kind,
+        "base": case.base,
+        "seed": case.seed,
+        "without": list(case.without),
+        "hidden": [_truth(effect) for effect in made.effects],
+        "names": names,
+        "classes": sorted({families.get(name, "foreign") for name in names}),
+        "verdict": found.verdict,
+        "found": [_cause(cause, families) for cause in found.effects],
+        "unexplained": [[each.coordinate, each.share] for each in found.unexplained],
+        "gain": None if found.gain is None else found.gain.value,
+        "clair": 0.0 if not names else clair(plant, session, made, found.baseline),
+        "intervals": _intervals(made, found),
+        "candidates": [row.to_dict() for row in found.candidates],
+        "base_rms": found.baseline.train_rms,
+        "floor_rms": found.baseline.noise_floor_rms,
+        "seconds": found.seconds,
+    }
+
+
+def clair(plant, session, made, baseline):
+    """Gain of who knows the hidden torque: taken off the input, base refitted, same weights."""
+    torque = [r.torque_nm + r.truth["hidden"] for r in made.recordings]
+    seen = Evidence(plant, session.recordings, threads=1)
+    clean = Evidence(plant, as_session(made, torque).recordings, threads=1)
+    base = fitted(seen, baseline.plant)
+    reweighted(seen.train, base.plant, base.nuisances)
+    for rows, own in zip(clean.train, seen.train, strict=True):
+        rows.weight = own.weight
+    seen.weigh()
+    clean.weigh()
+    base = fitted(seen, base.plant, base.nuisances)
+    oracle = fitted(clean, base.plant, base.nuisances)
+    before = open_residuals(seen, [(base.plant, base.nuisances)])
+    after = open_residuals(clean, [(oracle.plant, oracle.nuisances)])
+    return 1.0 - float(np.sum(after.residuals[0] ** 2) / np.sum(before.residuals[0] ** 2))
+
+
+def _truth(effect):
+    return {
+        "name": effect.name,
+        "form": effect.form,
+        "size": effect.size,
+        "reached": effect.reached,
+        "smoothed": effect.smoothed,
+        "amplitude": effect.amplitude,
+        "shape": {k: v for k, v in effect.shape.items() if isinstance(v, (int, float))},
+    }
+
+
+def _cause(cause, families):
+    alike = [families[name] for name in (cause.name, *cause.look_alikes)]
+    return {
+        "name": cause.name,
+        "decided": cause.decided,
+        "look_alikes": list(cause.look_alikes),
+        "class": cause.family,
+        "classes": sorted(set(alike)),
+        "gain": None if cause.gain is None else cause.gain.value,
+        "parameters": {path: [p.value, *p.ci95] for path, p in cause.parameters.items()},
+    }
+
+
+def _intervals(made, found):
+    """Truth and 95 % interval of each gain of a named effect that has the library's form."""
+    causes = {cause.name: cause for cause in found.effects}
+    intervals = []
+    for effect in made.effects:
+        known = STRENGTHS.get(effect.name)
+        if known is None or effect.form != "library" or effect.name not in causes:
+            continue
+        parameters = causes[effect.name].parameters
+        for name, true in known(effect.amplitude, effect.shape).items():
+            fit = parameters[f"effects.{effect.name}.{name}"]
+            intervals.append([f"{effect.name}.{name}", float(true), fit.value, *fit.ci95])
+    return intervals

@@ -1,0 +1,124 @@
+"""A few short sessions of the independent plant; `make blind` counts over many."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.blind.score import as_plant, as_session
+from tests.reference.session_reference import make_sessions
+
+import stiction as st
+from stiction.session import Session
+
+SECONDS = 72.0
+"""Of a session: the shortest in which every kind of recording still says something."""
+SIZE = 0.015
+"""rms of the hidden torque as a share of F_c: plainly there."""
+HIDDEN = ("cogging", "torque_bias", "stribeck", "position_dependent_friction", "viscous_quadratic")
+SEEDS = dict(zip(HIDDEN, range(2, 2 + len(HIDDEN)), strict=True))
+LEFT_OUT = ("torque_bias", "stribeck")
+OF_GAIN = ("heldout_gain", "heldout_gain_ci95")
+
+
+@cache
+def made() -> dict[str | None, Any]:
+    specs = [{"seed": 1, "seconds": SECONDS}]
+    specs += [
+        {"seed": seed, "seconds": SECONDS, "hidden": [(name, SIZE)]} for name, seed in SEEDS.items()
+    ]
+    return dict(zip((None, *HIDDEN), make_sessions(specs), strict=True))
+
+
+@cache
+def found(name: str | None, without: tuple[str, ...] = (), threads: int = 1) -> st.Diagnosis:
+    hidden = made()[name]
+    return st.diagnose(as_plant(hidden), as_session(hidden), without=without, threads=threads)
+
+
+def family(name: str) -> str:
+    return next(record.family for record in st.effects() if record.name == name)
+
+
+def as_noise(recording: st.Recording, rng: np.random.Generator) -> st.Recording:
+    """A recording of the same length and label in which nothing is left of the machine."""
+    rows = len(recording)
+    walk = np.cumsum(rng.standard_normal(rows)) * 1e-3
+    return relabelled(recording, recording.role, rng.standard_normal(rows), walk)
+
+
+def relabelled(
+    recording: st.Recording,
+    role: str | None,
+    effort: np.ndarray | None = None,
+    position: np.ndarray | None = None,
+    later: float = 0.0,
+) -> st.Recording:
+    return st.Recording(
+        recording.time,
+        recording.input if effort is None else effort,
+        recording.position if position is None else position,
+        role=role,
+        kind=recording.kind,
+        start_s=recording.start_s + later,
+    )
+
+
+def without_gains(diagnosis: st.Diagnosis) -> dict[str, Any]:
+    """What must not depend on the rows that test."""
+    told = diagnosis.to_dict()
+    for part in ("seconds", "gain", "sentence"):
+        del told[part]
+    del told["data"]["hashes"], told["data"]["checks"]
+    for model in ("baseline", "extended"):
+        del told[model]["heldout_rms"], told[model]["replay"]
+    for effect in told["effects"]:
+        for part in OF_GAIN:
+            del effect[part]
+    return told
+
+
+def test_a_complete_simulation_gives_no_name() -> None:
+    assert found(None).effects == ()
+
+
+@pytest.mark.parametrize("name", HIDDEN)
+def test_a_hidden_effect_is_named_or_listed_as_a_look_alike(name: str) -> None:
+    first = found(name).effects[0]
+    assert name in (first.name, *first.look_alikes)
+
+
+def test_noise_in_place_of_the_rows_that_test_changes_gains_only() -> None:
+    hidden = made()["cogging"]
+    session, rng = as_session(hidden), np.random.default_rng(0)
+    noisy = [as_noise(r, rng) if r.role == "test" else r for r in session]
+    other = st.diagnose(as_plant(hidden), Session(noisy), threads=1)
+    assert without_gains(other) == without_gains(found("cogging"))
+    gain, usual = other.gain, found("cogging").gain
+    assert gain is not None
+    assert usual is not None
+    assert gain.value != usual.value
+
+
+def test_the_number_of_threads_changes_nothing() -> None:
+    one, two = (found("cogging", threads=n).to_dict() for n in (1, 2))
+    del one["seconds"], two["seconds"]
+    assert one == two
+
+
+@pytest.mark.parametrize("name", LEFT_OUT)
+def test_a_cause_that_the_library_lacks_is_not_called_by_another_class(name: str) -> None:
+    diagnosis = found(name, without=(name,))
+    sure = [c for c in diagnosis.effects if c.decided and diagnosis.verdict != "unexplained"]
+    assert all(cause.family == family(name) for cause in sure)
+
+
+def test_a_recording_that_trains_may_not_test() -> None:
+    hidden = made()[None]
+    session = as_session(hidden)
+    swapped = [relabelled(r, "test", later=1e3) for r in session if r.role == "train"]
+    train = [r for r in session if r.role != "test"]
+    with pytest.raises(st.InputError, match="the same recording"):
+        st.diagnose(as_plant(hidden), [*train, *swapped], threads=1)
