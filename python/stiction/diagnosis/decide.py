@@ -56,6 +56,8 @@ class Trial:
         Of the held-out gain over blocks.
     worth : float
         Log-gain on train plus log-gain held out, less 0.004 per parameter.
+    strength : float
+        Gains over their standard errors.
     size : float
         rms of the effort that the effect contributes, as a share of the friction's.
     reason : str
@@ -67,6 +69,7 @@ class Trial:
     gain: float
     z: float
     worth: float
+    strength: float
     size: float
     reason: str
 
@@ -134,7 +137,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             "that matter"
         )
     worth = log_gain(base, model) - PENALTY * score.candidate.parameters
-    return Trial(score, model, gain, z, worth, size, reason)
+    return Trial(score, model, gain, z, worth, strength, size, reason)
 
 
 def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tuple[float, float]:
@@ -190,10 +193,20 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
         and _alike(winner, other)
         and not _told(winner, other)
     ]
-    likeliest = max((winner, *rivals), key=lambda trial: trial.worth)
-    if likeliest is not winner:
-        rivals = [winner, *(other for other in rivals if other is not likeliest)]
-    return Choice(likeliest, tuple(rivals))
+    head = _head(winner, rivals)
+    return Choice(head, tuple(trial for trial in (winner, *rivals) if trial is not head))
+
+
+def _head(winner: Trial, rivals: Sequence[Trial]) -> Trial:
+    """Under whose name a cause stands that is not told from others: the simplest of the best.
+
+    What explains the same with fewer parameters is likelier; and what was refused for its gain
+    over a few blocks alone may still be better than what passed.
+    """
+    group = [winner, *(t for t in rivals if t.strength >= LEAST_STRENGTH)]
+    best = max(trial.worth for trial in group)
+    near = [trial for trial in group if trial.worth >= (1.0 - NEAR) * best]
+    return min(near, key=lambda trial: (trial.candidate.parameters, -trial.worth))
 
 
 def _alike(one: Trial, other: Trial) -> bool:
