@@ -158,6 +158,11 @@ class WeakForm:
         """Acceleration of a position at the stamps of the recording, through the kernel."""
         return self._thin(self.kernel.second_derivative(position[1:]))
 
+    @property
+    def followed_late(self) -> bool:
+        """Whether noise had to be kept from friction by a backlash, which turns round late."""
+        return self._backlash > 0.0
+
     def mean(self, values: FloatArray) -> FloatArray:
         """Values at the ends of the samples (shape of ``position[1:]``) through the kernel."""
         return self._mean(values)

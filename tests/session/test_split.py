@@ -219,3 +219,25 @@ def test_the_split_goes_into_json_and_is_the_same_every_time() -> None:
     assert written["test"] == [
         {"recording": 2, "name": "recording 3", "rows": [0, 600], "seconds": [0.0, 5.99]}
     ]
+
+
+def test_short_recordings_of_kinds_of_their_own_are_left_out_whole() -> None:
+    short = [
+        Recording(np.arange(550) * 1e-2 * 0.9, np.sin(np.arange(550.0) + k), np.arange(550.0) + k,
+                  role=role, kind=kind)
+        for k, (role, kind) in enumerate(
+            [("train", "ramps"), ("train", "sines"), ("train", "pulses"), ("test", "ramps")]
+        )
+    ]  # fmt: skip
+    dealt = st.Session(short).split()
+    assert len(dealt.folds) == 3
+    without = [
+        replaced(r, role) for r, role in zip(short[:3], ("train", "train", "select"), strict=True)
+    ]
+    assert [part.recording for part in st.Session(without).split().test] == [1]
+
+
+def replaced(recording: Recording, role: str) -> Recording:
+    return Recording(
+        recording.time, recording.input, recording.position, role=role, kind=recording.kind
+    )

@@ -112,8 +112,9 @@ def _view(
     """A smoother over one coordinate."""
     plans: Sequence[Plan] = evidence.plans
     edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, number + 1)[1:-1]))
-    index = np.searchsorted(edges, values)
-    bins = len(edges) + 1
+    # Stretches that hold nothing, between equal values, are left out.
+    _, index = np.unique(np.searchsorted(edges, values), return_inverse=True)
+    bins = int(index.max()) + 1
     removed, total = np.zeros(both.shape[1]), np.zeros(both.shape[1])
     rows = 0
     for plan in plans:

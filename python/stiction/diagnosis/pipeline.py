@@ -48,6 +48,9 @@ WORTH_SHARE: Final = 0.25
 MOST_EXCESS: Final = 0.75
 """Share of what is left that noise may fail to explain before it counts as unexplained, where it
 shows in no coordinate: a law is no exact image of a machine."""
+LEAST_EXCESS: Final = -3.0
+"""Where noise alone would leave four times the power that is left, nothing of it is unexplained:
+the replays have lost the machine, as where a dry contact sticks and slips at random."""
 BASE_EVALUATIONS: Final = MOST_EVALUATIONS
 
 _logger = logging.getLogger(__name__)
@@ -335,6 +338,8 @@ def _concluded(
         gain = gain_of(test, 0, len(causes), found.seed)
     unexplained = tuple(Unexplained(view.coordinate.name, view.share) for view in rests[1].flagged)
     excess = _excess(evidence, final, null)
+    if excess < LEAST_EXCESS:
+        unexplained = ()
     if not unexplained and excess > MOST_EXCESS:
         unexplained = (Unexplained(NO_COORDINATE, excess),)
     verdict = _verdict(causes, base, final, unexplained, selection)

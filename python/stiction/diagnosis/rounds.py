@@ -39,6 +39,8 @@ MOST_RENEWALS: Final = 2
 """Times that the base is replaced by a better fit of itself."""
 WORTH_RENEWING: Final = 0.005
 """Share of its residual's power that makes that worth while."""
+LATE_SHARE: Final = 0.5
+"""Of the kernel's support: a follower that keeps noise from friction is late by less."""
 CAUTIOUS: Final = 0.1
 """Share of the screened gain to start from where the whole of it leads astray."""
 
@@ -172,7 +174,8 @@ def _round(
         model = _refit(evidence, base, signatures, score)
         contributed = _contributed(signatures, score, model)
         size = float(np.sqrt(np.mean(contributed**2))) / max(friction, 1e-300)
-        trials.append(judge(base, score, model, contributed, size))
+        trial = judge(base, score, model, contributed, size)
+        trials.append(replace(trial, reason=trial.reason or _friction_is_late(evidence, model)))
     for score in passing[REFITTED:]:
         row = found.rows[score.candidate.name]
         found.rows[row.name] = replace(row, reason="others explain more")
@@ -276,6 +279,22 @@ def friction_of(evidence: Evidence, base: Model) -> float:
         )
     )
     return float(np.sqrt(np.mean(needed**2)))
+
+
+def _friction_is_late(evidence: Evidence, model: Model) -> str:
+    """Why a delay may be no delay of the input, "" where it is none or no reason stands against it.
+
+    Where noise is kept from friction by a follower with a backlash, friction turns round late
+    itself, and an input that seems late is what is left of that.
+    """
+    effect = model.plant.effects[-1]
+    record = next(each for each in effects() if each.name == effect.name)
+    if "input delay" not in record.hooks or not any(f.followed_late for f in evidence.forms):
+        return ""
+    (gain,) = record.gains
+    if effect.parameters[gain].value > LATE_SHARE * evidence.support:
+        return ""
+    return "lies within what noise of the position makes friction late by"
 
 
 def _contributed(signatures: Signatures, score: Score, model: Model) -> FloatArray:

@@ -8,15 +8,18 @@ from typing import Final
 
 import numpy as np
 
+from ..catalogue import effects
 from ..errors import NotEnoughData
 from ..parameter import Parameter
-from ..plant import Plant
+from ..plant import Effect, Plant
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .variables import records
 
 __all__ = ["complete", "free_paths"]
 
+OFF_NEUTRAL: Final = 0.05
+"""Share of its typical size from which the gain of a named effect starts that states no number."""
 REACHES: Final = tuple(10.0 ** (-6.0 + 0.25 * k) for k in range(18))
 """Pre-sliding reaches tried as shares of the range of motion, where no stiffness is stated."""
 TRIED: Final = 4
@@ -68,10 +71,33 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
         stated[name] = Parameter(float(np.clip(value, low, high)))
     if "breakaway" in stated and "coulomb" in stated:
         stated = _ordered(stated, silent)
-    whole = replace(plant, body=body, friction=replace(plant.friction, parameters=stated))
+    whole = replace(
+        plant,
+        body=body,
+        friction=replace(plant.friction, parameters=stated),
+        effects=tuple(_begun(effect) for effect in plant.effects),
+    )
     if "initial_stiffness" in silent:
         return _stiffness(whole, forms, coulomb, silent)
     return [whole]
+
+
+def _begun(effect: Effect) -> Effect:
+    """An effect with its gains stated, a little off the neutral point, where its file is silent.
+
+    At the neutral point itself no shape has a slope. Of an effect that states any number the rest
+    stays as it is.
+    """
+    if effect.parameters:
+        return effect
+    record = next(each for each in effects() if each.name == effect.name)
+    fitted = {shape.parameter for shape in record.shapes if shape.fitted}
+    own = {
+        p.name: Parameter(OFF_NEUTRAL * p.typical if p.name in record.gains else p.default)
+        for p in record.parameters
+        if p.name in record.gains or p.name in fitted
+    }
+    return replace(effect, parameters=own)
 
 
 def free_paths(plant: Plant) -> list[str]:

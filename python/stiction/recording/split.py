@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from ..errors import InputError
+from ..errors import InputError, NotEnoughData
 from ..wording import counted, listed
 from .blocks import Part, blocks, check_lengths_of
 from .recording import SPLIT_ROLES, Recording
@@ -274,6 +274,17 @@ class _Dealer:
                 "the commonest kind in train, is split off before anything is fitted."
             )
             return
+        if not all(self._can_be_cut(part.recording) for part in self.parts["train"]):
+            if number == 0 or len(self.parts["train"]) < 2:
+                self._blocks(self.parts["train"][-1].recording)  # says how long it had to be
+            chosen = [self.parts["train"].pop()]
+            self.parts["test"] += chosen
+            self.rules.append(
+                "No recording has the role test, every kind occurs once in train, and some are too "
+                f"short to be cut: {self.names[chosen[0].recording]}, the last in train, is split "
+                "off before anything is fitted."
+            )
+            return
         trained, self.parts["train"] = self.parts["train"], []
         for part in trained:
             for turn, block in enumerate(self._blocks(part.recording)):
@@ -287,7 +298,13 @@ class _Dealer:
     def _fold(self) -> None:
         kinds = self._kinds_of_train()
         train = tuple(self.parts["train"])
-        single = [i for i in self._trained() if kinds[self.recordings[i].kind] == 1]
+        several = len(self._trained()) > 1
+        single = [
+            i
+            for i in self._trained()
+            if kinds[self.recordings[i].kind] == 1
+            and not (several and not self._foldable(i, train))
+        ]
         many = [i for i in self._trained() if i not in single]
         for index in many:
             held = tuple(part for part in train if part.recording == index)
@@ -317,6 +334,17 @@ class _Dealer:
             return [own[0::2], own[1::2]]
         cut = self._blocks(index)
         return [cut[0::2], cut[1::2]]
+
+    def _can_be_cut(self, index: int) -> bool:
+        """Whether a recording is long enough for blocks."""
+        try:
+            return bool(self._blocks(index))
+        except NotEnoughData:
+            return False
+
+    def _foldable(self, index: int, train: Sequence[Part]) -> bool:
+        """Whether parts of a recording can be left out in turn."""
+        return sum(part.recording == index for part in train) > 1 or self._can_be_cut(index)
 
     def _blocks(self, index: int) -> list[Part]:
         time = self.recordings[index].time
