@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import pytest
 import stiction as st
 from stiction.cli import run
 from stiction.diagnosis.candidates import candidates, left_out, present, scales_of
+from stiction.diagnosis.decide import Trial, choose
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import Gain, HeldOut, gain_of
 from stiction.diagnosis.noise import measure_noise
@@ -191,6 +193,34 @@ def test_the_minimum_is_found_within_bounds_and_beyond_a_kink() -> None:
 def test_intervals_are_students() -> None:
     assert interval_width(2) == pytest.approx(12.706, abs=1e-3)
     assert interval_width(10_000) == pytest.approx(1.960, abs=1e-3)
+
+
+def tried(worth: float, parameters: int, reason: str = "", *, by_blocks: bool = False) -> Trial:
+    """A trial that explains what all others explain."""
+    blocks = (np.linspace(1.0, 2.0, 30), np.linspace(2.0, 1.0, 30))
+    score = SimpleNamespace(
+        signature=np.ones(5), candidate=SimpleNamespace(name=f"{worth}", parameters=parameters)
+    )
+    model = SimpleNamespace(blocks=blocks)
+    return Trial(score, model, 0.3, 3.0, worth, 9.0, 0.1, reason, by_blocks)
+
+
+def test_a_cause_that_is_not_told_stands_under_the_simplest_of_the_best() -> None:
+    simple, flexible = tried(0.95, 1), tried(1.0, 3)
+    chosen = choose([flexible, simple])
+    assert chosen is not None
+    assert (chosen.winner, chosen.rivals) == (simple, (flexible,))
+    assert not chosen.decided
+    spread, lesser = tried(1.0, 1, "spread over blocks", by_blocks=True), tried(0.3, 1)
+    chosen = choose([spread, lesser])
+    assert chosen is not None
+    assert chosen.winner is spread
+    # Refused for anything else it may keep another undecided, and never stands for a cause.
+    chosen = choose([tried(1.0, 1, "explains no more than noise"), lesser])
+    assert chosen is not None
+    assert chosen.winner is lesser
+    assert not chosen.decided
+    assert choose([spread]) is None
 
 
 def test_words_join_and_say_what_was_not_confirmed() -> None:

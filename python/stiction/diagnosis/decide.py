@@ -62,6 +62,8 @@ class Trial:
         rms of the effort that the effect contributes, as a share of the friction's.
     reason : str
         Why it was refused, "" where it was not.
+    by_blocks : bool
+        Refused because its held-out gain varies too much over blocks, and for nothing else.
     """
 
     score: Score
@@ -72,6 +74,7 @@ class Trial:
     strength: float
     size: float
     reason: str
+    by_blocks: bool = False
 
     @property
     def candidate(self) -> Candidate:
@@ -115,6 +118,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     gain, z = heldout_gain(base, model, power > TOUCHED * float(np.mean(power)))
     explained = 1.0 - model.power / base.power if base.power > 0.0 else 0.0
     reason = ""
+    by_blocks = False
     strength = model.strength(score.candidate)
     if explained <= 0.0:
         reason = "fits no better than without it"
@@ -129,6 +133,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         reason = f"gains {100 * gain:.2f} % on rows held out, below {100 * LEAST_GAIN:.2f} %"
     elif z <= LEAST_Z:
         reason = f"its held-out gain is {z:.2f} standard errors, below {LEAST_Z:.2f}"
+        by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
     elif strength < LEAST_STRENGTH:
         reason = f"its strength is {strength:.2f} standard errors, below {LEAST_STRENGTH:.2f}"
     elif size < LEAST_SIZE:
@@ -137,7 +142,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             "that matter"
         )
     worth = log_gain(base, model) - PENALTY * score.candidate.parameters
-    return Trial(score, model, gain, z, worth, strength, size, reason)
+    return Trial(score, model, gain, z, worth, strength, size, reason, by_blocks)
 
 
 def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tuple[float, float]:
@@ -200,10 +205,10 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
 def _head(winner: Trial, rivals: Sequence[Trial]) -> Trial:
     """Under whose name a cause stands that is not told from others: the simplest of the best.
 
-    What explains the same with fewer parameters is likelier; and what was refused for its gain
-    over a few blocks alone may still be better than what passed.
+    What explains the same with fewer parameters is likelier; and what was refused for the spread
+    of its gain over blocks alone may still be better than what passed.
     """
-    group = [winner, *(t for t in rivals if t.strength >= LEAST_STRENGTH)]
+    group = [winner, *(trial for trial in rivals if not trial.reason or trial.by_blocks)]
     best = max(trial.worth for trial in group)
     near = [trial for trial in group if trial.worth >= (1.0 - NEAR) * best]
     return min(near, key=lambda trial: (trial.candidate.parameters, -trial.worth))

@@ -260,10 +260,10 @@ def _screened(score: Score) -> CandidateRow:
 
 def _tried(trial: Trial, choice: Choice | None) -> CandidateRow:
     score = trial.score
-    if trial.reason:
+    if choice is not None and trial is choice.winner:
+        reason = f"accepted beside a look-alike: {trial.reason}" if trial.reason else "accepted"
+    elif trial.reason or choice is None:
         reason = trial.reason
-    elif choice is None or trial is choice.winner:
-        reason = "accepted"
     elif trial in choice.rivals:
         reason = f"these data cannot tell it from {choice.winner.name}"
     else:
