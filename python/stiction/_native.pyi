@@ -97,7 +97,7 @@ class Motor:
         *,
         load: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
-    ) -> tuple[_Floats, _Floats, _Floats]: ...
+    ) -> tuple[_Floats, _Floats, _Floats, _Floats]: ...
     def follow_sensitivity(
         self,
         position: npt.ArrayLike,
@@ -107,7 +107,7 @@ class Motor:
         *,
         load: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
-    ) -> tuple[_Floats, _Floats]: ...
+    ) -> tuple[_Floats, _Floats, _Floats]: ...
     def signatures(
         self,
         position: npt.ArrayLike,
@@ -118,7 +118,7 @@ class Motor:
         load: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
         threads: int = 1,
-    ) -> tuple[_Floats, _Floats]: ...
+    ) -> tuple[_Floats, _Floats, _Floats]: ...
     def sensitivity(
         self,
         current: npt.ArrayLike,
@@ -130,7 +130,14 @@ class Motor:
     def adopt(self, other: Motor) -> None: ...
     def settings(self) -> dict[str, Any]: ...
     def friction_settings(self) -> tuple[str, dict[str, Any]]: ...
-    def reset(self, position: float = 0.0, velocity: float = 0.0) -> None: ...
+    def reset(
+        self,
+        position: float = 0.0,
+        velocity: float = 0.0,
+        *,
+        time: float = 0.0,
+        path: float = 0.0,
+    ) -> None: ...
     @property
     def parameters(self) -> dict[str, float]: ...
     @property

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ from .parameter import number
 from .plant import Plant
 from .plant_file import choice, known, read_toml, section
 from .recording import Columns, Recording
+from .recording.session_clock import starts_of
 from .recording.split import BLOCK_S, EDGE_S, Split, name_of, split
 from .recording.units import FloatArray, Motion
 from .wording import counted, did_you_mean, listed
@@ -66,7 +66,7 @@ class Session:
                     f"session: replicates says that recording {index} repeats recording {of}; "
                     f"give two different indices from 0 to {len(self.recordings) - 1}"
                 )
-        object.__setattr__(self, "starts", _starts(self.recordings))
+        object.__setattr__(self, "starts", starts_of(self.recordings))
 
     @property
     def clock_stated(self) -> bool:
@@ -144,28 +144,6 @@ class Session:
 
 
 _HEAD = ("recording", "role", "kind", "starts at s", "lasts s", "rows", "replicate of")
-
-
-def _starts(recordings: Sequence[Recording]) -> tuple[float, ...]:
-    """Starts on the session clock: as stated, or one recording after the other."""
-    if not any(recording.start_s != 0.0 for recording in recordings):
-        starts, at = [], 0.0
-        for recording in recordings:
-            starts.append(at)
-            at += recording.duration + recording.dt
-        return tuple(starts)
-    stated = tuple(recording.start_s for recording in recordings)
-    order = sorted(range(len(recordings)), key=lambda index: stated[index])
-    for before, after in pairwise(order):
-        end = stated[before] + recordings[before].duration
-        if stated[after] < end:
-            raise InputError(
-                f"session: {name_of(recordings[after], after)} starts at "
-                f"{stated[after]:g} s, before {name_of(recordings[before], before)} ends at "
-                f"{end:.6g} s; one machine makes one recording at a time: state start_s of each, "
-                "on one clock, or of none"
-            )
-    return stated
 
 
 def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = False) -> Session:

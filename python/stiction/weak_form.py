@@ -22,6 +22,7 @@ from .motion import (
 from .trajectory import FloatArray
 
 if TYPE_CHECKING:
+    from .motor import Motor
     from .plant import Plant
     from .recording import Recording
 
@@ -83,6 +84,8 @@ class WeakForm:
         Position as it was read, on even stamps, and as it drives friction.
     count : float
         Step of the readings, 0 where there is none.
+    clock, path : float
+        Session clock in s and path travelled in rad or m, at the first row; 0 until they are set.
 
     Raises
     ------
@@ -143,6 +146,7 @@ class WeakForm:
         self.readings = x
         self.position = self.driving(x)
         self.input = np.zeros(len(x) - 1) if self.prescribed else u[:-1]
+        self.clock = self.path = 0.0
         self.time = self._thin(time[1:][self.kernel.half : -self.kernel.half])
         self.acceleration = self.accelerations(x)
 
@@ -186,32 +190,42 @@ class WeakForm:
         ``start`` holds the friction state at the first row (see ``LawRecord.start``); without it
         the friction was never moved.
         """
-        drive, needed = self.along(plant, start)
+        drive, needed, ahead = self.along(plant, start)
         # Stamps of `follow` are the sample ends. A measured effort belongs to its stamp; a held
         # one is the mean of what held before and after, or it is half a sample late.
         measured = self.effort[1:] if self.prescribed else _centred(drive)
         measured = measured + _centred(self.load[:-1])
-        return self._mean(measured), plant.inertia * self.acceleration + self._mean(needed)
+        inertial = plant.inertia * (self.acceleration + self._bent(ahead))
+        return self._mean(measured), inertial + self._mean(needed)
 
     def along(
         self, plant: Plant, start: Start = None, *, position: FloatArray | None = None
-    ) -> tuple[FloatArray, FloatArray]:
-        """Effort of the drive, and friction less gravity and added efforts, at the sample ends.
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Efforts at the sample ends, and what of the motion the sensor does not show.
 
-        Shape of ``position[1:]`` each, before the kernel; ``position`` takes the place of the
-        measured motion.
+        Effort of the drive; friction less gravity and added efforts; how far the centre of mass is
+        ahead of the reading. Shape of ``position[1:]`` each, before the kernel; ``position`` takes
+        the place of the measured motion.
         """
         motion = self.position if position is None else position
-        motor = plant.follower()
-        motor.reset(float(motion[0]), 0.0)
-        drive, ambient, friction = motor.follow(
+        motor = self._follower(plant, motion)
+        drive, ambient, friction, ahead = motor.follow(
             motion,
             self.input,
             self.dt,
             load=self.load[:-1],
             start=start,
         )
-        return drive, friction - ambient
+        return drive, friction - ambient, ahead
+
+    def inertial(self, plant: Plant, position: FloatArray, ahead: FloatArray) -> FloatArray:
+        """Inertia term of a motion whose centre of mass is that far ahead of the sensor."""
+        return plant.inertia * (self.accelerations(position) + self._bent(ahead))
+
+    def _follower(self, plant: Plant, motion: FloatArray) -> Motor:
+        motor = plant.follower()
+        motor.reset(float(motion[0]), 0.0, time=self.clock, path=self.path)
+        return motor
 
     def late(self, plant: Plant) -> FloatArray:
         """Derivative of the measured effort by a timing offset of its own, per s; shape (n,).
@@ -232,9 +246,8 @@ class WeakForm:
         Beside parameters of the plant the paths may name quantities of the start, such as
         ``start.force``.
         """
-        motor = plant.follower()
-        motor.reset(float(self.position[0]), 0.0)
-        needed, driven = motor.follow_sensitivity(
+        motor = self._follower(plant, self.position)
+        needed, driven, ahead = motor.follow_sensitivity(
             self.position,
             self.input,
             self.dt,
@@ -242,9 +255,12 @@ class WeakForm:
             load=self.load[:-1],
             start=start,
         )
-        columns = self._columns(needed, driven)
+        columns = self._columns(plant, needed, driven, ahead)
         if "body.inertia" in paths:
-            columns[:, list(paths).index("body.inertia")] -= self.acceleration
+            place = list(paths).index("body.inertia")
+            columns[:, place] -= self.acceleration
+            if plant.effects:
+                columns[:, place] -= self._bent(self.along(plant, start)[2])
         return columns
 
     def signatures(
@@ -264,9 +280,8 @@ class WeakForm:
         numpy.ndarray, shape (n, gains)
             In the order of the candidates and of the gains of each.
         """
-        motor = plant.follower()
-        motor.reset(float(self.position[0]), 0.0)
-        needed, driven = motor.signatures(
+        motor = self._follower(plant, self.position)
+        needed, driven, ahead = motor.signatures(
             self.position,
             self.input,
             self.dt,
@@ -274,17 +289,28 @@ class WeakForm:
             load=self.load[:-1],
             start=start,
         )
-        return self._columns(needed, driven)
+        return self._columns(plant, needed, driven, ahead)
 
-    def _columns(self, needed: FloatArray, driven: FloatArray) -> FloatArray:
+    def _columns(
+        self, plant: Plant, needed: FloatArray, driven: FloatArray, ahead: FloatArray
+    ) -> FloatArray:
         """Columns of a Jacobian from derivatives at the sample ends, a row each."""
         columns = np.empty((len(self), len(needed)))
-        for k, (need, drive) in enumerate(zip(needed, driven, strict=True)):
+        rows = zip(needed, driven, ahead, strict=True)
+        for k, (need, drive, shift) in enumerate(rows):
             gained = -need
             if not self.prescribed and np.any(drive):
                 gained += _centred(drive)
             columns[:, k] = self._mean(gained)
+            if np.any(shift):
+                columns[:, k] -= plant.inertia * self._bent(shift)
         return columns
+
+    def _bent(self, ahead: FloatArray) -> FloatArray:
+        """Second derivative, through the kernel, of a distance at the sample ends."""
+        if not np.any(ahead):
+            return np.zeros(len(self))
+        return self._thin(self.kernel.second_derivative(ahead))
 
     def _mean(self, values: FloatArray) -> FloatArray:
         return self.kernel.mean(values, every=self.stride)

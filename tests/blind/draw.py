@@ -45,9 +45,11 @@ class Case:
         return {"seed": self.seed, "base": self.base, "hidden": self.hidden}
 
 
-def library():
-    """Effects that the library and the reference plant have in common."""
-    known = {record.name for record in st.effects()}
+def library(base=None):
+    """Effects that library and reference plant have in common, and the law `base` not of itself."""
+    core = {p.name for law in st.laws() if law.name == base for p in law.parameters}
+    core -= {p.name for law in st.laws() if law.name == base for p in law.parameters if p.optional}
+    known = {record.name for record in st.effects() if not core.intersection(record.law_terms)}
     return [name for name in LIBRARY if name in known]
 
 
@@ -57,7 +59,7 @@ def cases(number, seed, base="maxwell_slip", sizes=SIZES, kinds=tuple(MIX), effe
         raise ValueError(f"one seed draws {SEEDS_EACH} sessions at most, not {number}")
     rng = np.random.default_rng([seed, *(zlib.crc32(w.encode()) for w in ("blind", base))])
     kind_deck = _deck(rng, [kind for kind in kinds for _ in range(MIX[kind])])
-    effect_deck = _deck(rng, list(effects) or library())
+    effect_deck = _deck(rng, list(effects) or library(base))
     foreign_deck = _deck(rng, list(FOREIGN))
     first = FIRST_SEED + SEEDS_EACH * seed
     return [

@@ -42,7 +42,7 @@ def motion(direction=1.0):
 
 
 def needed(motor, start, path):
-    _, ambient, friction = motor.copy().follow(path, np.zeros(SAMPLES), DT, start=start)
+    _, ambient, friction, _ = motor.copy().follow(path, np.zeros(SAMPLES), DT, start=start)
     return friction - ambient
 
 
@@ -111,7 +111,7 @@ def test_derivatives_by_the_start_equal_differences(kind, direction, force, hard
     start = {name: start[name] for name in QUANTITIES[law]}
     paths = [f"start.{name}" for name in start]
     kept = motor.copy()
-    exact, driven = motor.follow_sensitivity(path, np.zeros(SAMPLES), DT, paths, start=start)
+    exact, driven, _ = motor.follow_sensitivity(path, np.zeros(SAMPLES), DT, paths, start=start)
     assert motor == kept
     assert not driven.any()
     for k, name in enumerate(start):
@@ -178,6 +178,6 @@ def test_a_force_beyond_sliding_levels_off_below_it(shape):
 def test_signatures_begin_with_the_start_too():
     motor, path, start = machine("maxwell_slip"), motion(), {"force": 0.2}
     level = [("position_dependent_friction", {"order": 1.0})]
-    needed_rows, _ = motor.signatures(path, np.zeros(SAMPLES), DT, level, start=start)
+    needed_rows, _, _ = motor.signatures(path, np.zeros(SAMPLES), DT, level, start=start)
     assert needed_rows[0, 0] == pytest.approx(0.2, rel=0.2)
     assert abs(motor.signatures(path, np.zeros(SAMPLES), DT, level)[0][0, 0]) < 0.05

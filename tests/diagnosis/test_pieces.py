@@ -111,7 +111,7 @@ def test_projection_takes_off_what_the_base_explains_and_the_same_from_held_rows
 
 
 def test_every_effect_has_candidates_within_its_bounds(evidence: Evidence) -> None:
-    scales = scales_of(evidence)
+    scales = scales_of(evidence, evidence.plant)
     assert scales.speeds[0] < scales.speeds[1]
     for record in st.effects():
         found = candidates(record, scales)

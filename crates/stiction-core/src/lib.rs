@@ -12,6 +12,7 @@ pub mod body;
 pub mod drive;
 pub mod effects;
 pub mod error;
+pub mod follow;
 pub mod integrate;
 pub mod model;
 pub mod motor;

@@ -4,10 +4,9 @@ use crate::body::Body;
 use crate::drive::{DelayLine, Drive};
 use crate::effects::{AnyEffect, EffectRecord, Effects, effect_record};
 use crate::error::{Error, Result};
+use crate::follow::arriving;
 use crate::friction::{AnyState, Entry, Law, LawState, Statistics};
-use crate::integrate::{
-    Along, Integrator, MOST_PARTS, Machine, Run, parts, sample, through_events,
-};
+use crate::integrate::{Integrator, MOST_PARTS, Machine, Run, parts, sample};
 use crate::model::{CHUNK, LawSpec};
 use crate::parameter::resolve;
 use crate::scalar::Scalar;
@@ -154,13 +153,15 @@ impl MotorSpec {
             AnyEffect::build(effect.record.name, own).expect("the record's own name is in the list")
         });
         let effects = Effects::new(effects);
+        let law = self.friction.law(friction);
         let machine = Machine::new(
             Drive { gain: first[1], limit: self.input_limit },
             Body::new(first[0], first[2], first[3], first[4]),
             effects,
             Sensor { count: self.count },
+            law.sliding_force(),
         );
-        (machine, self.friction.law(friction))
+        (machine, law)
     }
 }
 
@@ -246,15 +247,6 @@ pub struct Running<S: Scalar> {
     pub integrator: Integrator,
 }
 
-/// What of the input reaches the drive during a sample.
-#[inline]
-fn arriving<S: Scalar>(line: &mut Option<&mut DelayLine<S>>, input: f64, dt: f64) -> S {
-    match line {
-        None => S::constant(input),
-        Some(line) => line.pass(input, dt),
-    }
-}
-
 impl<S: Scalar> Running<S> {
     /// At rest at 0, never moved.
     pub fn new(spec: &MotorSpec, values: &[S]) -> Self {
@@ -270,6 +262,7 @@ impl<S: Scalar> Running<S> {
     pub fn resume(&mut self, from: &Running<f64>) {
         self.state = from.state.lift();
         self.run = from.run.lift();
+        self.machine.effects.resume(&from.machine.effects);
         self.machine.refresh(&mut self.run);
         if let (Some(line), Some(from)) = (&mut self.line, &from.line) {
             line.resume(from);
@@ -282,6 +275,7 @@ impl<S: Scalar> Running<S> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let parts = whole_parts(parts(&self.machine, law, dt), dt)?;
             state.make_room(parts as usize + CHUNK / 4);
+            let before = self.run;
             sample(
                 &self.machine,
                 law,
@@ -293,6 +287,7 @@ impl<S: Scalar> Running<S> {
                 parts,
                 self.integrator,
             );
+            self.machine.remember(&before, &self.run);
         });
         Ok(())
     }
@@ -324,6 +319,7 @@ impl<S: Scalar> Running<S> {
                         state.make_room(room + CHUNK / 4);
                     }
                     room -= divided as usize;
+                    let before = self.run;
                     sample(
                         &self.machine,
                         law,
@@ -335,74 +331,13 @@ impl<S: Scalar> Running<S> {
                         divided,
                         self.integrator,
                     );
+                    self.machine.remember(&before, &self.run);
                     let seen = &*state;
                     row(index, &self.run, &self.machine, &|column| seen.output(column));
                 }
             }
         });
         Ok(())
-    }
-}
-
-/// Efforts along a motion that was measured or prescribed.
-#[derive(Debug, Clone, Copy)]
-pub struct Efforts<S> {
-    /// Effort of the drive for the held input.
-    pub driven: S,
-    /// Gravity and added efforts.
-    pub ambient: S,
-    /// Friction.
-    pub friction: S,
-}
-
-impl<S: Scalar> Running<S> {
-    /// Moves the contact along given positions, one more than there are inputs, and reports the
-    /// efforts at the end of each sample. The inertia term is the caller's: it needs the
-    /// acceleration, which no difference of neighbouring samples gives.
-    pub fn follow(
-        &mut self,
-        positions: &[f64],
-        inputs: PerSample<'_>,
-        load: PerSample<'_>,
-        dt: PerSample<'_>,
-        mut row: impl FnMut(usize, Efforts<S>),
-    ) {
-        let mut line = self.line.as_mut();
-        with_law_and_state!(&self.law, &mut self.state, |law, state| {
-            // Velocity at a stamp is the slope between its neighbours, so that what depends on
-            // velocity is not half a sample late; at the first stamp there is only one side.
-            let last = positions.len() - 1;
-            let slope = |k: usize| {
-                let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
-                let span: f64 = (before..after).map(|j| dt.at(j)).sum();
-                S::constant((positions[after] - positions[before]) / span)
-            };
-            let mut velocity = slope(0);
-            for (k, pair) in positions.windows(2).enumerate() {
-                if k % CHUNK == 0 {
-                    state.make_room(CHUNK + CHUNK / 4);
-                }
-                let duration = dt.at(k);
-                let span = S::constant(duration);
-                let load = S::constant(load.at(k));
-                let before = velocity;
-                velocity = slope(k + 1);
-                self.run.position = S::constant(pair[1]);
-                self.run.velocity = velocity;
-                self.run.time += span;
-                self.run.second_position = self.run.position;
-                self.run.second_velocity = velocity;
-                let at = self.run.situation();
-                let input = arriving(&mut line, inputs.at(k), duration);
-                let (effort, driven, ambient) = self.machine.efforts(&at, input, load);
-                let channels = self.machine.channels(&at, effort, load);
-                let displacement = S::constant(pair[1] - pair[0]);
-                let mut held = Along::new(displacement, span, (before, velocity), channels);
-                through_events(&mut held, law, state, span);
-                self.run.friction = held.outcome.force;
-                row(k, Efforts { driven, ambient, friction: held.outcome.force });
-            }
-        });
     }
 }
 
@@ -481,14 +416,15 @@ impl Motor {
     }
 
     /// Efforts along given positions, one more than there are samples: of the drive, of gravity and
-    /// added efforts, and friction, each as long as there are samples.
+    /// added efforts, and friction; then how far the centre of mass is ahead of the reading. Each is
+    /// as long as there are samples.
     pub fn follow(
         &mut self,
         positions: &[f64],
         inputs: PerSample<'_>,
         load: PerSample<'_>,
         dt: PerSample<'_>,
-        efforts: [&mut [f64]; 3],
+        efforts: [&mut [f64]; 4],
     ) -> Result<()> {
         let wanted = positions.len().saturating_sub(1);
         for (name, each) in [("input", inputs), ("load", load), ("dt", dt)] {
@@ -498,8 +434,8 @@ impl Motor {
                 return Err(Error::Length { name: name.to_owned(), given: values.len(), wanted });
             }
         }
-        let [driven, ambient, friction] = efforts;
-        for array in [&driven, &ambient, &friction] {
+        let [driven, ambient, friction, ahead] = efforts;
+        for array in [&driven, &ambient, &friction, &ahead] {
             if array.len() != wanted {
                 let name = "out".to_owned();
                 return Err(Error::Length { name, given: array.len(), wanted });
@@ -509,6 +445,7 @@ impl Motor {
             driven[k] = efforts.driven;
             ambient[k] = efforts.ambient;
             friction[k] = efforts.friction;
+            ahead[k] = efforts.ahead;
         });
         Ok(())
     }
@@ -517,9 +454,16 @@ impl Motor {
     pub fn reset(&mut self, position: f64, velocity: f64) {
         self.running.state = self.running.law.initial();
         self.running.run = self.running.machine.start(position, velocity);
+        self.running.machine.effects.forget();
         if let Some(line) = &mut self.running.line {
             line.clear();
         }
+    }
+
+    /// Sets the session clock and the path travelled so far.
+    pub fn set_clock(&mut self, time: f64, path: f64) {
+        self.running.run.time = time;
+        self.running.run.path = path;
     }
 
     /// Replaces the friction state by that of a contact that brings these values along, in the
@@ -541,6 +485,7 @@ impl Motor {
             ("position", number(run.position)),
             ("velocity", number(run.velocity)),
             ("time", number(run.time)),
+            ("path", number(run.path)),
             ("friction", number(run.friction)),
             ("second_position", number(run.second_position)),
             ("second_velocity", number(run.second_velocity)),
@@ -548,6 +493,8 @@ impl Motor {
             ("ambient", number(run.ambient())),
         ];
         entries.extend(self.running.line.as_ref().map(DelayLine::entry));
+        let effects = &self.running.machine.effects;
+        entries.extend(effects.remembers().then(|| effects.entry()));
         entries.extend(with_state!(&self.running.state, |state| state.entries()));
         entries
     }
@@ -555,8 +502,11 @@ impl Motor {
     /// Sets body and friction state from named entries.
     pub fn restore(&mut self, entries: &[(String, Entry)]) -> Result<()> {
         let mut line = self.running.line.clone();
+        let mut effects = self.running.machine.effects.clone();
         let own = |name: &str| {
-            BODY.contains(&name) || (line.is_some() && name == DelayLine::<f64>::ENTRY)
+            BODY.contains(&name)
+                || (line.is_some() && name == DelayLine::<f64>::ENTRY)
+                || (effects.remembers() && name == Effects::<f64>::ENTRY)
         };
         let (body, law): (Vec<_>, Vec<_>) =
             entries.iter().cloned().partition(|(name, _)| own(name.as_str()));
@@ -565,6 +515,7 @@ impl Motor {
         run.position = read.number("position", false)?;
         run.velocity = read.number("velocity", false)?;
         run.time = read.number("time", false)?;
+        run.path = read.number("path", false)?;
         run.friction = read.number("friction", false)?;
         run.second_position = read.number("second_position", false)?;
         run.second_velocity = read.number("second_velocity", false)?;
@@ -572,12 +523,16 @@ impl Motor {
         if let Some(line) = &mut line {
             line.restore(&mut read)?;
         }
+        if effects.remembers() {
+            effects.restore(&mut read)?;
+        }
         let state = self.running.law.restore(&law)?;
         // As it was, not recomputed: it belongs to the end of the last step, to the bit.
         run.set_ambient(read.number("ambient", false)?);
         self.running.state = state;
         self.running.run = run;
         self.running.line = line;
+        self.running.machine.effects = effects;
         Ok(())
     }
 
@@ -587,10 +542,11 @@ impl Motor {
     }
 }
 
-const BODY: [&str; 8] = [
+const BODY: [&str; 9] = [
     "position",
     "velocity",
     "time",
+    "path",
     "friction",
     "second_position",
     "second_velocity",

@@ -27,6 +27,9 @@ pub enum Quantity {
     Inertia,
     Time,
     Rate,
+    Compliance,
+    /// Whatever the input of the drive is measured in.
+    Input,
     /// Radians (metres) of hardening per effort to the power of the hardening exponent.
     Hardening,
     /// Cycles per radian (metre).
@@ -48,6 +51,8 @@ impl Quantity {
             Self::Inertia => ("kg·m²", "kg"),
             Self::Time => ("s", "s"),
             Self::Rate => ("1/s", "1/s"),
+            Self::Compliance => ("rad/(N·m)", "m/N"),
+            Self::Input => ("input", "input"),
             Self::Hardening => ("rad/(N·m)^n", "m/N^n"),
             Self::Order => ("1/rad", "1/m"),
         };

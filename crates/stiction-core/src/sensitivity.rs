@@ -2,8 +2,9 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use crate::effects::EffectRecord;
+use crate::effects::{AnyEffect, EffectRecord, Effects, Hook, Passage, Situation};
 use crate::error::{Error, Result};
+use crate::follow::Efforts;
 use crate::motor::{EffectSpec, MotorSpec, PerSample, Running};
 use crate::scalar::{COLUMNS, Dual, Scalar};
 
@@ -113,7 +114,12 @@ pub struct EffortSensitivity {
     pub needed: Vec<f64>,
     /// ∂(effort of the drive)/∂parameter, likewise.
     pub driven: Vec<f64>,
+    /// ∂(centre of mass ahead of the reading)/∂parameter, likewise.
+    pub ahead: Vec<f64>,
 }
+
+/// The rows of a pass: needed, driven, ahead.
+type Rows<'a> = [&'a mut [f64]; 3];
 
 /// A motion that was measured or prescribed, and what acted meanwhile.
 #[derive(Debug, Clone, Copy)]
@@ -130,17 +136,19 @@ pub struct MeasuredMotion<'a> {
 
 impl EffortSensitivity {
     fn zeros(parameters: usize, motion: &MeasuredMotion<'_>) -> Self {
-        let size = parameters * motion.samples();
-        Self { needed: vec![0.0; size], driven: vec![0.0; size] }
+        let zeros = || vec![0.0; parameters * motion.samples()];
+        Self { needed: zeros(), driven: zeros(), ahead: zeros() }
     }
 
-    /// The rows of each pass, one after the other.
-    fn passes(
-        &mut self,
-        motion: &MeasuredMotion<'_>,
-    ) -> impl Iterator<Item = (&mut [f64], &mut [f64])> {
-        let size = (COLUMNS * motion.samples()).max(1);
-        self.needed.chunks_mut(size).zip(self.driven.chunks_mut(size))
+    /// Each row of its own.
+    fn rows(&mut self, motion: &MeasuredMotion<'_>) -> impl Iterator<Item = Rows<'_>> {
+        let size = motion.samples().max(1);
+        let (driven, ahead) = (self.driven.chunks_mut(size), self.ahead.chunks_mut(size));
+        let both = driven.zip(ahead);
+        self.needed
+            .chunks_mut(size)
+            .zip(both)
+            .map(|(needed, (driven, ahead))| [needed, driven, ahead])
     }
 }
 
@@ -149,18 +157,14 @@ impl MeasuredMotion<'_> {
         self.positions.len().saturating_sub(1)
     }
 
-    /// Follows the motion and fills the rows of a pass.
-    fn differentiate(
-        &self,
-        running: &mut Running<Dual>,
-        (needed, driven): (&mut [f64], &mut [f64]),
-    ) {
-        let (samples, columns) = (self.samples(), needed.len() / self.samples().max(1));
+    /// Follows the motion and fills the rows of a pass, one for each seeded column.
+    fn differentiate(&self, running: &mut Running<Dual>, rows: &mut [Rows<'_>]) {
         running.follow(self.positions, self.inputs, self.load, self.dt, |k, efforts| {
             let short = efforts.friction - efforts.ambient;
-            for column in 0..columns {
-                needed[column * samples + k] = Scalar::partial(short, column);
-                driven[column * samples + k] = Scalar::partial(efforts.driven, column);
+            for (column, [needed, driven, ahead]) in rows.iter_mut().enumerate() {
+                needed[k] = Scalar::partial(short, column);
+                driven[k] = Scalar::partial(efforts.driven, column);
+                ahead[k] = Scalar::partial(efforts.ahead, column);
             }
         });
     }
@@ -175,11 +179,10 @@ pub fn follow_sensitivity(
     paths: &[String],
 ) -> Result<EffortSensitivity> {
     let mut result = EffortSensitivity::zeros(paths.len(), motion);
-    let mut rows = result.passes(motion);
-    passes(spec, start, paths, |running, _, _| {
-        if let Some(rows) = rows.next() {
-            motion.differentiate(running, rows);
-        }
+    let mut rows = result.rows(motion);
+    passes(spec, start, paths, |running, _, number| {
+        let mut own: Vec<Rows<'_>> = rows.by_ref().take(number).collect();
+        motion.differentiate(running, &mut own);
         Ok(())
     })?;
     drop(rows);
@@ -203,18 +206,29 @@ pub fn signatures(
         let place = |gain: &&str| effect.parameters.iter().position(|p| p.name == *gain);
         effect.facts.gains.iter().filter_map(place)
     };
-    let rows: Vec<(usize, usize)> = candidates
+    let places: Vec<(usize, usize)> = candidates
         .iter()
         .enumerate()
         .flat_map(|(index, candidate)| gains(candidate.record).map(move |gain| (index, gain)))
         .collect();
-    let mut result = EffortSensitivity::zeros(rows.len(), motion);
-    let work = Mutex::new(rows.chunks(COLUMNS).zip(result.passes(motion)));
+    let mut result = EffortSensitivity::zeros(places.len(), motion);
+    let (mut direct, mut seeded) = (Vec::new(), Vec::new());
+    for (place, rows) in places.iter().zip(result.rows(motion)) {
+        let list = if acts_at_once(candidates[place.0].record) { &mut direct } else { &mut seeded };
+        list.push((*place, rows));
+    }
+    if !direct.is_empty() {
+        at_once(spec, start, motion, candidates, &mut direct);
+    }
+    let work = Mutex::new(seeded.chunks_mut(COLUMNS));
     let next = || work.lock().unwrap_or_else(PoisonError::into_inner).next();
     let passes = || {
-        while let Some((pass, rows)) = next() {
-            let mut running = with_candidates(spec, start, candidates, pass);
-            motion.differentiate(&mut running, rows);
+        while let Some(pass) = next() {
+            let places: Vec<(usize, usize)> = pass.iter().map(|(place, _)| *place).collect();
+            let mut running = with_candidates(spec, start, candidates, &places);
+            let mut rows: Vec<Rows<'_>> =
+                pass.iter_mut().map(|(_, rows)| rows.each_mut().map(|row| &mut **row)).collect();
+            motion.differentiate(&mut running, &mut rows);
         }
     };
     std::thread::scope(|scope| {
@@ -223,8 +237,75 @@ pub fn signatures(
         }
         passes();
     });
-    drop(work);
+    drop(seeded);
     result
+}
+
+/// Whether an effect enters the efforts of a sample through that sample alone.
+fn acts_at_once(record: &EffectRecord) -> bool {
+    record.hooks.iter().all(|hook| match hook {
+        Hook::FrictionLevel | Hook::AddedEffort | Hook::InputMap => true,
+        Hook::InputDelay | Hook::SensorMap | Hook::StateRelaxation | Hook::SecondMass => false,
+    })
+}
+
+/// Share of the usual input by which a gain of the input map is moved to see what it does; such maps
+/// are made of straight pieces, so any small step gives the derivative.
+const SMALL: f64 = 1e-6;
+
+/// Rows of effects that act at once: what one unit of a gain adds to level, effort or input, times
+/// the derivative by that. One pass carries the derivatives by the levels, whatever the number of
+/// rows.
+fn at_once(
+    spec: &MotorSpec,
+    start: Start<'_>,
+    motion: &MeasuredMotion<'_>,
+    candidates: &[EffectSpec],
+    rows: &mut [((usize, usize), Rows<'_>)],
+) {
+    let values: Vec<f64> = spec.parameters().into_iter().map(|(_, value)| value).collect();
+    let mut running = seeded(spec, start, &values, &[]);
+    let (level, viscous) = (Dual::variable(1.0, 0), Dual::variable(1.0, 1));
+    running.machine.effects.seed_levels(level, viscous);
+    let usual = (0..motion.samples()).map(|k| motion.inputs.at(k).abs()).fold(0.0, f64::max);
+    let step = if usual > 0.0 { SMALL * usual } else { 1.0 };
+    let mut alone: Vec<(Effects<f64>, f64)> = rows
+        .iter()
+        .map(|((index, gain), _)| {
+            let candidate = &candidates[*index];
+            let mapped = candidate.record.hooks.contains(&Hook::InputMap);
+            let unit = if mapped { step } else { 1.0 };
+            let mut own = candidate.values.clone();
+            own[*gain] = unit;
+            let effect = AnyEffect::build(candidate.record.name, &own);
+            (Effects::new(effect), unit)
+        })
+        .collect();
+    let drive = running.machine.drive;
+    let mut before = (running.actual(motion.positions[0]), running.run.friction.re());
+    running.follow(motion.positions, motion.inputs, motion.load, motion.dt, |k, efforts| {
+        let Efforts { friction, at, input, .. } = efforts;
+        let at = Situation {
+            position: at.position.re(),
+            velocity: at.velocity.re(),
+            time: at.time.re(),
+            path: at.path.re(),
+        };
+        let displacement = at.position - before.0;
+        let passage = Passage { displacement, friction: before.1, span: motion.dt.at(k) };
+        before = (at.position, friction.re());
+        let (by_level, by_viscous) = (friction.partial(0), friction.partial(1));
+        let input = input.re();
+        let gain = if input.abs() <= drive.limit { drive.gain.re() } else { 0.0 };
+        for ((effects, unit), (_, [needed, driven, _])) in alone.iter_mut().zip(rows.iter_mut()) {
+            effects.remember(&passage);
+            let (dry, viscous) = effects.levels(&at);
+            needed[k] = ((dry - 1.0) * by_level + (viscous - 1.0) * by_viscous
+                - effects.effort(&at))
+                / *unit;
+            driven[k] = gain * (effects.input(input, &at) - input) / *unit;
+        }
+    });
 }
 
 /// The motor with the candidates of a pass, given as rows of candidate and place of its gain.

@@ -58,15 +58,21 @@ fn numbers_of(owner: &str, values: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f
     }
 }
 
-/// Derivatives as two arrays of this shape.
-#[allow(clippy::type_complexity)]
-fn both<'py>(
-    py: Python<'py>,
-    rows: EffortSensitivity,
-    shape: [usize; 2],
-) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
+/// Three arrays: needed, driven, ahead.
+type Derivatives<'py> =
+    (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
+/// Four arrays: drive, ambient, friction, ahead.
+type Followed<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+);
+
+/// Derivatives as arrays of this shape.
+fn arrays(py: Python<'_>, rows: EffortSensitivity, shape: [usize; 2]) -> PyResult<Derivatives<'_>> {
     let array = |values| PyArray1::from_vec(py, values).reshape(shape);
-    Ok((array(rows.needed)?, array(rows.driven)?))
+    Ok((array(rows.needed)?, array(rows.driven)?, array(rows.ahead)?))
 }
 
 #[pymethods]
@@ -205,10 +211,10 @@ impl Motor {
     }
 
     /// Efforts along given positions (shape (n + 1,)): of the drive for held inputs (shape (n,)), of
-    /// gravity and added efforts, and friction; each of shape (n,), at the end of each sample.
+    /// gravity and added efforts, friction, and how far the centre of mass is ahead of the reading
+    /// (a second mass, a sensor that errs); each of shape (n,), at the end of each sample.
     /// With start values of the law (`laws()`) the contact begins with these, not as it is.
     #[pyo3(signature = (position, current, dt, *, load=None, start=None))]
-    #[allow(clippy::type_complexity)]
     fn follow<'py>(
         &self,
         py: Python<'py>,
@@ -217,12 +223,11 @@ impl Motor {
         dt: &Bound<'py, PyAny>,
         load: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)>
-    {
+    ) -> PyResult<Followed<'py>> {
         let measured = Measured::read(position, current, dt, load)?;
         let start = self.start(py, start)?;
         let n = measured.samples();
-        let mut efforts = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
+        let mut efforts = [vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0.0; n]];
         {
             let MeasuredMotion { positions, inputs, load, dt } = measured.motion()?;
             let arrays = efforts.each_mut().map(Vec::as_mut_slice);
@@ -235,16 +240,18 @@ impl Motor {
             })
             .or_input_error(py)?;
         }
-        let [driven, ambient, friction] = efforts.map(|values| PyArray1::from_vec(py, values));
-        Ok((driven, ambient, friction))
+        let [driven, ambient, friction, ahead] =
+            efforts.map(|values| PyArray1::from_vec(py, values));
+        Ok((driven, ambient, friction, ahead))
     }
 
     /// Exact derivatives by parameters along given positions (shape (n + 1,)): of friction less
-    /// gravity and added efforts, and of the effort of the drive; each of shape (parameters, n).
+    /// gravity and added efforts, of the effort of the drive, and of how far the centre of mass is
+    /// ahead of the reading; each of shape (parameters, n).
     /// Where a start is given its values are parameters too: `start.force` and so on. The motor is
     /// left as it was.
     #[pyo3(signature = (position, current, dt, parameters, *, load=None, start=None))]
-    #[allow(clippy::type_complexity, clippy::too_many_arguments)] // keywords of the Python class
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn follow_sensitivity<'py>(
         &self,
         py: Python<'py>,
@@ -254,7 +261,7 @@ impl Motor {
         parameters: Vec<String>,
         load: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
+    ) -> PyResult<Derivatives<'py>> {
         let measured = Measured::read(position, current, dt, load)?;
         let motion = measured.motion()?;
         let primed = self.start(py, start)?;
@@ -263,15 +270,16 @@ impl Motor {
             let start = Start { running: core.running(), primed: primed.as_deref() };
             follow_sensitivity(core.spec(), start, &motion, &parameters)
         });
-        both(py, rows.or_input_error(py)?, [parameters.len(), measured.samples()])
+        arrays(py, rows.or_input_error(py)?, [parameters.len(), measured.samples()])
     }
 
     /// Exact derivatives along given positions (shape (n + 1,)) by the gains of effects beside the
     /// motor's own, each at the gain 0 and in the shape given as (name, parameters): of friction
-    /// less gravity and added efforts, and of the effort of the drive; each of shape (gains, n), in
-    /// the order of the candidates and of their gains. The motor is left as it was.
+    /// less gravity and added efforts, of the effort of the drive, and of how far the centre of mass
+    /// is ahead of the reading; each of shape (gains, n), in the order of the candidates and of their
+    /// gains. The motor is left as it was.
     #[pyo3(signature = (position, current, dt, candidates, *, load=None, start=None, threads=1))]
-    #[allow(clippy::type_complexity, clippy::too_many_arguments)] // keywords of the Python class
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn signatures<'py>(
         &self,
         py: Python<'py>,
@@ -282,7 +290,7 @@ impl Motor {
         load: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
         threads: i64,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
+    ) -> PyResult<Derivatives<'py>> {
         let measured = Measured::read(position, current, dt, load)?;
         let motion = measured.motion()?;
         let primed = self.start(py, start)?;
@@ -312,7 +320,7 @@ impl Motor {
             let start = Start { running: core.running(), primed: primed.as_deref() };
             signatures(core.spec(), start, &motion, &list, threads as usize)
         });
-        both(py, rows, [gains, measured.samples()])
+        arrays(py, rows, [gains, measured.samples()])
     }
 
     /// Exact derivatives of position and velocity by parameters, from the present state.
@@ -402,12 +410,23 @@ impl Motor {
         Column::names(&self.lock().spec().friction)
     }
 
-    /// Back to rest at this position (or in motion at this velocity), friction never moved.
-    #[pyo3(signature = (position=0.0, velocity=0.0))]
-    fn reset(&self, py: Python<'_>, position: f64, velocity: f64) -> PyResult<()> {
+    /// Back to rest at this position (or in motion at this velocity), friction never moved; the
+    /// session clock in s and the path travelled so far are what slow effects go by.
+    #[pyo3(signature = (position=0.0, velocity=0.0, *, time=0.0, path=0.0))]
+    fn reset(
+        &self,
+        py: Python<'_>,
+        position: f64,
+        velocity: f64,
+        time: f64,
+        path: f64,
+    ) -> PyResult<()> {
         let position = finite(py, "position", position)?;
         let velocity = self::velocity(py, velocity)?;
-        self.lock().reset(position, velocity);
+        let (time, path) = (finite(py, "time", time)?, finite(py, "path", path)?);
+        let mut core = self.lock();
+        core.reset(position, velocity);
+        core.set_clock(time, path);
         Ok(())
     }
 

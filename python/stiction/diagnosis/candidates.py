@@ -26,6 +26,14 @@ MOST_ORDERS: Final = 48
 """Orders tried at most."""
 WIDER: Final = 1.5
 """A refit may leave the grid of a speed by this factor."""
+MUCH_WIDER: Final = 4.0
+"""And that of other sizes by this one."""
+PRESLIDING: Final = 3.0
+"""Pre-sliding length over the friction divided by the initial stiffness: the contact softens."""
+RESTING_SHARE: Final = 1e-3
+"""Of the range of motion: a rest of a contact without a spring."""
+FEWEST_COUNTS: Final = 3.0
+"""A rest is no shorter than this many counts of the sensor."""
 ORDER_STEP: Final = 0.5
 """Spacing of orders where the machine does not turn fully, in periods over its range."""
 
@@ -42,11 +50,15 @@ class Scales:
         Orders that the range of motion can show, 1/rad or 1/m.
     whole_turns : bool
         Orders are whole numbers: the machine turns at least once.
+    units : dict of str to float
+        What the scales ``presliding`` (rad or m), ``loading`` (N·m/s or N/s), ``session`` (s) and
+        ``path`` (rad or m) are measured in.
     """
 
     speeds: tuple[float, float]
     orders: tuple[float, ...]
     whole_turns: bool
+    units: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -80,8 +92,8 @@ class Candidate:
         return len(self.record.gains) + len(self.free)
 
 
-def scales_of(evidence: Evidence) -> Scales:
-    """Sizes of the motion in the rows that may be looked at."""
+def scales_of(evidence: Evidence, plant: Plant) -> Scales:
+    """Sizes of the motion in the rows that may be looked at, and of the contact of a fitted plant."""
     speeds = np.concatenate([np.abs(r.form.velocity[r.mask]) for r in evidence.shown])
     moving = speeds[speeds > STILL * float(np.max(speeds, initial=0.0))]
     low, high = np.quantile(moving, FEWEST_SPEEDS) if len(moving) else (1.0, 1.0)
@@ -96,7 +108,30 @@ def scales_of(evidence: Evidence) -> Scales:
         orders = tuple(step * k for k in range(1, MOST_ORDERS + 1))
     else:
         orders = (1.0,)
-    return Scales((float(low), float(max(high, low * 1.01))), orders, whole)
+    speeds = (float(low), float(max(high, low * 1.01)))
+    return Scales(speeds, orders, whole, _units(evidence, plant, span))
+
+
+def _units(evidence: Evidence, plant: Plant, span: float) -> dict[str, float]:
+    """What shapes are measured in that belong to the contact or to the session as a whole."""
+    values = plant.friction.model().parameters
+    sliding = values.get("coulomb", math.inf)
+    if not math.isfinite(sliding) or sliding <= 0.0:
+        sliding = float(np.sqrt(np.mean([np.mean(r.form.effort**2) for r in evidence.shown])))
+    stiffness = values.get("initial_stiffness", 0.0)
+    count = max(form.count for form in evidence.forms)
+    # Without a spring there is no pre-sliding length; a rest is what the sensor takes for one.
+    length = sliding / stiffness * PRESLIDING if stiffness > 0.0 else RESTING_SHARE * span
+    ends = [form.clock + form.time[-1] - form.time[0] for form in evidence.forms]
+    paths = [
+        form.path + float(np.sum(np.abs(np.diff(form.position)))) for form in evidence.forms
+    ]
+    return {
+        "presliding": max(length, FEWEST_COUNTS * count, 1e-12),
+        "loading": max(sliding, 1e-300),
+        "session": max(*ends, 1e-3) if len(ends) > 1 else max(ends[0], 1e-3),
+        "path": max(*paths, 1e-9) if len(paths) > 1 else max(paths[0], 1e-9),
+    }
 
 
 def left_out(without: Sequence[str]) -> tuple[str, ...]:
@@ -140,10 +175,12 @@ def _grid(record: EffectRecord, scales: Scales) -> Iterator[Candidate]:
         axes.append(sorted({float(np.clip(v, *bounds)) for v in values}))
         if shape.fitted and fitted:
             free.append(shape.parameter)
-            if shape.scale == "speed":
+            if shape.scale != "order":
                 # Beyond its own grid a shape turns into another effect: a fall that takes all
                 # speeds is curved viscous friction.
-                limits[shape.parameter] = (min(axes[-1]) / WIDER, max(axes[-1]) * WIDER)
+                wider = WIDER if shape.scale == "speed" else MUCH_WIDER
+                low, high = min(axes[-1]) / wider, max(axes[-1]) * wider
+                limits[shape.parameter] = (max(low, bounds[0]), min(high, bounds[1]))
     for point in product(*axes):
         names = (s.parameter for s in shapes)
         yield Candidate(record, dict(zip(names, point, strict=True)), tuple(free), limits)
@@ -156,4 +193,6 @@ def _axis(scale: str, grid: Sequence[float], scales: Scales) -> tuple[Sequence[f
     if scale == "speed":
         low, high = scales.speeds
         return [low * (high / low) ** share for share in grid], True
+    if scale in scales.units:
+        return [scales.units[scale] * share for share in grid], True
     return grid, True

@@ -10,7 +10,7 @@ from typing import Final, TypeVar
 import numpy as np
 
 from ..errors import NotEnoughData
-from ..fitting.rows import EVERY_S, Mask, Nuisances, Rows, rows_of
+from ..fitting.rows import Mask, Nuisances, Rows, forms_of, rows_of
 from ..plant import Plant
 from ..recording import Part, Recording
 from ..recording.split import BLOCK_S, Split, name_of, split
@@ -106,7 +106,7 @@ class Evidence:
         self.recordings = list(recordings)
         self.threads = threads
         self.names = [name_of(recording, k) for k, recording in enumerate(self.recordings)]
-        self.forms = self.each(lambda r: WeakForm(plant, r, every=EVERY_S), self.recordings)
+        self.forms = forms_of(plant, self.recordings, self.each)
         self.support = max(form.kernel.support for form in self.forms)
         self.split: Split = split(self.recordings, edge_s=min(self.support, 0.25 * BLOCK_S))
         self.train = self._rows(plant, self.split.train)

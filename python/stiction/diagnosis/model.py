@@ -80,12 +80,18 @@ class Model:
         return np.nan_to_num(self.evidence.stack(block))
 
     def strength(self, candidate: Candidate) -> float:
-        """Gains of an effect over their standard errors: √(γᵀC⁻¹γ), C over blocks of 1 s."""
+        """Gains of an effect over their standard errors: √(γᵀC⁻¹γ), C over blocks of 1 s.
+
+        Its shape is taken as it is: a gain and the time over which it comes are told apart by few
+        recordings, and still there may be no doubt that something comes.
+        """
         paths = list(self.solution.variables.paths)
         own = [paths.index(f"effects.{candidate.name}.{name}") for name in candidate.record.gains]
         fit, block = self.evidence.fitted, self.evidence.cells.block
         columns, residual = self.columns[fit], self.residual[fit]
         scale = np.sqrt(np.sum(columns**2, axis=0))
+        shapes = [f"effects.{candidate.name}.{name}" for name in candidate.shape]
+        scale[[paths.index(path) for path in shapes if path in paths]] = 0.0
         live = np.flatnonzero(scale > 0.0)
         scaled = columns[:, live] / scale[live]
         bread = np.linalg.pinv(scaled.T @ scaled, rcond=FLAT, hermitian=True)

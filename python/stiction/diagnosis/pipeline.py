@@ -238,7 +238,7 @@ def _testable(
     seen = looks(evidence, clocks, evidence.shown)
     bias, centred = centre(null)
     friction = friction_of(evidence, base)
-    orders = scales_of(evidence).orders
+    orders = scales_of(evidence, base.plant).orders
     left = rest(evidence, seen, orders, final.residual - bias, centred, friction)
     before = left
     if final is not base:

@@ -69,18 +69,18 @@ def _replayed(
     form = rows.form
     start = nuisances.start(rows.index)
     motion = true_motion(form)
-    needed = form.along(plant, start, position=motion)[1]
-    accelerated = form.accelerations(motion)
+    _, needed, ahead = form.along(plant, start, position=motion)
+    inertial = form.inertial(plant, motion, ahead)
     columns = np.empty((int(rows.mask.sum()), number))
     for k in range(number):
         readings = motion + noise.position * source.standard_normal(len(motion))
         if noise.count > 0.0:
             readings = np.round(readings / noise.count) * noise.count
-        followed = form.along(plant, start, position=form.driving(readings))[1]
+        _, followed, ahead = form.along(plant, start, position=form.driving(readings))
         added = noise.effort * source.standard_normal(len(motion))
         added = 0.5 * (added[:-1] + added[1:])
         residual = form.mean(needed - followed + added)
-        residual += plant.inertia * (accelerated - form.accelerations(readings))
+        residual += inertial - form.inertial(plant, readings, ahead)
         columns[:, k] = residual[rows.mask]
     return columns
 

@@ -118,7 +118,7 @@ def _candidates(
     evidence: Evidence, base: Model, without: Sequence[str], found: Search
 ) -> list[Candidate]:
     """What to try, and a row for each effect that is not tried."""
-    scales = scales_of(evidence)
+    scales = scales_of(evidence, base.plant)
     channels = set.intersection(*(set(r.channels) for r in evidence.recordings))
     tried: list[Candidate] = []
     for record in effects():

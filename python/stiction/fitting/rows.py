@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -11,11 +11,12 @@ import numpy as np
 from ..catalogue import effects, laws
 from ..plant import Plant
 from ..recording import Part, Recording
+from ..recording.session_clock import starts_of
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .statistics import CORRELATED_S
 
-__all__ = ["EVERY_S", "Mask", "Nuisances", "Rows", "Start", "rows_of", "start_quantities"]
+__all__ = ["EVERY_S", "Mask", "Nuisances", "Rows", "Start", "forms_of", "rows_of", "start_quantities"]
 
 EVERY_S: Final = 0.005
 """Spacing of the residual: the kernel leaves nothing between."""
@@ -86,6 +87,25 @@ def warm(form: WeakForm, recording: Recording) -> Mask:
     """Rows after the warm-up."""
     after: Mask = form.time >= recording.time[0] + WARM_UP_S
     return after
+
+
+def forms_of(
+    plant: Plant,
+    recordings: Sequence[Recording],
+    each: Callable[[Callable[[Recording], WeakForm], Sequence[Recording]], list[WeakForm]],
+) -> list[WeakForm]:
+    """Recordings through kernels, with session clock and path running on from one to the next.
+
+    ``each`` is what goes over them: ``lambda work, items: list(map(work, items))``.
+    """
+    forms = each(lambda recording: WeakForm(plant, recording, every=EVERY_S), recordings)
+    starts = starts_of(recordings)
+    path = 0.0
+    for index in sorted(range(len(forms)), key=lambda k: starts[k]):
+        form = forms[index]
+        form.clock, form.path = starts[index], path
+        path += float(np.sum(np.abs(np.diff(form.position))))
+    return forms
 
 
 def rows_of(form: WeakForm, recording: Recording, index: int, parts: Sequence[Part]) -> Mask:

@@ -14,10 +14,9 @@ from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.split import BLOCK_S, split
 from ..trajectory import FloatArray
-from ..weak_form import WeakForm
 from .minimise import MOST_EVALUATIONS, Solution, launch, minimise
 from .result import FitParameter, FitResult
-from .rows import EVERY_S, Nuisances, Rows, rows_of
+from .rows import Nuisances, Rows, forms_of, rows_of
 from .start import complete, free_paths
 from .statistics import correlations, covariance, interval_width, undetermined_directions
 from .variables import Variables, unit_of
@@ -69,7 +68,7 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     recordings = [session] if isinstance(session, Recording) else list(session)
     if not recordings:
         raise InputError("there are no recordings to fit; give at least one")
-    forms = [WeakForm(plant, recording, every=EVERY_S) for recording in recordings]
+    forms = forms_of(plant, recordings, lambda work, items: [work(item) for item in items])
     parts = _deal(recordings, max(form.kernel.support for form in forms))
     train: list[Rows] = []
     held: list[Rows] = []

@@ -30,6 +30,9 @@ be 0. The others are varied by their logarithm: a stiffness or a rate is known t
 LEAST_SHARE: Final = 1e-6
 """A parameter varied by its logarithm stays above this share of where it starts."""
 
+INPUT_UNITS: Final = {"current_a": "A", "voltage_v": "V", "torque_nm": "N·m", "force_n": "N"}
+"""Unit of what is measured in the input of the drive."""
+
 _BODY: Final = {
     "body.inertia": (1e-12, math.inf, ("kg·m²", "kg")),
     "body.gravity_amplitude": (-math.inf, math.inf, ("N·m", "N·m")),
@@ -55,6 +58,8 @@ def unit_of(plant: Plant, path: str) -> str:
     if path in _BODY:
         return _BODY[path][2][linear]
     record = records(plant)[path]
+    if record.unit == "input":
+        return INPUT_UNITS.get(str(plant.drive.get("input", "")), "1")
     return record.linear_unit if linear else record.unit
 
 

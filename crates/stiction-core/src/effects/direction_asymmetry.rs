@@ -1,6 +1,6 @@
 //! Friction that differs between the two directions.
 
-use super::{Effect, EffectFacts, Hook, LevelChange, Scale, Shape, Situation};
+use super::{Effect, EffectFacts, Hook, LevelChange, Memory, Scale, Shape, Situation};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -49,7 +49,7 @@ impl<S: Scalar> Effect<S> for DirectionAsymmetry<S> {
     }
 
     #[inline]
-    fn level(&self, at: &Situation<S>) -> LevelChange<S> {
+    fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
         let direction =
             at.velocity / (at.velocity * at.velocity + p.velocity * p.velocity).sqrt();

@@ -1,6 +1,6 @@
 //! Friction that varies with position.
 
-use super::{Effect, EffectFacts, Hook, LevelChange, Scale, Shape, Situation};
+use super::{Effect, EffectFacts, Hook, LevelChange, Memory, Scale, Shape, Situation};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -47,7 +47,7 @@ impl<S: Scalar> Effect<S> for PositionDependentFriction<S> {
     }
 
     #[inline]
-    fn level(&self, at: &Situation<S>) -> LevelChange<S> {
+    fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
         let angle = p.order * at.position;
         let friction = p.cosine * angle.cos() + p.sine * angle.sin();

@@ -1,6 +1,6 @@
 //! Friction that is higher at low speed.
 
-use super::{Effect, EffectFacts, Hook, LevelChange, Scale, Shape, Situation};
+use super::{Effect, EffectFacts, Hook, LevelChange, Memory, Scale, Shape, Situation};
 use crate::friction::elements::stribeck::fall;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -56,7 +56,7 @@ impl<S: Scalar> Effect<S> for Stribeck<S> {
     }
 
     #[inline]
-    fn level(&self, at: &Situation<S>) -> LevelChange<S> {
+    fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
         let (left, _) = fall(at.velocity, p.velocity, p.exponent);
         LevelChange { friction: p.excess * left, viscous: S::constant(0.0) }

@@ -159,6 +159,10 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
         Ok(state)
     }
 
+    fn sliding_force(&self) -> S {
+        self.parameters.coulomb
+    }
+
     fn greatest_stiffness(&self) -> f64 {
         0.0
     }

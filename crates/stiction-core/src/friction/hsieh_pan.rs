@@ -500,6 +500,10 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         Ok(state)
     }
 
+    fn sliding_force(&self) -> S {
+        self.parameters.coulomb
+    }
+
     fn greatest_stiffness(&self) -> f64 {
         self.parameters.initial_stiffness.re()
     }

@@ -169,6 +169,8 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn greatest_stiffness(&self) -> f64;
     /// Greatest ∂force/∂velocity at fixed displacement that lasts: limits the step as well.
     fn greatest_damping(&self) -> f64;
+    /// Friction of slow sliding at level 1; infinite where the contact never slides.
+    fn sliding_force(&self) -> S;
     /// Steepest fall of friction with speed: limits the step to a few parts.
     fn steepest_fall(&self) -> f64 {
         0.0
@@ -371,6 +373,11 @@ macro_rules! laws {
                     #[allow(unreachable_patterns)]
                     _ => unreachable!("a trial is only ever made by its own law"),
                 }
+            }
+
+            /// Friction of slow sliding at level 1; infinite where the contact never slides.
+            pub fn sliding_force(&self) -> S {
+                match self { $(Self::$law(law) => law.sliding_force(),)* }
             }
 
             /// The state of a contact that was never moved.

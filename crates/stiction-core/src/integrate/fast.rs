@@ -42,26 +42,19 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Fast<'_, S> {
             position: run.position + displacement,
             velocity: predicted,
             time: run.time + span,
+            path: run.path + displacement.abs(),
         };
         let mut next = *run;
         next.position = end.position;
         next.time = end.time;
-        if let Some(second) = machine.second_mass {
-            let inertia = machine.body.inertia * second.share;
-            let pull = machine.shaft(&start, run.second_position, run.second_velocity);
-            let slowing = -(pull / inertia);
-            next.second_position =
-                run.second_position + span * (run.second_velocity + half * slowing);
-            let arriving = run.second_velocity + span * slowing;
-            let pull_then = machine.shaft(&end, next.second_position, arriving);
-            next.second_velocity = run.second_velocity - half * (pull + pull_then) / inertia;
-        }
+        next.path = end.path;
+        machine.swing(&start, &end, span, &mut next);
         next.ambient = machine.ambient(&end, next.second_position, next.second_velocity);
         let mut at_contact = displacement;
         if machine.relaxation.is_some() {
-            let gained = machine.relax(run, friction, span);
-            next.relaxed = run.relaxed + gained;
-            at_contact -= machine.crept(gained, friction);
+            let (hardened, crept) = machine.relax(run.relaxed, friction, span);
+            next.relaxed = hardened;
+            at_contact -= crept;
         }
         let effort_then = machine.driven(self.input, &end) + self.load + next.ambient;
         let mut motion = Motion {

@@ -10,10 +10,12 @@ mod events;
 mod fast;
 mod machine;
 mod reference;
+mod shaft;
 
 pub use contact::{Along, Held};
 pub use events::{Stepper, quiet, through_events};
 pub use machine::{Machine, Run};
+pub use shaft::Twist;
 
 use crate::friction::FrictionLaw;
 use crate::scalar::Scalar;
@@ -91,9 +93,10 @@ mod tests {
     use super::*;
     use crate::body::Body;
     use crate::drive::Drive;
-    use crate::effects::{Effects, Relaxation, SecondMass};
+    use crate::effects::Effects;
     use crate::friction::FrictionLaw;
     use crate::friction::coulomb::Coulomb;
+    use crate::friction::elements::plastic::Plastic;
     use crate::sensor::Sensor;
 
     const INERTIA: f64 = 0.01;
@@ -104,6 +107,7 @@ mod tests {
             Body::new(INERTIA, 0.0, 0.0, 0.0),
             Effects::new([]),
             Sensor::default(),
+            1.0,
         )
     }
 
@@ -133,7 +137,8 @@ mod tests {
     fn a_second_mass_swings_on_its_shaft() {
         let (share, stiffness, input) = (0.4, 50.0, 0.2);
         let mut machine = machine();
-        machine.second_mass = Some(SecondMass { share, stiffness, damping: 0.0 });
+        let inertia = INERTIA * share;
+        machine.shaft = Some(super::shaft::Shaft { inertia, stiffness, damping: 0.0 });
         machine.inertia = INERTIA * (1.0 - share);
         let omega = (stiffness / (INERTIA * share * (1.0 - share))).sqrt();
         for integrator in [Integrator::Fast, Integrator::Reference] {
@@ -154,7 +159,7 @@ mod tests {
     #[test]
     fn a_relaxing_contact_creeps_while_it_holds() {
         let mut machine = machine();
-        machine.relaxation = Some(Relaxation { coefficient: 1e-3, exponent: 2.0, rate: 3.0 });
+        machine.relaxation = Some(Plastic { coefficient: 1e-3, exponent: 2.0, rate: 3.0 });
         let runs = run(&machine, &coulomb(1.0), 0.5, Integrator::Fast);
         for (k, run) in runs.iter().enumerate() {
             let t = (k + 1) as f64 * 1e-4;

@@ -5,7 +5,7 @@ use super::fast::Attempt;
 use super::machine::{Machine, Run, hold};
 use crate::effects::Situation;
 use crate::friction::{FrictionLaw, INTERNAL, Motion};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, sign};
 
 /// The reference integrator over one sample.
 pub(super) struct Reference<'a, S: Scalar> {
@@ -20,7 +20,7 @@ const SIZE: usize = 5 + INTERNAL;
 
 impl<S: Scalar> Reference<'_, S> {
     fn motion(&self, y: &[S; SIZE], span: S, friction: S) -> Motion<S> {
-        let crept = self.machine.crept(y[4] - self.run.relaxed, friction);
+        let crept = (y[4] - self.run.relaxed) * sign(friction.re());
         Motion {
             displacement: y[0] - crept,
             duration: span,
@@ -30,7 +30,12 @@ impl<S: Scalar> Reference<'_, S> {
     }
 
     fn situation(&self, y: &[S; SIZE], span: S) -> Situation<S> {
-        Situation { position: self.run.position + y[0], velocity: y[1], time: self.run.time + span }
+        Situation {
+            position: self.run.position + y[0],
+            velocity: y[1],
+            time: self.run.time + span,
+            path: self.run.path + y[0].abs(),
+        }
     }
 
     fn effort(&self, at: &Situation<S>, y: &[S; SIZE]) -> S {
@@ -52,11 +57,12 @@ impl<S: Scalar> Reference<'_, S> {
         let motion = self.motion(y, span, self.run.friction);
         let (friction, inner) = law.rates(state, &motion, &internal, &channels);
         let zero = S::constant(0.0);
-        let second = machine
-            .second_mass
-            .map_or(zero, |m| -(machine.shaft(&at, y[2], y[3]) / (machine.body.inertia * m.share)));
-        let relaxing =
-            machine.relaxation.map_or(zero, |module| module.hardening_rate(y[4], friction));
+        let second =
+            machine.shaft.map_or(zero, |shaft| -(machine.shaft(&at, y[2], y[3]) / shaft.inertia));
+        let relaxing = match machine.relaxation {
+            Some(module) if !machine.slides(friction) => module.hardening_rate(y[4], friction),
+            _ => zero,
+        };
         [
             y[1],
             (effort - friction) / machine.inertia,
@@ -112,14 +118,16 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Reference<'_, S> {
             &[y[5], y[6], y[7]],
             &self.machine.channels(&at, effort, self.load),
         );
+        let friction = law.outcome(&trial).force;
         let next = Run {
             position: at.position,
             velocity: y[1],
             time: at.time,
-            friction: law.outcome(&trial).force,
+            path: at.path,
+            friction,
             second_position: y[2],
             second_velocity: y[3],
-            relaxed: y[4],
+            relaxed: if self.machine.slides(friction) { S::constant(0.0) } else { y[4] },
             ambient: self.machine.ambient(&at, y[2], y[3]),
         };
         Attempt { run: next, trial, motion }

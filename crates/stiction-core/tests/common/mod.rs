@@ -3,7 +3,7 @@
 
 use stiction_core::friction::{Channels, LAWS, LawRecord};
 use stiction_core::model::{FrictionModel, LawSpec};
-use stiction_core::motor::{Motor, MotorSpec, PerSample};
+use stiction_core::motor::{Column, Motor, MotorSpec, PerSample};
 
 /// A deterministic stream of numbers in 0 … 1: tests need spread, not quality.
 pub struct Stream(u64);
@@ -48,16 +48,14 @@ pub fn motor(inertia: f64, law: LawSpec) -> Motor {
 }
 
 pub fn positions(motor: &mut Motor, inputs: &[f64], dt: f64) -> Vec<f64> {
-    let mut position = vec![0.0; inputs.len()];
-    motor
-        .simulate(
-            inputs,
-            PerSample::Same(0.0),
-            PerSample::Same(dt),
-            &mut [(stiction_core::motor::Column::Position, &mut position)],
-        )
-        .unwrap();
-    position
+    column(motor, Column::Position, inputs, dt)
+}
+
+pub fn column(motor: &mut Motor, column: Column, inputs: &[f64], dt: f64) -> Vec<f64> {
+    let mut values = vec![0.0; inputs.len()];
+    let (load, dt) = (PerSample::Same(0.0), PerSample::Same(dt));
+    motor.simulate(inputs, load, dt, &mut [(column, &mut values)]).unwrap();
+    values
 }
 
 /// Parameters drawn within about a factor 3 of the typical ones, inside the bounds and in order.

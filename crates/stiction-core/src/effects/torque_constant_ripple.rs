@@ -1,0 +1,57 @@
+//! Effort per input that varies with position.
+
+use super::{Effect, EffectFacts, Hook, Scale, Shape, Situation};
+use crate::parameter::ParameterSpec;
+use crate::parameters;
+use crate::scalar::Scalar;
+
+parameters! {
+    /// Parameters of [`TorqueConstantRipple`].
+    pub struct TorqueConstantRippleParameters {
+        cosine: One, "amplitude of the cosine part, as a share of the gain",
+            default Value(0.0), neutral Some(0.0), typical 0.05, bounds -0.6, 0.6;
+        sine: One, "amplitude of the sine part, as a share of the gain",
+            default Value(0.0), neutral Some(0.0), typical 0.05, bounds -0.6, 0.6;
+        order: Order, "periods per 2π rad (rotary) or per 2π m (linear), N",
+            default Value(6.0), neutral None, typical 6.0, bounds 1e-6, 1e9;
+    }
+}
+
+/// Input times 1 + a·cos(N·x) + b·sin(N·x): a motor whose torque constant ripples.
+///
+/// Neutral: a = b = 0.
+/// Source: Holtz, Springob, IEEE Trans. Ind. Electron. 43 (1996): torque ripple of permanent-magnet
+/// motors that grows with current, beside cogging, which does not.
+#[derive(Debug, Clone)]
+pub struct TorqueConstantRipple<S>(TorqueConstantRippleParameters<S>);
+
+impl<S: Scalar> Effect<S> for TorqueConstantRipple<S> {
+    const PARAMETERS: &'static [ParameterSpec] = TorqueConstantRippleParameters::<f64>::SPECS;
+    const HOOKS: &'static [Hook] = &[Hook::InputMap];
+    const FACTS: EffectFacts = EffectFacts {
+        summary: "effort per input that repeats with position",
+        means: "the same current gives more torque at some angles than at others",
+        remedy: "tabulate the gain over the angle and divide the command by it; look for a wrong \
+                 commutation angle, an offset in one phase current, or a magnet that is off",
+        class: "angle",
+        coordinate: "position times input",
+        channels: &[],
+        look_alikes: &["position_dependent_friction"],
+        experiment: "sine of high acceleration, and loads either way: the input varies at the same \
+                     position",
+        gains: &["cosine", "sine"],
+        shapes: &[Shape { parameter: "order", scale: Scale::Order, grid: &[], fitted: true }],
+        law_terms: &[],
+    };
+
+    fn build(values: &[S]) -> Self {
+        Self(TorqueConstantRippleParameters::from_values(values))
+    }
+
+    #[inline]
+    fn input(&self, input: S, at: &Situation<S>) -> S {
+        let p = &self.0;
+        let angle = p.order * at.position;
+        input + input * (p.cosine * angle.cos() + p.sine * angle.sin())
+    }
+}

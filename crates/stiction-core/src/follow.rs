@@ -1,0 +1,160 @@
+//! A machine moved along positions that were measured or prescribed: the efforts it needs.
+
+use crate::drive::DelayLine;
+use crate::effects::{Passage, SecondMass, Situation};
+use crate::friction::LawState;
+use crate::integrate::{Along, Twist, through_events};
+use crate::model::CHUNK;
+use crate::motor::{PerSample, Running};
+use crate::scalar::Scalar;
+
+/// Efforts at the end of a sample.
+#[derive(Debug, Clone, Copy)]
+pub struct Efforts<S> {
+    /// Effort of the drive for the held input.
+    pub driven: S,
+    /// Gravity and added efforts.
+    pub ambient: S,
+    /// Friction.
+    pub friction: S,
+    /// How far the centre of mass is ahead of what the sensor reads.
+    pub ahead: S,
+    /// Where the plant then is.
+    pub at: Situation<S>,
+    /// What of the input reached the drive.
+    pub input: S,
+}
+
+/// The positions behind the readings, three in a row, and what is derived from them.
+struct Track<'a, S> {
+    readings: &'a [f64],
+    actual: &'a dyn Fn(f64) -> S,
+    /// Positions at the stamps before, at and after the present one.
+    at: [S; 3],
+    /// The present stamp.
+    stamp: usize,
+}
+
+impl<'a, S: Scalar> Track<'a, S> {
+    fn new(readings: &'a [f64], actual: &'a dyn Fn(f64) -> S) -> Self {
+        let last = readings.len() - 1;
+        let (first, second) = (actual(readings[0]), actual(readings[last.min(1)]));
+        Self { readings, actual, at: [first, first, second], stamp: 0 }
+    }
+
+    fn advance(&mut self) {
+        self.stamp += 1;
+        let next = (self.stamp + 1).min(self.readings.len() - 1);
+        let ahead =
+            if next == self.stamp { self.at[2] } else { (self.actual)(self.readings[next]) };
+        self.at = [self.at[1], self.at[2], ahead];
+    }
+
+    /// Slope between the neighbours, so that what depends on velocity is not half a sample late; at
+    /// the first and the last stamp there is only one side.
+    fn velocity(&self, dt: &PerSample<'_>) -> S {
+        let last = self.readings.len() - 1;
+        let (before, after) = (self.stamp.saturating_sub(1), (self.stamp + 1).min(last));
+        let span: f64 = (before..after).map(|j| dt.at(j)).sum();
+        (self.at[2] - self.at[0]) / span
+    }
+
+    /// Second difference; 0 where a side is missing.
+    fn acceleration(&self, dt: &PerSample<'_>) -> S {
+        if self.stamp == 0 || self.stamp + 1 >= self.readings.len() {
+            return S::constant(0.0);
+        }
+        let (before, after) = (dt.at(self.stamp - 1), dt.at(self.stamp));
+        let bend = (self.at[2] - self.at[1]) / after - (self.at[1] - self.at[0]) / before;
+        bend * 2.0 / (before + after)
+    }
+}
+
+impl<S: Scalar> Running<S> {
+    /// The position at which the sensor reads this.
+    pub fn actual(&self, reading: f64) -> f64 {
+        self.machine.effects.behind(S::constant(reading)).re()
+    }
+
+    /// Moves the contact along given positions, one more than there are inputs, and reports the
+    /// efforts at the end of each sample. The inertia term is the caller's: it needs the
+    /// acceleration, which no difference of neighbouring samples gives.
+    pub fn follow(
+        &mut self,
+        positions: &[f64],
+        inputs: PerSample<'_>,
+        load: PerSample<'_>,
+        dt: PerSample<'_>,
+        mut row: impl FnMut(usize, Efforts<S>),
+    ) {
+        let mut line = self.line.as_mut();
+        let machine = &mut self.machine;
+        let zero = S::constant(0.0);
+        let misreads = machine.effects.misreads();
+        let sensor = machine.effects.clone();
+        let actual = |reading: f64| {
+            let reading = S::constant(reading);
+            if misreads { sensor.behind(reading) } else { reading }
+        };
+        let inertia = machine.body.inertia;
+        let mut twist =
+            machine.effects.second_mass().map(|mass: SecondMass<S>| Twist::new(&mass, inertia));
+        with_law_and_state!(&self.law, &mut self.state, |law, state| {
+            let mut track = Track::new(positions, &actual);
+            let mut velocity = track.velocity(&dt);
+            for k in 0..positions.len() - 1 {
+                if k % CHUNK == 0 {
+                    state.make_room(CHUNK + CHUNK / 4);
+                }
+                let duration = dt.at(k);
+                let span = S::constant(duration);
+                let load = S::constant(load.at(k));
+                let before = velocity;
+                track.advance();
+                velocity = track.velocity(&dt);
+                let displacement = track.at[1] - track.at[0];
+                let run = &mut self.run;
+                run.position = track.at[1];
+                run.velocity = velocity;
+                run.time += span;
+                run.path += displacement.abs();
+                run.second_position = run.position;
+                run.second_velocity = velocity;
+                if machine.effects.remembers() {
+                    let passage = Passage { displacement, friction: run.friction, span };
+                    machine.effects.remember(&passage);
+                }
+                let at = run.situation();
+                let input = arriving(&mut line, inputs.at(k), duration);
+                let (effort, driven, ambient) = machine.efforts(&at, input, load);
+                let channels = machine.channels(&at, effort, load);
+                let mut at_contact = displacement;
+                if machine.relaxes() {
+                    let (hardened, crept) = machine.relax(run.relaxed, run.friction, span);
+                    run.relaxed = hardened;
+                    at_contact -= crept;
+                }
+                let mut held = Along::new(at_contact, span, (before, velocity), channels);
+                through_events(&mut held, law, state, span);
+                run.friction = held.outcome.force;
+                let mut ahead = zero;
+                if misreads {
+                    ahead += track.at[1] - positions[k + 1];
+                }
+                if let Some(twist) = &mut twist {
+                    ahead += twist.advance(track.acceleration(&dt), duration);
+                }
+                row(k, Efforts { driven, ambient, friction: run.friction, ahead, at, input });
+            }
+        });
+    }
+}
+
+/// What of the input reaches the drive during a sample.
+#[inline]
+pub(crate) fn arriving<S: Scalar>(line: &mut Option<&mut DelayLine<S>>, input: f64, dt: f64) -> S {
+    match line {
+        None => S::constant(input),
+        Some(line) => line.pass(input, dt),
+    }
+}
