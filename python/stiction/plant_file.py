@@ -26,10 +26,14 @@ LEAST_GAIN: Final = 1e-12
 _TABLES: Final = ("motion", "drive", "body", "friction", "effects", "sensor", "controller")
 _DRIVE: Final = ("kind", "input", "gain", "limit")
 _BODY: Final = ("inertia", "gravity_amplitude", "gravity_zero_rad", "weight_n")
-_GAINS: Final = ("kp", "ki", "kd", "kv", "limit")
 _DERIVATIVES: Final = ("backward", "backward_of_two_sample_mean", "measured")
 _OTHER_MOTION: Final = {"rotary": "force_n", "linear": "torque_nm"}
-_CONTROLLERS: Final = ("pd", "pid", "position_velocity")
+_CONTROLLERS: Final = {
+    "pd": (("kp",), ("kd",)),
+    "pid": (("kp", "ki"), ("kd",)),
+    "position_velocity": (("kp", "kv"), ()),
+}
+"""Gains that each kind of controller needs, and those that it may have."""
 
 
 @dataclass(frozen=True)
@@ -252,14 +256,32 @@ def _controller(given: Mapping[str, Any], source: str) -> dict[str, Any]:
         return {}
     if "kind" not in given:
         raise InputError(f"{where} kind is missing; allowed are {listed(_CONTROLLERS)}")
-    choice(given["kind"], _CONTROLLERS, f"{where} kind")
-    known(given, ("kind", "derivative", *_GAINS), where)
-    controller: dict[str, Any] = {"kind": given["kind"]}
+    kind = choice(given["kind"], _CONTROLLERS, f"{where} kind")
+    needed, possible = _CONTROLLERS[kind]
+    numbers = (*needed, *possible, "filter_s", "limit")
+    known(given, ("kind", "derivative", *numbers), f"{where} of kind '{kind}'")
+    for name in needed:
+        if name not in given:
+            raise InputError(
+                f"{where} {name} is missing; a controller of kind '{kind}' needs "
+                f"{' and '.join(needed)}: state {name}, or take another kind of "
+                f"{listed(_CONTROLLERS)}"
+            )
+    controller: dict[str, Any] = {"kind": kind}
     if "derivative" in given:
         controller["derivative"] = choice(given["derivative"], _DERIVATIVES, f"{where} derivative")
-    for name in _GAINS:
+    for name in numbers:
         if name in given:
             controller[name] = number(given[name], f"{where} {name}")
+            if name != "limit" and math.isinf(controller[name]):
+                raise InputError(f"{where} {name} = {controller[name]}: give a finite number")
+    if controller.get("filter_s", 0.0) < 0.0:
+        raise InputError(
+            f"{where} filter_s = {controller['filter_s']} is below 0; give the time constant of "
+            "the filter on the velocity in s, or 0 for none"
+        )
+    if controller.get("limit", 1.0) <= 0.0:
+        raise InputError(f"{where} limit = {controller['limit']} is not above 0")
     return controller
 
 

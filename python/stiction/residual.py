@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .plant import Plant
     from .recording import Recording
 
-__all__ = ["EffortResidual", "FreeRun", "effort_residual", "free_run"]
+__all__ = ["EffortResidual", "FreeRun", "effort_residual", "free_run", "starting_velocity"]
 
 STARTING_S: Final = 0.010
 """Stretch at the start of a recording that tells the starting velocity."""
@@ -173,7 +173,7 @@ def free_run(plant: Plant, recording: Recording) -> FreeRun:
     if recording.input is None:
         raise InputError(f"{source}: there is no input, so nothing can run freely")
     steps = np.diff(recording.time)
-    velocity = _starting_velocity(recording.time, position, plant.count or count_of(position))
+    velocity = starting_velocity(recording.time, position, plant.count or count_of(position))
     load = recording.channels.get("load")
     trajectory = plant.simulate(
         recording.input[:-1],
@@ -191,8 +191,16 @@ def free_run(plant: Plant, recording: Recording) -> FreeRun:
     )
 
 
-def _starting_velocity(time: FloatArray, position: FloatArray, count: float) -> float:
-    """Slope at the first row, 0 where the first rows stay within two counts."""
+def starting_velocity(time: FloatArray, position: FloatArray, count: float) -> float:
+    """Slope of a parabola at the first row, 0 where the first rows stay within two counts.
+
+    Parameters
+    ----------
+    time, position : numpy.ndarray, shape (n,)
+        s, and rad or m.
+    count : float
+        Size of a sensor count, 0 for none.
+    """
     rows = max(5, round(STARTING_S / float(np.median(np.diff(time)))))
     t, x = time[:rows] - time[0], position[:rows]
     if np.ptp(x) <= 2.0 * count:

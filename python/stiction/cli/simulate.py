@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import numpy as np
 from cyclopts import Parameter
 
-from .. import residual, session
+from .. import closed_loop, residual, session
 from ..errors import InputError
 from ..plant import Plant
 from ..recording import Recording
@@ -31,6 +31,8 @@ def simulate(
 
     With the input alone the trajectory is written. With measured motion two errors are printed:
     the free run (started once, left alone) and the effort residual along the measured motion.
+    Where the plant states its controller and the recording has a reference, the loop of both is
+    simulated as well.
 
     Parameters
     ----------
@@ -134,6 +136,15 @@ def _one(plant: Plant, recording: Recording, where: Path, support: float | None)
                 f"greatest {run.greatest:.4g} {run.unit}"
             )
             result["free_run"] = run.to_dict()
+        if plant.controller and "reference" in recording.channels:
+            try:
+                loop = closed_loop.replay(plant, recording)
+            except InputError as error:
+                lines.append(f"closed loop: {error}")
+            else:
+                files += _figures(loop.plot(), where / f"{stem}-closed-loop")
+                lines += _loop_lines(loop)
+                result["closed_loop"] = loop.to_dict()
         effort = residual.effort_residual(plant, recording, support=support)
         if not np.isfinite(effort.relative):
             raise InputError(
@@ -150,6 +161,19 @@ def _one(plant: Plant, recording: Recording, where: Path, support: float | None)
     lines += [f"wrote {file}" for file in files]
     result["files"] = [str(file) for file in files]
     return {"text": "\n".join(lines), **result}
+
+
+def _loop_lines(loop: closed_loop.ClosedLoop) -> list[str]:
+    lines = [
+        f"closed loop: position error {loop.rms:.4g} {loop.unit} rms, "
+        f"greatest {loop.greatest:.4g} {loop.unit}"
+    ]
+    if loop.controller_error is not None:
+        lines.append(
+            "controller along the measured motion: error "
+            f"{100 * loop.controller_error:.3f} % of the recorded input (relative 2-norm)"
+        )
+    return lines
 
 
 def _figures(figure: Any, stem: Path) -> list[Path]:

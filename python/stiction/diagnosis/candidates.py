@@ -123,9 +123,7 @@ def _units(evidence: Evidence, plant: Plant, span: float) -> dict[str, float]:
     # Without a spring there is no pre-sliding length; a rest is what the sensor takes for one.
     length = sliding / stiffness * PRESLIDING if stiffness > 0.0 else RESTING_SHARE * span
     ends = [form.clock + form.time[-1] - form.time[0] for form in evidence.forms]
-    paths = [
-        form.path + float(np.sum(np.abs(np.diff(form.position)))) for form in evidence.forms
-    ]
+    paths = [form.path + float(np.sum(np.abs(np.diff(form.position)))) for form in evidence.forms]
     return {
         "presliding": max(length, FEWEST_COUNTS * count, 1e-12),
         "loading": max(sliding, 1e-300),

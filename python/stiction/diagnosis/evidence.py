@@ -161,6 +161,11 @@ class Evidence:
             rows.weight = self._weights[rows.index]
         self.weights = np.concatenate([np.full(int(r.mask.sum()), r.weight) for r in self.shown])
 
+    @property
+    def sealed(self) -> bool:
+        """Whether the rows that test are still unseen."""
+        return self._sealed
+
     def open_test(self) -> list[Rows]:
         """The rows that test: once, after the last decision.
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from .result import Diagnosis
 
-__all__ = ["Pictures", "Stretch", "before_and_after"]
+__all__ = ["Pictures", "Stretch", "Tracking", "before_and_after"]
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,34 @@ class Stretch:
 
 
 @dataclass(frozen=True)
+class Tracking:
+    """A recording under its controller, measured and simulated by both models.
+
+    Attributes
+    ----------
+    name : str
+    time, measured, before, after : numpy.ndarray, shape (n,)
+        s, and position less reference, rad or m; NaN in rows that are used otherwise.
+    """
+
+    name: str
+    time: FloatArray
+    measured: FloatArray
+    before: FloatArray
+    after: FloatArray
+
+    @property
+    def left_before(self) -> FloatArray:
+        """Measured less simulated position, before."""
+        return self.measured - self.before
+
+    @property
+    def left(self) -> FloatArray:
+        """Measured less simulated position, after."""
+        return self.measured - self.after
+
+
+@dataclass(frozen=True)
 class Pictures:
     """What the figures show.
 
@@ -48,6 +76,9 @@ class Pictures:
     effort_unit, position_unit : str
     floor : float
         rms that noise alone would leave, N·m or N.
+    tracking : Tracking or None
+        The held-out recording with the largest improvement in closed loop; None where no loop was
+        replayed.
     """
 
     stretches: tuple[Stretch, ...]
@@ -56,6 +87,7 @@ class Pictures:
     effort_unit: str
     position_unit: str
     floor: float
+    tracking: Tracking | None = None
 
 
 def before_and_after(diagnosis: Diagnosis) -> Figure:

@@ -29,6 +29,7 @@ from .candidates import left_out, scales_of
 from .coordinates import looks
 from .evidence import Evidence
 from .gain import Gain, HeldOut, gain_of, open_residuals
+from .loop import replayed
 from .model import Model, fitted
 from .noise import Noise
 from .omnibus import Rest, rest
@@ -248,7 +249,7 @@ def _testable(
     _logger.info("opening the test rows")
     models = [*selection.models, *(model for model in rivals if model is not None)]
     test = open_residuals(evidence, [(m.plant, m.nuisances) for m in models])
-    return _concluded(
+    found = _concluded(
         replace(found, data=data),
         evidence,
         selection,
@@ -258,6 +259,7 @@ def _testable(
         null,
         checks,
     )
+    return replayed(found, evidence, base, final)
 
 
 def _base(evidence: Evidence, plant: Plant) -> Model:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from ..fitting.result import FitParameter
 from ..plant import Plant
 from .gain import Gain
+from .loop import Replay
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -155,7 +156,9 @@ class ModelSummary:
     noise_floor_rms : float
         Residual that noise and rounding alone would leave.
     remarks : tuple of str
-        Bounds that were hit, parameters that the data do not determine.
+        Bounds that were hit, parameters that the data do not determine, loops that ran away.
+    replay : Replay or None
+        Position error in closed loop; None where controller or reference are not known.
     """
 
     plant: Plant
@@ -168,6 +171,7 @@ class ModelSummary:
     heldout_relative: float | None
     noise_floor_rms: float
     remarks: tuple[str, ...]
+    replay: Replay | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """As ``baseline`` and ``extended``."""
@@ -188,7 +192,7 @@ class ModelSummary:
             "select_rms": self.select_rms,
             "heldout_rms": self.heldout_rms,
             "noise_floor_rms": self.noise_floor_rms,
-            "replay": None,
+            "replay": None if self.replay is None else self.replay.to_dict(),
         }
 
 

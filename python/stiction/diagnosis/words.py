@@ -8,16 +8,28 @@ from typing import TYPE_CHECKING
 from ..catalogue import EffectRecord
 from ..fitting.result import FitParameter
 from ..plant import Effect
+from ..report.scale import loop_scale_of
 from ..wording import counted
 
 if TYPE_CHECKING:
     from .gain import Gain
     from .result import Cause, Diagnosis, Unexplained, Verdict
 
-__all__ = ["gain_words", "joined", "sentence", "shown_rows", "summary", "value_words", "what"]
+__all__ = [
+    "gain_words",
+    "joined",
+    "loop_words",
+    "sentence",
+    "shown_rows",
+    "summary",
+    "value_words",
+    "what",
+]
 
 MOST_ROWS = 5
 """Candidates that the command line shows."""
+MISSED = 0.1
+"""Share of the recorded input that a stated controller may miss before it is doubted."""
 
 
 def joined(words: Sequence[str], last: str = "and") -> str:
@@ -121,6 +133,31 @@ def shown_rows(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
+def loop_words(diagnosis: Diagnosis) -> str:
+    """The position error in closed loop, "" where no loop was replayed."""
+    before, after = diagnosis.baseline, diagnosis.extended
+    if before is None or after is None or before.replay is None or after.replay is None:
+        return ""
+    rows, errors = "held out", [before.replay.heldout_rms, after.replay.heldout_rms]
+    if None in errors:
+        rows, errors = "on the rows fitted", [before.replay.train_rms, after.replay.train_rms]
+    known = [error for error in errors if error is not None]
+    if len(known) < 2:
+        return "closed loop: the simulated loop runs away; see the remarks in the report"
+    scale = loop_scale_of(diagnosis)
+    told = [f"{scale.factor * error:.3g} {scale.unit}" for error in known]
+    words = f"closed loop {rows}: position error {told[0]} rms"
+    if diagnosis.effects:
+        words += f" before, {told[1]} after"
+    missed = after.replay.controller_error
+    if missed is not None and missed > MISSED:
+        words += (
+            f"; the stated controller misses the recorded input by {100 * missed:.0f} %, so check "
+            "[controller]"
+        )
+    return words
+
+
 def _percent(share: float | None) -> str:
     return "" if share is None else f"{100 * share:.1f} %"
 
@@ -140,6 +177,8 @@ def summary(diagnosis: Diagnosis) -> str:
         if diagnosis.effects and after.heldout_relative is not None:
             told += f" before, {100 * after.heldout_relative:.2f} % after"
         lines += ["", told]
+    if looped := loop_words(diagnosis):
+        lines.append(looped)
     if diagnosis.laws:
         lines.append("")
         for row in diagnosis.laws:

@@ -16,7 +16,16 @@ from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .statistics import CORRELATED_S
 
-__all__ = ["EVERY_S", "Mask", "Nuisances", "Rows", "Start", "forms_of", "rows_of", "start_quantities"]
+__all__ = [
+    "EVERY_S",
+    "Mask",
+    "Nuisances",
+    "Rows",
+    "Start",
+    "forms_of",
+    "rows_of",
+    "start_quantities",
+]
 
 EVERY_S: Final = 0.005
 """Spacing of the residual: the kernel leaves nothing between."""

@@ -93,6 +93,8 @@ def _orders(diagnosis: Diagnosis) -> Iterator[_Order]:
                 yield _cause(diagnosis, index)
         if pictures.after.views:
             yield _coordinates(diagnosis)
+        if pictures.tracking is not None:
+            yield _closed_loop(diagnosis)
     if any(row.score is not None for row in diagnosis.candidates):
         yield _Order(
             "candidates",
@@ -184,4 +186,19 @@ def _coordinates(diagnosis: Diagnosis) -> _Order:
         + ("A share may rise while its curve falls, as less is left in all. " if both else "")
         + "Over speed, over distance and time since the reversal, and where it "
         "says “along the motion”, a residual that opposes the motion counts as positive.",
+    )
+
+
+def _closed_loop(diagnosis: Diagnosis) -> _Order:
+    pictures = diagnosis.pictures
+    assert pictures is not None
+    assert pictures.tracking is not None
+    both = ", before and after" if diagnosis.effects else ""
+    return _Order(
+        "closed-loop",
+        figures.closed_loop,
+        f"Tracking error over time, measured and simulated{both}, and their difference.",
+        "Position less reference, measured and simulated under the same controller, in "
+        f"{isolated(pictures.tracking.name)}; beneath, what is left between measured and simulated "
+        f"position{both}. Gaps are rows used otherwise.",
     )

@@ -34,8 +34,8 @@ from ..plot import (
     legend,
     thinned,
 )
-from .numbers import NO_BREAK, percent, tick, tick_of_ten
-from .scale import Scale, scale_of
+from .numbers import NO_BREAK, digits, percent, tick, tick_of_ten
+from .scale import Scale, loop_scale_of, scale_of
 from .views import fitting_view
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from ..diagnosis.pictures import Pictures
     from ..diagnosis.result import Diagnosis, ModelSummary
 
-__all__ = ["candidates", "cause", "coordinates", "errors", "headline"]
+__all__ = ["candidates", "cause", "closed_loop", "coordinates", "errors", "headline"]
 
 NARROW: Final = 3.9
 """Width of a figure for a phone, inches: text keeps its size on 360 pixels."""
@@ -270,6 +270,58 @@ def errors(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     panel.xaxis.set_major_locator(MaxNLocator(4 if narrow else 7, steps=STEPS))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
     _legend_above(panel, 3)
+    return drawn
+
+
+def closed_loop(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
+    """The tracking error, measured and simulated, and what both models miss of the position.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    narrow : bool
+        For a phone.
+
+    Raises
+    ------
+    InputError
+        No loop was replayed, so there is nothing to draw.
+    """
+    pictures = _pictures(diagnosis)
+    tracking = pictures.tracking
+    if tracking is None:
+        raise InputError("no loop was replayed, so there is nothing to draw")
+    both, scale = bool(diagnosis.effects), loop_scale_of(diagnosis)
+    drawn, (upper, lower) = figure(
+        2,
+        height=4.4 if narrow else 4.2,
+        width=NARROW if narrow else WIDTH,
+        sharex=True,
+        height_ratios=(1.2, 1.0),
+    )
+    buckets = 350 if narrow else 700
+    simulated = [("before", tracking.before, tracking.left_before, BEFORE)] if both else []
+    simulated.append(("after" if both else "simulated", tracking.after, tracking.left, AFTER))
+
+    def line(panel: Axes, values: np.ndarray, colour: str, width: float, label: str) -> None:
+        shown = thinned(tracking.time, scale.factor * values, buckets)
+        panel.plot(*shown, color=colour, linewidth=width, label=label)
+
+    line(upper, tracking.measured, MEASURED, 1.8, "measured")
+    for name, position, left, colour in simulated:
+        line(upper, position, colour, 0.8, name)
+        line(lower, left, colour, 0.8, name)
+    upper.set_ylabel(f"tracking error ({scale.unit})")
+    lower.set_ylabel(f"difference ({scale.unit})")
+    sizes = [digits(scale.factor * _rms(left)) for _, _, left, _ in simulated]
+    what = "rms" if narrow else "measured − simulated, rms:"
+    _named(lower, f"{what} {' → '.join(sizes)} {scale.unit}", narrow)
+    lower.set_xlabel("time in the recording (s)")
+    lower.set_xlim(min(0.0, float(tracking.time[0])), float(tracking.time[-1]))
+    _legend_above(upper, 3)
+    for panel in (upper, lower):
+        _ticks(panel, 5 if narrow else 9, 4 if narrow else 5)
+    drawn.align_ylabels()
     return drawn
 
 

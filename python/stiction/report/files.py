@@ -12,7 +12,9 @@ from ..errors import InputError
 
 __all__ = ["encoded", "made", "moved", "refused"]
 
-OWN: Final = re.compile(r"(before-after|coordinates|candidates|errors|cause-\d+-\w+)\.svg")
+OWN: Final = re.compile(
+    r"(before-after|closed-loop|coordinates|candidates|errors|cause-\d+-\w+)\.svg"
+)
 """What a report calls its figures."""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
-from . import advice, candidates, data, findings, laws, method, models, rest, verdict
+from . import advice, candidates, data, findings, laws, loop, method, models, rest, verdict
 from .section import Section
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ BUILDERS: Final[tuple[Callable[[Diagnosis, Drawings], Section | None], ...]] = (
     rest.build,
     candidates.build,
     models.build,
+    loop.build,
     laws.build,
     advice.build,
     data.build,
