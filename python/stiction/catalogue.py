@@ -89,8 +89,9 @@ class ShapeRecord:
 class EffectRecord:
     """An effect that a plant may have beside its law.
 
-    ``law_terms`` are the parameters of laws that are this effect: where a plant states one of them,
-    its law has the effect already.
+    ``second`` names the parameters of a second wave, in the order of gains and shapes: what repeats
+    with position is seldom a sine. ``law_terms`` are the parameters of laws that are this effect:
+    where a plant states one of them, its law has the effect already.
     """
 
     name: str
@@ -104,6 +105,7 @@ class EffectRecord:
     experiment: str
     gains: tuple[str, ...]
     shapes: tuple[ShapeRecord, ...]
+    second: tuple[str, ...]
     law_terms: tuple[str, ...]
     hooks: tuple[str, ...]
     parameters: tuple[ParameterRecord, ...]
@@ -157,6 +159,7 @@ def effects() -> tuple[EffectRecord, ...]:
                 ShapeRecord(s["parameter"], s["scale"], tuple(s["grid"]), s["fitted"])
                 for s in entry["shapes"]
             ),
+            second=tuple(entry["second"]),
             law_terms=tuple(entry["law_terms"]),
             hooks=tuple(entry["hooks"]),
             parameters=_parameters(entry["parameters"]),

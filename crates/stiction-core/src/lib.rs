@@ -20,3 +20,4 @@ pub mod parameter;
 pub mod scalar;
 pub mod sensitivity;
 pub mod sensor;
+pub mod wave;

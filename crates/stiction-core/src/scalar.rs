@@ -67,6 +67,12 @@ pub trait Scalar:
         let (s, c) = self.re().sin_cos();
         self.chain(c, -s)
     }
+    /// Sine and cosine, for the price of one.
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        let (s, c) = self.re().sin_cos();
+        (self.chain(s, c), self.chain(c, -s))
+    }
     /// √x with derivative 0 at 0, where the true one is infinite and would turn into NaN.
     #[inline]
     fn sqrt(self) -> Self {

@@ -253,6 +253,17 @@ fn acts_at_once(record: &EffectRecord) -> bool {
 /// are made of straight pieces, so any small step gives the derivative.
 const SMALL: f64 = 1e-6;
 
+/// What a sample holds for effects that act at once.
+struct Sample {
+    at: Situation<f64>,
+    passage: Passage<f64>,
+    /// ∂friction/∂(level of dry, of viscous friction).
+    by_levels: (f64, f64),
+    input: f64,
+    /// ∂(effort of the drive)/∂input.
+    gain: f64,
+}
+
 /// Rows of effects that act at once: what one unit of a gain adds to level, effort or input, times
 /// the derivative by that. One pass carries the derivatives by the levels, whatever the number of
 /// rows.
@@ -263,49 +274,59 @@ fn at_once(
     candidates: &[EffectSpec],
     rows: &mut [((usize, usize), Rows<'_>)],
 ) {
+    let samples = samples_along(spec, start, motion);
+    let usual = samples.iter().map(|sample| sample.input.abs()).fold(0.0, f64::max);
+    for ((index, gain), [needed, driven, _]) in rows {
+        let candidate = &candidates[*index];
+        let mapped = candidate.record.hooks.contains(&Hook::InputMap);
+        let unit = if mapped && usual > 0.0 { SMALL * usual } else { 1.0 };
+        let mut own = candidate.values.clone();
+        own[*gain] = unit;
+        let mut effects = Effects::new(AnyEffect::build(candidate.record.name, &own));
+        for (k, sample) in samples.iter().enumerate() {
+            effects.remember(&sample.passage);
+            let (dry, viscous) = effects.levels(&sample.at);
+            let levels = (dry - 1.0) * sample.by_levels.0 + (viscous - 1.0) * sample.by_levels.1;
+            needed[k] = (levels - effects.effort(&sample.at)) / unit;
+        }
+        if mapped {
+            for (driven, sample) in driven.iter_mut().zip(&samples) {
+                let moved = effects.input(sample.input, &sample.at) - sample.input;
+                *driven = sample.gain * moved / unit;
+            }
+        }
+    }
+}
+
+fn samples_along(spec: &MotorSpec, start: Start<'_>, motion: &MeasuredMotion<'_>) -> Vec<Sample> {
     let values: Vec<f64> = spec.parameters().into_iter().map(|(_, value)| value).collect();
     let mut running = seeded(spec, start, &values, &[]);
     let (level, viscous) = (Dual::variable(1.0, 0), Dual::variable(1.0, 1));
     running.machine.effects.seed_levels(level, viscous);
-    let usual = (0..motion.samples()).map(|k| motion.inputs.at(k).abs()).fold(0.0, f64::max);
-    let step = if usual > 0.0 { SMALL * usual } else { 1.0 };
-    let mut alone: Vec<(Effects<f64>, f64)> = rows
-        .iter()
-        .map(|((index, gain), _)| {
-            let candidate = &candidates[*index];
-            let mapped = candidate.record.hooks.contains(&Hook::InputMap);
-            let unit = if mapped { step } else { 1.0 };
-            let mut own = candidate.values.clone();
-            own[*gain] = unit;
-            let effect = AnyEffect::build(candidate.record.name, &own);
-            (Effects::new(effect), unit)
-        })
-        .collect();
     let drive = running.machine.drive;
     let mut before = (running.actual(motion.positions[0]), running.run.friction.re());
+    let mut samples = Vec::with_capacity(motion.samples());
     running.follow(motion.positions, motion.inputs, motion.load, motion.dt, |k, efforts| {
         let Efforts { friction, at, input, .. } = efforts;
-        let at = Situation {
-            position: at.position.re(),
-            velocity: at.velocity.re(),
-            time: at.time.re(),
-            path: at.path.re(),
-        };
-        let displacement = at.position - before.0;
-        let passage = Passage { displacement, friction: before.1, span: motion.dt.at(k) };
-        before = (at.position, friction.re());
-        let (by_level, by_viscous) = (friction.partial(0), friction.partial(1));
+        let position = at.position.re();
+        let (displacement, span) = (position - before.0, motion.dt.at(k));
+        let passage = Passage { displacement, friction: before.1, span };
+        before = (position, friction.re());
         let input = input.re();
-        let gain = if input.abs() <= drive.limit { drive.gain.re() } else { 0.0 };
-        for ((effects, unit), (_, [needed, driven, _])) in alone.iter_mut().zip(rows.iter_mut()) {
-            effects.remember(&passage);
-            let (dry, viscous) = effects.levels(&at);
-            needed[k] = ((dry - 1.0) * by_level + (viscous - 1.0) * by_viscous
-                - effects.effort(&at))
-                / *unit;
-            driven[k] = gain * (effects.input(input, &at) - input) / *unit;
-        }
+        samples.push(Sample {
+            at: Situation {
+                position,
+                velocity: at.velocity.re(),
+                time: at.time.re(),
+                path: at.path.re(),
+            },
+            passage,
+            by_levels: (friction.partial(0), friction.partial(1)),
+            input,
+            gain: if input.abs() <= drive.limit { drive.gain.re() } else { 0.0 },
+        });
     });
+    samples
 }
 
 /// The motor with the candidates of a pass, given as rows of candidate and place of its gain.

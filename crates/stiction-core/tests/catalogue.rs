@@ -10,7 +10,8 @@ use common::{Stream, column, drawn, motor, positions, run};
 use stiction_core::effects::{EFFECTS, Scale, neutral_values};
 use stiction_core::friction::{Channels, LAWS, Statistics};
 use stiction_core::model::{FrictionModel, LawSpec};
-use stiction_core::motor::{Column, EffectSpec, Motor, MotorSpec, PerSample};
+use stiction_core::motor::{Column, EffectSpec, Motor, MotorSpec, PerSample, Running};
+use stiction_core::scalar::{Dual, Scalar};
 use stiction_core::sensitivity::sensitivity;
 
 fn files(folder: &str) -> BTreeSet<String> {
@@ -66,7 +67,9 @@ fn parameters_are_documented_and_their_defaults_are_allowed() {
         for spec in effect.parameters {
             let (gain, shape) =
                 (effect.facts.gains.contains(&spec.name), shapes.contains(&spec.name));
-            assert!(gain != shape, "{}.{} is a gain or has a grid", effect.name, spec.name);
+            let second = effect.facts.second.contains(&spec.name);
+            let places = [gain, shape, second].iter().filter(|own| **own).count();
+            assert_eq!(places, 1, "{}.{} is a gain or has a grid", effect.name, spec.name);
         }
         for shape in effect.facts.shapes {
             assert!(effect.parameters.iter().any(|p| p.name == shape.parameter));
@@ -245,6 +248,9 @@ fn gradients_equal_central_differences_on_the_same_branches() {
             let inputs = excitation(150);
             // No delay is a whole number of these: there its derivative is that to one side.
             let dt = 4.7e-4;
+            if amplifies_round_off(&spec, &inputs, dt) {
+                continue;
+            }
             let parameters = spec.parameters();
             let paths: Vec<String> = parameters.iter().map(|(path, _)| path.clone()).collect();
             let fresh = Motor::new(spec.clone()).unwrap();
@@ -273,7 +279,7 @@ fn gradients_equal_central_differences_on_the_same_branches() {
                     (up.1 == down.1).then_some((up.0 - down.0) / (2.0 * size))
                 };
                 let scale = value.abs().max(1e-3);
-                let (Some(wide), Some(narrow)) = (chord(2e-4 * scale), chord(1e-4 * scale)) else {
+                let (Some(wide), Some(narrow)) = (chord(2e-5 * scale), chord(1e-5 * scale)) else {
                     continue;
                 };
                 let position = end_state(&spec, &inputs, dt).0.abs();
@@ -282,19 +288,33 @@ fn gradients_equal_central_differences_on_the_same_branches() {
                 let chord = narrow + (narrow - wide) / 3.0;
                 let noise = (wide - narrow).abs();
                 // A difference of positions of this size has no more digits than that.
-                let digits = 16.0 * f64::EPSILON * position / (1e-4 * scale);
+                let digits = 16.0 * f64::EPSILON * position / (1e-5 * scale);
                 if noise > 1e-6 * chord.abs() || digits > 1e-5 * chord.abs() {
                     continue;
                 }
                 assert!(
                     (gradient - chord).abs() <= 1e-6 * chord.abs() + digits,
-                    "{path}: {gradient} against {chord} ± {noise} of {spec:?}"
+                    "{path}: {gradient} against {chord} ± {noise} of {:?}",
+                    spec.friction
                 );
                 compared += 1;
             }
         }
     }
     assert!(compared > 100, "only {compared} comparisons ran on equal branches");
+}
+
+/// Whether a machine that sticks and slips on a swinging shaft makes of round-off, which differs
+/// between number types, a motion of its own: no derivative tells anything there.
+fn amplifies_round_off(spec: &MotorSpec, inputs: &[f64], dt: f64) -> bool {
+    fn end<S: Scalar>(spec: &MotorSpec, inputs: &[f64], dt: f64) -> f64 {
+        let values: Vec<S> = spec.parameters().iter().map(|p| S::constant(p.1)).collect();
+        let mut running = Running::<S>::new(spec, &values);
+        let (load, dt) = (PerSample::Same(0.0), PerSample::Same(dt));
+        running.simulate(inputs, load, dt, |_, _, _, _| {}).unwrap();
+        running.run.position.re()
+    }
+    (end::<f64>(spec, inputs, dt) - end::<Dual>(spec, inputs, dt)).abs() > 1e-12
 }
 
 /// The same motor with other parameter values.

@@ -77,6 +77,7 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         dict.set_item("means", effect.facts.means)?;
         dict.set_item("remedy", effect.facts.remedy)?;
         dict.set_item("gains", effect.facts.gains.to_vec())?;
+        dict.set_item("second", effect.facts.second.to_vec())?;
         dict.set_item("law_terms", effect.facts.law_terms.to_vec())?;
         let shapes = PyList::empty(py);
         for shape in effect.facts.shapes {

@@ -21,6 +21,10 @@ BY_COORDINATE: Final = {
     "angle along the motion": "slow full turns both ways, twice",
     "order over position": "slow full turns (or full strokes) both ways, twice",
     "order along the motion": "slow full turns (or full strokes) both ways, twice",
+    "order over position, times acceleration": "fast constant speed over many turns, and sines of "
+    "high acceleration",
+    "order over position, times effort": "slow full turns (or full strokes) with loads either way",
+    "response to the effort": "a chirp of the input up to a tenth of the sampling rate",
     "frequency": "5 s of rest and 5 s of constant speed, with what runs nearby on and off",
     "acceleration": "sines of one speed at different frequencies, so that accelerations differ",
     "effort": "large efforts at low acceleration, and the same accelerations with a known load",

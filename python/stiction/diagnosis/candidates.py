@@ -22,7 +22,7 @@ FEWEST_SPEEDS: Final = (0.02, 0.90)
 """Quantiles of the moving speeds that bound the grid of a speed."""
 STILL: Final = 1e-3
 """Share of the greatest speed below which a machine counts as still."""
-MOST_ORDERS: Final = 48
+MOST_ORDERS: Final = 80
 """Orders tried at most."""
 WIDER: Final = 1.5
 """A refit may leave the grid of a speed by this factor."""
@@ -74,17 +74,32 @@ class Candidate:
         Shape parameters that a refit varies.
     limits : dict
         Least and greatest value of those, where the data give one.
+    second : bool
+        It is a second wave of an effect that the plant has.
     """
 
     record: EffectRecord
     shape: dict[str, float]
     free: tuple[str, ...]
     limits: dict[str, tuple[float, float]] = field(default_factory=dict)
+    second: bool = False
 
     @property
     def name(self) -> str:
         """Name of the effect."""
         return self.record.name
+
+    @property
+    def gains(self) -> tuple[str, ...]:
+        """Its gains, by the names that they have in a plant."""
+        return tuple(self.own(name) for name in self.record.gains)
+
+    def own(self, name: str) -> str:
+        """The name that a gain or a shape parameter has in a plant."""
+        if not self.second:
+            return name
+        first = (*self.record.gains, *(shape.parameter for shape in self.record.shapes))
+        return self.record.second[first.index(name)]
 
     @property
     def parameters(self) -> int:
@@ -93,7 +108,7 @@ class Candidate:
 
 
 def scales_of(evidence: Evidence, plant: Plant) -> Scales:
-    """Sizes of the motion in the rows that may be looked at, and of the contact of a fitted plant."""
+    """Sizes of the motion in the rows that may be looked at, and of a fitted contact."""
     speeds = np.concatenate([np.abs(r.form.velocity[r.mask]) for r in evidence.shown])
     moving = speeds[speeds > STILL * float(np.max(speeds, initial=0.0))]
     low, high = np.quantile(moving, FEWEST_SPEEDS) if len(moving) else (1.0, 1.0)
@@ -108,8 +123,8 @@ def scales_of(evidence: Evidence, plant: Plant) -> Scales:
         orders = tuple(step * k for k in range(1, MOST_ORDERS + 1))
     else:
         orders = (1.0,)
-    speeds = (float(low), float(max(high, low * 1.01)))
-    return Scales(speeds, orders, whole, _units(evidence, plant, span))
+    usual = (float(low), float(max(high, low * 1.01)))
+    return Scales(usual, orders, whole, _units(evidence, plant, span))
 
 
 def _units(evidence: Evidence, plant: Plant, span: float) -> dict[str, float]:

@@ -12,6 +12,7 @@ import numpy as np
 from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .candidates import Candidate
+from .homogeneity import unevenness
 from .influence import limited
 from .model import Model
 from .screen import Score
@@ -37,6 +38,11 @@ ALIKE: Final = 0.5
 LEAST_STRENGTH: Final = 3.5
 """Gains over their standard errors (the root of Wald's statistic), from residuals correlated within
 blocks: one number that no number of rows makes large by itself."""
+MOST_UNEVEN: Final = 0.3
+"""What strengths of their own by kind of recording may add, as a share of a gain: with more
+the effect imitates something else."""
+UNEVEN_IN_FAMILY: Final = 0.12
+"""The same, from which on a member of a family stands for the family alone."""
 LEAST_SIZE: Final = 0.001
 """Contribution, as a share of the friction, below which an effect is of no relevance."""
 
@@ -64,6 +70,8 @@ class Trial:
         Why it was refused, "" where it was not.
     by_blocks : bool
         Refused because its held-out gain varies too much over blocks, and for nothing else.
+    uneven : float
+        What strengths of their own by kind of recording would add, as a share of its gain.
     """
 
     score: Score
@@ -75,6 +83,12 @@ class Trial:
     size: float
     reason: str
     by_blocks: bool = False
+    uneven: float = 0.0
+
+    @property
+    def imitates(self) -> bool:
+        """Whether its strength differs so much between kinds of recording that it is no cause."""
+        return self.uneven > MOST_UNEVEN
 
     @property
     def candidate(self) -> Candidate:
@@ -141,8 +155,15 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             f"contributes {100 * size:.2g} % of the friction, below the {100 * LEAST_SIZE:.2g} % "
             "that matter"
         )
+    uneven = unevenness(base, model, contributed) if not reason or by_blocks else 0.0
+    if uneven > MOST_UNEVEN:
+        by_blocks = False
+        reason = (
+            "imitates something else: strengths of their own by kind of recording would add "
+            f"{100 * uneven:.0f} % to its gain"
+        )
     worth = log_gain(base, model) - PENALTY * score.candidate.parameters
-    return Trial(score, model, gain, z, worth, strength, size, reason, by_blocks)
+    return Trial(score, model, gain, z, worth, strength, size, reason, by_blocks, uneven)
 
 
 def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tuple[float, float]:
@@ -189,14 +210,16 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
     if not accepted:
         return None
     winner = accepted[0]
+    # The cause itself would explain more than what imitates it.
+    if any(t.imitates and (1.0 - NEAR) * t.worth > winner.worth for t in ranked):
+        return None
     # Who falls short by a little on its own may still be what the winner imitates.
     rivals = [
         other
         for other in ranked
         if other is not winner
         and other.gain > 0.0
-        and _alike(winner, other)
-        and not _told(winner, other)
+        and ((_alike(winner, other) and not _told(winner, other)) or _kin(winner, other))
     ]
     head = _head(winner, rivals)
     return Choice(head, tuple(trial for trial in (winner, *rivals) if trial is not head))
@@ -212,6 +235,12 @@ def _head(winner: Trial, rivals: Sequence[Trial]) -> Trial:
     best = max(trial.worth for trial in group)
     near = [trial for trial in group if trial.worth >= (1.0 - NEAR) * best]
     return min(near, key=lambda trial: (trial.candidate.parameters, -trial.worth))
+
+
+def _kin(winner: Trial, other: Trial) -> bool:
+    """Whether a winner whose strength is not quite even may be another member of its family."""
+    same = winner.candidate.record.family == other.candidate.record.family
+    return same and winner.uneven > UNEVEN_IN_FAMILY
 
 
 def _alike(one: Trial, other: Trial) -> bool:

@@ -24,7 +24,8 @@ __all__ = ["Model", "fitted", "stepped", "with_effect", "without_effect"]
 
 REFIT_EVALUATIONS: Final = 12
 """A refit starts from the base and an estimate of the gain: it needs few steps."""
-REFIT_CONVERGED: Final = 1e-6
+REFIT_CONVERGED: Final = 1e-5
+"""Of the power: a fifth of a standard error of any parameter."""
 FLAT: Final = 1e-8
 """Directions of the base with less than this share of the strongest one are left alone."""
 INSIDE: Final = 0.98
@@ -86,11 +87,11 @@ class Model:
         recordings, and still there may be no doubt that something comes.
         """
         paths = list(self.solution.variables.paths)
-        own = [paths.index(f"effects.{candidate.name}.{name}") for name in candidate.record.gains]
+        own = [paths.index(f"effects.{candidate.name}.{name}") for name in candidate.gains]
         fit, block = self.evidence.fitted, self.evidence.cells.block
         columns, residual = self.columns[fit], self.residual[fit]
         scale = np.sqrt(np.sum(columns**2, axis=0))
-        shapes = [f"effects.{candidate.name}.{name}" for name in candidate.shape]
+        shapes = [f"effects.{candidate.name}.{candidate.own(name)}" for name in candidate.shape]
         scale[[paths.index(path) for path in shapes if path in paths]] = 0.0
         live = np.flatnonzero(scale > 0.0)
         scaled = columns[:, live] / scale[live]
@@ -102,11 +103,14 @@ class Model:
         places = [int(np.flatnonzero(live == k)[0]) for k in own if k in live]
         if len(places) < len(own):
             return 0.0
-        effect = next(each for each in self.plant.effects if each.name == candidate.name)
-        gains = np.array([effect.parameters[name].value for name in candidate.record.gains])
-        gains *= scale[own]
+        gains = self.gains(candidate) * scale[own]
         matrix = covariance[np.ix_(places, places)]
         return float(np.sqrt(max(gains @ np.linalg.pinv(matrix, hermitian=True) @ gains, 0.0)))
+
+    def gains(self, candidate: Candidate) -> FloatArray:
+        """Fitted gains of an effect; shape (q,)."""
+        effect = next(each for each in self.plant.effects if each.name == candidate.name)
+        return np.array([effect.parameters[name].value for name in candidate.gains])
 
     @property
     def _timing_is_free(self) -> bool:
@@ -191,13 +195,18 @@ def without_effect(plant: Plant, name: str) -> Plant:
 
 
 def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> Plant:
-    """The plant with one more effect, which starts from these gains."""
+    """The plant with one more effect, or a second wave of one, which starts from these gains."""
     parameters = {
-        name: Parameter(float(value))
-        for name, value in zip(candidate.record.gains, gains, strict=True)
+        name: Parameter(float(value)) for name, value in zip(candidate.gains, gains, strict=True)
     }
     for name, value in candidate.shape.items():
         low, high = candidate.limits.get(name, (None, None))
-        parameters[name] = Parameter(value, low, high, fixed=name not in candidate.free)
-    effect = Effect(candidate.name, MappingProxyType(parameters))
-    return replace(plant, effects=(*plant.effects, effect))
+        fixed = name not in candidate.free
+        parameters[candidate.own(name)] = Parameter(value, low, high, fixed=fixed)
+    kept = []
+    for effect in plant.effects:
+        if candidate.second and effect.name == candidate.name:
+            parameters = {**effect.parameters, **parameters}
+        else:
+            kept.append(effect)
+    return replace(plant, effects=(*kept, Effect(candidate.name, MappingProxyType(parameters))))

@@ -11,7 +11,8 @@ import numpy as np
 from ..trajectory import FloatArray
 from .coordinates import COORDINATES, Coordinate, Look
 from .evidence import Evidence, Plan
-from .periodic import ORDERS, frequency_view, order_view
+from .periodic import COUPLED, ORDERS, frequency_view, order_view
+from .response import response_columns, response_view
 from .view import View, limit, means
 
 __all__ = ["Rest", "View", "rest"]
@@ -94,8 +95,26 @@ def rest(
         )
         for coordinate in ORDERS
     ]
+    views += [
+        order_view(
+            coordinate,
+            orders,
+            position,
+            evidence.plans,
+            both,
+            evidence.weights,
+            friction,
+            stacked([coordinate.values(look) for look in seen]),
+        )
+        for coordinate in COUPLED
+    ]
     form = evidence.shown[0].form
-    lines = frequency_view(evidence.cells, form.dt * form.stride, both, evidence.weights, friction)
+    spacing = form.dt * form.stride
+    moved = np.concatenate(
+        [response_columns(look)[mask] for look, mask in zip(seen, masks, strict=True)]
+    )
+    views.append(response_view(moved, spacing, evidence.plans, both, evidence.weights, friction))
+    lines = frequency_view(evidence.cells, spacing, both, evidence.weights, friction)
     if lines is not None:
         views.append(lines)
     return Rest(tuple(sorted(views, key=lambda view: -view.share)))

@@ -12,7 +12,7 @@ from .coordinates import Coordinate, Look
 from .evidence import Cells, Plan
 from .view import FLAG_ABOVE, View, limit, means
 
-__all__ = ["FREQUENCY", "ORDERS", "frequency_view", "order_view"]
+__all__ = ["COUPLED", "FREQUENCY", "ORDERS", "frequency_view", "order_view"]
 
 PHASES: Final = 24
 """Stretches of a period."""
@@ -36,6 +36,22 @@ ORDERS: Final = (
     ),
 )
 """Residual that repeats with position, however many times a turn, and the same along the motion."""
+COUPLED: Final = (
+    Coordinate(
+        "order over position, times acceleration",
+        "phase of the best order, rad",
+        False,
+        lambda look: look.acceleration,
+    ),
+    Coordinate(
+        "order over position, times effort",
+        "phase of the best order, rad",
+        False,
+        lambda look: look.effort,
+    ),
+)
+"""Residual that repeats with position and grows with something else: what errs is a sensor or a
+gain. Their values are what it grows with."""
 FREQUENCY: Final = Coordinate("frequency", "frequency, Hz", False, _phase)
 """Residual that repeats with time."""
 
@@ -48,6 +64,7 @@ def order_view(
     both: FloatArray,
     weights: FloatArray,
     friction: float,
+    factor: FloatArray | None = None,
 ) -> View:
     """The best order over position: fitted rows choose it, those held out judge it.
 
@@ -63,7 +80,10 @@ def order_view(
     weights : numpy.ndarray, shape (n,)
     friction : float
         Weighted rms of the friction.
+    factor : numpy.ndarray, shape (n,), optional
+        What the wave grows with.
     """
+    grown = weights if factor is None else weights * factor / np.sqrt(np.mean(factor**2) + 1e-300)
     explained = np.zeros((len(orders), both.shape[1]))
     removed = np.zeros_like(explained)
     total = np.zeros(both.shape[1])
@@ -74,6 +94,7 @@ def order_view(
         rows += len(held)
         for k, order in enumerate(orders):
             waves = np.column_stack([np.cos(order * position), np.sin(order * position)])
+            waves *= grown[:, None]
             own = waves[plan.fit]
             pushed = own.T @ both[plan.fit]
             gains = np.linalg.lstsq(own.T @ own, pushed, rcond=None)[0]
@@ -85,11 +106,16 @@ def order_view(
     shares = own / np.maximum(total, 1e-300)
     phase = np.mod(orders[int(best[0])] * position, 2.0 * np.pi)
     index = np.minimum((phase / (2.0 * np.pi) * PHASES).astype(np.int64), PHASES - 1)
-    curves = means(index, both / weights[:, None], PHASES)
+    # In units of effort: of what grows with something, at its usual size.
+    curves = means(index, both / weights[:, None] * _sign_of(factor)[:, None], PHASES)
     low, high = np.quantile(curves[:, 1:], [0.025, 0.975], axis=1)
     at = (np.arange(PHASES) + 0.5) * 2.0 * np.pi / PHASES
     size = float(np.sqrt(max(own[0], 0.0) / max(rows, 1))) / max(friction, 1e-300)
     return View(coordinate, at, curves[:, 0], low, high, float(shares[0]), limit(shares[1:]), size)
+
+
+def _sign_of(factor: FloatArray | None) -> FloatArray:
+    return np.ones(1) if factor is None else np.sign(factor)
 
 
 def frequency_view(

@@ -105,6 +105,7 @@ def search(
             found.choices.append(choice)
             found.models.append(choice.winner.model)
             _logger.info("found %s", choice.winner.name)
+            _sharpen(evidence, found, signatures, centred, bias, friction)
             dropped |= _drop(evidence, found)
             if choice.winner.model.solution.interrupted:
                 found.interrupted = True
@@ -146,16 +147,8 @@ def _round(
     bias: FloatArray,
     friction: float,
 ) -> Choice | None:
-    base = found.models[-1]
-    problem = Problem(
-        base.residual - bias,
-        base.columns,
-        centred,
-        evidence.cells.block,
-        evidence.fitted,
-        evidence.plans,
-    )
     taken = {choice.winner.name for choice in found.choices}
+    problem = _problem(evidence, found.models[-1], centred, bias)
     scores = [
         score
         for score in screen(problem, signatures, friction)
@@ -168,14 +161,10 @@ def _round(
             if not score.testable:
                 found.blind.append(score.candidate.record)
     passing = [s for s in scores if s.testable and s.score > s.threshold and s.heldout > 0.0]
-    trials = []
-    for score in passing[:REFITTED]:
-        _logger.info("refitting with %s", score.candidate.name)
-        model = _refit(evidence, base, signatures, score)
-        contributed = _contributed(signatures, score, model)
-        size = float(np.sqrt(np.mean(contributed**2))) / max(friction, 1e-300)
-        trial = judge(base, score, model, contributed, size)
-        trials.append(replace(trial, reason=trial.reason or _friction_is_late(evidence, model)))
+    trials = [
+        _trial(evidence, found.models[-1], signatures, score, friction)
+        for score in passing[:REFITTED]
+    ]
     for score in passing[REFITTED:]:
         row = found.rows[score.candidate.name]
         found.rows[row.name] = replace(row, reason="others explain more")
@@ -184,6 +173,59 @@ def _round(
         if choice is not None or not found.choices:
             found.rows[trial.name] = _tried(trial, choice)
     return choice
+
+
+def _problem(evidence: Evidence, model: Model, centred: FloatArray, bias: FloatArray) -> Problem:
+    """What a model leaves, to be screened."""
+    return Problem(
+        model.residual - bias,
+        model.columns,
+        centred,
+        evidence.cells.block,
+        evidence.fitted,
+        evidence.plans,
+    )
+
+
+def _trial(
+    evidence: Evidence, base: Model, signatures: Signatures, score: Score, friction: float
+) -> Trial:
+    """A candidate refitted together with a model, and judged."""
+    _logger.info("refitting with %s", score.candidate.name)
+    model = _refit(evidence, base, signatures, score)
+    contributed = _contributed(signatures, score, model)
+    size = float(np.sqrt(np.mean(contributed**2))) / max(friction, 1e-300)
+    trial = judge(base, score, model, contributed, size)
+    return replace(trial, reason=trial.reason or _friction_is_late(evidence, model))
+
+
+def _sharpen(
+    evidence: Evidence,
+    found: Search,
+    signatures: Signatures,
+    centred: FloatArray,
+    bias: FloatArray,
+    friction: float,
+) -> None:
+    """Gives the effect that was found last a second wave where that passes like an effect.
+
+    What repeats with position is seldom a sine, and the rest of it would be taken for another
+    effect.
+    """
+    choice = found.choices[-1]
+    if not choice.winner.candidate.record.second:
+        return
+    own = signatures.second_of(choice.winner.name)
+    model = found.models[-1]
+    (score,) = screen(_problem(evidence, model, centred, bias), own, friction)
+    if not (score.testable and score.score > score.threshold and score.heldout > 0.0):
+        return
+    trial = _trial(evidence, model, own, score, friction)
+    if not trial.reason:
+        _logger.info("%s has a second wave", choice.winner.name)
+        found.models[-1] = trial.model
+        winner = replace(choice.winner, model=trial.model)
+        found.choices[-1] = replace(choice, winner=winner)
 
 
 def _renew(evidence: Evidence, found: Search, choice: Choice) -> bool:
@@ -300,8 +342,7 @@ def _friction_is_late(evidence: Evidence, model: Model) -> str:
 def _contributed(signatures: Signatures, score: Score, model: Model) -> FloatArray:
     """What an effect explains of every row after its refit; shape (n,)."""
     index = signatures.candidates.index(score.candidate)
-    effect = model.plant.effects[-1]
-    gains = np.array([effect.parameters[name].value for name in score.candidate.record.gains])
+    gains = model.gains(score.candidate)
     contributed: FloatArray = signatures.columns[:, signatures.slices[index]] @ gains
     return contributed
 

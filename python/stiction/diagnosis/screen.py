@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -66,6 +66,15 @@ class Signatures:
             slices.append(slice(at, at + len(each.record.gains)))
             at += len(each.record.gains)
         return cls(tuple(candidates), -np.nan_to_num(columns), tuple(slices))
+
+    def second_of(self, name: str) -> Signatures:
+        """Second waves of an effect: at zero amplitude they look like first ones."""
+        own = [k for k, each in enumerate(self.candidates) if each.name == name]
+        return Signatures(
+            tuple(replace(self.candidates[k], second=True) for k in own),
+            self.columns,
+            tuple(self.slices[k] for k in own),
+        )
 
 
 @dataclass(frozen=True)

@@ -60,10 +60,12 @@ def gain_words(gain: Gain | None) -> str:
 def what(record: EffectRecord, parameters: Mapping[str, FitParameter], effect: Effect) -> str:
     """What was found of an effect, with its fitted values, and orders that were chosen."""
     values = [value_words(path.rsplit(".", 1)[-1], p) for path, p in parameters.items()]
+    chosen = [shape.parameter for shape in record.shapes if shape.scale == "order"]
+    chosen += [name for name in record.second if name not in record.gains and "order" in name]
     values += [
-        f"{shape.parameter} {effect.parameters[shape.parameter].value:g}"
-        for shape in record.shapes
-        if shape.scale == "order" and effect.parameters[shape.parameter].fixed
+        f"{name} {effect.parameters[name].value:g}"
+        for name in chosen
+        if name in effect.parameters and effect.parameters[name].fixed
     ]
     return f"{record.summary}: {', '.join(values)}" if values else record.summary
 

@@ -17,6 +17,11 @@ FIRST_DAMPING: Final = 1e-3
 WORTH_ESCAPING: Final = 1e-3
 """Share of the sum of squares for which a start from beyond a kink is worth while."""
 LEAST_DAMPING, MOST_DAMPING = 1e-12, 1e12
+STRAIGHT: Final = (0.7, 1.3)
+"""Share of what a step promised that it must gain for its slopes to be used once more: a residual
+costs a twentieth of its slopes."""
+MOST_USES: Final = 2
+"""Steps that one set of slopes is used for."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,9 @@ def levenberg_marquardt(
 
     Notes
     -----
-    Damping after Nielsen, Damping parameter in Marquardt's method, IMM-REP-1999-05.
+    Slopes are used for a second step where the first one kept what it promised (Shamanskii,
+    Ukr. Math. J. 19 (1967)); it never ends on such a step. Damping after Nielsen, Damping parameter
+    in Marquardt's method, IMM-REP-1999-05.
     """
     low, high = bounds
     x = np.clip(begin, low, high)
@@ -76,10 +83,13 @@ def levenberg_marquardt(
     spent = 1
     damping, growth = FIRST_DAMPING, 2.0
     largest = np.zeros(len(x))
+    slopes, normal, uses = np.empty(0), np.empty(0), MOST_USES
     while True:
-        slopes = jacobian(x)
+        if uses >= MOST_USES:
+            slopes, uses = jacobian(x), 0
+            normal = slopes.T @ slopes
+        uses += 1
         gradient = slopes.T @ left
-        normal = slopes.T @ slopes
         # Scales only grow (Moré 1978): a slope that fades must not make a step run away.
         largest = np.maximum(largest, np.sqrt(np.diag(normal)))
         size = np.where(largest > 0.0, largest, 1.0 / scale)
@@ -94,6 +104,9 @@ def levenberg_marquardt(
             tried = np.clip(x + step, low, high)
             moved = tried - x
             if np.all(np.abs(moved) <= tolerance * (np.abs(x) + tolerance * scale)):
+                if uses > 1:
+                    uses = MOST_USES
+                    break
                 return Minimum(x, cost, True)
             after = residual(tried)
             spent += 1
@@ -105,8 +118,14 @@ def levenberg_marquardt(
                 damping, growth = max(damping, LEAST_DAMPING), 2.0
                 flat = cost - power <= tolerance * cost
                 x, left, cost = tried, after, power
-                if flat:
+                if flat and uses == 1:
                     return Minimum(x, cost, True)
+                if flat or not STRAIGHT[0] < gained < STRAIGHT[1]:
+                    uses = MOST_USES
+                break
+            if uses > 1:
+                # Slopes of another point: look again before the damping is raised.
+                uses = MOST_USES
                 break
             # What a step cut at a bound promises says nothing of how much there is to gain.
             if _promised(gradient, normal, step) <= tolerance * cost:

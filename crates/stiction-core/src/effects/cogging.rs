@@ -4,6 +4,7 @@ use super::{Effect, EffectFacts, Hook, Scale, Shape, Situation};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
+use crate::wave::Wave;
 
 parameters! {
     /// Parameters of [`Cogging`].
@@ -14,6 +15,12 @@ parameters! {
             default Value(0.0), neutral Some(0.0), typical 0.02, bounds -1e9, 1e9;
         order: Order, "periods per 2π rad (rotary) or per 2π m (linear), N",
             default Value(12.0), neutral None, typical 12.0, bounds 1e-6, 1e9;
+        cosine_2: Effort, "amplitude of the cosine part of a second wave",
+            default Value(0.0), neutral Some(0.0), typical 0.02, bounds -1e9, 1e9;
+        sine_2: Effort, "amplitude of the sine part of a second wave",
+            default Value(0.0), neutral Some(0.0), typical 0.02, bounds -1e9, 1e9;
+        order_2: Order, "periods of the second wave per 2π rad (rotary) or per 2π m (linear), N",
+            default Value(24.0), neutral None, typical 24.0, bounds 1e-6, 1e9;
     }
 }
 
@@ -22,7 +29,7 @@ parameters! {
 /// Neutral: a = b = 0. Written with two amplitudes because amplitude and phase are not linear.
 /// Source: Hendershot, Miller, Design of Brushless Permanent-Magnet Motors (1994), ch. 4.
 #[derive(Debug, Clone)]
-pub struct Cogging<S>(CoggingParameters<S>);
+pub struct Cogging<S>(Wave<S>);
 
 impl<S: Scalar> Effect<S> for Cogging<S> {
     const PARAMETERS: &'static [ParameterSpec] = CoggingParameters::<f64>::SPECS;
@@ -40,17 +47,17 @@ impl<S: Scalar> Effect<S> for Cogging<S> {
         experiment: "slow full turns both ways",
         gains: &["cosine", "sine"],
         shapes: &[Shape { parameter: "order", scale: Scale::Order, grid: &[], fitted: true }],
+        second: &["cosine_2", "sine_2", "order_2"],
         law_terms: &[],
     };
 
     fn build(values: &[S]) -> Self {
-        Self(CoggingParameters::from_values(values))
+        let p = CoggingParameters::from_values(values);
+        Self(Wave::new([p.cosine, p.sine, p.order], [p.cosine_2, p.sine_2, p.order_2]))
     }
 
     #[inline]
     fn effort(&self, at: &Situation<S>) -> S {
-        let p = &self.0;
-        let angle = p.order * at.position;
-        p.cosine * angle.cos() + p.sine * angle.sin()
+        self.0.at(at.position)
     }
 }

@@ -45,6 +45,7 @@ impl<S: Scalar> Effect<S> for CreepHardening<S> {
             Shape { parameter: "exponent", scale: Scale::One, grid: &[2.0], fitted: false },
             Shape { parameter: "rate", scale: Scale::One, grid: &[0.8, 3.0], fitted: true },
         ],
+        second: &[],
         law_terms: &["hardening_coefficient", "hardening_exponent", "creep_rate"],
     };
 

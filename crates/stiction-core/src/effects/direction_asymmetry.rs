@@ -41,6 +41,7 @@ impl<S: Scalar> Effect<S> for DirectionAsymmetry<S> {
         experiment: "pre-sliding loops and rests at zero input; a change of load",
         gains: &["coulomb", "viscous"],
         shapes: &[Shape { parameter: "velocity", scale: Scale::Speed, grid: &[-0.2, 0.15, 0.4], fitted: true }],
+        second: &[],
         law_terms: &[],
     };
 

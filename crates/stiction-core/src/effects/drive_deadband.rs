@@ -36,6 +36,7 @@ impl<S: Scalar> Effect<S> for DriveDeadband<S> {
         experiment: "braking and coasting: input and motion of opposite signs",
         gains: &["deadband"],
         shapes: &[],
+        second: &[],
         law_terms: &[],
     };
 

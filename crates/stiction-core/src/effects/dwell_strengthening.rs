@@ -65,6 +65,7 @@ impl<S: Scalar> Effect<S> for DwellStrengthening<S> {
                 fitted: false,
             },
         ],
+        second: &[],
         law_terms: &[],
     };
 

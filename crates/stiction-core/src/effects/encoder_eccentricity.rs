@@ -37,6 +37,7 @@ impl<S: Scalar> Effect<S> for EncoderEccentricity<S> {
         experiment: "fast constant speed over many turns, both ways",
         gains: &["cosine", "sine"],
         shapes: &[],
+        second: &[],
         law_terms: &[],
     };
 
@@ -47,7 +48,7 @@ impl<S: Scalar> Effect<S> for EncoderEccentricity<S> {
     #[inline]
     fn sensor(&self, position: S) -> Reading<S> {
         let p = &self.0;
-        let (cosine, sine) = (position.cos(), position.sin());
+        let (sine, cosine) = position.sin_cos();
         Reading {
             error: p.cosine * (cosine - 1.0) + p.sine * sine,
             slope: p.sine * cosine - p.cosine * sine,

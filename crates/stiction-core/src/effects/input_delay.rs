@@ -41,6 +41,7 @@ impl<S: Scalar> Effect<S> for InputDelay<S> {
         experiment: "chirp of the input above 1/(10 times the delay)",
         gains: &["delay"],
         shapes: &[],
+        second: &[],
         law_terms: &[],
     };
 

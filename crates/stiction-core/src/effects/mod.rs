@@ -182,6 +182,8 @@ pub struct EffectFacts {
     pub gains: &'static [&'static str],
     /// Its other parameters, each with a grid.
     pub shapes: &'static [Shape],
+    /// Parameters of a second wave, in the order of gains and shapes; empty where it has none.
+    pub second: &'static [&'static str],
     /// Parameters of laws that are this effect: where a plant states one, the law has it already.
     pub law_terms: &'static [&'static str],
 }

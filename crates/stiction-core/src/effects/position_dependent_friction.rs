@@ -4,6 +4,7 @@ use super::{Effect, EffectFacts, Hook, LevelChange, Memory, Scale, Shape, Situat
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
+use crate::wave::Wave;
 
 parameters! {
     /// Parameters of [`PositionDependentFriction`].
@@ -14,6 +15,12 @@ parameters! {
             default Value(0.0), neutral Some(0.0), typical 0.1, bounds -0.6, 0.6;
         order: Order, "periods per 2π rad (rotary) or per 2π m (linear), N",
             default Value(1.0), neutral None, typical 1.0, bounds 1e-6, 1e9;
+        cosine_2: One, "amplitude of the cosine part of a second wave, as a share of friction",
+            default Value(0.0), neutral Some(0.0), typical 0.05, bounds -0.1, 0.1;
+        sine_2: One, "amplitude of the sine part of a second wave, as a share of friction",
+            default Value(0.0), neutral Some(0.0), typical 0.05, bounds -0.1, 0.1;
+        order_2: Order, "periods of the second wave per 2π rad (rotary) or per 2π m (linear), N",
+            default Value(2.0), neutral None, typical 2.0, bounds 1e-6, 1e9;
     }
 }
 
@@ -22,7 +29,7 @@ parameters! {
 /// Neutral: a = b = 0. The bounds keep the level above 0 whatever the position.
 /// Source: Popović, Goldenberg, Proc. IEEE ICRA (1998).
 #[derive(Debug, Clone)]
-pub struct PositionDependentFriction<S>(PositionDependentFrictionParameters<S>);
+pub struct PositionDependentFriction<S>(Wave<S>);
 
 impl<S: Scalar> Effect<S> for PositionDependentFriction<S> {
     const PARAMETERS: &'static [ParameterSpec] = PositionDependentFrictionParameters::<f64>::SPECS;
@@ -39,18 +46,17 @@ impl<S: Scalar> Effect<S> for PositionDependentFriction<S> {
         experiment: "sine of high acceleration: the input varies at the same position",
         gains: &["cosine", "sine"],
         shapes: &[Shape { parameter: "order", scale: Scale::Order, grid: &[], fitted: true }],
+        second: &["cosine_2", "sine_2", "order_2"],
         law_terms: &[],
     };
 
     fn build(values: &[S]) -> Self {
-        Self(PositionDependentFrictionParameters::from_values(values))
+        let p = PositionDependentFrictionParameters::from_values(values);
+        Self(Wave::new([p.cosine, p.sine, p.order], [p.cosine_2, p.sine_2, p.order_2]))
     }
 
     #[inline]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
-        let p = &self.0;
-        let angle = p.order * at.position;
-        let friction = p.cosine * angle.cos() + p.sine * angle.sin();
-        LevelChange { friction, viscous: S::constant(0.0) }
+        LevelChange { friction: self.0.at(at.position), viscous: S::constant(0.0) }
     }
 }

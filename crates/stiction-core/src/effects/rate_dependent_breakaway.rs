@@ -72,6 +72,7 @@ impl<S: Scalar> Effect<S> for RateDependentBreakaway<S> {
             Shape { parameter: "window", scale: Scale::Presliding, grid: &[1.0], fitted: false },
             Shape { parameter: "loading_time", scale: Scale::One, grid: &[0.1], fitted: false },
         ],
+        second: &[],
         law_terms: &["loading_rate"],
     };
 

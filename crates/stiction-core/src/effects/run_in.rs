@@ -43,6 +43,7 @@ impl<S: Scalar> Effect<S> for RunIn<S> {
             grid: &[0.1, 0.3, 1.0],
             fitted: true,
         }],
+        second: &[],
         law_terms: &[],
     };
 

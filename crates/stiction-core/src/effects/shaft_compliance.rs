@@ -46,6 +46,7 @@ impl<S: Scalar> Effect<S> for ShaftCompliance<S> {
             Shape { parameter: "inertia_share", scale: Scale::One, grid: &[0.5], fitted: false },
             Shape { parameter: "damping_ratio", scale: Scale::One, grid: &[0.04], fitted: false },
         ],
+        second: &[],
         law_terms: &[],
     };
 

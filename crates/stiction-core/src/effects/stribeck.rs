@@ -48,6 +48,7 @@ impl<S: Scalar> Effect<S> for Stribeck<S> {
             },
             Shape { parameter: "exponent", scale: Scale::One, grid: &[2.0], fitted: false },
         ],
+        second: &[],
         law_terms: &["stribeck_velocity", "stribeck_exponent"],
     };
 

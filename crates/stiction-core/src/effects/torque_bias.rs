@@ -35,6 +35,7 @@ impl<S: Scalar> Effect<S> for TorqueBias<S> {
         experiment: "pre-sliding loops and rests at zero input; the machine mounted the other way round",
         gains: &["bias"],
         shapes: &[],
+        second: &[],
         law_terms: &[],
     };
 

@@ -4,6 +4,7 @@ use super::{Effect, EffectFacts, Hook, Scale, Shape, Situation};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
+use crate::wave::Wave;
 
 parameters! {
     /// Parameters of [`TorqueConstantRipple`].
@@ -14,6 +15,12 @@ parameters! {
             default Value(0.0), neutral Some(0.0), typical 0.05, bounds -0.6, 0.6;
         order: Order, "periods per 2π rad (rotary) or per 2π m (linear), N",
             default Value(6.0), neutral None, typical 6.0, bounds 1e-6, 1e9;
+        cosine_2: One, "amplitude of the cosine part of a second wave, as a share of the gain",
+            default Value(0.0), neutral Some(0.0), typical 0.05, bounds -0.1, 0.1;
+        sine_2: One, "amplitude of the sine part of a second wave, as a share of the gain",
+            default Value(0.0), neutral Some(0.0), typical 0.05, bounds -0.1, 0.1;
+        order_2: Order, "periods of the second wave per 2π rad (rotary) or per 2π m (linear), N",
+            default Value(12.0), neutral None, typical 12.0, bounds 1e-6, 1e9;
     }
 }
 
@@ -23,7 +30,7 @@ parameters! {
 /// Source: Holtz, Springob, IEEE Trans. Ind. Electron. 43 (1996): torque ripple of permanent-magnet
 /// motors that grows with current, beside cogging, which does not.
 #[derive(Debug, Clone)]
-pub struct TorqueConstantRipple<S>(TorqueConstantRippleParameters<S>);
+pub struct TorqueConstantRipple<S>(Wave<S>);
 
 impl<S: Scalar> Effect<S> for TorqueConstantRipple<S> {
     const PARAMETERS: &'static [ParameterSpec] = TorqueConstantRippleParameters::<f64>::SPECS;
@@ -41,17 +48,17 @@ impl<S: Scalar> Effect<S> for TorqueConstantRipple<S> {
                      position",
         gains: &["cosine", "sine"],
         shapes: &[Shape { parameter: "order", scale: Scale::Order, grid: &[], fitted: true }],
+        second: &["cosine_2", "sine_2", "order_2"],
         law_terms: &[],
     };
 
     fn build(values: &[S]) -> Self {
-        Self(TorqueConstantRippleParameters::from_values(values))
+        let p = TorqueConstantRippleParameters::from_values(values);
+        Self(Wave::new([p.cosine, p.sine, p.order], [p.cosine_2, p.sine_2, p.order_2]))
     }
 
     #[inline]
     fn input(&self, input: S, at: &Situation<S>) -> S {
-        let p = &self.0;
-        let angle = p.order * at.position;
-        input + input * (p.cosine * angle.cos() + p.sine * angle.sin())
+        input + input * self.0.at(at.position)
     }
 }

@@ -34,6 +34,7 @@ impl<S: Scalar> Effect<S> for ViscousQuadratic<S> {
         experiment: "top speed at least three times the normal one",
         gains: &["quadratic"],
         shapes: &[],
+        second: &[],
         law_terms: &[],
     };
 

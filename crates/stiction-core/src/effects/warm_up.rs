@@ -46,6 +46,7 @@ impl<S: Scalar> Effect<S> for WarmUp<S> {
             grid: &[0.1, 0.3, 1.0],
             fitted: true,
         }],
+        second: &[],
         law_terms: &[],
     };
 

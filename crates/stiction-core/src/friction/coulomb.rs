@@ -160,7 +160,7 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
     }
 
     fn sliding_force(&self) -> S {
-        self.parameters.coulomb
+        self.parameters.breakaway
     }
 
     fn greatest_stiffness(&self) -> f64 {

@@ -501,7 +501,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
     }
 
     fn sliding_force(&self) -> S {
-        self.parameters.coulomb
+        self.parameters.breakaway
     }
 
     fn greatest_stiffness(&self) -> f64 {

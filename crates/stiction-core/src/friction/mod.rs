@@ -169,7 +169,7 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn greatest_stiffness(&self) -> f64;
     /// Greatest ∂force/∂velocity at fixed displacement that lasts: limits the step as well.
     fn greatest_damping(&self) -> f64;
-    /// Friction of slow sliding at level 1; infinite where the contact never slides.
+    /// Force at level 1 beyond which a contact that is loaded slowly slides; infinite where it never does.
     fn sliding_force(&self) -> S;
     /// Steepest fall of friction with speed: limits the step to a few parts.
     fn steepest_fall(&self) -> f64 {
@@ -375,7 +375,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Friction of slow sliding at level 1; infinite where the contact never slides.
+            /// Force at level 1 beyond which a contact that is loaded slowly slides; infinite where it never does.
             pub fn sliding_force(&self) -> S {
                 match self { $(Self::$law(law) => law.sliding_force(),)* }
             }
