@@ -210,8 +210,11 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
     if not accepted:
         return None
     winner = accepted[0]
-    # The cause itself would explain more than what imitates it.
-    if any(t.imitates and (1.0 - NEAR) * t.worth > winner.worth for t in ranked):
+    # The cause itself would explain more than what imitates it; a relative of the winner may imitate
+    # that one.
+    family = winner.candidate.record.family
+    strangers = [t for t in ranked if t.imitates and t.candidate.record.family != family]
+    if any((1.0 - NEAR) * stranger.worth > winner.worth for stranger in strangers):
         return None
     # Who falls short by a little on its own may still be what the winner imitates.
     rivals = [

@@ -110,6 +110,9 @@ def search(
             if choice.winner.model.solution.interrupted:
                 found.interrupted = True
                 break
+        if not found.interrupted:
+            for place in range(len(found.choices) - 1):
+                _swap(evidence, found, place, signatures, centred, bias, friction)
     except KeyboardInterrupt:
         found.interrupted = True
     return found
@@ -262,16 +265,58 @@ def _drop(evidence: Evidence, found: Search) -> set[str]:
         row = found.rows[name]
         found.rows[name] = replace(row, reason=f"not needed beside {latest}")
         kept = [each for each in found.choices if each is not choice]
-        # Each entry is measured beside those before it: the chain is made anew.
-        models = [found.models[0]]
-        plants = [less.plant]
-        for later in reversed(kept[1:]):
-            plants.append(without_effect(plants[-1], later.winner.name))
-        models += [fitted(evidence, plant, whole.nuisances) for plant in reversed(plants[1:])]
-        found.models[:] = [*models, less]
+        found.models[:] = _chain(evidence, found.models[0], kept, less)
         found.choices[:] = kept
         dropped.add(name)
     return dropped
+
+
+def _chain(evidence: Evidence, base: Model, choices: Sequence[Choice], last: Model) -> list[Model]:
+    """The models behind some choices, made anew: each entry is measured beside those before it."""
+    plants = [last.plant]
+    for later in reversed(choices[1:]):
+        plants.append(without_effect(plants[-1], later.winner.name))
+    between = [fitted(evidence, plant, last.nuisances) for plant in reversed(plants[1:])]
+    return [base, *between, last]
+
+
+def _swap(
+    evidence: Evidence,
+    found: Search,
+    place: int,
+    signatures: Signatures,
+    centred: FloatArray,
+    bias: FloatArray,
+    friction: float,
+) -> None:
+    """Asks again whether an early choice or a relative of it stands better beside the later ones.
+
+    What was chosen first was compared while the rest was still missing.
+    """
+    choice, whole = found.choices[place], found.models[-1]
+    record = choice.winner.candidate.record
+    effect = next(each for each in whole.plant.effects if each.name == record.name)
+    taken = {each.winner.name for each in found.choices} - {record.name}
+    tried = {each.name: each.record for each in signatures.candidates if each.name not in taken}
+    kin = {name for name, other in tried.items() if other.family == record.family}
+    if len(kin) < 2 or any(name in effect.parameters for name in record.second):
+        return
+    less = fitted(evidence, without_effect(whole.plant, record.name), whole.nuisances)
+    scores = screen(_problem(evidence, less, centred, bias), signatures, friction)
+    trials = [
+        _trial(evidence, less, signatures, score, friction)
+        for score in scores
+        if score.candidate.name in kin and score.score > score.threshold
+    ]
+    again = choose(trials)
+    if again is None:
+        return
+    found.choices[place] = again
+    if again.winner.name != record.name:
+        _logger.info("%s stands better than %s", again.winner.name, record.name)
+        found.models[:] = _chain(evidence, found.models[0], found.choices, again.winner.model)
+    for trial in trials:
+        found.rows[trial.name] = _tried(trial, again)
 
 
 def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score) -> Model:
