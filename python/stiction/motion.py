@@ -75,14 +75,14 @@ class Kernel:
         return len(self.weights) // 2 + 1
 
     def mean(self, values: FloatArray, *, every: int = 1) -> FloatArray:
-        """Weighted mean about samples that have the support; shape (n − 2·half,) for all of them.
+        """Weighted mean about samples that have the support; shape (…, n − 2·half) for all of them.
 
-        ``every`` is the spacing of the results in samples.
+        ``values`` has the shape (…, n); ``every`` is the spacing of the results in samples.
         """
-        if every == 1:
+        if every == 1 and values.ndim == 1:
             return np.convolve(values, self.weights, "valid")[1:-1]
-        windows = np.lib.stride_tricks.sliding_window_view(values, len(self.weights))[1:-1:every]
-        mean: FloatArray = windows @ self.weights[::-1]
+        windows = np.lib.stride_tricks.sliding_window_view(values, len(self.weights), axis=-1)
+        mean: FloatArray = windows[..., 1:-1:every, :] @ self.weights[::-1]
         return mean
 
     def second_derivative(self, values: FloatArray) -> FloatArray:

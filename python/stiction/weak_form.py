@@ -295,15 +295,13 @@ class WeakForm:
         self, plant: Plant, needed: FloatArray, driven: FloatArray, ahead: FloatArray
     ) -> FloatArray:
         """Columns of a Jacobian from derivatives at the sample ends, a row each."""
-        columns = np.empty((len(self), len(needed)))
-        rows = zip(needed, driven, ahead, strict=True)
-        for k, (need, drive, shift) in enumerate(rows):
-            gained = -need
-            if not self.prescribed and np.any(drive):
-                gained += _centred(drive)
-            columns[:, k] = self._mean(gained)
-            if np.any(shift):
-                columns[:, k] -= plant.inertia * self._bent(shift)
+        gained = -needed
+        moved = np.flatnonzero(np.any(driven, axis=1))
+        if len(moved) and not self.prescribed:
+            gained[moved] += _centred(driven[moved])
+        columns = np.ascontiguousarray(self._mean(gained).T)
+        for k in np.flatnonzero(np.any(ahead, axis=1)):
+            columns[:, k] -= plant.inertia * self._bent(ahead[k])
         return columns
 
     def _bent(self, ahead: FloatArray) -> FloatArray:
@@ -328,9 +326,11 @@ def _too_few(source: str, samples: int, support: float) -> str:
 
 
 def _centred(values: FloatArray) -> FloatArray:
-    """At the end of each sample the mean of what held in it and in the next."""
-    centred: FloatArray = 0.5 * (values + np.append(values[1:], values[-1]))
-    return centred
+    """At the end of each sample the mean of what held in it and in the next; last axis."""
+    centred: FloatArray = values.copy()
+    centred[..., :-1] += values[..., 1:]
+    centred[..., -1] += values[..., -1]
+    return 0.5 * centred
 
 
 def _narrowest(dt: float, quiet: Callable[[Kernel], bool]) -> Kernel:

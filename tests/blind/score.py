@@ -27,6 +27,13 @@ STRENGTHS = {
     "cogging": lambda a, s: _wave(a, s),
     "torque_constant_ripple": lambda a, s: _wave(a, s),
     "input_delay": lambda a, s: {"delay": a * s["sign"]},
+    "drive_deadband": lambda a, s: {"deadband": a},
+    "dwell_strengthening": lambda a, s: {"strength": a},
+    "rate_dependent_breakaway": lambda a, s: {"strength": a},
+    "warm_up": lambda a, s: {"coulomb": a, "viscous": a * s["viscous_part"]},
+    "run_in": lambda a, s: {"coulomb": a},
+    "encoder_eccentricity": lambda a, s: _wave(a, s),
+    "creep_hardening": lambda a, s: {"creep": a},
 }
 
 

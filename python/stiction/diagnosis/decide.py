@@ -210,8 +210,8 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
     if not accepted:
         return None
     winner = accepted[0]
-    # The cause itself would explain more than what imitates it; a relative of the winner may imitate
-    # that one.
+    # The cause itself would explain more than what imitates it; a relative of the winner may
+    # imitate the winner.
     family = winner.candidate.record.family
     strangers = [t for t in ranked if t.imitates and t.candidate.record.family != family]
     if any((1.0 - NEAR) * stranger.worth > winner.worth for stranger in strangers):

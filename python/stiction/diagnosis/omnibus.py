@@ -11,7 +11,7 @@ import numpy as np
 from ..trajectory import FloatArray
 from .coordinates import COORDINATES, Coordinate, Look
 from .evidence import Evidence, Plan
-from .periodic import COUPLED, ORDERS, frequency_view, order_view
+from .periodic import COUPLED, ORDERS, frequency_view, order_view, waves_of
 from .response import response_columns, response_view
 from .view import View, limit, means
 
@@ -69,6 +69,7 @@ def rest(
     direction = stacked([look.direction for look in seen])
     position = stacked([look.position for look in seen])
     both = np.column_stack([residual, null])
+    waves = waves_of(orders, position)
     views: list[View] = []
     for coordinate in COORDINATES:
         values = stacked([coordinate.values(look) for look in seen])
@@ -87,7 +88,7 @@ def rest(
         order_view(
             coordinate,
             orders,
-            position,
+            waves,
             evidence.plans,
             both * (direction[:, None] if coordinate.odd else 1.0),
             evidence.weights,
@@ -99,7 +100,7 @@ def rest(
         order_view(
             coordinate,
             orders,
-            position,
+            waves,
             evidence.plans,
             both,
             evidence.weights,

@@ -12,7 +12,7 @@ from .coordinates import Coordinate, Look
 from .evidence import Cells, Plan
 from .view import FLAG_ABOVE, View, limit, means
 
-__all__ = ["COUPLED", "FREQUENCY", "ORDERS", "frequency_view", "order_view"]
+__all__ = ["COUPLED", "FREQUENCY", "ORDERS", "frequency_view", "order_view", "waves_of"]
 
 PHASES: Final = 24
 """Stretches of a period."""
@@ -56,10 +56,16 @@ FREQUENCY: Final = Coordinate("frequency", "frequency, Hz", False, _phase)
 """Residual that repeats with time."""
 
 
+def waves_of(orders: Sequence[float], position: FloatArray) -> FloatArray:
+    """Cosine and sine of each order at each position; shape (2, orders, n)."""
+    angle = np.outer(orders, position)
+    return np.stack([np.cos(angle), np.sin(angle)])
+
+
 def order_view(
     coordinate: Coordinate,
     orders: Sequence[float],
-    position: FloatArray,
+    waves: FloatArray,
     plans: Sequence[Plan],
     both: FloatArray,
     weights: FloatArray,
@@ -73,7 +79,8 @@ def order_view(
     coordinate : Coordinate
     orders : sequence of float
         Tried, 1/rad or 1/m.
-    position : numpy.ndarray, shape (n,)
+    waves : numpy.ndarray, shape (2, orders, n)
+        From ``waves_of``.
     plans : sequence of Plan
     both : numpy.ndarray, shape (n, 1 + surrogates)
         Weighted residual, then those of the surrogates; each chooses its own best order.
@@ -92,19 +99,16 @@ def order_view(
         held = both[plan.held]
         total += np.sum(held**2, axis=0)
         rows += len(held)
-        for k, order in enumerate(orders):
-            waves = np.column_stack([np.cos(order * position), np.sin(order * position)])
-            waves *= grown[:, None]
-            own = waves[plan.fit]
-            pushed = own.T @ both[plan.fit]
-            gains = np.linalg.lstsq(own.T @ own, pushed, rcond=None)[0]
-            explained[k] += np.sum(gains * pushed, axis=0)
-            curve = waves[plan.held] @ gains
-            removed[k] += np.sum(held**2 - (held - curve) ** 2, axis=0)
+        normal, pushed = _products(waves[:, :, plan.fit], grown[plan.fit], both[plan.fit])
+        gains = np.linalg.pinv(normal, rcond=1e-10, hermitian=True) @ pushed
+        explained += np.sum(gains * pushed, axis=1)
+        normal, pushed = _products(waves[:, :, plan.held], grown[plan.held], held)
+        removed += np.sum(gains * (2.0 * pushed - normal @ gains), axis=1)
     best = np.argmax(explained, axis=0)
     own = removed[best, np.arange(both.shape[1])]
     shares = own / np.maximum(total, 1e-300)
-    phase = np.mod(orders[int(best[0])] * position, 2.0 * np.pi)
+    cosine, sine = waves[:, int(best[0])]
+    phase = np.mod(np.arctan2(sine, cosine), 2.0 * np.pi)
     index = np.minimum((phase / (2.0 * np.pi) * PHASES).astype(np.int64), PHASES - 1)
     # In units of effort: of what grows with something, at its usual size.
     curves = means(index, both / weights[:, None] * _sign_of(factor)[:, None], PHASES)
@@ -112,6 +116,19 @@ def order_view(
     at = (np.arange(PHASES) + 0.5) * 2.0 * np.pi / PHASES
     size = float(np.sqrt(max(own[0], 0.0) / max(rows, 1))) / max(friction, 1e-300)
     return View(coordinate, at, curves[:, 0], low, high, float(shares[0]), limit(shares[1:]), size)
+
+
+def _products(
+    waves: FloatArray, grown: FloatArray, both: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Normal matrices of each order, shape (orders, 2, 2), and products with the residuals."""
+    pushed = np.stack([wave @ (grown[:, None] * both) for wave in waves], axis=1)
+    square = grown**2
+    crossed = (waves[0] * waves[1]) @ square
+    normal = np.empty((waves.shape[1], 2, 2))
+    normal[:, 0, 0], normal[:, 1, 1] = (waves[0] ** 2) @ square, (waves[1] ** 2) @ square
+    normal[:, 0, 1] = normal[:, 1, 0] = crossed
+    return normal, pushed
 
 
 def _sign_of(factor: FloatArray | None) -> FloatArray:

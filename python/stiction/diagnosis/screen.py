@@ -151,9 +151,10 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     ``friction`` is the weighted rms of the friction, against which sizes are measured.
     """
     base = project(problem.base, Plan(problem.fitted, problem.fitted))
-    residual = base.project(problem.residual).fit
-    null = base.project(problem.null).fit
-    columns = base.project(signatures.columns).fit
+    fitted = problem.fitted
+    residual, null = base.off(problem.residual[fitted]), base.off(problem.null[fitted])
+    raw = signatures.columns[fitted]
+    columns = base.off(raw)
     power = max(float(residual @ residual), 1e-300)
     tried = [
         _tried(candidate, columns[:, own], residual)
@@ -181,7 +182,6 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
             [np.sum(turned**2, axis=0) / power for _, turned in reached],
         )
     heldout = _heldout(problem, signatures, list(best.values()))
-    raw = signatures.columns[problem.fitted]
     scores = []
     for name, index in best.items():
         score, gains, _ = tried[index]
