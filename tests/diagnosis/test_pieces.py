@@ -195,14 +195,40 @@ def test_intervals_are_students() -> None:
     assert interval_width(10_000) == pytest.approx(1.960, abs=1e-3)
 
 
-def tried(worth: float, parameters: int, reason: str = "", *, by_blocks: bool = False) -> Trial:
+def tried(
+    worth: float,
+    parameters: int,
+    reason: str = "",
+    *,
+    by_blocks: bool = False,
+    family: str = "alone",
+    uneven: float = 0.0,
+) -> Trial:
     """A trial that explains what all others explain."""
     blocks = (np.linspace(1.0, 2.0, 30), np.linspace(2.0, 1.0, 30))
-    score = SimpleNamespace(
-        signature=np.ones(5), candidate=SimpleNamespace(name=f"{worth}", parameters=parameters)
+    candidate = SimpleNamespace(
+        name=f"{worth}", parameters=parameters, record=SimpleNamespace(family=family)
     )
+    score = SimpleNamespace(signature=np.ones(5), candidate=candidate)
     model = SimpleNamespace(blocks=blocks)
-    return Trial(score, model, 0.3, 3.0, worth, 9.0, 0.1, reason, by_blocks)
+    return Trial(score, model, 0.3, 3.0, worth, 9.0, 0.1, reason, by_blocks, uneven)
+
+
+def test_no_stranger_is_named_where_what_explains_most_imitates() -> None:
+    imitates = tried(1.0, 1, "imitates something else", family="offset", uneven=0.6)
+    relative, stranger = tried(0.5, 1, family="offset"), tried(0.5, 1, family="angle")
+    assert choose([imitates, stranger]) is None
+    chosen = choose([imitates, relative])
+    assert chosen is not None
+    assert chosen.winner is relative
+
+
+def test_a_strength_that_is_not_quite_even_stands_for_its_family() -> None:
+    winner, relative = tried(1.0, 1, family="slow", uneven=0.2), tried(0.2, 1, family="slow")
+    chosen = choose([winner, relative, tried(0.2, 1, family="angle")])
+    assert chosen is not None
+    assert any(trial is relative for trial in chosen.rivals)
+    assert not chosen.decided
 
 
 def test_a_cause_that_is_not_told_stands_under_the_simplest_of_the_best() -> None:

@@ -134,16 +134,17 @@ def _units(evidence: Evidence, plant: Plant, span: float) -> dict[str, float]:
     if not math.isfinite(sliding) or sliding <= 0.0:
         sliding = float(np.sqrt(np.mean([np.mean(r.form.effort**2) for r in evidence.shown])))
     stiffness = values.get("initial_stiffness", 0.0)
-    count = max(form.count for form in evidence.forms)
+    forms = [rows.form for rows in evidence.shown]
+    count = max(form.count for form in forms)
     # Without a spring there is no pre-sliding length; a rest is what the sensor takes for one.
     length = sliding / stiffness * PRESLIDING if stiffness > 0.0 else RESTING_SHARE * span
-    ends = [form.clock + form.time[-1] - form.time[0] for form in evidence.forms]
-    paths = [form.path + float(np.sum(np.abs(np.diff(form.position)))) for form in evidence.forms]
+    ends = [form.clock + form.time[-1] - form.time[0] for form in forms]
+    paths = [form.path + float(np.sum(np.abs(np.diff(form.position)))) for form in forms]
     return {
         "presliding": max(length, FEWEST_COUNTS * count, 1e-12),
         "loading": max(sliding, 1e-300),
-        "session": max(*ends, 1e-3) if len(ends) > 1 else max(ends[0], 1e-3),
-        "path": max(*paths, 1e-9) if len(paths) > 1 else max(paths[0], 1e-9),
+        "session": max(1e-3, *ends),
+        "path": max(1e-9, *paths),
     }
 
 

@@ -10,7 +10,7 @@ from typing import Final, TypeVar
 import numpy as np
 
 from ..errors import NotEnoughData
-from ..fitting.rows import Mask, Nuisances, Rows, forms_of, rows_of
+from ..fitting.rows import EVERY_S, Mask, Nuisances, Rows, rows_of, set_clocks
 from ..plant import Plant
 from ..recording import Part, Recording
 from ..recording.split import BLOCK_S, Split, name_of, split
@@ -106,9 +106,11 @@ class Evidence:
         self.recordings = list(recordings)
         self.threads = threads
         self.names = [name_of(recording, k) for k, recording in enumerate(self.recordings)]
-        self.forms = forms_of(plant, self.recordings, self.each)
+        self.forms = self.each(lambda r: WeakForm(plant, r, every=EVERY_S), self.recordings)
         self.support = max(form.kernel.support for form in self.forms)
         self.split: Split = split(self.recordings, edge_s=min(self.support, 0.25 * BLOCK_S))
+        seen = {part.recording for part in (*self.split.train, *self.split.select)}
+        set_clocks(self.forms, self.recordings, set(range(len(self.forms))) - seen)
         self.train = self._rows(plant, self.split.train)
         if not self.train:
             raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -22,7 +22,6 @@ __all__ = [
     "Nuisances",
     "Rows",
     "Start",
-    "forms_of",
     "rows_of",
     "start_quantities",
 ]
@@ -98,23 +97,32 @@ def warm(form: WeakForm, recording: Recording) -> Mask:
     return after
 
 
-def forms_of(
-    plant: Plant,
-    recordings: Sequence[Recording],
-    each: Callable[[Callable[[Recording], WeakForm], Sequence[Recording]], list[WeakForm]],
-) -> list[WeakForm]:
-    """Recordings through kernels, with session clock and path running on from one to the next.
+def set_clocks(
+    forms: Sequence[WeakForm], recordings: Sequence[Recording], sealed: Collection[int] = ()
+) -> None:
+    """Lets session clock and path run on from one recording to the next.
 
-    ``each`` is what goes over them: ``lambda work, items: list(map(work, items))``.
+    Of ``sealed`` recordings, which nobody may look at yet, only the length in time is taken: their
+    path is what others of their kind travel in that time, or any other where there is none.
     """
-    forms = each(lambda recording: WeakForm(plant, recording, every=EVERY_S), recordings)
     starts = starts_of(recordings)
+    travelled = {
+        k: float(np.sum(np.abs(np.diff(form.position))))
+        for k, form in enumerate(forms)
+        if k not in sealed
+    }
+
+    def usual(index: int) -> float:
+        kind = recordings[index].kind
+        alike = [k for k in travelled if recordings[k].kind == kind] or list(travelled)
+        lasted = sum(recordings[k].duration for k in alike)
+        own = sum(travelled[k] for k in alike)
+        return own * recordings[index].duration / lasted if lasted > 0.0 else 0.0
+
     path = 0.0
     for index in sorted(range(len(forms)), key=lambda k: starts[k]):
-        form = forms[index]
-        form.clock, form.path = starts[index], path
-        path += float(np.sum(np.abs(np.diff(form.position))))
-    return forms
+        forms[index].clock, forms[index].path = starts[index], path
+        path += travelled[index] if index in travelled else usual(index)
 
 
 def rows_of(form: WeakForm, recording: Recording, index: int, parts: Sequence[Part]) -> Mask:

@@ -14,11 +14,18 @@ from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.split import BLOCK_S, split
 from ..trajectory import FloatArray
+from ..weak_form import WeakForm
 from .minimise import MOST_EVALUATIONS, Solution, launch, minimise
 from .result import FitParameter, FitResult
-from .rows import Nuisances, Rows, forms_of, rows_of
+from .rows import EVERY_S, Nuisances, Rows, rows_of, set_clocks
 from .start import complete, free_paths
-from .statistics import correlations, covariance, interval_width, undetermined_directions
+from .statistics import (
+    correlations,
+    covariance,
+    interval_width,
+    jackknife,
+    undetermined_directions,
+)
 from .variables import Variables, unit_of
 
 __all__ = ["evaluate", "fit", "reweighted"]
@@ -68,7 +75,8 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     recordings = [session] if isinstance(session, Recording) else list(session)
     if not recordings:
         raise InputError("there are no recordings to fit; give at least one")
-    forms = forms_of(plant, recordings, lambda work, items: [work(item) for item in items])
+    forms = [WeakForm(plant, recording, every=EVERY_S) for recording in recordings]
+    set_clocks(forms, recordings)
     parts = _deal(recordings, max(form.kernel.support for form in forms))
     train: list[Rows] = []
     held: list[Rows] = []
@@ -167,6 +175,11 @@ def evaluate(
     errors = np.sqrt(np.maximum(np.diag(matrix), 0.0))
     sides = _sides(variables, solution.vector, begin, errors)
     width = interval_width(pieces)
+    between = jackknife(jacobians, residuals)
+    if between is not None:
+        # Of the two ways to be wrong, the wider one, with the few degrees that recordings leave.
+        wider = between[: len(paths)] * (interval_width(len(jacobians)) / width)
+        errors = np.maximum(errors, wider)
     parameters = {}
     for k, path in enumerate(paths):
         error = float("inf") if path in dead else float(errors[k])

@@ -14,11 +14,16 @@ __all__ = [
     "correlations",
     "covariance",
     "interval_width",
+    "jackknife",
     "undetermined_directions",
 ]
 
 CORRELATED_S: Final = 1.0
 """Residuals further apart than this are taken as independent."""
+FEWEST_RECORDINGS: Final = 4
+"""Fewer recordings say nothing of how parameters differ from one to the next."""
+ALONE: Final = 1e-10
+"""Directions with less than this share of the steepest curvature belong to one recording alone."""
 FLAT: Final = 1e-5
 """A direction with less than this share of the steepest one's slope is not determined."""
 
@@ -54,6 +59,36 @@ def covariance(
             blocks += 1
     few = blocks / (blocks - 1) if blocks > 1 else np.inf
     return np.asarray(bread @ meat @ bread * few / np.outer(scale, scale)), blocks
+
+
+def jackknife(
+    jacobians: Sequence[FloatArray], residuals: Sequence[FloatArray]
+) -> FloatArray | None:
+    """Standard errors from how the parameters move when each recording is left out; shape (p,).
+
+    s² = (R − 1)/R·Σ_r Δ_r², Δ_r = (JᵀJ − J_rᵀJ_r)⁻¹·J_rᵀ·r_r, one Gauss-Newton step (Miller,
+    Biometrika 61 (1974)). What a law's curve misses is not noise that blocks of a second average
+    out: it pulls one way through a whole experiment, and another way in the next. None where there
+    are fewer than four recordings.
+
+    Parameters
+    ----------
+    jacobians : sequence of numpy.ndarray, shape (n_i, p)
+    residuals : sequence of numpy.ndarray, shape (n_i,)
+        Of each recording, weighted alike.
+    """
+    number = len(jacobians)
+    if number < FEWEST_RECORDINGS:
+        return None
+    scale = np.sqrt(sum(np.sum(j**2, axis=0) for j in jacobians))
+    scale[scale == 0.0] = 1.0
+    normals = [(j / scale).T @ (j / scale) for j in jacobians]
+    whole = np.sum(normals, axis=0)
+    moved = np.zeros(len(scale))
+    for jacobian, residual, normal in zip(jacobians, residuals, normals, strict=True):
+        bread = np.linalg.pinv(whole - normal, rcond=ALONE, hermitian=True)
+        moved += (bread @ ((jacobian / scale).T @ residual)) ** 2
+    return np.asarray(np.sqrt((number - 1) / number * moved) / scale)
 
 
 def interval_width(blocks: int) -> float:
