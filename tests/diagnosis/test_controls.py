@@ -26,17 +26,22 @@ def null_sessions() -> Sequence[Any]:
     return made
 
 
-def names_in(sessions: Sequence[Any]) -> list[str]:
+def passed_the_score(sessions: Sequence[Any]) -> float:
+    """Share of candidates that the score alone would let through."""
     found = [
         st.diagnose(as_plant(made), as_session(made), surrogates=SURROGATES) for made in sessions
     ]
-    return [cause.name for diagnosis in found for cause in diagnosis.effects]
+    rows = [row for diagnosis in found for row in diagnosis.candidates if row.score is not None]
+    return float(np.mean([row.score > row.threshold for row in rows]))  # type: ignore[operator]
 
 
-def test_without_calibration_noise_gets_names(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert names_in(null_sessions()) == []
+def test_without_calibration_the_score_lets_noise_through(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Held-out rows, blocks and strength still refuse what the score lets through: of twelve such
+    # sessions none got a name. It is the score's own gate that must be seen to fail.
+    assert passed_the_score(null_sessions()) < 0.35
     uncalibrated(monkeypatch.setattr)
-    assert names_in(null_sessions()) != []
+    # The rest cannot be stronger than nothing: gains of one sign alone, pushed the other way.
+    assert passed_the_score(null_sessions()) > 0.6
 
 
 def test_shuffled_labels_are_right_by_chance_alone() -> None:
