@@ -41,6 +41,8 @@ blocks: one number that no number of rows makes large by itself."""
 MOST_UNEVEN: Final = 0.3
 """What strengths of their own by kind of recording may add, as a share of a gain: with more
 the effect imitates something else."""
+AT_THE_EDGE: Final = 0.98
+"""A shape that has come this near to the end of where it may be stands there."""
 UNEVEN_IN_FAMILY: Final = 0.12
 """The same, from which on a member of a family stands for the family alone."""
 LEAST_SIZE: Final = 0.001
@@ -71,7 +73,8 @@ class Trial:
     by_blocks : bool
         Refused because its held-out gain varies too much over blocks, and for nothing else.
     uneven : float
-        What strengths of their own by kind of recording would add, as a share of its gain.
+        What strengths of their own by kind of recording would add, as a share of its gain; 1
+        where its shape says that it is something else.
     """
 
     score: Score
@@ -87,7 +90,7 @@ class Trial:
 
     @property
     def imitates(self) -> bool:
-        """Whether its strength differs so much between kinds of recording that it is no cause."""
+        """Whether its shape or its strength in different kinds of recording shows it no cause."""
         return self.uneven > MOST_UNEVEN
 
     @property
@@ -156,7 +159,11 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             "that matter"
         )
     uneven = unevenness(base, model, contributed) if not reason or by_blocks else 0.0
-    if uneven > MOST_UNEVEN:
+    beyond = _beyond_all_speeds(score.candidate, model) if not reason or by_blocks else ""
+    if beyond:
+        by_blocks, uneven = False, 1.0
+        reason = f"imitates something else: its {beyond} went to the top of all speeds"
+    elif uneven > MOST_UNEVEN:
         by_blocks = False
         reason = (
             "imitates something else: strengths of their own by kind of recording would add "
@@ -164,6 +171,21 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         )
     worth = log_gain(base, model) - PENALTY * score.candidate.parameters
     return Trial(score, model, gain, z, worth, strength, size, reason, by_blocks, uneven)
+
+
+def _beyond_all_speeds(candidate: Candidate, model: Model) -> str:
+    """The shape that a refit took to the top of the speeds, "" where there is none.
+
+    A change with speed that is not over where the speeds end is a curve of viscous friction.
+    """
+    effect = next(each for each in model.plant.effects if each.name == candidate.name)
+    for shape in candidate.record.shapes:
+        stated = effect.parameters[candidate.own(shape.parameter)]
+        if shape.scale != "speed" or stated.max is None or stated.fixed:
+            continue
+        if stated.value >= AT_THE_EDGE * stated.max:
+            return shape.parameter
+    return ""
 
 
 def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tuple[float, float]:

@@ -27,6 +27,7 @@ from ..wording import did_you_mean, listed
 from .advice import NO_COORDINATE, advise
 from .candidates import left_out, scales_of
 from .coordinates import looks
+from .decide import LEAST_GAIN
 from .evidence import Evidence
 from .gain import Gain, HeldOut, gain_of, open_residuals
 from .loop import replayed
@@ -339,6 +340,9 @@ def _concluded(
     if causes and test is not None:
         gain = gain_of(test, 0, len(causes), found.seed)
     unexplained = tuple(Unexplained(view.coordinate.name, view.share) for view in rests[1].flagged)
+    if not unexplained and selection.imitated > LEAST_GAIN:
+        # What was refused as an imitation shows that there is something to imitate.
+        unexplained = (Unexplained(rests[1].views[0].coordinate.name, selection.imitated),)
     excess = _excess(evidence, final, null)
     if excess < LEAST_EXCESS:
         unexplained = ()

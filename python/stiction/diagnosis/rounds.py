@@ -61,6 +61,9 @@ class Search:
         Every effect that was looked at.
     blind : list of EffectRecord
         Effects that these data could not show.
+    imitated : float
+        Held-out gain of the best of those that were refused last because they imitate something
+        else: so much is left that has no name.
     interrupted : bool
     """
 
@@ -68,6 +71,7 @@ class Search:
     choices: list[Choice] = field(default_factory=list)
     rows: dict[str, CandidateRow] = field(default_factory=dict)
     blind: list[EffectRecord] = field(default_factory=list)
+    imitated: float = 0.0
     interrupted: bool = False
 
 
@@ -172,6 +176,7 @@ def _round(
         row = found.rows[score.candidate.name]
         found.rows[row.name] = replace(row, reason="others explain more")
     choice = choose(trials)
+    found.imitated = max((t.gain for t in trials if t.imitates and choice is None), default=0.0)
     for trial in trials:
         if choice is not None or not found.choices:
             found.rows[trial.name] = _tried(trial, choice)
