@@ -96,6 +96,7 @@ def scored(case, made, threads=1):
         "gain": None if found.gain is None else found.gain.value,
         "clair": 0.0 if not names else clair(plant, session, made, found.baseline),
         "intervals": _intervals(made, found),
+        "left": _left(found),
         "candidates": [row.to_dict() for row in found.candidates],
         "base_rms": found.baseline.train_rms,
         "floor_rms": found.baseline.noise_floor_rms,
@@ -144,6 +145,12 @@ def _cause(cause, families):
         "gain": None if cause.gain is None else cause.gain.value,
         "parameters": {path: [p.value, *p.ci95] for path, p in cause.parameters.items()},
     }
+
+
+def _left(found):
+    """What is left above noise in each coordinate, whether it matters or not."""
+    views = [view for view in found.pictures.after.views if view.share > view.threshold]
+    return [[v.coordinate.name, v.share, v.threshold, v.size] for v in views]
 
 
 def _intervals(made, found):

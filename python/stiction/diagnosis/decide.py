@@ -244,6 +244,7 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
         for other in ranked
         if other is not winner
         and other.gain > 0.0
+        and not other.imitates
         and ((_alike(winner, other) and not _told(winner, other)) or _kin(winner, other))
     ]
     head = _head(winner, rivals)
