@@ -10,6 +10,8 @@ import numpy as np
 
 import stiction as st
 
+from .control import shuffled
+
 BINS = (0.0, 0.01, 0.02, 0.04, 0.07, 0.12, 0.20, 0.40, 1.0)
 """Edges of clair, the gain of an oracle; below .02 silence is right."""
 SILENCE_IS_RIGHT = 0.02
@@ -189,6 +191,7 @@ def _rates(kinds):
         ("pairs: both classes, no third", rate(pair, _both)),
         ("pairs, every clair ≥ .25: both classes, no third", rate(_within(pair, *LARGE), _both)),
         ("intervals of gains that cover the truth", _share(covered, len(intervals))),
+        ("control: name with labels shuffled", rate(shuffled(clear), named)),
         ("gain ÷ clair, right class", _quantiles(ratio)),
         ("seconds for a diagnosis", _quantiles([row["seconds"] for row in every])),
     ]

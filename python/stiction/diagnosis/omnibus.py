@@ -13,7 +13,7 @@ from .coordinates import COORDINATES, Coordinate, Look
 from .evidence import Evidence, Plan
 from .periodic import COUPLED, ORDERS, frequency_view, order_view, waves_of
 from .response import response_columns, response_view
-from .view import View, limit, means
+from .view import LEAST_SIZE, View, limit, means
 
 __all__ = ["Rest", "View", "rest"]
 
@@ -30,10 +30,9 @@ class Rest:
 
     views: tuple[View, ...]
 
-    @property
-    def flagged(self) -> tuple[View, ...]:
-        """Coordinates in which more is left than noise explains."""
-        return tuple(view for view in self.views if view.flagged)
+    def flagged(self, least: float = LEAST_SIZE) -> tuple[View, ...]:
+        """Coordinates in which more is left than noise explains, from a size on."""
+        return tuple(view for view in self.views if view.flagged(least))
 
 
 def rest(

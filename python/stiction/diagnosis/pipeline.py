@@ -24,10 +24,9 @@ from ..recording.split import name_of
 from ..session import Session
 from ..trajectory import FloatArray
 from ..wording import did_you_mean, listed
-from .advice import NO_COORDINATE, advise
+from .advice import advise
 from .candidates import left_out, scales_of
 from .coordinates import looks
-from .decide import LEAST_GAIN
 from .evidence import Evidence
 from .gain import Gain, HeldOut, gain_of, open_residuals
 from .loop import replayed
@@ -37,22 +36,15 @@ from .omnibus import Rest, rest
 from .pictures import Pictures, Stretch
 from .regression import refitted
 from .replay import centre, surrogate_residuals
-from .result import Cause, Diagnosis, LawRow, ModelSummary, Unexplained, Verdict
+from .result import Cause, Diagnosis, LawRow, ModelSummary
 from .rounds import Search, friction_of, search, summary_rows
+from .verdict import unnamed, verdict_of
 from .words import sentence, what
 
 __all__ = ["SURROGATES", "diagnose"]
 
 SURROGATES: Final = 24
 """Replays of the base with noise; more make thresholds smoother and cost in proportion."""
-WORTH_SHARE: Final = 0.25
-"""What is left counts against the names where it is worth this share of what they gained."""
-MOST_EXCESS: Final = 0.75
-"""Share of what is left that noise may fail to explain before it counts as unexplained, where it
-shows in no coordinate: a law is no exact image of a machine."""
-LEAST_EXCESS: Final = -3.0
-"""Where noise alone would leave four times the power that is left, nothing of it is unexplained:
-the replays have lost the machine, as where a dry contact sticks and slips at random."""
 BASE_EVALUATIONS: Final = MOST_EVALUATIONS
 
 _logger = logging.getLogger(__name__)
@@ -339,16 +331,8 @@ def _concluded(
     gain = None
     if causes and test is not None:
         gain = gain_of(test, 0, len(causes), found.seed)
-    unexplained = tuple(Unexplained(view.coordinate.name, view.share) for view in rests[1].flagged)
-    if not unexplained and selection.imitated > LEAST_GAIN:
-        # What was refused as an imitation shows that there is something to imitate.
-        unexplained = (Unexplained(rests[1].views[0].coordinate.name, selection.imitated),)
-    excess = _excess(evidence, final, null)
-    if excess < LEAST_EXCESS:
-        unexplained = ()
-    if not unexplained and excess > MOST_EXCESS:
-        unexplained = (Unexplained(NO_COORDINATE, excess),)
-    verdict = _verdict(causes, base, final, unexplained, selection)
+    unexplained = unnamed(evidence, selection, rests[1], null)
+    verdict = verdict_of(selection, unexplained, all(cause.decided for cause in causes))
     reason = "These data cannot be tested: the base imitates every effect, so none could be seen."
     return replace(
         found,
@@ -383,25 +367,6 @@ def _concluded(
 def _effect(plant: Plant, name: str) -> Effect:
     """The effect of a plant by its name."""
     return next(effect for effect in plant.effects if effect.name == name)
-
-
-def _verdict(
-    causes: Sequence[Cause],
-    base: Model,
-    final: Model,
-    unexplained: Sequence[Unexplained],
-    selection: Search,
-) -> Verdict:
-    if not causes and len(selection.blind) == len(selection.rows) and selection.rows:
-        return "not_testable"
-    if unexplained:
-        before, after = float(base.blocks[1].sum()), float(final.blocks[1].sum())
-        named = before - after
-        if unexplained[0].share * after > WORTH_SHARE * named:
-            return "unexplained"
-    if any(not cause.decided for cause in causes):
-        return "ambiguous"
-    return "missing_effect" if causes else "nothing_missing"
 
 
 def _evaluated(evidence: Evidence, model: Model) -> FitResult:
@@ -440,22 +405,6 @@ def _summary(
         noise_floor_rms=floor,
         remarks=(*result.bounds_hit, *result.undetermined),
     )
-
-
-def _excess(evidence: Evidence, model: Model, null: FloatArray) -> float:
-    """Share of the power left that noise and rounding do not explain, over rows that decide."""
-    held = np.zeros(len(evidence.fitted), dtype=bool)
-    for plan in evidence.plans:
-        held |= plan.held
-    recording = evidence.cells.recording
-    ratios = []
-    for index in np.unique(recording[held]):
-        rows = held & (recording == index)
-        power = float(np.sum(model.residual[rows] ** 2))
-        noise = float(np.mean(np.sum(null[rows] ** 2, axis=0)))
-        ratios.append(noise / power if power > 0.0 else 1.0)
-    # The middle one: a single recording in which the model lost its track says nothing of the rest.
-    return 1.0 - float(np.median(ratios))
 
 
 def _floor(evidence: Evidence, null: FloatArray) -> float:

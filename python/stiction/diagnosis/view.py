@@ -10,7 +10,7 @@ import numpy as np
 from ..trajectory import FloatArray
 from .coordinates import Coordinate
 
-__all__ = ["FLAG_ABOVE", "View", "limit", "means"]
+__all__ = ["FLAG_ABOVE", "LEAST_SIZE", "View", "limit", "means"]
 
 FEWEST_ROWS: Final = 8
 """Rows that a stretch needs to have a mean."""
@@ -48,10 +48,9 @@ class View:
     threshold: float
     size: float
 
-    @property
-    def flagged(self) -> bool:
-        """Whether something is left that noise does not explain and that matters."""
-        return self.share > self.threshold and self.size > LEAST_SIZE
+    def flagged(self, least: float = LEAST_SIZE) -> bool:
+        """Whether something is left that noise does not explain and that matters from a size on."""
+        return self.share > self.threshold and self.size > least
 
 
 def limit(at_null: FloatArray) -> float:

@@ -62,5 +62,5 @@ def fitting_view(coordinate: str, rest: Rest) -> View:
     names = next((views for words, views in _SHOWN_IN if words in coordinate), ())
     by_name = {view.coordinate.name: view for view in rest.views}
     own = [by_name[name] for name in names if name in by_name]
-    flagged = [view for view in own if view.flagged]
+    flagged = [view for view in own if view.flagged()]
     return next(iter(flagged or own), rest.views[0])

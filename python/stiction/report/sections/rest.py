@@ -39,7 +39,7 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
             "before": percent(max(before[view.coordinate.name].share, 0.0)),
             "after": percent(max(view.share, 0.0)),
             "limit": percent(max(view.threshold, 0.0)),
-            "flagged": view.flagged,
+            "flagged": view.flagged(),
         }
         for view in views
     ]

@@ -1,0 +1,100 @@
+"""The verdict, and what is left that has no name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from ..trajectory import FloatArray
+from .advice import NO_COORDINATE
+from .decide import LEAST_GAIN
+from .evidence import Evidence
+from .model import Model
+from .omnibus import Rest
+from .result import Unexplained, Verdict
+from .rounds import Search
+
+__all__ = ["unnamed", "verdict_of"]
+
+WORTH_SHARE: Final = 0.25
+"""What is left counts against the names where it is worth this share of what they gained."""
+MOST_EXCESS: Final = 0.75
+"""Share of what is left that noise may fail to explain before it counts as unexplained, where it
+shows in no coordinate: a law is no exact image of a machine."""
+LEAST_EXCESS: Final = -3.0
+"""Where noise alone would leave four times the power that is left, nothing of it is unexplained:
+the replays have lost the machine, as where a dry contact sticks and slips at random."""
+BESIDE_A_NAME: Final = 0.0015
+"""Share of the friction from which on what is left counts beside a name: what imitates a cause leaves
+little, spread over many coordinates."""
+
+
+def unnamed(
+    evidence: Evidence, selection: Search, left: Rest, null: FloatArray
+) -> tuple[Unexplained, ...]:
+    """What the last model leaves that noise does not explain, largest first.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    selection : Search
+    left : Rest
+        What its last model leaves, in every coordinate.
+    null : numpy.ndarray, shape (n, surrogates)
+        Residuals of the surrogates.
+    """
+    excess = _excess(evidence, selection.models[-1], null)
+    if excess < LEAST_EXCESS:
+        return ()
+    told = _told(left, None)
+    if not told and selection.choices:
+        beside = _told(left, BESIDE_A_NAME)
+        told = beside if _outweighs(selection, beside) else ()
+    if not told and selection.imitated > LEAST_GAIN:
+        # What was refused as an imitation shows that there is something to imitate.
+        told = (Unexplained(left.views[0].coordinate.name, selection.imitated),)
+    if not told and excess > MOST_EXCESS:
+        told = (Unexplained(NO_COORDINATE, excess),)
+    return told
+
+
+def verdict_of(selection: Search, left: Sequence[Unexplained], decided: bool) -> Verdict:
+    """The verdict by precedence; ``decided`` says whether every cause is."""
+    if not selection.choices and selection.rows and len(selection.blind) == len(selection.rows):
+        return "not_testable"
+    if _outweighs(selection, left):
+        return "unexplained"
+    if not decided:
+        return "ambiguous"
+    return "missing_effect" if selection.choices else "nothing_missing"
+
+
+def _told(left: Rest, least: float | None) -> tuple[Unexplained, ...]:
+    views = left.flagged() if least is None else left.flagged(least)
+    return tuple(Unexplained(view.coordinate.name, view.share) for view in views)
+
+
+def _outweighs(selection: Search, left: Sequence[Unexplained]) -> bool:
+    """Whether what is left is worth more than a quarter of what was named."""
+    if not left:
+        return False
+    before, after = (float(m.blocks[1].sum()) for m in (selection.models[0], selection.models[-1]))
+    return left[0].share * after > WORTH_SHARE * (before - after)
+
+
+def _excess(evidence: Evidence, model: Model, null: FloatArray) -> float:
+    """Share of the power left that noise and rounding do not explain, over rows that decide."""
+    held = np.zeros(len(evidence.fitted), dtype=bool)
+    for plan in evidence.plans:
+        held |= plan.held
+    recording = evidence.cells.recording
+    ratios = []
+    for index in np.unique(recording[held]):
+        rows = held & (recording == index)
+        power = float(np.sum(model.residual[rows] ** 2))
+        noise = float(np.mean(np.sum(null[rows] ** 2, axis=0)))
+        ratios.append(noise / power if power > 0.0 else 1.0)
+    # The middle one: a single recording in which the model lost its track says nothing of the rest.
+    return 1.0 - float(np.median(ratios))
