@@ -8,6 +8,7 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from types import MappingProxyType
 from xml.etree import ElementTree
 
 import numpy as np
@@ -29,9 +30,12 @@ from stiction.diagnosis.result import (
     Verdict,
 )
 from stiction.fitting.result import FitParameter
+from stiction.parameter import Parameter
+from stiction.plant import Effect
 from stiction.report import write
-from stiction.report.figures import headline, shortened
+from stiction.report.figures import headline, most_shown, shortened
 from stiction.report.numbers import between, digits, percent, quantity, tick
+from stiction.report.sections.parameters import rows_of_effect
 
 LARGEST_REPORT = 5_000_000  # bytes; what an e-mail carries
 HOSTILE = "<script>alert(1)</script>&\"' $x^2$ -->]]> \u202e名.csv"
@@ -119,6 +123,7 @@ def pictures(*, effects: bool, names: tuple[str, ...]) -> Pictures:
         effort_unit="N·m",
         position_unit="rad",
         floor=0.008,
+        causes=((rest(0.02).views[0], rest(0.001).views[0]),) if effects else (),
     )
 
 
@@ -449,6 +454,49 @@ def test_a_headline_is_drawn_only_from_pictures() -> None:
         headline(diagnosis("data_fault"))
     assert all(panel.get_ylabel().endswith("N·m)") for panel in drawn.axes)
     assert drawn.axes[-1].get_xlabel() == "time in the recording (s)"
+
+
+def test_a_wave_is_told_by_its_amplitude_and_by_the_order_that_was_chosen() -> None:
+    record = next(each for each in st.effects() if each.name == "torque_constant_ripple")
+    path = "effects.torque_constant_ripple"
+    fitted = {
+        f"{path}.cosine": parameter(0.03, 0.001, "1"),
+        f"{path}.sine": parameter(0.0004, 0.001, "1"),
+        f"{path}.cosine_2": parameter(0.0001, 0.001, "1"),
+        f"{path}.sine_2": parameter(0.0002, 0.001, "1"),
+    }
+    values = {"cosine": 0.03, "sine": 0.0004, "order": 6.0, "order_2": 12.0}
+    effect = Effect(
+        record.name, MappingProxyType({name: Parameter(v) for name, v in values.items()})
+    )
+    rows = rows_of_effect(effect, fitted, record, "rotary")
+    assert [row["name"] for row in rows] == [
+        *("amplitude", "cosine", "sine", "order"),
+        *("amplitude_2", "cosine_2", "sine_2", "order_2"),
+    ]
+    first, order = rows[0], rows[3]
+    assert (first["value"], first["unit"]) == ("3.00", "%")
+    assert (order["value"], order["unit"]) == ("6", "per turn")
+    assert order["notes"] == ["chosen, not fitted"]
+    # A part of a wave is not doubted where the other part is there.
+    assert rows[2]["notes"] == []
+    assert rows[5]["notes"] == rows[6]["notes"] == ["not told from 0"]
+
+
+def test_what_is_flat_everywhere_stands_in_the_table_alone() -> None:
+    whole = pictures(effects=True, names=("a",))
+    view = whole.after.views[0]
+    flat = tuple(
+        replace(
+            view, coordinate=replace(view.coordinate, name=f"flat {k}"), share=0.001, threshold=1.0
+        )
+        for k in range(20)
+    )
+    after, before = Rest((*flat, *whole.after.views)), Rest((*whole.before.views, *flat))
+    shown = most_shown(replace(whole, after=after, before=before))
+    assert len(shown) == 12
+    names = {each.coordinate.name for each in shown}
+    assert {each.coordinate.name for each in whole.after.views} <= names
 
 
 def test_numbers_have_as_many_digits_as_are_known() -> None:

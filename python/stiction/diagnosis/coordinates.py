@@ -9,7 +9,9 @@ from typing import Final
 import numpy as np
 
 from ..fitting.rows import Rows
+from ..plant import Plant
 from ..trajectory import FloatArray
+from .contact import Slides, slides_of
 from .evidence import Evidence
 
 __all__ = ["COORDINATES", "Coordinate", "Look", "looks"]
@@ -32,6 +34,12 @@ class Look:
         Position within a turn; over a stroke of a linear machine the position itself.
     travelled, elapsed : numpy.ndarray, shape (n,)
         Distance and time since the direction last changed.
+    path : numpy.ndarray, shape (n,)
+        Travelled since the session began.
+    bend : numpy.ndarray, shape (n,)
+        Fourth derivative of the position.
+    slides : Slides
+        Of the contact.
     """
 
     time: FloatArray
@@ -44,6 +52,9 @@ class Look:
     angle: FloatArray
     travelled: FloatArray
     elapsed: FloatArray
+    path: FloatArray
+    bend: FloatArray
+    slides: Slides
 
 
 @dataclass(frozen=True)
@@ -59,9 +70,19 @@ class Coordinate:
     odd : bool
         The residual is counted along the motion: friction that is too low is positive both ways.
     values : callable
-        From a ``Look`` to numpy.ndarray, shape (n,).
+        From a ``Look`` to numpy.ndarray, shape (n,); NaN in rows that have no place in it.
     slow : bool
         It changes over the session, not within a recording.
+    logarithmic : bool
+        It is drawn over its logarithm where it spans decades.
+    factor : callable, optional
+        From a ``Look`` to what the residual grows with; the curve is then the residual over it.
+    upright : str
+        What the vertical axis says of such a curve.
+    refines : str
+        Name of a wider coordinate that mostly shows the same.
+    rows : str
+        Which rows have a place in it, "" where all have.
     """
 
     name: str
@@ -69,44 +90,104 @@ class Coordinate:
     odd: bool
     values: Callable[[Look], FloatArray]
     slow: bool = False
+    logarithmic: bool = False
+    factor: Callable[[Look], FloatArray] | None = None
+    upright: str = ""
+    refines: str = ""
+    rows: str = ""
 
 
 COORDINATES: Final = (
     Coordinate("velocity", "velocity, {x}/s", False, lambda look: look.velocity),
-    Coordinate("speed", "speed, {x}/s", True, lambda look: np.abs(look.velocity)),
+    Coordinate("speed", "speed, {x}/s", True, lambda look: np.abs(look.velocity), logarithmic=True),
     Coordinate("position", "position, {x}", False, lambda look: look.position),
     Coordinate("position along the motion", "position, {x}", True, lambda look: look.position),
     Coordinate("angle", "angle in the turn, rad", False, lambda look: look.angle),
     Coordinate("angle along the motion", "angle in the turn, rad", True, lambda look: look.angle),
     Coordinate("acceleration", "acceleration, {x}/s²", False, lambda look: look.acceleration),
+    Coordinate(
+        "fourth derivative of the position",
+        "fourth derivative, {x}/s⁴",
+        False,
+        lambda look: look.bend,
+        refines="acceleration",
+    ),
     Coordinate("effort", "measured effort, {f}", False, lambda look: look.effort),
+    Coordinate(
+        "effort along the motion",
+        "effort, braking below 0, {f}",
+        True,
+        lambda look: look.effort * look.direction,
+        refines="effort",
+    ),
     Coordinate("rate of the effort", "rate of the effort, {f}/s", False, lambda look: look.rate),
     Coordinate(
         "distance since the reversal",
         "distance since the reversal, {x}",
         True,
         lambda look: look.travelled,
+        logarithmic=True,
     ),
     Coordinate(
-        "time since the reversal", "time since the reversal, s", True, lambda look: look.elapsed
+        "time since the reversal",
+        "time since the reversal, s",
+        True,
+        lambda look: look.elapsed,
+        logarithmic=True,
+    ),
+    Coordinate(
+        "rest before the slide",
+        "rest before the slide, s",
+        True,
+        lambda look: look.slides.rest,
+        refines="time since the reversal",
+        rows="where a slide begins",
+        logarithmic=True,
+    ),
+    Coordinate(
+        "loading before the slide",
+        "loading before the slide, {f}/s",
+        True,
+        lambda look: look.slides.loading,
+        refines="rate of the effort",
+        rows="where a slide begins",
+        logarithmic=True,
     ),
     Coordinate("session time", "session clock, s", False, lambda look: look.time, slow=True),
     Coordinate(
         "session time along the motion", "session clock, s", True, lambda look: look.time, slow=True
     ),
+    Coordinate(
+        "path along the motion",
+        "path travelled in the session, {x}",
+        True,
+        lambda look: look.path,
+        refines="session time along the motion",
+        slow=True,
+    ),
 )
 """Coordinates in which the rest is looked at."""
 
 
-def looks(evidence: Evidence, clocks: Sequence[float], rows: Sequence[Rows]) -> list[Look]:
+def looks(evidence: Evidence, plant: Plant, clocks: Sequence[float], window: float) -> list[Look]:
     """What the rows of each recording are looked at by.
 
-    ``clocks`` holds when each recording starts on the session clock, s.
+    Parameters
+    ----------
+    evidence : Evidence
+    plant : Plant
+        Fitted.
+    clocks : sequence of float
+        When each recording starts on the session clock, s.
+    window : float
+        Displacement within which the contact counts as resting, rad or m.
     """
-    return evidence.each(lambda each: _look(evidence, clocks[each.index], each), rows)
+    return evidence.each(
+        lambda each: _look(evidence, plant, clocks[each.index], window, each), evidence.shown
+    )
 
 
-def _look(evidence: Evidence, clock: float, rows: Rows) -> Look:
+def _look(evidence: Evidence, plant: Plant, clock: float, window: float, rows: Rows) -> Look:
     form = rows.form
     velocity = form.velocity
     usual = float(np.sqrt(np.mean(velocity**2)))
@@ -117,9 +198,10 @@ def _look(evidence: Evidence, clock: float, rows: Rows) -> Look:
     last[turned] = turned
     last = np.maximum.accumulate(last)
     position = form.mean(form.position[1:])
-    effort = form.measured(evidence.plant)
+    effort = form.measured(plant)
     spacing = form.dt * form.stride
     since: FloatArray = np.arange(len(direction), dtype=np.float64) - last
+    pulled = effort - plant.inertia * form.acceleration
     return Look(
         time=form.time - evidence.recordings[rows.index].time[0] + clock,
         position=position,
@@ -131,6 +213,9 @@ def _look(evidence: Evidence, clock: float, rows: Rows) -> Look:
         angle=np.mod(position, 2.0 * np.pi) if evidence.plant.motion == "rotary" else position,
         travelled=np.abs(position - position[last]),
         elapsed=since * spacing,
+        path=form.path + np.cumsum(np.abs(np.diff(position, prepend=position[:1]))),
+        bend=np.gradient(np.gradient(form.acceleration, spacing), spacing),
+        slides=slides_of(position, pulled, spacing, window),
     )
 
 

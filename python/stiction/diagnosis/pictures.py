@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 from ..trajectory import FloatArray
 from .omnibus import Rest
+from .view import View
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -73,6 +74,9 @@ class Pictures:
         Held-out recordings, the one with the largest improvement first.
     before, after : Rest
         Residual in every coordinate, of the baseline and of the extended plant.
+    causes : tuple of (View, View)
+        Of each cause its own coordinate: what the model with the causes above it leaves, and what
+        it leaves with this one too.
     effort_unit, position_unit : str
     floor : float
         rms that noise alone would leave, N·m or N.
@@ -87,6 +91,7 @@ class Pictures:
     effort_unit: str
     position_unit: str
     floor: float
+    causes: tuple[tuple[View, View], ...] = ()
     tracking: Tracking | None = None
 
 

@@ -26,19 +26,21 @@ from ..trajectory import FloatArray
 from ..wording import did_you_mean, listed
 from .advice import advise
 from .candidates import left_out, scales_of
-from .coordinates import looks
+from .coordinates import Look, looks
 from .evidence import Evidence
 from .gain import Gain, HeldOut, gain_of, open_residuals
 from .loop import replayed
 from .model import Model, fitted
 from .noise import Noise
 from .omnibus import Rest, rest
+from .own import own_view
 from .pictures import Pictures, Stretch
 from .regression import refitted
 from .replay import centre, surrogate_residuals
 from .result import Cause, Diagnosis, LawRow, ModelSummary
 from .rounds import Search, friction_of, search, summary_rows
 from .verdict import unnamed, verdict_of
+from .view import View
 from .words import sentence, what
 
 __all__ = ["SURROGATES", "diagnose"]
@@ -229,14 +231,26 @@ def _testable(
     selection = search(evidence, base, null, without=without)
     final = selection.models[-1]
     clocks = session.starts
-    seen = looks(evidence, clocks, evidence.shown)
+    scales = scales_of(evidence, base.plant)
+    seen = looks(evidence, base.plant, clocks, scales.units["presliding"])
     bias, centred = centre(null)
     friction = friction_of(evidence, base)
-    orders = scales_of(evidence, base.plant).orders
+    orders = scales.orders
     left = rest(evidence, seen, orders, final.residual - bias, centred, friction)
     before = left
     if final is not base:
         before = rest(evidence, seen, orders, base.residual - bias, centred, friction)
+    causes = tuple(
+        _own_views(
+            evidence,
+            seen,
+            _effect(final.plant, choice.winner.name),
+            [model.residual - bias for model in selection.models[k : k + 2]],
+            centred,
+            friction,
+        )
+        for k, choice in enumerate(selection.choices)
+    )
     rivals = [] if selection.interrupted else [_base_of_law(evidence, base, law) for law in others]
     # Every decision is taken: now, and once, the rows that test.
     _logger.info("opening the test rows")
@@ -247,6 +261,7 @@ def _testable(
         evidence,
         selection,
         (before, left),
+        causes,
         (others, rivals),
         test,
         null,
@@ -295,6 +310,7 @@ def _concluded(
     evidence: Evidence,
     selection: Search,
     rests: tuple[Rest, Rest],
+    own: tuple[tuple[View, View], ...],
     compared: tuple[Sequence[str], Sequence[Model | None]],
     test: HeldOut | None,
     null: FloatArray,
@@ -309,7 +325,7 @@ def _concluded(
     causes = []
     for k, choice in enumerate(selection.choices):
         record = choice.winner.candidate.record
-        own = {
+        fitted_values = {
             path: p
             for path, p in results[id(final)].parameters.items()
             if path.startswith(f"effects.{record.name}.")
@@ -320,9 +336,9 @@ def _concluded(
                 family=record.family,
                 decided=choice.decided,
                 look_alikes=tuple(rival.name for rival in choice.rivals),
-                parameters=own,
+                parameters=fitted_values,
                 gain=None if test is None else gain_of(test, k, k + 1, found.seed),
-                what=what(record, own, _effect(final.plant, record.name)),
+                what=what(record, fitted_values, _effect(final.plant, record.name)),
                 means=record.means,
                 try_=record.remedy,
                 coordinate=record.coordinate,
@@ -360,8 +376,24 @@ def _concluded(
             effort_unit=final.plant.effort_unit,
             position_unit=final.plant.position_unit,
             floor=floor,
+            causes=own,
         ),
     )
+
+
+def _own_views(
+    evidence: Evidence,
+    seen: Sequence[Look],
+    effect: Effect,
+    residuals: Sequence[FloatArray],
+    null: FloatArray,
+    friction: float,
+) -> tuple[View, View]:
+    """A cause in its own coordinate, before it is added and after."""
+    before, after = (
+        own_view(evidence, seen, effect, residual, null, friction) for residual in residuals
+    )
+    return before, after
 
 
 def _effect(plant: Plant, name: str) -> Effect:

@@ -60,17 +60,22 @@ def response_view(
     weighted = columns * weights[:, None]
     removed, total = np.zeros(both.shape[1]), np.zeros(both.shape[1])
     rows = 0
-    taps: FloatArray = np.zeros((columns.shape[1], both.shape[1]))
+    shown = np.zeros(len(both), dtype=bool)
     for plan in plans:
         own, held = weighted[plan.fit], both[plan.held]
         taps = np.asarray(np.linalg.lstsq(own.T @ own, own.T @ both[plan.fit], rcond=1e-9)[0])
         rows += len(held)
+        shown |= plan.held
         total += np.sum(held**2, axis=0)
         removed += np.sum(held**2 - (held - weighted[plan.held] @ taps) ** 2, axis=0)
     shares = removed / np.maximum(total, 1e-300)
-    low, high = np.quantile(taps[:, 1:], [0.025, 0.975], axis=1)
+    # In units of effort for the eye: what goes with each lag by itself. The filter's own weights
+    # lean on one another and say nothing one by one.
+    alone = columns[shown] / np.sqrt(np.mean(columns[shown] ** 2, axis=0) + 1e-300)
+    curves = alone.T @ (both[shown] / weights[shown, None]) / max(int(shown.sum()), 1)
+    low, high = np.quantile(curves[:, 1:], [0.025, 0.975], axis=1)
     lags = np.array([lag for lag in range(-LAGS, LAGS + 1) if lag != 0])
     size = float(np.sqrt(max(removed[0], 0.0) / max(rows, 1))) / max(friction, 1e-300)
     at = lags * spacing
     share = float(shares[0])
-    return View(RESPONSE, at, taps[:, 0], low, high, share, limit(shares[1:]), size)
+    return View(RESPONSE, at, curves[:, 0], low, high, share, limit(shares[1:]), size)

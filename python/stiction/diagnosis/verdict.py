@@ -27,8 +27,8 @@ LEAST_EXCESS: Final = -3.0
 """Where noise alone would leave four times the power that is left, nothing of it is unexplained:
 the replays have lost the machine, as where a dry contact sticks and slips at random."""
 BESIDE_A_NAME: Final = 0.0015
-"""Share of the friction from which on what is left counts beside a name: what imitates a cause leaves
-little, spread over many coordinates."""
+"""Share of the friction from which on what is left counts beside a name: what imitates a cause
+leaves little, spread over many coordinates."""
 
 
 def unnamed(

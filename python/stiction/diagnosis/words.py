@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
+from ..catalogue import effects as catalogue
 from ..fitting.result import FitParameter
 from ..plant import Effect
 from ..report.scale import loop_scale_of
@@ -52,7 +53,7 @@ def gain_words(gain: Gain | None) -> str:
         return "not measured: no rows were left to test on"
     low, high = gain.ci95
     return (
-        f"{100 * gain.value:.1f} % of the residual's power on held-out rows "
+        f"{100 * gain.value:.1f} % of the power of what was not explained, on held-out rows "
         f"(95 %: {100 * low:.1f} to {100 * high:.1f} %)"
     )
 
@@ -81,8 +82,6 @@ def sentence(
     if verdict in ("data_fault", "not_testable"):
         return reason
     named = joined([_cause(cause) for cause in effects])
-    if len(effects) == 1:
-        named += f" ({effects[0].what.partition(':')[0]})"
     gained = f" Adding {'it' if len(effects) == 1 else 'them'} removes {gain_words(gain)}."
     if verdict == "nothing_missing":
         return (
@@ -107,13 +106,18 @@ def sentence(
 def _unconfirmed(effects: Sequence[Cause]) -> str:
     """What the rows that test do not bear out, "" where they bear out everything."""
     names = [c.name for c in effects if c.gain is not None and c.gain.ci95[0] <= 0.0]
-    return f" The test rows do not confirm {joined(names)}." if names else ""
+    return f" The held-out rows do not confirm {joined(names)}." if names else ""
 
 
 def _cause(cause: Cause) -> str:
+    """A cause with its meaning, or the effects that it may be with theirs."""
+    own = f"{cause.name} ({cause.what.partition(':')[0]})"
     if cause.decided:
-        return cause.name
-    return f"{cause.name} or {joined(cause.look_alikes, 'or')}, which these data cannot tell apart"
+        return own
+    known = {record.name: f"{record.name} ({record.summary})" for record in catalogue()}
+    names = [own, *(known.get(name, name) for name in cause.look_alikes)]
+    either = "either" if len(names) == 2 else "one of"
+    return f"{either} {joined(names, 'or')}, which these data cannot tell apart"
 
 
 def shown_rows(diagnosis: Diagnosis) -> list[str]:

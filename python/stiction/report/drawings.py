@@ -13,7 +13,6 @@ from . import figures
 from .numbers import isolated, percent, plain
 from .scale import scale_of
 from .svg import inline, text_of
-from .views import fitting_view
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -88,9 +87,8 @@ def _orders(diagnosis: Diagnosis) -> Iterator[_Order]:
     if pictures is not None:
         if pictures.stretches:
             yield _headline(diagnosis)
-        for index in range(len(diagnosis.effects)):
-            if pictures.before.views:
-                yield _cause(diagnosis, index)
+        for index in range(min(len(diagnosis.effects), len(pictures.causes))):
+            yield _cause(diagnosis, index)
         if pictures.after.views:
             yield _coordinates(diagnosis)
         if pictures.tracking is not None:
@@ -144,30 +142,35 @@ def _cause(diagnosis: Diagnosis, index: int) -> _Order:
     pictures = diagnosis.pictures
     assert pictures is not None
     cause = diagnosis.effects[index]
-    view = fitting_view(cause.coordinate, pictures.before)
-    after = next(v for v in pictures.after.views if v.coordinate.name == view.coordinate.name)
+    before, after = pictures.causes[index]
     share, left, noise = (
-        percent(max(each, 0.0)) for each in (view.share, after.share, view.threshold)
+        percent(max(each, 0.0)) for each in (before.share, after.share, before.threshold)
     )
+    decided = diagnosis.extended is not None and diagnosis.extended.select_rms is not None
+    rows = "rows that nothing was fitted to" if decided else "the rows that decide"
+    over = before.coordinate.axis.rpartition(", ")[0]
+    over = over.format(x=pictures.position_unit, f=pictures.effort_unit)
+    if before.coordinate.upright:
+        what = before.coordinate.upright.rpartition(", ")[0].capitalize()
+    else:
+        what = "Mean residual"
+    where = f", {before.coordinate.rows}" if before.coordinate.rows else ""
+    there = " there" if where else ""
+    with_it = "with this cause added" if len(diagnosis.effects) > 1 else "after"
     caption = (
-        f"Mean residual over {view.coordinate.name}, on the rows that decide. Before, "
-        f"{share} of the residual follows this curve; with all causes added, {left} of what is "
-        f"left does; noise alone reaches {noise}."
+        f"{what}, against {over}, on {rows}{where}. Before, {share} of the power of the "
+        f"residual{there} follows this curve; {with_it}, {left} of what is left does; noise alone "
+        f"reaches {noise}. Grey band: where noise alone stays, 19 times out of 20."
     )
-    if view.coordinate.odd:
+    if before.coordinate.odd:
         caption += " A residual that opposes the motion counts as positive."
     if index > 0:
-        caption += " “Before” lacks all causes, so it also holds what those above explain."
-    if "order" in {path.rsplit(".", 1)[-1] for path in cause.parameters}:
-        caption += (
-            f" Each point is the mean over 1/{len(view.at)} of the rows: a pattern that repeats "
-            "within that width is averaged out here, though not in the fit."
-        )
+        caption += " “Before” has the causes above already, “after” this one too."
 
     def drawn(diagnosis: Diagnosis, *, narrow: bool) -> Figure:
         return figures.cause(diagnosis, index, narrow=narrow)
 
-    label = f"{plain(cause.name)}: mean residual over {view.coordinate.name}, before and after."
+    label = f"{plain(cause.name)}: {what.lower()} against {over}, before and after."
     return _Order(cause_name(index, cause.name), drawn, label, caption)
 
 
@@ -177,15 +180,15 @@ def _coordinates(diagnosis: Diagnosis) -> _Order:
     return _Order(
         "coordinates",
         figures.coordinates,
-        "Mean residual over every coordinate"
+        "Mean residual over the coordinates in which most shows"
         + (", before and after," if both else "")
         + " with the band of noise alone.",
-        "Mean residual over each coordinate, on the rows that decide; all vertical axes "
-        f"are alike. Per cent: share of the residual that follows the curve ({shares}), and what "
-        "noise alone reaches. "
+        "Mean residual over the coordinates in which most shows or showed, on the rows that "
+        "decide; all vertical axes are alike. Per cent: share of the residual that follows the "
+        f"curve ({shares}), and what noise alone reaches. "
         + ("A share may rise while its curve falls, as less is left in all. " if both else "")
-        + "Over speed, over distance and time since the reversal, and where it "
-        "says “along the motion”, a residual that opposes the motion counts as positive.",
+        + "Over speed, over what counts from a reversal or a slide, and where it says "
+        "“along the motion”, a residual that opposes the motion counts as positive.",
     )
 
 

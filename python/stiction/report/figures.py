@@ -35,8 +35,7 @@ from ..plot import (
     thinned,
 )
 from .numbers import NO_BREAK, digits, percent, tick, tick_of_ten
-from .scale import Scale, loop_scale_of, scale_of
-from .views import fitting_view
+from .scale import Scale, loop_scale_of, scale_of, suited
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,7 +44,7 @@ if TYPE_CHECKING:
     from ..diagnosis.pictures import Pictures
     from ..diagnosis.result import Diagnosis, ModelSummary
 
-__all__ = ["candidates", "cause", "closed_loop", "coordinates", "errors", "headline"]
+__all__ = ["candidates", "cause", "closed_loop", "coordinates", "errors", "headline", "most_shown"]
 
 NARROW: Final = 3.9
 """Width of a figure for a phone, inches: text keeps its size on 360 pixels."""
@@ -56,11 +55,14 @@ FLOOR_TIMES: Final = 2.0
 MOST_RECORDINGS: Final = 24
 """Recordings that a figure shows one by one."""
 LONGEST_NAME, LONGEST_NARROW_NAME = 30, 16
-LOGARITHMIC: Final = ("speed", "distance since the reversal", "time since the reversal")
 WIDE_RANGE: Final = 50.0
-"""These, where they span more than this, are drawn over their logarithm."""
+"""Coordinates that may be are drawn over their logarithm where they span more than this."""
+MOST_PANELS: Final = 12
+"""Coordinates that are drawn; the others are flat, and stand in the table."""
 TOGETHER: Final = 0.012
 """Stretches nearer than this share of the axis are drawn as one."""
+_LARGE: Final = ((2e7, 1e-6, "M"), (2e4, 1e-3, "k"), (0.0, 1.0, ""))
+"""Places from which on they are drawn in other units: least, factor, prefix."""
 STEPS: Final = (1, 2, 5, 10)
 _GRID_LEFT, _GRID_RIGHT, _GRID_TOP = 0.6, 0.1, 0.3
 _GRID_PANEL, _GRID_GAP, _GRID_TITLE = 0.92, 0.88, 0.42
@@ -132,20 +134,19 @@ def cause(diagnosis: Diagnosis, index: int, *, narrow: bool = False) -> Figure:
         For a phone.
     """
     pictures = _pictures(diagnosis)
-    before = fitting_view(diagnosis.effects[index].coordinate, pictures.before)
+    before, after = pictures.causes[index]
     drawn, (panel,) = figure(height=3.3 if narrow else 3.1, width=NARROW if narrow else WIDTH)
-    after = {view.coordinate.name: view for view in pictures.after.views}
-    scale = scale_of(diagnosis)
-    _curves(panel, before, after[before.coordinate.name], scale, size=3.5)
+    upright, scale = _upright(before, pictures, scale_of(diagnosis))
+    _curves(panel, before, after, scale, size=3.5)
     panel.set_xlabel(_axis(before, pictures))
-    panel.set_ylabel(f"mean residual ({scale.unit})")
+    panel.set_ylabel(f"{upright} ({scale.unit})")
     _ticks(panel, 4 if narrow else 8, 6)
     _legend_above(panel, 3)
     return drawn
 
 
 def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
-    """The residual over every coordinate, before and after, with what noise alone reaches.
+    """The residual over the coordinates in which most shows, with what noise alone reaches.
 
     Parameters
     ----------
@@ -156,7 +157,7 @@ def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     pictures = _pictures(diagnosis)
     # Sorted by what is left: what still needs a name stands first.
     before = {view.coordinate.name: view for view in pictures.before.views}
-    views = pictures.after.views
+    views = most_shown(pictures)
     columns = 2 if narrow else 3
     rows = -(-len(views) // columns)
     drawn, panels = figure(
@@ -191,6 +192,18 @@ def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     keywords = {"frameon": False, "fontsize": SMALL, "handlelength": 1.6, "columnspacing": 1.2}
     drawn.legend(handles, labels, loc="upper left", ncols=3, borderaxespad=0.1, **keywords)
     return drawn
+
+
+def most_shown(pictures: Pictures) -> list[View]:
+    """What is left over the coordinates in which most shows or showed, most left first."""
+    before = {view.coordinate.name: view.share for view in pictures.before.views}
+
+    def shows(view: View) -> tuple[bool, float]:
+        return view.flagged(), max(view.share, before[view.coordinate.name])
+
+    chosen = sorted(pictures.after.views, key=shows, reverse=True)[:MOST_PANELS]
+    names = {view.coordinate.name for view in chosen}
+    return [view for view in pictures.after.views if view.coordinate.name in names]
 
 
 def candidates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
@@ -376,7 +389,7 @@ def _merged(before: View, after: View | None) -> list[np.ndarray]:
     Stretches hold equally many rows each, so that where a machine runs at one speed many of them
     have the same place.
     """
-    parts = [before.at, before.low, before.high, before.mean]
+    parts = [_across(before)[0] * before.at, before.low, before.high, before.mean]
     if after is not None:
         parts.append(after.mean)
     seen = np.isfinite(before.at)
@@ -397,7 +410,7 @@ def _merged(before: View, after: View | None) -> list[np.ndarray]:
 
 def _logarithmic(view: View) -> bool:
     at = view.at[np.isfinite(view.at)]
-    if view.coordinate.name not in LOGARITHMIC or not at.size:
+    if not view.coordinate.logarithmic or not at.size:
         return False
     rising = at[at > 0.0]
     return bool(at.min() >= 0.0 and rising.size and at.max() > WIDE_RANGE * rising.min())
@@ -406,7 +419,7 @@ def _logarithmic(view: View) -> bool:
 def _panel_title(before: View, after: View, *, both: bool, narrow: bool) -> str:
     shares = f"{_share(before)} → {_share(after)}" if both else _share(after)
     noise = f"noise: {_share_of(max(after.threshold, 0.0))}"
-    name = after.coordinate.name
+    name = after.coordinate.name.replace("order over position, times", "order ×")
     if narrow:
         name = name.replace("along the motion", "(along)")
         return f"{name}\n{shares.replace(f'{NO_BREAK}% →', ' →')} ({noise})"
@@ -455,10 +468,30 @@ def _share_of(share: float) -> str:
 
 
 def _axis(view: View, pictures: Pictures) -> str:
-    quantity_name, _, unit = view.coordinate.axis.format(
-        x=pictures.position_unit, f=pictures.effort_unit
-    ).rpartition(", ")
-    return f"{quantity_name} ({unit})"
+    name, unit = _quantity(view.coordinate.axis, pictures)
+    return f"{name} ({_across(view)[1]}{unit})"
+
+
+def _upright(view: View, pictures: Pictures, scale: Scale) -> tuple[str, Scale]:
+    """What the vertical axis of a cause says, and its unit; ``scale`` is that of residuals."""
+    if not view.coordinate.upright:
+        return "mean residual", scale
+    name, unit = _quantity(view.coordinate.upright, pictures)
+    if unit == "%":
+        return name, Scale(100.0, unit)
+    return name, suited([_extent([view.mean])], unit)
+
+
+def _across(view: View) -> tuple[float, str]:
+    """What the places of a view are multiplied with, and the prefix of their unit then."""
+    greatest = _extent([view.at])
+    return next((factor, prefix) for least, factor, prefix in _LARGE if greatest >= least)
+
+
+def _quantity(axis: str, pictures: Pictures) -> tuple[str, str]:
+    """Name and unit of what an axis shows."""
+    name, _, unit = axis.format(x=pictures.position_unit, f=pictures.effort_unit).rpartition(", ")
+    return name, unit
 
 
 def _error_rows(diagnosis: Diagnosis, longest: int) -> list[tuple[str, float, float]]:

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Final
 
 from ...catalogue import EffectRecord, effects
+from ...diagnosis.words import joined
 from ..drawings import cause_name
-from ..numbers import percent, percent_between, plain
-from .parameters import row
+from ..numbers import percent, percent_between, plain, quantity
+from .parameters import row, rows_of_effect
 from .section import Section
 
 if TYPE_CHECKING:
     from ...diagnosis.result import Cause, Diagnosis
+    from ...plant import Effect, Plant
     from ..drawings import Drawings
 
 __all__ = ["build"]
 
+NUMBERS: Final = {2: "two", 3: "three", 4: "four", 5: "five"}
 NEAR: Final = 0.9
 """Share of a cause's score from which on a refused effect is worth a word beside it."""
 
@@ -27,13 +31,14 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
     records = {record.name: record for record in effects()}
     causes = [
         {
-            **_cause(cause, records.get(cause.name)),
+            **_cause(cause, records.get(cause.name), diagnosis.plant),
             "rivals": _rivals(diagnosis, cause),
             "picture": drawings.get(cause_name(index, cause.name)),
         }
         for index, cause in enumerate(diagnosis.effects)
     ]
-    title = "The cause" if len(causes) == 1 else f"The {len(causes)} causes"
+    number = len(causes)
+    title = "The cause" if number == 1 else f"The {NUMBERS.get(number, number)} causes"
     return Section("findings", title, {"causes": causes})
 
 
@@ -49,12 +54,15 @@ def _rivals(diagnosis: Diagnosis, cause: Cause) -> list[str]:
     ]
 
 
-def _cause(cause: Cause, record: EffectRecord | None) -> dict[str, Any]:
+def _cause(cause: Cause, record: EffectRecord | None, plant: Plant) -> dict[str, Any]:
     summary = cause.what
     if record is not None and summary.startswith(f"{record.summary}: "):
         # The values stand in the table, with their units and intervals.
         summary = record.summary
-    meanings = {} if record is None else {p.name: p.meaning for p in record.parameters}
+    effect = next((each for each in plant.effects if each.name == cause.name), None)
+    rows = [row(path, p, "", beside=cause.parameters) for path, p in cause.parameters.items()]
+    if record is not None and effect is not None:
+        rows = rows_of_effect(effect, cause.parameters, record, plant.motion)
     gain = cause.gain
     doubtful = bool(cause.parameters) and all(
         p.ci95[0] <= 0.0 <= p.ci95[1] for p in cause.parameters.values()
@@ -65,14 +73,24 @@ def _cause(cause: Cause, record: EffectRecord | None) -> dict[str, Any]:
         "decided": cause.decided,
         "doubtful": doubtful,
         "look_alikes": [plain(name) for name in cause.look_alikes],
-        "what": summary,
+        "what": f"{summary}{_how_often(effect, plant)}",
         "means": cause.means,
         "try": cause.try_,
         "gain": None if gain is None else percent(gain.value),
         "interval": None if gain is None else percent_between(*gain.ci95),
         "uncertain": gain is not None and gain.ci95[0] <= 0.0,
-        "parameters": [
-            row(path, p, meanings.get(path.rsplit(".", 1)[-1], ""))
-            for path, p in cause.parameters.items()
-        ],
+        "parameters": rows,
     }
+
+
+def _how_often(effect: Effect | None, plant: Plant) -> str:
+    """How often a wave repeats, "" for what has no order."""
+    given = {} if effect is None else effect.parameters
+    orders = [f"{given[name].value:.4g}" for name in ("order", "order_2") if name in given]
+    if not orders:
+        return ""
+    if plant.motion == "linear":
+        lengths = [2.0 * math.pi / given[n].value for n in ("order", "order_2") if n in given]
+        return f", every {joined([quantity(each, 'm') for each in lengths])}"
+    times = "once" if orders == ["1"] else f"{joined(orders)} times"
+    return f", {times} a turn"

@@ -27,7 +27,13 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
     parameters = []
     for path in paths:
         rows = [
-            row(path, model.parameters[path], meanings.get(path, ""), model.remarks)
+            row(
+                path,
+                model.parameters[path],
+                meanings.get(path, ""),
+                model.remarks,
+                model.parameters,
+            )
             if path in model.parameters
             else None
             for model in (before, after)

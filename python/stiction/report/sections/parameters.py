@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from ...catalogue import effects, laws
-from ..numbers import between
+from ..numbers import between, digits
 
 if TYPE_CHECKING:
+    from ...catalogue import EffectRecord
     from ...fitting.result import FitParameter
-    from ...plant import Plant
+    from ...plant import Effect, Plant
 
-__all__ = ["meanings_of", "row"]
+__all__ = ["meanings_of", "row", "rows_of_effect"]
+
+NOTHING: Final[Mapping[str, FitParameter]] = MappingProxyType({})
 
 BODY: Final = {
     "inertia": "moving inertia or mass",
@@ -23,18 +28,26 @@ BODY: Final = {
 
 
 def row(
-    path: str, parameter: FitParameter, meaning: str, remarks: Sequence[str] = ()
+    path: str,
+    parameter: FitParameter,
+    meaning: str,
+    remarks: Sequence[str] = (),
+    beside: Mapping[str, FitParameter] = NOTHING,
 ) -> dict[str, Any]:
-    """A parameter: name, meaning, value, interval, unit and what is odd about it."""
+    """A parameter: name, meaning, value, interval, unit and what is odd about it.
+
+    ``beside`` holds the parameters of the same model: a wave is there where either of its parts is.
+    """
     value, interval = between(parameter.value, *parameter.ci95)
-    low, high = parameter.ci95
     notes = []
     if parameter.at_bound:
         notes.append(f"at its {parameter.at_bound} bound")
     if any(remark.startswith(f"{path} is not determined") for remark in remarks):
         notes.append("not determined by these data")
-    elif low <= 0.0 <= high and not parameter.at_bound:
-        notes.append("not told from 0")
+    elif not _told(parameter) and not parameter.at_bound:
+        partner = beside.get(_partner(path))
+        if partner is None or not _told(partner):
+            notes.append("not told from 0")
     return {
         "path": path,
         "name": path.rsplit(".", 1)[-1],
@@ -44,6 +57,97 @@ def row(
         "unit": "" if parameter.unit == "1" else parameter.unit,
         "notes": notes,
     }
+
+
+def rows_of_effect(
+    effect: Effect, parameters: Mapping[str, FitParameter], record: EffectRecord, motion: str
+) -> list[dict[str, Any]]:
+    """All of an effect: amplitudes of its waves, what was fitted, and what was chosen or assumed.
+
+    Parameters
+    ----------
+    effect : Effect
+        Of the extended plant.
+    parameters : Mapping of str to FitParameter
+        What was fitted of it, by path.
+    record : EffectRecord
+        Of the catalogue.
+    motion : str
+        "rotary" or "linear", for units.
+    """
+    units = {p.name: p.linear_unit if motion == "linear" else p.unit for p in record.parameters}
+    meanings = {p.name: p.meaning for p in record.parameters}
+    by_name = {path.rsplit(".", 1)[-1]: p for path, p in parameters.items()}
+    names = [*by_name, *(name for name in effect.parameters if name not in by_name)]
+    rows = []
+    for tail in ("", "_2"):
+        cosine, sine = by_name.get(f"cosine{tail}"), by_name.get(f"sine{tail}")
+        if cosine is not None and sine is not None:
+            rows.append(_amplitude(tail, cosine, sine, meanings.get(f"cosine{tail}", "")))
+        for name in names:
+            if name.endswith("_2") != bool(tail):
+                continue
+            path, meaning = f"effects.{effect.name}.{name}", meanings.get(name, "")
+            if path in parameters:
+                rows.append(row(path, parameters[path], meaning, beside=parameters))
+            else:
+                unit = units.get(name, "")
+                rows.append(_stated(path, effect.parameters[name].value, meaning, unit))
+            if "order" in name:
+                rows[-1]["unit"] = "per 2π m" if motion == "linear" else "per turn"
+                rows[-1]["meaning"] = f"periods of the {'second ' if tail else ''}wave"
+    return rows
+
+
+def _stated(path: str, value: float, meaning: str, unit: str) -> dict[str, Any]:
+    """A parameter that no fit has moved: an order out of whole numbers, or a usual value."""
+    name = path.rsplit(".", 1)[-1]
+    chosen = "order" in name
+    return {
+        "path": path,
+        "name": name,
+        "meaning": meaning,
+        "value": f"{value:g}" if chosen or value == round(value, 2) else digits(value),
+        "interval": "–",
+        "unit": "" if unit == "1" else unit,
+        "notes": ["chosen, not fitted" if chosen else "assumed, not fitted"],
+    }
+
+
+def _amplitude(tail: str, cosine: FitParameter, sine: FitParameter, meaning: str) -> dict[str, Any]:
+    """The size of a wave, which its parts say only together."""
+    size = math.hypot(cosine.value, sine.value)
+    halves = [0.5 * (p.ci95[1] - p.ci95[0]) for p in (cosine, sine)]
+    half = math.hypot(cosine.value * halves[0], sine.value * halves[1]) / size if size else 0.0
+    share = cosine.unit == "1"
+    factor = 100.0 if share else 1.0
+    value, interval = between(factor * size, factor * max(size - half, 0.0), factor * (size + half))
+    whole = meaning.replace("amplitude of the cosine part", "amplitude").replace(
+        "as a share of the", "of the"
+    )
+    return {
+        "path": f"amplitude{tail}",
+        "name": f"amplitude{tail}",
+        "meaning": f"{whole.replace('as a share of', 'of')}: cosine and sine together",
+        "value": value,
+        "interval": interval,
+        "unit": "%" if share else cosine.unit,
+        "notes": [],
+    }
+
+
+def _told(parameter: FitParameter) -> bool:
+    low, high = parameter.ci95
+    return not low <= 0.0 <= high
+
+
+def _partner(path: str) -> str:
+    """The other part of a wave, "" for what is no part of one."""
+    head, dot, name = path.rpartition(".")
+    for own, other in (("cosine", "sine"), ("sine", "cosine")):
+        if name in (own, f"{own}_2"):
+            return f"{head}{dot}{name.replace(own, other)}"
+    return ""
 
 
 def meanings_of(plant: Plant) -> dict[str, str]:

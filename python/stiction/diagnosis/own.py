@@ -1,0 +1,185 @@
+"""Each cause in its own coordinate: the picture that its owner should be convinced by."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from ..plant import Effect
+from ..trajectory import FloatArray
+from .coordinates import COORDINATES, Coordinate, Look
+from .evidence import Evidence
+from .smoother import smoother
+from .view import View
+
+__all__ = ["OWN", "Wave", "own_coordinate", "own_view"]
+
+PHASES: Final = 24
+"""Stretches of the longest period that is drawn, for each period of its shortest one."""
+MOST_PHASES: Final = 72
+"""So many at most."""
+MOST_PERIODS: Final = 6
+"""Periods of the first wave that are drawn side by side at most, where a second one asks for it."""
+NEAR_WHOLE: Final = 0.03
+"""A ratio of periods nearer than this to a whole number is taken for it."""
+SLIDING: Final = "where the contact slides"
+
+
+@dataclass(frozen=True)
+class Wave:
+    """The period of an effect that repeats with position, at the order that was found.
+
+    Attributes
+    ----------
+    odd : bool
+        The residual is counted along the motion.
+    factor : callable, optional
+        From a ``Look`` to what the residual grows with.
+    upright : str
+        What the vertical axis says then.
+    where : callable, optional
+        From a ``Look`` to the rows that count; all of them without it.
+    rows : str
+        Those in words.
+    """
+
+    odd: bool = False
+    factor: Callable[[Look], FloatArray] | None = None
+    upright: str = ""
+    where: Callable[[Look], np.ndarray] | None = None
+    rows: str = ""
+
+
+def _slides(look: Look) -> np.ndarray:
+    """Where the contact slides: at rest its friction is what pulls at it, whatever its level."""
+    return np.asarray(look.slides.slid > 0.0)
+
+
+def _turns_evenly(look: Look) -> np.ndarray:
+    """Where an error of the reading shows by the square of speed, and less by acceleration."""
+    return np.asarray(look.velocity**2 > np.abs(look.acceleration))
+
+
+OWN: Final[dict[str, str | Wave]] = {
+    "stribeck": "speed",
+    "viscous_quadratic": "high speed",
+    "direction_asymmetry": "velocity",
+    "torque_bias": "velocity",
+    "position_dependent_friction": Wave(odd=True, where=_slides, rows=SLIDING),
+    "cogging": Wave(),
+    "torque_constant_ripple": Wave(
+        factor=lambda look: look.effort, upright="residual over effort, %"
+    ),
+    "dwell_strengthening": "rest before the slide",
+    "rate_dependent_breakaway": "loading before the slide",
+    "input_delay": "rate of the effort",
+    "warm_up": "session time, in slides",
+    "run_in": "path, in slides",
+    "drive_deadband": "effort along the motion",
+    "shaft_compliance": "fourth derivative of the position",
+    "encoder_eccentricity": Wave(
+        factor=lambda look: look.velocity**2,
+        upright="residual over speed², {f}·s²/{x}²",
+        where=_turns_evenly,
+        rows="where the squared speed is larger than the acceleration",
+    ),
+    "creep_hardening": "time since the reversal",
+}
+"""Where each effect of the catalogue shows: a coordinate by its name, or its own period."""
+ELSEWHERE: Final = "velocity"
+"""Where an effect is drawn that has no entry."""
+_DRAWN: Final = {each.name: each for each in COORDINATES}
+# Over its logarithm, what grows with the square of speed would be pressed to the edge.
+_DRAWN["high speed"] = replace(_DRAWN["speed"], logarithmic=False)
+
+
+def _in_slides(name: str) -> Coordinate:
+    whole = _DRAWN[name]
+    return replace(
+        whole, values=lambda look: np.where(_slides(look), whole.values(look), np.nan), rows=SLIDING
+    )
+
+
+_DRAWN["session time, in slides"] = _in_slides("session time along the motion")
+_DRAWN["path, in slides"] = _in_slides("path along the motion")
+
+
+def own_coordinate(effect: Effect, motion: str) -> Coordinate:
+    """The coordinate that an effect is drawn over.
+
+    Parameters
+    ----------
+    effect : Effect
+        With its fitted parameters.
+    motion : str
+        "rotary" or "linear".
+    """
+    own = OWN.get(effect.name, ELSEWHERE)
+    if isinstance(own, str):
+        return _DRAWN[own]
+    order, _ = _periods(effect)
+
+    def place(look: Look) -> FloatArray:
+        phase = np.mod(look.position, 2.0 * math.pi / order)
+        return phase if own.where is None else np.where(own.where(look), phase, np.nan)
+
+    name = "position in the period"
+    axis = f"position in a period of {2.0 * math.pi / order:.3g} {{x}}, {{x}}"
+    if motion == "rotary" and abs(order - round(order)) < 1e-9:
+        name = "angle in the turn" if order == 1.0 else f"angle in 1/{order:.0f} of a turn"
+        axis = f"{name}, rad"
+    return Coordinate(
+        name, axis, own.odd, place, factor=own.factor, upright=own.upright, rows=own.rows
+    )
+
+
+def own_view(
+    evidence: Evidence,
+    seen: Sequence[Look],
+    effect: Effect,
+    residual: FloatArray,
+    null: FloatArray,
+    friction: float,
+) -> View:
+    """What a model leaves, in the coordinate of an effect.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    seen : sequence of Look
+        Of each recording in ``evidence.shown``.
+    effect : Effect
+        With its fitted parameters.
+    residual : numpy.ndarray, shape (n,)
+    null : numpy.ndarray, shape (n, surrogates)
+    friction : float
+        Weighted rms of the friction, against which sizes are measured.
+    """
+    coordinate = own_coordinate(effect, evidence.plant.motion)
+    edges = None
+    if isinstance(OWN.get(effect.name), Wave):
+        order, finest = _periods(effect)
+        number = min(round(PHASES * max(finest / order, 1.0)), MOST_PHASES)
+        edges = np.linspace(0.0, 2.0 * math.pi / order, number + 1)[1:-1]
+    both = np.column_stack([residual, null])
+    return smoother(coordinate, evidence, seen, both, friction, edges, within=True)
+
+
+def _periods(effect: Effect) -> tuple[float, float]:
+    """Order whose period is drawn, and the highest order that has to show in it, 1/rad or 1/m."""
+    given = {name: parameter.value for name, parameter in effect.parameters.items()}
+    first = given.get("order", 1.0)
+    second = given.get("order_2", first) if _has_second(given) else first
+    for periods in range(1, MOST_PERIODS + 1):
+        ratio = second / first * periods
+        if abs(ratio - round(ratio)) < NEAR_WHOLE and round(ratio) > 0:
+            return first / periods, max(first, second)
+    return first, first
+
+
+def _has_second(given: dict[str, float]) -> bool:
+    return any(given.get(name, 0.0) != 0.0 for name in ("cosine_2", "sine_2"))

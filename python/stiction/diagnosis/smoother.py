@@ -1,0 +1,140 @@
+"""Means over stretches of a coordinate: drawn, and judged on rows held out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from ..trajectory import FloatArray
+from .coordinates import Coordinate, Look
+from .evidence import Evidence
+from .view import FEWEST_ROWS, View, limit, means
+
+__all__ = ["BINS", "SLOW_BINS", "smoother", "stacked"]
+
+BINS: Final = 24
+"""Stretches of a coordinate, each with as many rows."""
+SLOW_BINS: Final = 6
+"""Stretches of the session clock where recordings have roles of their own: each stretch must hold
+some that are fitted and some that are not."""
+
+ROWS: Final = 150
+"""A stretch holds about this many rows at least, where few have a place in a coordinate..."""
+FEWEST_BINS: Final = 6
+"""... but so many stretches there are."""
+
+
+def stacked(evidence: Evidence, values: Sequence[FloatArray]) -> FloatArray:
+    """Values of each recording shown, one under the other, without the rows that do not count."""
+    masks = [rows.mask for rows in evidence.shown]
+    return np.concatenate([v[m] for v, m in zip(values, masks, strict=True)])
+
+
+def smoother(
+    coordinate: Coordinate,
+    evidence: Evidence,
+    seen: Sequence[Look],
+    both: FloatArray,
+    friction: float,
+    edges: FloatArray | None = None,
+    *,
+    within: bool = False,
+) -> View:
+    """The residual over one coordinate.
+
+    Parameters
+    ----------
+    coordinate : Coordinate
+    evidence : Evidence
+    seen : sequence of Look
+        Of each recording in ``evidence.shown``.
+    both : numpy.ndarray, shape (n, 1 + surrogates)
+        Weighted residual, then those of the surrogates.
+    friction : float
+        Weighted rms of the friction.
+    edges : numpy.ndarray, optional
+        Where stretches end; without it each holds as many rows.
+    within : bool
+        The share is that of the power in rows that have a place in the coordinate.
+    """
+    values = stacked(evidence, [coordinate.values(look) for look in seen])
+    if coordinate.odd:
+        both = both * stacked(evidence, [look.direction for look in seen])[:, None]
+    factor = np.ones(len(values))
+    if coordinate.factor is not None:
+        factor = stacked(evidence, [coordinate.factor(look) for look in seen])
+    # Rows that have no place in this coordinate lie in a last stretch, of which nothing is taken.
+    placed = np.isfinite(values)
+    index, bins = _stretches(coordinate, evidence, values, placed, edges)
+    grown = factor[:, None]
+    removed, total = np.zeros(both.shape[1]), np.zeros(both.shape[1])
+    rows = 0
+    for plan in evidence.plans:
+        curve = _slopes(index[plan.fit], both[plan.fit], factor[plan.fit], bins)
+        held = both[plan.held]
+        rows += len(held)
+        counted = held[placed[plan.held]] if within else held
+        total += np.sum(counted**2, axis=0)
+        kept = held - grown[plan.held] * curve[index[plan.held]]
+        removed += np.sum(held**2 - kept**2, axis=0)
+    shares = removed / np.maximum(total, 1e-300)
+    # In units of effort for the eye: what was weighted is put back.
+    shown = np.zeros(len(index), dtype=bool)
+    for plan in evidence.plans:
+        shown |= plan.held
+    physical = both[shown] / evidence.weights[shown, None]
+    curves = _slopes(index[shown], physical, factor[shown], bins)
+    full = np.flatnonzero(np.bincount(index[shown], minlength=bins + 1)[:bins] >= FEWEST_ROWS)
+    curves = curves[full]
+    low, high = np.quantile(curves[:, 1:], [0.025, 0.975], axis=1)
+    centres = [float(np.median(values[index == k])) for k in full]
+    return View(
+        coordinate,
+        np.array(centres),
+        curves[:, 0],
+        low,
+        high,
+        float(shares[0]),
+        limit(shares[1:]),
+        float(np.sqrt(max(removed[0], 0.0) / max(rows, 1))) / max(friction, 1e-300),
+    )
+
+
+def _stretches(
+    coordinate: Coordinate,
+    evidence: Evidence,
+    values: FloatArray,
+    placed: np.ndarray,
+    edges: FloatArray | None,
+) -> tuple[np.ndarray, int]:
+    """Stretch of each row, ``bins`` where it has no place, and how many stretches there are."""
+    known = values[placed]
+    if edges is None:
+        slow = coordinate.slow and len(evidence.shown) > 1
+        number = SLOW_BINS if slow else min(BINS, max(len(known) // ROWS, FEWEST_BINS))
+        inner = np.linspace(0.0, 1.0, number + 1)[1:-1]
+        edges = np.unique(np.quantile(known, inner)) if len(known) else np.zeros(0)
+    # Stretches that hold nothing, between equal values, are left out.
+    full, place = np.unique(np.searchsorted(edges, known), return_inverse=True)
+    index = np.full(len(values), len(full), dtype=np.int64)
+    index[placed] = place
+    return index, len(full)
+
+
+def _slopes(index: np.ndarray, columns: FloatArray, factor: FloatArray, bins: int) -> FloatArray:
+    """What each column is of the factor in each stretch; the mean where the factor is 1.
+
+    The row behind the last stretch, of what has no place, is 0.
+    """
+    if np.all(factor == 1.0):
+        found = means(index, columns, bins + 1)
+    else:
+        power = np.bincount(index, factor**2, bins + 1)
+        counts = np.bincount(index, minlength=bins + 1)
+        pushed = means(index, columns * factor[:, None], bins + 1) * counts[:, None]
+        found = np.where(counts[:, None] >= FEWEST_ROWS, pushed, 0.0)
+        found = found / np.maximum(power, 1e-300)[:, None]
+    found[bins] = 0.0
+    return found
