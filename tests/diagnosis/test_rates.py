@@ -17,8 +17,21 @@ SECONDS = 72.0
 """Of a session: the shortest in which every kind of recording still says something."""
 SIZE = 0.015
 """rms of the hidden torque as a share of F_c: plainly there."""
-HIDDEN = ("cogging", "torque_bias", "stribeck", "position_dependent_friction", "viscous_quadratic")
+HIDDEN = (
+    "cogging",
+    "torque_bias",
+    "stribeck",
+    "position_dependent_friction",
+    "viscous_quadratic",
+    "torque_constant_ripple",
+    "drive_deadband",
+    "encoder_eccentricity",
+    "creep_hardening",
+    "rate_dependent_breakaway",
+    "warm_up",
+)
 SEEDS = dict(zip(HIDDEN, range(2, 2 + len(HIDDEN)), strict=True))
+SURROGATES = 6
 LEFT_OUT = ("torque_bias", "stribeck")
 OF_GAIN = ("heldout_gain", "heldout_gain_ci95")
 
@@ -35,7 +48,8 @@ def made() -> dict[str | None, Any]:
 @cache
 def found(name: str | None, without: tuple[str, ...] = (), threads: int = 1) -> st.Diagnosis:
     hidden = made()[name]
-    return st.diagnose(as_plant(hidden), as_session(hidden), without=without, threads=threads)
+    plant, session = as_plant(hidden), as_session(hidden)
+    return st.diagnose(plant, session, without=without, surrogates=SURROGATES, threads=threads)
 
 
 def family(name: str) -> str:
@@ -94,7 +108,7 @@ def test_noise_in_place_of_the_rows_that_test_changes_gains_only() -> None:
     hidden = made()["cogging"]
     session, rng = as_session(hidden), np.random.default_rng(0)
     noisy = [as_noise(r, rng) if r.role == "test" else r for r in session]
-    other = st.diagnose(as_plant(hidden), Session(noisy), threads=1)
+    other = st.diagnose(as_plant(hidden), Session(noisy), surrogates=SURROGATES, threads=1)
     assert without_gains(other) == without_gains(found("cogging"))
     gain, usual = other.gain, found("cogging").gain
     assert gain is not None
