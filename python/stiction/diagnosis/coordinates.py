@@ -14,7 +14,7 @@ from ..trajectory import FloatArray
 from .contact import Slides, slides_of
 from .evidence import Evidence
 
-__all__ = ["COORDINATES", "Coordinate", "Look", "looks"]
+__all__ = ["BEND", "COORDINATES", "Coordinate", "Look", "looks"]
 
 TURNING_SHARE: Final = 1e-3
 """Speeds below this share of the usual one have no direction of their own: the last one holds."""
@@ -105,13 +105,6 @@ COORDINATES: Final = (
     Coordinate("angle", "angle in the turn, rad", False, lambda look: look.angle),
     Coordinate("angle along the motion", "angle in the turn, rad", True, lambda look: look.angle),
     Coordinate("acceleration", "acceleration, {x}/s²", False, lambda look: look.acceleration),
-    Coordinate(
-        "fourth derivative of the position",
-        "fourth derivative, {x}/s⁴",
-        False,
-        lambda look: look.bend,
-        refines="acceleration",
-    ),
     Coordinate("effort", "measured effort, {f}", False, lambda look: look.effort),
     Coordinate(
         "effort along the motion",
@@ -167,6 +160,11 @@ COORDINATES: Final = (
     ),
 )
 """Coordinates in which the rest is looked at."""
+BEND: Final = Coordinate(
+    "fourth derivative of the position", "fourth derivative, {x}/s⁴", False, lambda look: look.bend
+)
+"""What a shaft that gives shows in. What is left is not judged by it: it is largest where a contact
+breaks away, and there the curve of any law misses; the response to the effort tells of a shaft."""
 
 
 def looks(evidence: Evidence, plant: Plant, clocks: Sequence[float], window: float) -> list[Look]:

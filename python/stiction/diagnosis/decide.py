@@ -23,6 +23,8 @@ LEAST_GAIN: Final = 0.025
 """Held-out gain below which an effect is not worth a name."""
 LEAST_Z: Final = 2.0
 """Held-out gain over its standard error over blocks of 1 s."""
+FEWEST_RECORDINGS: Final = 4
+"""Fewer recordings held out have no best one to do without."""
 TELLING: Final = 0.01
 """Blocks that change by less than this share of the mean change count for neither side."""
 TOUCHED: Final = 0.01
@@ -151,6 +153,8 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     elif z <= LEAST_Z:
         reason = f"its held-out gain is {z:.2f} standard errors, below {LEAST_Z:.2f}"
         by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
+    elif _without_the_best(base, model) <= 0.5 * LEAST_GAIN:
+        reason = "gains on rows held out in one recording alone"
     elif strength < LEAST_STRENGTH:
         reason = f"its strength is {strength:.2f} standard errors, below {LEAST_STRENGTH:.2f}"
     elif size < LEAST_SIZE:
@@ -203,6 +207,23 @@ def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tupl
     return gained / total, max(_z(difference), _sign_z(difference))
 
 
+def _without_the_best(base: Model, model: Model) -> float:
+    """Held-out gain with the recording left out that gains most; the whole gain of a few.
+
+    In a recording in which the base has lost the machine anything may find it again.
+    """
+    cells = base.evidence.cells
+    of_block = np.zeros(len(base.blocks[1]), dtype=np.int64)
+    of_block[cells.block] = cells.recording
+    before, after = limited(base.blocks[1], model.blocks[1])
+    whole, left = (np.bincount(of_block, power) for power in (before, after))
+    held = np.flatnonzero(whole > 0.0)
+    if len(held) < FEWEST_RECORDINGS:
+        return 1.0
+    kept = held[held != held[np.argmax((whole - left)[held])]]
+    return float(1.0 - left[kept].sum() / whole[kept].sum())
+
+
 def _sign_z(values: FloatArray) -> float:
     """How far more values are positive than chance makes them, in standard deviations.
 
@@ -232,10 +253,15 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
     if not accepted:
         return None
     winner = accepted[0]
-    # The cause itself would explain more than what imitates it; a relative of the winner may
-    # imitate the winner.
+    # The cause itself would explain more than what imitates it, and what is refused for its spread
+    # over blocks alone may be that cause. A relative of the winner may imitate the winner.
     family = winner.candidate.record.family
-    strangers = [t for t in ranked if t.imitates and t.candidate.record.family != family]
+    strangers = [
+        t
+        for t in ranked
+        if (t.imitates and t.candidate.record.family != family)
+        or (t.by_blocks and not _alike(winner, t))
+    ]
     if any((1.0 - NEAR) * stranger.worth > winner.worth for stranger in strangers):
         return None
     # Who falls short by a little on its own may still be what the winner imitates.

@@ -18,6 +18,7 @@ from ..plant import Effect, Plant
 from ..trajectory import FloatArray
 from .candidates import Candidate
 from .evidence import Evidence, Plan
+from .influence import limited
 from .regression import step
 
 __all__ = ["Model", "fitted", "stepped", "with_effect", "without_effect"]
@@ -97,8 +98,12 @@ class Model:
         scaled = columns[:, live] / scale[live]
         bread = np.linalg.pinv(scaled.T @ scaled, rcond=FLAT, hermitian=True)
         _, index = np.unique(block[fit], return_inverse=True)
-        pushes = np.zeros((int(index.max()) + 1, len(live)))
+        power: FloatArray = np.bincount(index, residual**2).astype(np.float64)
+        (kept,) = limited(power)
+        pushes = np.zeros((len(power), len(live)))
         np.add.at(pushes, index, scaled * residual[:, None])
+        # A block in which the model has lost the machine would make every gain uncertain.
+        pushes *= np.sqrt(kept / np.maximum(power, 1e-300))[:, None]
         covariance = bread @ pushes.T @ pushes @ bread
         places = [int(np.flatnonzero(live == k)[0]) for k in own if k in live]
         if len(places) < len(own):
@@ -150,13 +155,17 @@ def fitted(
     plant: Plant,
     nuisances: Nuisances | None = None,
     *,
+    only: str = "",
     most: int = REFIT_EVALUATIONS,
     converged: float = REFIT_CONVERGED,
 ) -> Model:
-    """The plant fitted to the rows of train, with the weights these have."""
+    """The plant fitted to the rows of train, with the weights these have.
+
+    ``only`` names an effect whose parameters alone are varied, beside the nuisances.
+    """
     solution = minimise(
         plant,
-        free_paths(plant),
+        [path for path in free_paths(plant) if path.startswith(f"effects.{only}." if only else "")],
         evidence.train,
         most=most,
         nuisances=nuisances,
