@@ -10,7 +10,7 @@ import pytest
 import stiction as st
 from stiction.diagnosis.advice import BY_COORDINATE
 from stiction.diagnosis.contact import slides_of
-from stiction.diagnosis.coordinates import COORDINATES, Coordinate
+from stiction.diagnosis.coordinates import BEND, COORDINATES, Coordinate
 from stiction.diagnosis.omnibus import Rest, View
 from stiction.diagnosis.own import OWN, Wave, own_coordinate
 from stiction.diagnosis.periodic import COUPLED, FREQUENCY, ORDERS
@@ -33,7 +33,7 @@ def test_every_effect_has_a_coordinate_of_its_own(record: st.EffectRecord) -> No
     assert coordinate.name
     assert ", " in coordinate.axis
     if not isinstance(OWN[record.name], Wave):
-        assert coordinate.name in {each.name for each in COORDINATES}
+        assert coordinate.name in {each.name for each in (*COORDINATES, BEND)}
 
 
 def test_no_coordinate_belongs_to_an_effect_that_is_not_there() -> None:

@@ -19,7 +19,6 @@ HINTS: Final = {
     "interpolated",
     "order over position, times effort": "the drive's gain over position: magnets, commutation",
     "acceleration": "inertia, or a part that moves by itself",
-    "fourth derivative of the position": "a shaft or coupling that gives",
     "response to the effort": "a delay, a filter of the drive, or a shaft that gives",
     "frequency": "the mains, a fan, a neighbouring machine",
     "effort": "the drive: gain, saturation, dead zone",
