@@ -119,6 +119,52 @@ class Motor:
         start: dict[str, float] | None = None,
         threads: int = 1,
     ) -> tuple[_Floats, _Floats, _Floats]: ...
+    def shoot(
+        self,
+        position: npt.ArrayLike,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        weights: npt.ArrayLike,
+        stride: int,
+        *,
+        load: npt.ArrayLike | None = None,
+        start: dict[str, float] | None = None,
+    ) -> _Floats: ...
+    def accompany(
+        self,
+        position: npt.ArrayLike,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        stiffness: float,
+        damping: float,
+        *,
+        load: npt.ArrayLike | None = None,
+        start: dict[str, float] | None = None,
+    ) -> tuple[_Floats, _Floats]: ...
+    def shoot_sensitivity(
+        self,
+        position: npt.ArrayLike,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        weights: npt.ArrayLike,
+        stride: int,
+        parameters: Sequence[str],
+        *,
+        load: npt.ArrayLike | None = None,
+        start: dict[str, float] | None = None,
+    ) -> _Floats: ...
+    def shoot_response(
+        self,
+        position: npt.ArrayLike,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        weights: npt.ArrayLike,
+        stride: int,
+        parts: int,
+        *,
+        load: npt.ArrayLike | None = None,
+        start: dict[str, float] | None = None,
+    ) -> _Floats: ...
     def sensitivity(
         self,
         current: npt.ArrayLike,

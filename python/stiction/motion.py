@@ -70,6 +70,11 @@ class Kernel:
         return float(np.linalg.norm(self._second))
 
     @property
+    def second(self) -> FloatArray:
+        """Weights of the second difference, in the order of the samples; shape (2·half + 1,)."""
+        return self._second[::-1].copy()
+
+    @property
     def half(self) -> int:
         """Samples that a result has on either side of its centre, second difference included."""
         return len(self.weights) // 2 + 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -161,6 +161,11 @@ class WeakForm:
     def accelerations(self, position: FloatArray) -> FloatArray:
         """Acceleration of a position at the stamps of the recording, through the kernel."""
         return self._thin(self.kernel.second_derivative(position[1:]))
+
+    @property
+    def reached(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """Rows that noise of the effort reaches: all of them; shape (n,)."""
+        return np.ones(len(self), dtype=np.bool_)
 
     @property
     def followed_late(self) -> bool:

@@ -1,5 +1,7 @@
 //! A machine moved along positions that were measured or prescribed: the efforts it needs.
 
+use std::ops::Range;
+
 use crate::drive::DelayLine;
 use crate::effects::{Passage, SecondMass, Situation};
 use crate::friction::LawState;
@@ -26,7 +28,7 @@ pub struct Efforts<S> {
 }
 
 /// The positions behind the readings, three in a row, and what is derived from them.
-struct Track<'a, S> {
+pub(crate) struct Track<'a, S> {
     readings: &'a [f64],
     actual: &'a dyn Fn(f64) -> S,
     /// Positions at the stamps before, at and after the present one.
@@ -36,10 +38,16 @@ struct Track<'a, S> {
 }
 
 impl<'a, S: Scalar> Track<'a, S> {
-    fn new(readings: &'a [f64], actual: &'a dyn Fn(f64) -> S) -> Self {
+    /// With this stamp as the present one.
+    pub(crate) fn new(readings: &'a [f64], actual: &'a dyn Fn(f64) -> S, stamp: usize) -> Self {
         let last = readings.len() - 1;
-        let (first, second) = (actual(readings[0]), actual(readings[last.min(1)]));
-        Self { readings, actual, at: [first, first, second], stamp: 0 }
+        let near = [stamp.saturating_sub(1), stamp, (stamp + 1).min(last)];
+        Self { readings, actual, at: near.map(|stamp| actual(readings[stamp])), stamp }
+    }
+
+    /// Position at the present stamp.
+    pub(crate) fn position(&self) -> S {
+        self.at[1]
     }
 
     fn advance(&mut self) {
@@ -52,7 +60,7 @@ impl<'a, S: Scalar> Track<'a, S> {
 
     /// Slope between the neighbours, so that what depends on velocity is not half a sample late; at
     /// the first and the last stamp there is only one side.
-    fn velocity(&self, dt: &PerSample<'_>) -> S {
+    pub(crate) fn velocity(&self, dt: &PerSample<'_>) -> S {
         let last = self.readings.len() - 1;
         let (before, after) = (self.stamp.saturating_sub(1), (self.stamp + 1).min(last));
         let span: f64 = (before..after).map(|j| dt.at(j)).sum();
@@ -85,6 +93,20 @@ impl<S: Scalar> Running<S> {
         inputs: PerSample<'_>,
         load: PerSample<'_>,
         dt: PerSample<'_>,
+        row: impl FnMut(usize, Efforts<S>),
+    ) {
+        self.follow_on(positions, 0..positions.len() - 1, inputs, load, dt, row);
+    }
+
+    /// Follows some of the samples, from where the last one before them ended. A second mass swings
+    /// in from rest.
+    pub(crate) fn follow_on(
+        &mut self,
+        positions: &[f64],
+        samples: Range<usize>,
+        inputs: PerSample<'_>,
+        load: PerSample<'_>,
+        dt: PerSample<'_>,
         mut row: impl FnMut(usize, Efforts<S>),
     ) {
         let mut line = self.line.as_mut();
@@ -100,10 +122,10 @@ impl<S: Scalar> Running<S> {
         let mut twist =
             machine.effects.second_mass().map(|mass: SecondMass<S>| Twist::new(&mass, inertia));
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
-            let mut track = Track::new(positions, &actual);
+            let mut track = Track::new(positions, &actual, samples.start);
             let mut velocity = track.velocity(&dt);
-            for k in 0..positions.len() - 1 {
-                if k % CHUNK == 0 {
+            for (passed, k) in samples.enumerate() {
+                if passed % CHUNK == 0 {
                     state.make_room(CHUNK + CHUNK / 4);
                 }
                 let duration = dt.at(k);

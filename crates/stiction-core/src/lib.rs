@@ -20,4 +20,5 @@ pub mod parameter;
 pub mod scalar;
 pub mod sensitivity;
 pub mod sensor;
+pub mod shoot;
 pub mod wave;

@@ -6,11 +6,13 @@ use crate::effects::{AnyEffect, EffectRecord, Effects, effect_record};
 use crate::error::{Error, Result};
 use crate::follow::arriving;
 use crate::friction::{AnyState, Entry, Law, LawState, Statistics};
-use crate::integrate::{Integrator, MOST_PARTS, Machine, Run, parts, sample};
+use crate::integrate::{Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Run, parts, sample};
 use crate::model::{CHUNK, LawSpec};
 use crate::parameter::resolve;
 use crate::scalar::Scalar;
+use crate::sensitivity::MeasuredMotion;
 use crate::sensor::Sensor;
+use crate::shoot::{Pull, Windows};
 
 /// An effect with every parameter decided.
 #[derive(Debug, Clone)]
@@ -221,6 +223,14 @@ impl PerSample<'_> {
             Self::Each(values) => values[k],
         }
     }
+
+    /// The numbers from one sample to before another.
+    pub fn between(&self, from: usize, to: usize) -> Self {
+        match self {
+            Self::Same(value) => Self::Same(*value),
+            Self::Each(values) => Self::Each(&values[from..to]),
+        }
+    }
 }
 
 fn whole_parts(parts: f64, dt: f64) -> Result<u32> {
@@ -245,6 +255,8 @@ pub struct Running<S: Scalar> {
     pub line: Option<DelayLine<S>>,
     /// Integrator.
     pub integrator: Integrator,
+    /// ω·h above which it divides a sample.
+    pub longest_phase: f64,
 }
 
 impl<S: Scalar> Running<S> {
@@ -255,7 +267,8 @@ impl<S: Scalar> Running<S> {
         let zero = S::constant(0.0);
         let run = machine.start(zero, zero);
         let line = machine.effects.delay().map(DelayLine::new);
-        Self { machine, law, state, run, line, integrator: spec.integrator }
+        let integrator = spec.integrator;
+        Self { machine, law, state, run, line, integrator, longest_phase: LONGEST_PHASE }
     }
 
     /// Goes on from where another motor is; its state depends on no parameter of this one.
@@ -273,7 +286,7 @@ impl<S: Scalar> Running<S> {
     #[inline]
     pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<()> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
-            let parts = whole_parts(parts(&self.machine, law, dt), dt)?;
+            let parts = whole_parts(parts(&self.machine, law, dt, self.longest_phase), dt)?;
             state.make_room(parts as usize + CHUNK / 4);
             let before = self.run;
             sample(
@@ -298,6 +311,17 @@ impl<S: Scalar> Running<S> {
         inputs: &[f64],
         load: PerSample<'_>,
         dt: PerSample<'_>,
+        row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
+    ) -> Result<()> {
+        self.simulate_under(inputs, |k| S::constant(load.at(k)), dt, row)
+    }
+
+    /// As [`Self::simulate`], under a load that may depend on parameters.
+    pub(crate) fn simulate_under(
+        &mut self,
+        inputs: &[f64],
+        load: impl Fn(usize) -> S,
+        dt: PerSample<'_>,
         mut row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
     ) -> Result<()> {
         let mut line = self.line.as_mut();
@@ -310,7 +334,8 @@ impl<S: Scalar> Running<S> {
                     let index = chunk * CHUNK + k;
                     let dt = dt.at(index);
                     if dt != known {
-                        divided = whole_parts(parts(&self.machine, law, dt), dt)?;
+                        divided =
+                            whole_parts(parts(&self.machine, law, dt, self.longest_phase), dt)?;
                         known = dt;
                     }
                     if room < divided as usize {
@@ -326,7 +351,7 @@ impl<S: Scalar> Running<S> {
                         state,
                         &mut self.run,
                         arriving(&mut line, *input, dt),
-                        S::constant(load.at(index)),
+                        load(index),
                         dt,
                         divided,
                         self.integrator,
@@ -448,6 +473,31 @@ impl Motor {
             ahead[k] = efforts.ahead;
         });
         Ok(())
+    }
+
+    /// What each window along given positions comes to (see [`Running::shoot`]).
+    pub fn shoot(
+        &mut self,
+        motion: &MeasuredMotion<'_>,
+        windows: &Windows<'_>,
+    ) -> Result<Vec<f64>> {
+        let mut sums = Vec::with_capacity(windows.number(motion.samples()));
+        self.running.shoot(motion, windows, |_, sum| sums.push(sum))?;
+        Ok(sums)
+    }
+
+    /// Readings and pulls of a run that is drawn to given positions (see [`Running::accompany`]).
+    pub fn accompany(
+        &mut self,
+        motion: &MeasuredMotion<'_>,
+        pull: Pull,
+    ) -> Result<(Vec<f64>, Vec<f64>)> {
+        let mut rows = (Vec::new(), Vec::new());
+        self.running.accompany(motion, pull, |_, reading, effort| {
+            rows.0.push(reading);
+            rows.1.push(effort);
+        })?;
+        Ok(rows)
     }
 
     /// Back to rest, or to this position and velocity, with friction never moved.

@@ -34,7 +34,7 @@ impl<'a> From<&'a Running<f64>> for Start<'a> {
 }
 
 /// The motor with the parameters at these places seeded, start values behind the others.
-fn seeded(
+pub(crate) fn seeded(
     spec: &MotorSpec,
     start: Start<'_>,
     parameters: &[f64],
@@ -56,7 +56,7 @@ fn seeded(
 
 /// Runs `visit` once for every [`COLUMNS`] of the parameters at these paths, with the motor whose
 /// parameters are seeded, the index of the first of them and their number.
-fn passes(
+pub(crate) fn passes(
     spec: &MotorSpec,
     start: Start<'_>,
     paths: &[String],
@@ -153,7 +153,8 @@ impl EffortSensitivity {
 }
 
 impl MeasuredMotion<'_> {
-    fn samples(&self) -> usize {
+    /// Samples between the positions.
+    pub fn samples(&self) -> usize {
         self.positions.len().saturating_sub(1)
     }
 

@@ -2,7 +2,10 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use numpy::{
+    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
+    PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stiction_core::integrate::Integrator;
@@ -10,6 +13,7 @@ use stiction_core::motor::{Column, EffectSpec, Motor as Core, MotorSpec};
 use stiction_core::sensitivity::{
     EffortSensitivity, MeasuredMotion, Start, follow_sensitivity, sensitivity, signatures,
 };
+use stiction_core::shoot::{Pull, Windows, check, shoot_response, shoot_sensitivity};
 
 use crate::arrays::{Each, Measured, one_row, target};
 use crate::error::{IntoPython, duration, finite, input_error, velocity};
@@ -58,6 +62,46 @@ fn numbers_of(owner: &str, values: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f
     }
 }
 
+/// Effects that may be missing, from pairs of a name and a dict of shape parameters.
+fn candidates_of(candidates: &Bound<'_, PyAny>) -> PyResult<Vec<EffectSpec>> {
+    let py = candidates.py();
+    let wanted = "give pairs of an effect's name and a dict of its shape, for instance \
+                  [('cogging', {'order': 12.0})]";
+    let each = candidates
+        .try_iter()
+        .map_err(|_| input_error(py, format!("candidates is {candidates}; {wanted}")))?;
+    let mut list = Vec::new();
+    for (k, candidate) in each.enumerate() {
+        let candidate = candidate?;
+        let pair: (String, Bound<'_, PyAny>) = candidate
+            .extract()
+            .map_err(|_| input_error(py, format!("candidates[{k}] is {candidate}; {wanted}")))?;
+        let numbers = numbers_of(&format!("effect {}", pair.0), &pair.1)?;
+        list.push(EffectSpec::candidate(&pair.0, &numbers).or_input_error(py)?);
+    }
+    Ok(list)
+}
+
+/// Weights of the samples of a window, and from how many samples to how many the windows start.
+struct Shots<'py> {
+    weights: PyReadonlyArrayDyn<'py, f64>,
+    stride: usize,
+}
+
+impl<'py> Shots<'py> {
+    fn read(weights: &Bound<'py, PyAny>, stride: i64) -> PyResult<Self> {
+        let py = weights.py();
+        let weights = one_row("weights", weights)?;
+        let shots = Self { weights, stride: usize::try_from(stride).unwrap_or(0) };
+        check(&shots.windows()?).or_input_error(py)?;
+        Ok(shots)
+    }
+
+    fn windows(&self) -> PyResult<Windows<'_>> {
+        Ok(Windows { stride: self.stride, weights: self.weights.as_slice()? })
+    }
+}
+
 /// Three arrays: needed, driven, ahead.
 type Derivatives<'py> =
     (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
@@ -68,6 +112,9 @@ type Followed<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
 );
+
+/// Two arrays: readings, efforts of the pull.
+type Accompanied<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
 /// Derivatives as arrays of this shape.
 fn arrays(py: Python<'_>, rows: EffortSensitivity, shape: [usize; 2]) -> PyResult<Derivatives<'_>> {
@@ -300,20 +347,7 @@ impl Motor {
                 format!("threads = {threads} is out of bounds: allowed is 1 to {MOST_THREADS}"),
             ));
         }
-        let wanted = "give pairs of an effect's name and a dict of its shape, for instance \
-                      [('cogging', {'order': 12.0})]";
-        let each = candidates
-            .try_iter()
-            .map_err(|_| input_error(py, format!("candidates is {candidates}; {wanted}")))?;
-        let mut list = Vec::new();
-        for (k, candidate) in each.enumerate() {
-            let candidate = candidate?;
-            let pair: (String, Bound<'py, PyAny>) = candidate.extract().map_err(|_| {
-                input_error(py, format!("candidates[{k}] is {candidate}; {wanted}"))
-            })?;
-            let numbers = numbers_of(&format!("effect {}", pair.0), &pair.1)?;
-            list.push(EffectSpec::candidate(&pair.0, &numbers).or_input_error(py)?);
-        }
+        let list = candidates_of(candidates)?;
         let gains = list.iter().map(|effect| effect.record.facts.gains.len()).sum();
         let rows = py.detach(|| {
             let core = self.lock().clone();
@@ -321,6 +355,140 @@ impl Motor {
             signatures(core.spec(), start, &motion, &list, threads as usize)
         });
         arrays(py, rows, [gains, measured.samples()])
+    }
+
+    /// What each of many short simulations along given positions (shape (n + 1,)) comes to: the sum,
+    /// by `weights` (shape (samples of a window,)), of what the sensor would read after each sample
+    /// less what it read at the start; shape (windows,). Windows start every `stride` samples at the
+    /// measured position and velocity, with friction as `follow` leaves it there.
+    #[pyo3(signature = (position, current, dt, weights, stride, *, load=None, start=None))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn shoot<'py>(
+        &self,
+        py: Python<'py>,
+        position: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        weights: &Bound<'py, PyAny>,
+        stride: i64,
+        load: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let measured = Measured::read(position, current, dt, load)?;
+        let motion = measured.motion()?;
+        let shots = Shots::read(weights, stride)?;
+        let windows = shots.windows()?;
+        let start = self.start(py, start)?;
+        let sums = py.detach(|| {
+            let mut core = self.lock().clone();
+            if let Some(start) = &start {
+                core.prime(start);
+            }
+            core.shoot(&motion, &windows)
+        });
+        Ok(PyArray1::from_vec(py, sums.or_input_error(py)?))
+    }
+
+    /// One simulation drawn to given positions (shape (n + 1,)) by a spring and a damper: what the
+    /// sensor reads after each sample, and the effort of the pull during it; shape (n,) each. The
+    /// motor is left as it was.
+    #[pyo3(signature = (position, current, dt, stiffness, damping, *, load=None, start=None))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn accompany<'py>(
+        &self,
+        py: Python<'py>,
+        position: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        stiffness: f64,
+        damping: f64,
+        load: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Accompanied<'py>> {
+        let measured = Measured::read(position, current, dt, load)?;
+        let motion = measured.motion()?;
+        let stiffness = finite(py, "stiffness", stiffness)?;
+        let pull = Pull { stiffness, damping: finite(py, "damping", damping)? };
+        let start = self.start(py, start)?;
+        let rows = py.detach(|| {
+            let mut core = self.lock().clone();
+            if let Some(start) = &start {
+                core.prime(start);
+            }
+            core.accompany(&motion, pull)
+        });
+        let (readings, efforts) = rows.or_input_error(py)?;
+        Ok((PyArray1::from_vec(py, readings), PyArray1::from_vec(py, efforts)))
+    }
+
+    /// Exact derivatives of what `shoot` returns by parameters and start values; shape
+    /// (parameters, windows). The motor is left as it was.
+    #[pyo3(signature = (
+        position, current, dt, weights, stride, parameters, *, load=None, start=None
+    ))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn shoot_sensitivity<'py>(
+        &self,
+        py: Python<'py>,
+        position: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        weights: &Bound<'py, PyAny>,
+        stride: i64,
+        parameters: Vec<String>,
+        load: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let measured = Measured::read(position, current, dt, load)?;
+        let motion = measured.motion()?;
+        let shots = Shots::read(weights, stride)?;
+        let windows = shots.windows()?;
+        let primed = self.start(py, start)?;
+        let rows = py.detach(|| {
+            let core = self.lock().clone();
+            let start = Start { running: core.running(), primed: primed.as_deref() };
+            shoot_sensitivity(core.spec(), start, &motion, &windows, &parameters)
+        });
+        let shape = [parameters.len(), windows.number(motion.samples())];
+        PyArray1::from_vec(py, rows.or_input_error(py)?).reshape(shape)
+    }
+
+    /// Exact derivatives of what `shoot` returns by an effort along +x that acts during one part of
+    /// each window, for every of so many equal parts; shape (parts, windows). The motor is left as
+    /// it was.
+    #[pyo3(signature = (position, current, dt, weights, stride, parts, *, load=None, start=None))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn shoot_response<'py>(
+        &self,
+        py: Python<'py>,
+        position: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        weights: &Bound<'py, PyAny>,
+        stride: i64,
+        parts: i64,
+        load: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let measured = Measured::read(position, current, dt, load)?;
+        let motion = measured.motion()?;
+        let shots = Shots::read(weights, stride)?;
+        let windows = shots.windows()?;
+        let primed = self.start(py, start)?;
+        let most = windows.weights.len();
+        let Some(parts) = usize::try_from(parts).ok().filter(|n| (1..=most).contains(n)) else {
+            return Err(input_error(
+                py,
+                format!("parts = {parts} is out of bounds: allowed is 1 to {most}, one a sample"),
+            ));
+        };
+        let rows = py.detach(|| {
+            let core = self.lock().clone();
+            let start = Start { running: core.running(), primed: primed.as_deref() };
+            shoot_response(core.spec(), start, &motion, &windows, parts)
+        });
+        let shape = [parts, windows.number(motion.samples())];
+        PyArray1::from_vec(py, rows.or_input_error(py)?).reshape(shape)
     }
 
     /// Exact derivatives of position and velocity by parameters, from the present state.

@@ -10,7 +10,8 @@ from typing import Final, TypeVar
 import numpy as np
 
 from ..errors import NotEnoughData
-from ..fitting.rows import EVERY_S, Mask, Nuisances, Rows, rows_of, set_clocks
+from ..fitting.forms import forms_of, set_clocks
+from ..fitting.rows import Mask, Nuisances, Rows, rows_of
 from ..plant import Plant
 from ..recording import Part, Recording
 from ..recording.split import BLOCK_S, Split, name_of, split
@@ -77,6 +78,8 @@ class Evidence:
     recordings : sequence of Recording
     threads : int, optional
         Recordings looked at side by side; results do not depend on it.
+    horizon : float, optional
+        Length of the windows of a shooting residual, s; the weak form without it.
 
     Attributes
     ----------
@@ -100,13 +103,18 @@ class Evidence:
     """
 
     def __init__(
-        self, plant: Plant, recordings: Sequence[Recording], *, threads: int | None = None
+        self,
+        plant: Plant,
+        recordings: Sequence[Recording],
+        *,
+        threads: int | None = None,
+        horizon: float | None = None,
     ) -> None:
         self.plant = plant
         self.recordings = list(recordings)
         self.threads = threads
         self.names = [name_of(recording, k) for k, recording in enumerate(self.recordings)]
-        self.forms = self.each(lambda r: WeakForm(plant, r, every=EVERY_S), self.recordings)
+        self.forms = forms_of(plant, self.recordings, self.each, horizon=horizon)
         self.support = max(form.kernel.support for form in self.forms)
         self.split: Split = split(self.recordings, edge_s=min(self.support, 0.25 * BLOCK_S))
         seen = {part.recording for part in (*self.split.train, *self.split.select)}

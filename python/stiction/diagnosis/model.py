@@ -21,7 +21,7 @@ from .evidence import Evidence, Plan
 from .influence import limited
 from .regression import step
 
-__all__ = ["Model", "fitted", "stepped", "with_effect", "without_effect"]
+__all__ = ["Model", "fitted", "power_of", "stepped", "with_effect", "without_effect"]
 
 REFIT_EVALUATIONS: Final = 12
 """A refit starts from the base and an estimate of the gain: it needs few steps."""
@@ -172,6 +172,15 @@ def fitted(
         converged=converged,
     )
     return Model(evidence, solution)
+
+
+def power_of(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
+    """Weighted power that a plant leaves in the rows of train; infinite where it runs away."""
+    power = 0.0
+    for rows in evidence.train:
+        own = rows.weight * rows.residual(plant, nuisances)[rows.mask]
+        power += float(own @ own)
+    return power if np.isfinite(power) else float("inf")
 
 
 def stepped(model: Model, explained: FloatArray) -> Plant:

@@ -7,9 +7,10 @@ from typing import Final
 
 import numpy as np
 
-from ..fitting.rows import Nuisances, Rows
+from ..fitting.rows import Mask, Nuisances, Rows
 from ..motion import noise_of
 from ..plant import Plant
+from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 
 __all__ = ["Noise", "measure_noise"]
@@ -44,7 +45,8 @@ def measure_noise(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
     """Noise of one recording, from what changes too fast for a machine.
 
     Position: third differences, less what rounding makes. Effort: second differences of the
-    residual over a third of the kernel, less what the position noise makes in the inertia term.
+    residual over a third of the kernel, less what the position noise makes in the inertia term, or
+    in simulations that start from it.
     The median over all rows keeps reversals and other misfit out.
     """
     form = rows.form
@@ -52,20 +54,28 @@ def measure_noise(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
     white = max(noise_of(form.readings) ** 2 - count**2 / 12.0, 0.0)
     position = float(np.sqrt(white))
     lag = max(1, round(LAG_SHARE * form.kernel.support / (form.dt * form.stride)))
-    residual = rows.residual(plant, nuisances)
-    bend = residual[: -2 * lag] - 2.0 * residual[lag:-lag] + residual[2 * lag :]
-    bend = bend[rows.mask[lag:-lag]]
-    if len(bend) == 0:
+    counted = (rows.mask & form.reached)[lag:-lag]
+    if not counted.any():
         return Noise(position, count, 0.0)
-    variance = (GAUSSIAN * float(np.median(np.abs(bend)))) ** 2
+    variance = _scatter(rows.residual(plant, nuisances), lag, counted)
     samples = lag * form.stride
     weights = np.convolve(form.kernel.weights, [0.5, 0.5])
-    inertial = np.convolve(form.kernel.weights, [1.0, -2.0, 1.0]) / form.dt**2
-    inertia = plant.inertia
-    moved = position**2 + (count**2 / 12.0 if noise_of(form.readings) > 0.0 else 0.0)
-    made = inertia**2 * moved * _bent(inertial, samples)
+    if isinstance(form, ShootingForm):
+        # What rounding makes of the start of a window is not white: it is tried out.
+        alone = form.from_readings_alone(plant, nuisances.start(rows.index))
+        made = _scatter(alone, lag, counted)
+    else:
+        inertial = np.convolve(form.kernel.weights, [1.0, -2.0, 1.0]) / form.dt**2
+        moved = position**2 + (count**2 / 12.0 if noise_of(form.readings) > 0.0 else 0.0)
+        made = plant.inertia**2 * moved * _bent(inertial, samples)
     effort = max(variance - made, 0.0) / _bent(weights, samples)
     return Noise(position, count, float(np.sqrt(effort)))
+
+
+def _scatter(residual: FloatArray, lag: int, counted: Mask) -> float:
+    """Variance of the second differences of a residual, as its median over some rows tells it."""
+    bend = residual[: -2 * lag] - 2.0 * residual[lag:-lag] + residual[2 * lag :]
+    return (GAUSSIAN * float(np.median(np.abs(bend[counted])))) ** 2
 
 
 def _bent(weights: FloatArray, lag: int) -> float:

@@ -13,6 +13,8 @@ import numpy as np
 from .. import __version__
 from ..catalogue import laws as all_laws
 from ..errors import InputError, NotEnoughData
+from ..fitting.forms import horizon_of
+from ..fitting.forms import told as residual_told
 from ..fitting.minimise import MOST_EVALUATIONS, launch
 from ..fitting.result import FitResult
 from ..fitting.solve import evaluate, reweighted
@@ -112,6 +114,7 @@ def diagnose(
         "split": None,
         "hashes": list(whole.hashes),
         "noise": [],
+        "residual": None,
     }
     found = Diagnosis(
         verdict="not_testable",
@@ -218,10 +221,19 @@ def _testable(
     """The diagnosis of data that can be used."""
     _logger.info("looking through %d recordings", len(session))
     evidence = Evidence(found.plant, session.recordings, threads=threads)
-    found = replace(found, split=evidence.split.describe())
-    data = {**found.data, "split": evidence.split.to_dict()}
     _logger.info("fitting the base")
     base = _base(evidence, found.plant)
+    horizon = horizon_of(base.plant, base.nuisances, evidence.train, evidence.forms)
+    if horizon is not None:
+        _logger.info("fitting it again, simulated over %.0f ms", 1e3 * horizon)
+        evidence = Evidence(found.plant, session.recordings, threads=threads, horizon=horizon)
+        base = _base(evidence, base.plant)
+    found = replace(found, split=evidence.split.describe())
+    data = {
+        **found.data,
+        "split": evidence.split.to_dict(),
+        "residual": residual_told(evidence.forms),
+    }
     _logger.info("replaying it with noise, %d times", surrogates)
     null, noises = surrogate_residuals(evidence, base.plant, base.nuisances, surrogates, found.seed)
     # What a fit would have taken up is no sign of anything.

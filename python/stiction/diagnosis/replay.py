@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
@@ -9,8 +10,9 @@ import numpy as np
 from ..fitting.rows import Nuisances, Rows
 from ..motion import smooth
 from ..plant import Plant
+from ..shooting import ShootingForm
 from ..trajectory import FloatArray
-from ..weak_form import WeakForm
+from ..weak_form import Start, WeakForm
 from .evidence import Evidence
 from .noise import Noise, measure_noise
 
@@ -20,15 +22,19 @@ SMOOTHING_SHARE: Final = 1.0 / 3.0
 """Support over which the measured motion is smoothed to stand for the true one, as a share of the
 kernel's: rounding is gone, and what the kernel sees is not."""
 
+_Residual = Callable[[FloatArray, FloatArray], FloatArray]
+"""Residual of readings, shape (rows,), and of white noise on the effort, shape (rows,)."""
+
 
 def surrogate_residuals(
     evidence: Evidence, plant: Plant, nuisances: Nuisances, number: int, seed: int
 ) -> tuple[FloatArray, dict[int, Noise]]:
     """Residuals of recordings in which the plant is right and only noise is added.
 
-    The smoothed motion is followed by the plant, which gives the effort that acted. Noise is put
-    on it, the position gets noise and is rounded to counts, and both go the way of the measured
-    ones: friction driven by the readings, inertia term, kernel.
+    The smoothed motion is followed by the plant, which gives the effort that acted; for shooting
+    the plant is simulated, drawn to the measured motion. Noise is put on the effort, the position
+    gets noise and is rounded to counts, and both go the way of the measured ones: friction driven
+    by the readings, or simulation from them, inertia term, kernel.
 
     Parameters
     ----------
@@ -68,21 +74,47 @@ def _replayed(
 ) -> FloatArray:
     form = rows.form
     start = nuisances.start(rows.index)
-    motion = true_motion(form)
-    _, needed, ahead = form.along(plant, start, position=motion)
-    inertial = form.inertial(plant, motion, ahead)
+    if isinstance(form, ShootingForm):
+        motion, residual = _shot(form, plant, start)
+    else:
+        motion, residual = _followed(form, plant, start)
     columns = np.empty((int(rows.mask.sum()), number))
     for k in range(number):
         readings = motion + noise.position * source.standard_normal(len(motion))
         if noise.count > 0.0:
             readings = np.round(readings / noise.count) * noise.count
-        _, followed, ahead = form.along(plant, start, position=form.driving(readings))
         added = noise.effort * source.standard_normal(len(motion))
-        added = 0.5 * (added[:-1] + added[1:])
-        residual = form.mean(needed - followed + added)
-        residual += inertial - form.inertial(plant, readings, ahead)
-        columns[:, k] = residual[rows.mask]
+        columns[:, k] = residual(readings, added)[rows.mask]
     return columns
+
+
+def _followed(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
+    """The smoothed motion, which the plant follows, and the residual around it."""
+    motion = true_motion(form)
+    _, needed, ahead = form.along(plant, start, position=motion)
+    inertial = form.inertial(plant, motion, ahead)
+
+    def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
+        _, followed, ahead = form.along(plant, start, position=form.driving(readings))
+        noise = 0.5 * (added[:-1] + added[1:])
+        left = form.mean(needed - followed + noise)
+        left += inertial - form.inertial(plant, readings, ahead)
+        return left
+
+    return motion, residual
+
+
+def _shot(form: ShootingForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
+    """A motion near the measured one that the plant makes by itself, and the residual around it.
+
+    A motion that is smoothed from counts is none that a plant with this friction would make.
+    """
+    motion, load = form.accompanied(plant, start)
+
+    def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
+        return form.missed(plant, start, readings, load + added[:-1])
+
+    return motion, residual
 
 
 def centre(null: FloatArray) -> tuple[FloatArray, FloatArray]:

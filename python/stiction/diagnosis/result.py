@@ -246,7 +246,8 @@ class Diagnosis:
     unexplained : tuple of Unexplained
     advice : tuple of Advice
     data : dict
-        ``checks``, ``split``, ``hashes``, ``noise``.
+        ``checks``, ``split``, ``hashes``, ``noise``, and in a sentence which ``residual`` was used
+        and why.
     plant : Plant
         Extended, complete, ready to simulate; as given where nothing could be fitted.
     success : bool

@@ -10,6 +10,8 @@ from typing import Final
 import numpy as np
 
 from ..catalogue import EffectRecord, effects
+from ..plant import Plant
+from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from .candidates import Candidate, candidates, present, scales_of
 from .decide import (
@@ -22,7 +24,7 @@ from .decide import (
     judge,
 )
 from .evidence import Evidence
-from .model import Model, fitted, stepped, with_effect, without_effect
+from .model import Model, fitted, power_of, stepped, with_effect, without_effect
 from .replay import centre
 from .result import CandidateRow
 from .screen import Problem, Score, Signatures, screen
@@ -41,6 +43,8 @@ WORTH_RENEWING: Final = 0.005
 """Share of its residual's power that makes that worth while."""
 LATE_SHARE: Final = 0.5
 """Of the kernel's support: a follower that keeps noise from friction is late by less."""
+SHARES: Final = (0.1, 0.3, 0.6, 1.0, 1.7, 3.0)
+"""Shares of the screened gain among which a refit by simulation picks its start."""
 CAUTIOUS: Final = 0.1
 """Share of the screened gain to start from where the whole of it leads astray."""
 
@@ -341,8 +345,17 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
     """The base with an effect, fitted from where the screening says; from near 0 if that fails."""
     index = signatures.candidates.index(score.candidate)
     explained = signatures.columns[:, signatures.slices[index]] @ score.gains
-    start = with_effect(stepped(base, explained), score.candidate, score.gains.tolist())
-    model = fitted(evidence, start, base.nuisances)
+
+    def begun(share: float) -> Plant:
+        plant = stepped(base, share * explained)
+        return with_effect(plant, score.candidate, (share * score.gains).tolist())
+
+    # A simulated motion breaks away or does not: slopes tell little of what a whole gain does.
+    shares = SHARES if any(isinstance(f, ShootingForm) for f in evidence.forms) else (1.0,)
+    starts = [begun(share) for share in shares]
+    if len(starts) > 1:
+        starts = [min(starts, key=lambda plant: power_of(evidence, plant, base.nuisances))]
+    model = fitted(evidence, starts[0], base.nuisances)
     if model.power < base.power:
         return model
     # A contact that all but loses its track has a kink on every side: then the effect alone moves

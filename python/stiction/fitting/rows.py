@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -11,13 +11,11 @@ import numpy as np
 from ..catalogue import effects, laws
 from ..plant import Plant
 from ..recording import Part, Recording
-from ..recording.session_clock import starts_of
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .statistics import CORRELATED_S
 
 __all__ = [
-    "EVERY_S",
     "Mask",
     "Nuisances",
     "Rows",
@@ -26,8 +24,6 @@ __all__ = [
     "start_quantities",
 ]
 
-EVERY_S: Final = 0.005
-"""Spacing of the residual: the kernel leaves nothing between."""
 WARM_UP_S: Final = 0.2
 """Left out at the start of a recording: what the fitted start does not tell is forgotten then."""
 TIMING_SHARE: Final = 0.5
@@ -95,34 +91,6 @@ def warm(form: WeakForm, recording: Recording) -> Mask:
     """Rows after the warm-up."""
     after: Mask = form.time >= recording.time[0] + WARM_UP_S
     return after
-
-
-def set_clocks(
-    forms: Sequence[WeakForm], recordings: Sequence[Recording], sealed: Collection[int] = ()
-) -> None:
-    """Lets session clock and path run on from one recording to the next.
-
-    Of ``sealed`` recordings, which nobody may look at yet, only the length in time is taken: their
-    path is what others of their kind travel in that time, or any other where there is none.
-    """
-    starts = starts_of(recordings)
-    travelled = {
-        k: float(np.sum(np.abs(np.diff(form.position))))
-        for k, form in enumerate(forms)
-        if k not in sealed
-    }
-
-    def usual(index: int) -> float:
-        kind = recordings[index].kind
-        alike = [k for k in travelled if recordings[k].kind == kind] or list(travelled)
-        lasted = sum(recordings[k].duration for k in alike)
-        own = sum(travelled[k] for k in alike)
-        return own * recordings[index].duration / lasted if lasted > 0.0 else 0.0
-
-    path = 0.0
-    for index in sorted(range(len(forms)), key=lambda k: starts[k]):
-        forms[index].clock, forms[index].path = starts[index], path
-        path += travelled[index] if index in travelled else usual(index)
 
 
 def rows_of(form: WeakForm, recording: Recording, index: int, parts: Sequence[Part]) -> Mask:

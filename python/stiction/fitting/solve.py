@@ -14,10 +14,10 @@ from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.split import BLOCK_S, split
 from ..trajectory import FloatArray
-from ..weak_form import WeakForm
+from .forms import forms_of, horizon_of, set_clocks
 from .minimise import MOST_EVALUATIONS, Solution, launch, minimise
 from .result import FitParameter, FitResult
-from .rows import EVERY_S, Nuisances, Rows, rows_of, set_clocks
+from .rows import Nuisances, Rows, rows_of
 from .start import complete, free_paths
 from .statistics import (
     correlations,
@@ -43,6 +43,28 @@ class _Parts:
     described: str
 
 
+class _Seen:
+    """Recordings through kernels, and their rows that are fitted and held out."""
+
+    def __init__(
+        self, plant: Plant, recordings: Sequence[Recording], horizon: float | None = None
+    ) -> None:
+        self.forms = forms_of(
+            plant, recordings, lambda work, items: [work(item) for item in items], horizon=horizon
+        )
+        set_clocks(self.forms, recordings)
+        self.parts = _deal(recordings, max(form.kernel.support for form in self.forms))
+        self.train: list[Rows] = []
+        self.held: list[Rows] = []
+        for index, (form, recording) in enumerate(zip(self.forms, recordings, strict=True)):
+            for chosen, own in ((self.train, self.parts.train), (self.held, self.parts.test)):
+                mask = rows_of(form, recording, index, own)
+                if mask.any():
+                    chosen.append(Rows(plant, form, index, mask))
+        if not self.train:
+            raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
+
+
 def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) -> FitResult:
     """Fit a plant to the recordings of a session.
 
@@ -50,7 +72,9 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     minus what the plant needs along the measured motion, both through one kernel, with the exact
     Jacobian. Recordings are weighted by the residual that a first pass leaves in each. The state
     of friction at the first row of a recording and an offset of up to half a sample between input
-    and position are fitted along as nuisances.
+    and position are fitted along as nuisances. Where the readings turn out too coarse to drive
+    friction (see ``horizon_of``), the fit goes on from there with the plant simulated over short
+    windows instead.
 
     Parameters
     ----------
@@ -75,24 +99,23 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     recordings = [session] if isinstance(session, Recording) else list(session)
     if not recordings:
         raise InputError("there are no recordings to fit; give at least one")
-    forms = [WeakForm(plant, recording, every=EVERY_S) for recording in recordings]
-    set_clocks(forms, recordings)
-    parts = _deal(recordings, max(form.kernel.support for form in forms))
-    train: list[Rows] = []
-    held: list[Rows] = []
-    for index, (form, recording) in enumerate(zip(forms, recordings, strict=True)):
-        for chosen, own in ((train, parts.train), (held, parts.test)):
-            mask = rows_of(form, recording, index, own)
-            if mask.any():
-                chosen.append(Rows(plant, form, index, mask))
-    if not train:
-        raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
+    seen = _Seen(plant, recordings)
+    train = seen.train
     starts = complete(plant, [each.form for each in train])
     paths = free_paths(starts[0])
     if not paths:
         raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
     first = solution = launch(starts, paths, train, most=max_evaluations)
     evaluations = first.evaluations
+    begin = first.begin
+    horizon = None
+    if not first.interrupted:
+        horizon = horizon_of(first.plant, first.nuisances, train, seen.forms)
+    if horizon is not None:
+        seen = _Seen(plant, recordings, horizon)
+        train = seen.train
+        first = solution = launch([first.plant], paths, train, most=max_evaluations)
+        evaluations += first.evaluations
     if len(train) > 1 and not first.interrupted:
         reweighted(train, first.plant, first.nuisances)
         solution = minimise(
@@ -102,9 +125,9 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     return evaluate(
         solution,
         train,
-        held,
-        begin=first.begin,
-        described=parts.described,
+        seen.held,
+        begin=begin,
+        described=seen.parts.described,
         evaluations=evaluations,
         names=[_name(recording, k) for k, recording in enumerate(recordings)],
     )

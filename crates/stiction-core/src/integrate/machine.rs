@@ -131,7 +131,7 @@ impl<S: Scalar> Machine<S> {
         run.second_position += span * (run.second_velocity + half * slowing);
         let arriving = run.second_velocity + span * slowing;
         let pull_then = self.shaft(end, run.second_position, arriving);
-        run.second_velocity = run.second_velocity - half * (pull + pull_then) / shaft.inertia;
+        run.second_velocity -= half * (pull + pull_then) / shaft.inertia;
     }
 
     /// Effort that does not come from input and load.

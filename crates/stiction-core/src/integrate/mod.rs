@@ -32,7 +32,7 @@ pub enum Integrator {
 
 /// ω·h above which the fast integrator divides a sample: the phase error of its ring is then
 /// (ω·h)²/24 ≤ 2e-4 of the phase.
-const LONGEST_PHASE: f64 = 0.065;
+pub const LONGEST_PHASE: f64 = 0.065;
 /// (C/J)·h above which a sample is divided.
 const LONGEST_DAMPING: f64 = 0.25;
 /// Where friction falls with speed a sample is divided further, to follow the fall, but not
@@ -43,12 +43,17 @@ const LONGEST_RATE: f64 = 0.3;
 /// A sample that needs more parts than this is a mistake in the units, not a stiff machine.
 pub const MOST_PARTS: f64 = 1e5;
 
-/// Number of equal parts that a sample of this duration is divided into; above [`MOST_PARTS`] the
-/// sample is too long for the machine.
-pub fn parts<S: Scalar, L: FrictionLaw<S>>(machine: &Machine<S>, law: &L, dt: f64) -> f64 {
+/// Number of equal parts that a sample of this duration is divided into, so that ω·h stays below
+/// `longest`; above [`MOST_PARTS`] the sample is too long for the machine.
+pub fn parts<S: Scalar, L: FrictionLaw<S>>(
+    machine: &Machine<S>,
+    law: &L,
+    dt: f64,
+    longest: f64,
+) -> f64 {
     let lightest = machine.lightest_inertia();
     let stiffness = law.greatest_stiffness() + machine.greatest_stiffness();
-    let phase = dt * (stiffness / lightest).sqrt() / LONGEST_PHASE;
+    let phase = dt * (stiffness / lightest).sqrt() / longest;
     let calming = dt * law.greatest_damping() / lightest / LONGEST_DAMPING;
     let falling = dt * law.steepest_fall() / lightest / LONGEST_DAMPING;
     phase.max(calming).max(falling.min(MOST_PARTS_FOR_A_FALL)).ceil().max(1.0)
@@ -124,7 +129,7 @@ mod tests {
     ) -> Vec<Run<f64>> {
         let (mut state, mut run) = (law.initial(), machine.start(0.0, 0.0));
         let dt = 1e-4;
-        let parts = parts(machine, law, dt) as u32;
+        let parts = parts(machine, law, dt, LONGEST_PHASE) as u32;
         (0..5000)
             .map(|_| {
                 sample(machine, law, &mut state, &mut run, input, 0.0, dt, parts, integrator);

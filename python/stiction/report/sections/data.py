@@ -26,7 +26,7 @@ SHOWN: Final = 6
 
 
 def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
-    """Checks, split, noise and hashes."""
+    """Checks, split, residual, noise and hashes."""
     data = diagnosis.data
     checks = data.get("checks") or ()
     names = list(dict.fromkeys(check["recording"] for check in checks))
@@ -42,6 +42,7 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
         "fine": _grouped([check for check in checks if check["verdict"] == "fine"]),
         "passed": _passed(checks),
         "split": _split(data.get("split")),
+        "residual": data.get("residual") or "",
         "noise": [_noise(entry, plant.position_unit, plant.effort_unit) for entry in data["noise"]]
         if data.get("noise")
         else [],

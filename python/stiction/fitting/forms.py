@@ -1,0 +1,176 @@
+"""Which residual the recordings of a session are seen through: the one place that chooses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from typing import Final
+
+import numpy as np
+
+from ..motion import noise_of
+from ..plant import Plant
+from ..recording import Recording
+from ..recording.session_clock import starts_of
+from ..shooting import ShootingForm
+from ..trajectory import FloatArray
+from ..weak_form import WeakForm
+from .rows import Nuisances, Rows
+
+__all__ = ["EVERY_S", "forms_of", "horizon_of", "set_clocks", "told"]
+
+EVERY_S: Final = 0.005
+"""Spacing of the weak-form residual: the kernel leaves nothing between."""
+FEWEST_COUNTS: Final = 4.0
+"""Counts in the pre-sliding reach F_c/k below which friction driven by readings is wrong: a count
+more or less is then a quarter of its rise."""
+LEAST_LEFT: Final = 0.03
+"""Share of the measured effort that the weak form must leave: less, and it does not matter. It also
+keeps out a reach that is short only because the data do not tell the stiffness."""
+HORIZONS_S: Final = (0.100, 0.300)
+"""Shortest and longest window: shorter ones see the rounding, longer ones average fast causes away
+and let a motion that hangs on a break-away run away."""
+RINGS: Final = 3.0
+"""Periods of its ring on the pre-sliding stiffness that a window holds: a start that is wrong by a
+count sets a machine ringing, and of a ring three times as fast as itself the kernel leaves 1 %."""
+LEAST_WINDOWS: Final = 4.0
+"""Windows that the shortest recording must hold."""
+ROUNDED: Final = float(np.sqrt(12.0))
+"""Size of a count over the standard deviation of what rounding to it makes."""
+
+_Each = Callable[[Callable[[Recording], WeakForm], Sequence[Recording]], list[WeakForm]]
+
+
+def forms_of(
+    plant: Plant, recordings: Sequence[Recording], each: _Each, *, horizon: float | None = None
+) -> list[WeakForm]:
+    """Recordings through kernels, or simulated over windows; their clocks are not set yet.
+
+    Parameters
+    ----------
+    plant : Plant
+    recordings : sequence of Recording
+    each : callable
+        What goes over them: ``lambda work, items: list(map(work, items))``.
+    horizon : float, optional
+        Length of the windows of a shooting residual, s; the weak form without it.
+    """
+
+    def form(recording: Recording) -> WeakForm:
+        if horizon is None:
+            return WeakForm(plant, recording, every=EVERY_S)
+        return ShootingForm(plant, recording, horizon=horizon)
+
+    return each(form, recordings)
+
+
+def set_clocks(
+    forms: Sequence[WeakForm], recordings: Sequence[Recording], sealed: Collection[int] = ()
+) -> None:
+    """Lets session clock and path run on from one recording to the next.
+
+    Of ``sealed`` recordings, which nobody may look at yet, only the length in time is taken: their
+    path is what others of their kind travel in that time, or any other where there is none.
+    """
+    starts = starts_of(recordings)
+    travelled = {
+        k: float(np.sum(np.abs(np.diff(form.position))))
+        for k, form in enumerate(forms)
+        if k not in sealed
+    }
+
+    def usual(index: int) -> float:
+        kind = recordings[index].kind
+        alike = [k for k in travelled if recordings[k].kind == kind] or list(travelled)
+        lasted = sum(recordings[k].duration for k in alike)
+        own = sum(travelled[k] for k in alike)
+        return own * recordings[index].duration / lasted if lasted > 0.0 else 0.0
+
+    path = 0.0
+    for index in sorted(range(len(forms)), key=lambda k: starts[k]):
+        forms[index].clock, forms[index].path = starts[index], path
+        path += travelled[index] if index in travelled else usual(index)
+
+
+def horizon_of(
+    plant: Plant, nuisances: Nuisances, rows: Sequence[Rows], forms: Sequence[WeakForm]
+) -> float | None:
+    """How long the plant should be simulated to be compared with a session, None for not at all.
+
+    The weak form is kept unless the readings are too coarse for it: the pre-sliding reach that it
+    found holds but a few counts (or as much noise), and it leaves more than noise of the effort
+    would. Then the horizon is the time in which the noise of the effort moves the position by the
+    noise of its readings, or three periods of the ring in pre-sliding where that is longer; within
+    0.1 to 0.3 s.
+
+    Parameters
+    ----------
+    plant : Plant
+        Fitted to the rows.
+    nuisances : Nuisances
+    rows : sequence of Rows
+        That were fitted, of the weak form.
+    forms : sequence of WeakForm
+        Of all recordings.
+
+    Returns
+    -------
+    float or None
+        s; the same for all recordings of a session.
+    """
+    friction = plant.friction.parameters
+    shortest = min(form.dt * len(form.readings) for form in forms)
+    if any(form.prescribed for form in forms) or shortest < LEAST_WINDOWS * HORIZONS_S[1]:
+        return None
+    if not {"coulomb", "initial_stiffness"} <= friction.keys():
+        return None
+    reach = friction["coulomb"].value / friction["initial_stiffness"].value
+    step = float(np.median([_step(each.form) for each in rows]))
+    if reach >= FEWEST_COUNTS * step:
+        return None
+    left = [each.residual(plant, nuisances)[each.mask] for each in rows]
+    measured = [each.form.measured(plant)[each.mask] for each in rows]
+    if _size(left) < LEAST_LEFT * _size(measured):
+        return None
+    drifts = float(np.median([_time(plant, each.form) for each in rows]))
+    stiffness = friction["initial_stiffness"].value
+    rings = RINGS * 2.0 * np.pi * float(np.sqrt(plant.inertia / stiffness))
+    return float(np.clip(max(drifts, rings), *HORIZONS_S))
+
+
+def told(forms: Sequence[WeakForm]) -> str:
+    """Which residual was used and why, in one sentence."""
+    supports = [1e3 * form.kernel.support for form in forms]
+    if isinstance(forms[0], ShootingForm):
+        return (
+            f"The plant was simulated from the measured state over windows of {supports[0]:.0f} ms "
+            "(shooting), because the readings of the position are too coarse to drive friction: "
+            f"pre-sliding is over within {FEWEST_COUNTS:.0f} of their steps."
+        )
+    width = f"{min(supports):.0f}"
+    if max(supports) > min(supports) + 0.5:
+        width += f" to {max(supports):.0f}"
+    return (
+        f"The plant was led along the measured motion, averaged over {width} ms (weak form), "
+        "because the readings of the position are fine enough to drive friction."
+    )
+
+
+def _step(form: WeakForm) -> float:
+    """Count of the readings, or the one that would make as much noise as they have."""
+    return max(form.count, ROUNDED * noise_of(form.readings))
+
+
+def _size(parts: Sequence[FloatArray]) -> float:
+    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+
+
+def _time(plant: Plant, form: WeakForm) -> float:
+    """Time in which noise of the effort moves the position by the noise of its readings, s.
+
+    White noise of size σ_u per sample moves a mass J by σ_u·√(dt/3)·t^(3/2)/J (rms).
+    """
+    effort = abs(float(plant.drive.get("gain", 1.0))) * noise_of(form.effort)
+    if effort <= 0.0:
+        return HORIZONS_S[1]
+    moved = plant.inertia * _step(form) / ROUNDED
+    return float((moved / (effort * np.sqrt(form.dt / 3.0))) ** (2.0 / 3.0))

@@ -1,0 +1,246 @@
+"""Shooting over short horizons: where a plant gets to by itself, against what was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from .errors import InputError
+from .motion import noise_of
+from .trajectory import FloatArray
+from .weak_form import Candidate, Start, WeakForm
+
+if TYPE_CHECKING:
+    from .plant import Plant
+    from .recording import Recording
+
+__all__ = ["ShootingForm"]
+
+ROWS_PER_HORIZON: Final = 4
+"""Windows that overlap at any moment: the kernel is a cubic spline with knots a quarter of its
+support apart, and rows closer than those tell little more."""
+RESPONSE_PARTS: Final = 16
+"""Parts of a window whose efforts are told apart for screening: four to a knot of the kernel."""
+PULL_RATE: Final = 10.0
+"""Rate at which a run is drawn back to the measured motion, over the horizon: fast enough to stay
+within counts of it, slow enough that the counts do not shake it."""
+STEADY: Final = 0.3
+"""Most that this rate may be over one sample; a sampled spring gets unstable at 2."""
+READ_AGAIN: Final = 11
+"""Seed of the noise with which a motion is read again: always the same."""
+MOVES_TIMES: Final = 2.0
+"""Counts, or four times as many standard deviations of the white noise, that a machine must travel
+within a horizon to be moving."""
+
+
+class ShootingForm(WeakForm):
+    """A recording cut into overlapping windows, in each of which a plant is simulated.
+
+    Where the encoder is coarse, friction that is driven by the measured motion is wrong: while the
+    reading stands still the machine moves within a count, and pre-sliding is over after a few.
+    Here its own motion drives it. Each window starts at the smoothed measured position and
+    velocity, with friction, effects and clock as they are after following the measured motion up
+    to there, and runs with the measured input over the support of the kernel. The residual is
+
+        r = J·K''∗x̂ − J·K''∗x,
+
+    x̂ simulated and x as it was read. Since J·x̂'' is what drive, load and gravity leave after
+    friction, this is the residual of the weak form with K∗F of the plant's own motion: measured
+    minus needed effort, with the same sign. K'' takes out what is linear in time, so position and
+    velocity at the start need no fit. (Multiple shooting: H. G. Bock, in Modelling of Chemical
+    Reaction Systems, Springer (1981).)
+
+    A machine at rest leaves next to nothing whatever it lacks: within a count it shows nothing.
+
+    Parameters
+    ----------
+    plant : Plant
+        For its drive and sensor; no prescribed motion.
+    recording : Recording
+        With position and input.
+    horizon : float
+        Length of a window, which is the support of the kernel, s.
+
+    Attributes
+    ----------
+    moves : numpy.ndarray of bool, shape (n,)
+        Windows in which the machine was seen to move.
+    white : float
+        Noise of the readings beside their rounding, rad or m.
+
+    Raises
+    ------
+    InputError
+        As for ``WeakForm``.
+    """
+
+    def __init__(self, plant: Plant, recording: Recording, *, horizon: float) -> None:
+        super().__init__(plant, recording, support=horizon, every=horizon / ROWS_PER_HORIZON)
+        self.white = float(np.sqrt(max(noise_of(self.readings) ** 2 - self.count**2 / 12.0, 0.0)))
+        least = MOVES_TIMES * max(self.count, 4.0 * self.white)
+        self.moves = np.abs(self.velocity) * self.kernel.support > least
+
+    @property
+    def reached(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """Rows that noise of the effort reaches: a machine at rest keeps it to itself."""
+        return self.moves
+
+    def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
+        """Measured effort, and what the plant needs to get where the machine got; shape (n,) each.
+
+        NaN where the plant cannot be simulated at this sample time (see ``Motor.simulate``).
+        """
+        measured = self.measured(plant)
+        return measured, measured - plant.inertia * self._missed(plant, start)
+
+    def late(self, plant: Plant) -> FloatArray:
+        """As for the weak form where the machine moves; at rest a timing offset shows nothing."""
+        return np.where(self.moves, super().late(plant), 0.0)
+
+    def jacobian(self, plant: Plant, paths: Sequence[str], start: Start = None) -> FloatArray:
+        """Derivatives of measured minus needed effort by parameters; shape (n, parameters).
+
+        Exact, along the simulated motion; start quantities as in ``WeakForm``. 0 where the plant
+        cannot be simulated.
+        """
+        wanted = list(paths)
+        motor = self._follower(plant, self.position)
+        try:
+            moved = motor.shoot_sensitivity(
+                self.position,
+                self.input,
+                self.dt,
+                self.kernel.second,
+                self.stride,
+                wanted,
+                load=self.load[:-1],
+                start=start,
+            )
+        except InputError:
+            return np.zeros((len(self), len(wanted)))
+        columns: FloatArray = plant.inertia * moved.T
+        if "body.inertia" in wanted:
+            columns[:, wanted.index("body.inertia")] += self._missed(plant, start)
+        return columns
+
+    def signatures(
+        self, plant: Plant, candidates: Sequence[Candidate], start: Start = None
+    ) -> FloatArray:
+        """Derivatives of measured minus needed effort by the gains of effects that are not there.
+
+        Of first order in two places: what an effect adds is taken along the measured motion, as in
+        the weak form, and how the simulated motion answers to an effort along its own, in 16 parts
+        of a window. A machine at rest answers to nothing. That is enough to screen by; a refit is
+        exact.
+
+        Parameters and return value are those of ``WeakForm.signatures``.
+        """
+        needed, driven, ahead = self._follower(plant, self.position).signatures(
+            self.position,
+            self.input,
+            self.dt,
+            list(candidates),
+            load=self.load[:-1],
+            start=start,
+        )
+        weights = self.kernel.second
+        number = min(RESPONSE_PARTS, len(weights))
+        response = self._follower(plant, self.position).shoot_response(
+            self.position,
+            self.input,
+            self.dt,
+            weights,
+            self.stride,
+            number,
+            load=self.load[:-1],
+            start=start,
+        )
+        edges = [k * (len(weights) // number) for k in range(number)] + [len(weights)]
+        starts = self.stride * np.arange(len(self))
+        columns = np.empty((len(self), len(needed)))
+        for k, (need, drive, shift) in enumerate(zip(needed, driven, ahead, strict=True)):
+            total = np.concatenate([[0.0], np.cumsum(drive - need)])
+            answer = np.zeros(len(self))
+            for part, (first, last) in enumerate(pairwise(edges)):
+                mean = (total[starts + last] - total[starts + first]) / (last - first)
+                answer += response[part] * mean
+            columns[:, k] = plant.inertia * (answer - self._bent(shift))
+        return columns
+
+    def accompanied(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
+        """A motion near the measured one that the plant makes by itself, and what that took.
+
+        One simulation over the whole recording, drawn to the measured motion by a critically
+        damped spring.
+
+        Returns
+        -------
+        numpy.ndarray, shape (rows,)
+            What the sensor would read, without its rounding.
+        numpy.ndarray, shape (rows - 1,)
+            Load together with the effort of the pull: under it the plant makes this motion.
+        """
+        rate = min(PULL_RATE / self.kernel.support, STEADY / self.dt)
+        motor = self._follower(plant, self.position)
+        readings, pull = motor.accompany(
+            self.position,
+            self.input,
+            self.dt,
+            plant.inertia * rate**2,
+            2.0 * plant.inertia * rate,
+            load=self.load[:-1],
+            start=start,
+        )
+        return np.concatenate([self.position[:1], readings]), self.load[:-1] + pull
+
+    def missed(
+        self, plant: Plant, start: Start, readings: FloatArray, load: FloatArray
+    ) -> FloatArray:
+        """Residual of other readings under another load; shape (n,).
+
+        Parameters
+        ----------
+        plant : Plant
+        start : dict or None
+        readings : numpy.ndarray, shape (rows,)
+            Of the position.
+        load : numpy.ndarray, shape (rows - 1,)
+            Beside the recorded input.
+        """
+        motion = self.driving(readings)
+        got = self._shot(plant, start, motion, load)
+        missed: FloatArray = plant.inertia * (got - self.accelerations(readings))
+        return missed
+
+    def from_readings_alone(self, plant: Plant, start: Start = None) -> FloatArray:
+        """Residual that noise and rounding of the position leave a right plant; shape (n,)."""
+        motion, load = self.accompanied(plant, start)
+        source = np.random.default_rng(READ_AGAIN)
+        readings = motion + self.white * source.standard_normal(len(motion))
+        if self.count > 0.0:
+            readings = np.round(readings / self.count) * self.count
+        return self.missed(plant, start, readings, load)
+
+    def _missed(self, plant: Plant, start: Start) -> FloatArray:
+        """Acceleration of the simulated motion beyond the measured one, through the kernel."""
+        return self._shot(plant, start, self.position, self.load[:-1]) - self.acceleration
+
+    def _shot(self, plant: Plant, start: Start, motion: FloatArray, load: FloatArray) -> FloatArray:
+        """Acceleration of the simulated motion of each window, through the kernel."""
+        motor = self._follower(plant, motion)
+        try:
+            return motor.shoot(
+                motion,
+                self.input,
+                self.dt,
+                self.kernel.second,
+                self.stride,
+                load=load,
+                start=start,
+            )
+        except InputError:
+            # A trial of a fit that is too stiff for the sample time: it must look bad, not end it.
+            return np.full(len(self), np.nan)

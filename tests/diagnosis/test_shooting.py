@@ -1,0 +1,181 @@
+"""The second residual: short simulations, where the encoder is too coarse to drive friction."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.diagnosis.evidence import Evidence
+from stiction.diagnosis.model import Model, fitted
+from stiction.diagnosis.noise import measure_noise
+from stiction.diagnosis.replay import surrogate_residuals
+from stiction.fitting.forms import HORIZONS_S, horizon_of, told
+from stiction.fitting.rows import Nuisances
+from stiction.shooting import ShootingForm
+from stiction.weak_form import WeakForm
+
+DT = 1e-3
+COARSE, FINE = 2**12, 2**18
+COULOMB, REACH = 0.25, 1.2e-3
+BIAS = 0.01
+NOISE = 0.004
+
+
+def recorded(seed: int, counts: int, *, bias: float = 0.0, **labels: object) -> st.Recording:
+    """A machine of the core, moved by sines, seen by an encoder of so many counts a turn."""
+    source = np.random.default_rng(seed)
+    time = np.arange(8000) * DT
+    waves = [0.22 * np.sin(w * time + source.uniform(0, 6)) for w in (2.0, 5.3, 13.0)]
+    effort = np.sum(waves, axis=0)
+    motor = st.Motor(
+        0.006,
+        friction=st.FrictionModel(
+            "maxwell_slip", coulomb=COULOMB, initial_stiffness=COULOMB / REACH, viscous=0.02
+        ),
+        effects={"torque_bias": {"bias": bias}},
+    )
+    position = np.concatenate([[0.0], motor.simulate(effort[:-1], DT).position])
+    count = 2.0 * math.pi / counts
+    measured = effort + NOISE * source.standard_normal(len(time))
+    return st.Recording(time, measured, np.round(position / count) * count, **labels)
+
+
+def session(counts: int, *, bias: float = 0.0) -> list[st.Recording]:
+    roles = ("train", "train", "select", "test")
+    return [recorded(k, counts, bias=bias, role=role) for k, role in enumerate(roles)]
+
+
+def plant(counts: int) -> st.Plant:
+    return st.Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm"},
+            "body": {"inertia": 0.006},
+            "friction": {
+                "law": "maxwell_slip",
+                "coulomb": COULOMB,
+                "initial_stiffness": COULOMB / REACH,
+                "viscous": 0.02,
+            },
+            "sensor": {"counts_per_rev": counts},
+        }
+    )
+
+
+@pytest.fixture(scope="module")
+def coarse() -> list[st.Recording]:
+    return session(COARSE)
+
+
+def chosen(counts: int) -> tuple[float | None, Model]:
+    evidence = Evidence(plant(counts), session(counts), threads=1)
+    base = fitted(evidence, plant(counts))
+    return horizon_of(base.plant, base.nuisances, evidence.train, evidence.forms), base
+
+
+def test_a_coarse_encoder_is_looked_at_by_short_simulations() -> None:
+    horizon, base = chosen(COARSE)
+    assert horizon is not None
+    assert HORIZONS_S[0] <= horizon <= HORIZONS_S[1]
+    assert "weak form" in told(base.evidence.forms)
+    evidence = Evidence(plant(COARSE), session(COARSE), threads=1, horizon=horizon)
+    assert all(isinstance(form, ShootingForm) for form in evidence.forms)
+    assert "shooting" in told(evidence.forms)
+
+
+def test_a_fine_encoder_keeps_the_weak_form() -> None:
+    assert chosen(FINE)[0] is None
+
+
+def test_prescribed_motion_is_never_simulated(coarse: list[st.Recording]) -> None:
+    moved = [st.Recording(r.time, None, r.position, effort=r.input, role=r.role) for r in coarse]
+    machine = st.Plant.from_dict(
+        {
+            "drive": {"kind": "prescribed_motion"},
+            "body": {"inertia": 0.006},
+            "friction": {
+                "law": "maxwell_slip",
+                "coulomb": COULOMB,
+                "initial_stiffness": COULOMB / REACH,
+            },
+            "sensor": {"counts_per_rev": COARSE},
+        }
+    )
+    evidence = Evidence(machine, moved, threads=1)
+    assert horizon_of(machine, Nuisances(), evidence.train, evidence.forms) is None
+
+
+def test_the_residual_is_that_of_the_weak_form_and_much_smaller() -> None:
+    """A hidden effort shows with the same sign; viscous friction of what it adds takes a part."""
+    recording = recorded(3, COARSE, bias=-BIAS)
+    shot, led = (
+        ShootingForm(plant(COARSE), recording, horizon=0.1),
+        WeakForm(plant(COARSE), recording, support=0.1, every=0.025),
+    )
+    residuals = []
+    for form in (shot, led):
+        measured, needed = form.efforts(plant(COARSE))
+        residuals.append((measured - needed)[20:])
+    fast = np.abs(shot.velocity[20:]) > 0.5
+    assert np.median(residuals[0][fast]) == pytest.approx(BIAS, rel=0.25)
+    right = ShootingForm(plant(COARSE), recorded(3, COARSE), horizon=0.1)
+    measured, needed = right.efforts(plant(COARSE))
+    assert np.std((measured - needed)[20:]) < 0.2 * np.std(residuals[1])
+
+
+def test_derivatives_of_the_residual_equal_differences(coarse: list[st.Recording]) -> None:
+    form = ShootingForm(plant(COARSE), coarse[0], horizon=0.1)
+    paths = ["body.inertia", "friction.coulomb", "friction.viscous", "start.force"]
+    start = {"force": 0.02}
+    exact = form.jacobian(plant(COARSE), paths, start)
+    for column, path in zip(exact.T, paths, strict=True):
+        sides = []
+        value = 0.02 if path == "start.force" else plant(COARSE).parameters[path].value
+        step = 1e-6 * value
+        for sign in (1.0, -1.0):
+            if path == "start.force":
+                own, brought = plant(COARSE), {"force": value + sign * step}
+            else:
+                own, brought = plant(COARSE).with_values({path: value + sign * step}), start
+            measured, needed = form.efforts(own, brought)
+            sides.append(measured - needed)
+        chord = (sides[0] - sides[1]) / (2.0 * step)
+        wrong = np.abs(column - chord) > 1e-3 * np.abs(column).max()
+        assert wrong.mean() < 0.05, path
+
+
+def test_a_plant_too_stiff_to_simulate_looks_bad_and_breaks_nothing(
+    coarse: list[st.Recording],
+) -> None:
+    form = ShootingForm(plant(COARSE), coarse[0], horizon=0.1)
+    stiff = plant(COARSE).with_values({"friction.initial_stiffness": 1e15})
+    _, needed = form.efforts(stiff)
+    assert np.all(np.isnan(needed))
+    assert not form.jacobian(stiff, ["friction.coulomb"]).any()
+
+
+def test_surrogates_and_noise_are_those_of_a_right_model(coarse: list[st.Recording]) -> None:
+    evidence = Evidence(plant(COARSE), coarse, threads=1, horizon=0.1)
+    residual = evidence.residual(plant(COARSE), Nuisances())
+    null, noises = surrogate_residuals(evidence, plant(COARSE), Nuisances(), 6, 0)
+    assert 0.6 < np.std(residual) / np.std(null) < 1.5
+    for rows in evidence.shown:
+        found = measure_noise(rows, plant(COARSE), Nuisances())
+        assert noises[rows.index] == found
+        assert found.count == pytest.approx(2.0 * math.pi / COARSE)
+
+
+def test_a_right_model_on_a_coarse_encoder_lacks_nothing(coarse: list[st.Recording]) -> None:
+    found = st.diagnose(plant(COARSE), coarse, threads=1)
+    assert "shooting" in found.data["residual"]
+    assert found.verdict == "nothing_missing"
+
+
+def test_a_hidden_effort_is_found_through_a_coarse_encoder() -> None:
+    found = st.diagnose(plant(COARSE), session(COARSE, bias=BIAS), threads=1)
+    assert "torque_bias" in {found.effects[0].name, *found.effects[0].look_alikes}
+    assert len(found.effects) == 1
+    assert found.gain is not None
+    assert found.gain.ci95[0] > 0.5
