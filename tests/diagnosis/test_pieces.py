@@ -13,10 +13,11 @@ import pytest
 import stiction as st
 from stiction.cli import run
 from stiction.diagnosis.candidates import candidates, left_out, present, scales_of
-from stiction.diagnosis.decide import Trial, choose
+from stiction.diagnosis.decide import Choice, Trial, choose
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import Gain, HeldOut, gain_of
 from stiction.diagnosis.noise import measure_noise
+from stiction.diagnosis.pipeline import _relatives
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.replay import centre, surrogate_residuals
 from stiction.diagnosis.words import joined, sentence
@@ -247,6 +248,12 @@ def test_a_cause_that_is_not_told_stands_under_the_simplest_of_the_best() -> Non
     assert chosen.winner is lesser
     assert not chosen.decided
     assert choose([spread]) is None
+
+
+def test_relatives_named_beside_each_other_are_not_decided() -> None:
+    trials = [tried(1.0, 1, family=family) for family in ("angle", "slow", "angle")]
+    selection = SimpleNamespace(choices=[Choice(trial, ()) for trial in trials])
+    assert [len(_relatives(selection, k)) for k in range(3)] == [1, 0, 1]
 
 
 def test_words_join_and_say_what_was_not_confirmed() -> None:

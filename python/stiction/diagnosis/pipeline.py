@@ -337,6 +337,8 @@ def _concluded(
     causes = []
     for k, choice in enumerate(selection.choices):
         record = choice.winner.candidate.record
+        rivals = {rival.name for rival in choice.rivals}
+        relatives = [name for name in _relatives(selection, k) if name not in rivals]
         fitted_values = {
             path: p
             for path, p in results[id(final)].parameters.items()
@@ -346,8 +348,8 @@ def _concluded(
             Cause(
                 name=record.name,
                 family=record.family,
-                decided=choice.decided,
-                look_alikes=tuple(rival.name for rival in choice.rivals),
+                decided=choice.decided and not relatives,
+                look_alikes=(*(rival.name for rival in choice.rivals), *relatives),
                 parameters=fitted_values,
                 gain=None if test is None else gain_of(test, k, k + 1, found.seed),
                 what=what(record, fitted_values, _effect(final.plant, record.name)),
@@ -406,6 +408,17 @@ def _own_views(
         own_view(evidence, seen, effect, residual, null, friction) for residual in residuals
     )
     return before, after
+
+
+def _relatives(selection: Search, place: int) -> list[str]:
+    """Other effects of the same family that were accepted.
+
+    Two that look alike, named beside each other, together imitate a third more often than they are
+    both there.
+    """
+    records = [choice.winner.candidate.record for choice in selection.choices]
+    own = records[place]
+    return [each.name for each in records if each.family == own.family and each is not own]
 
 
 def _effect(plant: Plant, name: str) -> Effect:
