@@ -208,7 +208,9 @@ def tried(
     """A trial that explains what all others explain."""
     blocks = (np.linspace(1.0, 2.0, 30), np.linspace(2.0, 1.0, 30))
     candidate = SimpleNamespace(
-        name=f"{worth}", parameters=parameters, record=SimpleNamespace(family=family)
+        name=f"{worth}",
+        parameters=parameters,
+        record=SimpleNamespace(family=family, name=f"{worth}"),
     )
     score = SimpleNamespace(signature=np.ones(5), candidate=candidate)
     model = SimpleNamespace(blocks=blocks)
