@@ -280,7 +280,7 @@ def test_blocks_of_a_single_recording_are_told_apart_and_a_loop_may_run_away() -
         ("train", again.baseline.replay.train_rms),
         ("test", again.baseline.replay.heldout_rms),
     ):
-        rows = [part["rows"] for part in found.data["split"][role]]
+        rows = [part["rows"] for part in evidence.split.to_dict()[role]]
         own = np.concatenate([error[first:last] for first, last in rows])
         assert rms == pytest.approx(np.sqrt(np.mean(own**2)), rel=1e-9)
     assert again.pictures is not None

@@ -232,7 +232,7 @@ def _testable(
     data = {
         **found.data,
         "split": evidence.split.to_dict(),
-        "residual": residual_told(evidence.forms),
+        "residual": residual_told([rows.form for rows in evidence.shown]),
     }
     _logger.info("replaying it with noise, %d times", surrogates)
     null, noises = surrogate_residuals(evidence, base.plant, base.nuisances, surrogates, found.seed)

@@ -166,7 +166,10 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     ):
         if candidate.name not in best or score > tried[best[candidate.name]][0]:
             best[candidate.name] = index
-    strongest = max(best.values(), key=lambda index: tried[index][0])
+    heldout = _heldout(problem, signatures, list(best.values()))
+    # What explains most and carries over: taken out for the thresholds of all others.
+    carrying = [index for index in best.values() if heldout[index] > 0.0]
+    strongest = max(carrying or best.values(), key=lambda index: tried[index][0])
     unexplained = residual - columns[:, signatures.slices[strongest]] @ tried[strongest][1]
     flips = base.off(_flipped(unexplained, problem.block[problem.fitted], null.shape[1]))
     null_power = np.maximum(np.sum(null**2, axis=0), 1e-300)
@@ -181,7 +184,6 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
             [np.sum(noise**2, axis=0) / null_power for noise, _ in reached],
             [np.sum(turned**2, axis=0) / power for _, turned in reached],
         )
-    heldout = _heldout(problem, signatures, list(best.values()))
     scores = []
     for name, index in best.items():
         score, gains, _ = tried[index]
