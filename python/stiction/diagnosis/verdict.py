@@ -13,6 +13,7 @@ from .decide import LEAST_GAIN
 from .evidence import Evidence
 from .model import Model
 from .omnibus import Rest
+from .periodic import FREQUENCY
 from .result import Unexplained, Verdict
 from .rounds import Search
 
@@ -46,9 +47,10 @@ def unnamed(
         Residuals of the surrogates.
     """
     excess = _excess(evidence, selection.models[-1], null)
-    if excess < LEAST_EXCESS:
-        return ()
     told = _told(left, None)
+    if excess < LEAST_EXCESS:
+        # A line over time is what the replays took for noise, and none of their making.
+        return tuple(each for each in told if each.coordinate == FREQUENCY.name)
     if not told and selection.choices:
         beside = _told(left, BESIDE_A_NAME)
         told = beside if _outweighs(selection, beside) else ()
