@@ -27,7 +27,6 @@ BY_COORDINATE: Final = {
     "response to the effort": "a chirp of the input up to a tenth of the sampling rate",
     "frequency": "5 s of rest and 5 s of constant speed, with what runs nearby on and off",
     "acceleration": "sines of one speed at different frequencies, so that accelerations differ",
-    "effort along the motion": "braking and coasting: input and motion of opposite signs",
     "rest before the slide": "rests of 0.1 to 5 s, each followed by slow and by fast loading",
     "loading before the slide": "equal rests, each followed by another rate of loading over two "
     "decades",

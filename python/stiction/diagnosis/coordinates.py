@@ -14,7 +14,7 @@ from ..trajectory import FloatArray
 from .contact import Slides, slides_of
 from .evidence import Evidence
 
-__all__ = ["BEND", "COORDINATES", "Coordinate", "Look", "looks"]
+__all__ = ["BEND", "BRAKING", "COORDINATES", "Coordinate", "Look", "looks"]
 
 TURNING_SHARE: Final = 1e-3
 """Speeds below this share of the usual one have no direction of their own: the last one holds."""
@@ -106,13 +106,6 @@ COORDINATES: Final = (
     Coordinate("angle along the motion", "angle in the turn, rad", True, lambda look: look.angle),
     Coordinate("acceleration", "acceleration, {x}/s²", False, lambda look: look.acceleration),
     Coordinate("effort", "measured effort, {f}", False, lambda look: look.effort),
-    Coordinate(
-        "effort along the motion",
-        "effort, braking below 0, {f}",
-        True,
-        lambda look: look.effort * look.direction,
-        refines="effort",
-    ),
     Coordinate("rate of the effort", "rate of the effort, {f}/s", False, lambda look: look.rate),
     Coordinate(
         "distance since the reversal",
@@ -160,6 +153,15 @@ COORDINATES: Final = (
     ),
 )
 """Coordinates in which the rest is looked at."""
+BRAKING: Final = Coordinate(
+    "effort along the motion",
+    "effort, braking below 0, {f}",
+    True,
+    lambda look: look.effort * look.direction,
+    refines="effort",
+)
+"""Where braking and driving differ, as in a drive with a dead band. What is left is not judged by it:
+braking comes after reversals, and there the curve of any law misses."""
 BEND: Final = Coordinate(
     "fourth derivative of the position", "fourth derivative, {x}/s⁴", False, lambda look: look.bend
 )

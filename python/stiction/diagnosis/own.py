@@ -11,7 +11,7 @@ import numpy as np
 
 from ..plant import Effect
 from ..trajectory import FloatArray
-from .coordinates import BEND, COORDINATES, Coordinate, Look
+from .coordinates import BEND, BRAKING, COORDINATES, Coordinate, Look
 from .evidence import Evidence
 from .smoother import smoother
 from .view import View
@@ -92,7 +92,7 @@ OWN: Final[dict[str, str | Wave]] = {
 """Where each effect of the catalogue shows: a coordinate by its name, or its own period."""
 ELSEWHERE: Final = "velocity"
 """Where an effect is drawn that has no entry."""
-_DRAWN: Final = {each.name: each for each in (*COORDINATES, BEND)}
+_DRAWN: Final = {each.name: each for each in (*COORDINATES, BEND, BRAKING)}
 # Over its logarithm, what grows with the square of speed would be pressed to the edge.
 _DRAWN["high speed"] = replace(_DRAWN["speed"], logarithmic=False)
 

@@ -20,6 +20,10 @@ SLOW_BINS: Final = 6
 """Stretches of the session clock where recordings have roles of their own: each stretch must hold
 some that are fitted and some that are not."""
 
+TURNS: Final = 40
+"""Times that recordings are turned round for the threshold of a slow coordinate."""
+TURNED_QUANTILE: Final = 0.95
+"""Of the shares that this gives: a drift that is there keeps its share in few of them."""
 ROWS: Final = 150
 """A stretch holds about this many rows at least, where few have a place in a coordinate..."""
 FEWEST_BINS: Final = 6
@@ -65,6 +69,10 @@ def smoother(
     factor = np.ones(len(values))
     if coordinate.factor is not None:
         factor = stacked(evidence, [coordinate.factor(look) for look in seen])
+    surrogates = both.shape[1]
+    slow = _is_slow(coordinate, evidence)
+    if slow:
+        both = np.column_stack([both, _turned(evidence, both[:, 0])])
     # Rows that have no place in this coordinate lie in a last stretch, of which nothing is taken.
     placed = np.isfinite(values)
     index, bins = _stretches(coordinate, evidence, values, placed, edges)
@@ -80,6 +88,10 @@ def smoother(
         kept = held - grown[plan.held] * curve[index[plan.held]]
         removed += np.sum(held**2 - kept**2, axis=0)
     shares = removed / np.maximum(total, 1e-300)
+    threshold = limit(shares[1:surrogates])
+    if slow:
+        threshold = max(threshold, float(np.quantile(shares[surrogates:], TURNED_QUANTILE)))
+    both = both[:, :surrogates]
     # In units of effort for the eye: what was weighted is put back.
     shown = np.zeros(len(index), dtype=bool)
     for plan in evidence.plans:
@@ -97,9 +109,24 @@ def smoother(
         low,
         high,
         float(shares[0]),
-        limit(shares[1:]),
+        threshold,
         float(np.sqrt(max(removed[0], 0.0) / max(rows, 1))) / max(friction, 1e-300),
     )
+
+
+def _is_slow(coordinate: Coordinate, evidence: Evidence) -> bool:
+    return coordinate.slow and len(evidence.shown) > 1
+
+
+def _turned(evidence: Evidence, residual: FloatArray) -> FloatArray:
+    """The residual with the sign of each recording drawn anew, a number of times.
+
+    A stretch of the session holds a few recordings. What a law's curve misses pulls one way through
+    each of them, and by chance the same way in neighbours: no drift, and no surrogate has it.
+    """
+    signs = np.random.default_rng(TURNS).choice([-1.0, 1.0], (len(evidence.recordings), TURNS))
+    turned: FloatArray = residual[:, None] * signs[evidence.cells.recording]
+    return turned
 
 
 def _stretches(
@@ -112,7 +139,7 @@ def _stretches(
     """Stretch of each row, ``bins`` where it has no place, and how many stretches there are."""
     known = values[placed]
     if edges is None:
-        slow = coordinate.slow and len(evidence.shown) > 1
+        slow = _is_slow(coordinate, evidence)
         number = SLOW_BINS if slow else min(BINS, max(len(known) // ROWS, FEWEST_BINS))
         inner = np.linspace(0.0, 1.0, number + 1)[1:-1]
         edges = np.unique(np.quantile(known, inner)) if len(known) else np.zeros(0)

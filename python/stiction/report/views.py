@@ -22,7 +22,6 @@ HINTS: Final = {
     "response to the effort": "a delay, a filter of the drive, or a shaft that gives",
     "frequency": "the mains, a fan, a neighbouring machine",
     "effort": "the drive: gain, saturation, dead zone",
-    "effort along the motion": "the drive or a gear: another effort in braking than in driving",
     "rate of the effort": "a delay or lag between input and effort",
     "distance since the reversal": "friction just after a turn: pre-sliding, backlash",
     "time since the reversal": "friction that builds up or relaxes: creep, dwell, lag",
