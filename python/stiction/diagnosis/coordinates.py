@@ -160,8 +160,8 @@ BRAKING: Final = Coordinate(
     lambda look: look.effort * look.direction,
     refines="effort",
 )
-"""Where braking and driving differ, as in a drive with a dead band. What is left is not judged by it:
-braking comes after reversals, and there the curve of any law misses."""
+"""Where braking and driving differ, as in a drive with a dead band. What is left is not judged by
+it: braking comes after reversals, and there the curve of any law misses."""
 BEND: Final = Coordinate(
     "fourth derivative of the position", "fourth derivative, {x}/s⁴", False, lambda look: look.bend
 )
