@@ -17,9 +17,9 @@ from stiction.diagnosis.decide import Choice, Trial, choose
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import Gain, HeldOut, gain_of
 from stiction.diagnosis.noise import measure_noise
-from stiction.diagnosis.pipeline import _relatives
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.replay import centre, surrogate_residuals
+from stiction.diagnosis.verdict import relatives
 from stiction.diagnosis.words import joined, sentence
 from stiction.fitting.levenberg import escaped, levenberg_marquardt
 from stiction.fitting.rows import Nuisances
@@ -255,7 +255,7 @@ def test_a_cause_that_is_not_told_stands_under_the_simplest_of_the_best() -> Non
 def test_relatives_named_beside_each_other_are_not_decided() -> None:
     trials = [tried(1.0, 1, family=family) for family in ("angle", "slow", "angle")]
     selection = SimpleNamespace(choices=[Choice(trial, ()) for trial in trials])
-    assert [len(_relatives(selection, k)) for k in range(3)] == [1, 0, 1]
+    assert [len(relatives(selection, k)) for k in range(3)] == [1, 0, 1]
 
 
 def test_words_join_and_say_what_was_not_confirmed() -> None:

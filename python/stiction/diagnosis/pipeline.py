@@ -41,7 +41,7 @@ from .regression import refitted
 from .replay import centre, surrogate_residuals
 from .result import Cause, Diagnosis, LawRow, ModelSummary
 from .rounds import Search, friction_of, search, summary_rows
-from .verdict import unnamed, verdict_of
+from .verdict import relatives, unnamed, verdict_of
 from .view import View
 from .words import sentence, what
 
@@ -338,7 +338,7 @@ def _concluded(
     for k, choice in enumerate(selection.choices):
         record = choice.winner.candidate.record
         rivals = {rival.name for rival in choice.rivals}
-        relatives = [name for name in _relatives(selection, k) if name not in rivals]
+        others = [name for name in relatives(selection, k) if name not in rivals]
         fitted_values = {
             path: p
             for path, p in results[id(final)].parameters.items()
@@ -348,8 +348,8 @@ def _concluded(
             Cause(
                 name=record.name,
                 family=record.family,
-                decided=choice.decided and not relatives,
-                look_alikes=(*(rival.name for rival in choice.rivals), *relatives),
+                decided=choice.decided and not others,
+                look_alikes=(*(rival.name for rival in choice.rivals), *others),
                 parameters=fitted_values,
                 gain=None if test is None else gain_of(test, k, k + 1, found.seed),
                 what=what(record, fitted_values, _effect(final.plant, record.name)),
@@ -408,17 +408,6 @@ def _own_views(
         own_view(evidence, seen, effect, residual, null, friction) for residual in residuals
     )
     return before, after
-
-
-def _relatives(selection: Search, place: int) -> list[str]:
-    """Other effects of the same family that were accepted.
-
-    Two that look alike, named beside each other, together imitate a third more often than they are
-    both there.
-    """
-    records = [choice.winner.candidate.record for choice in selection.choices]
-    own = records[place]
-    return [each.name for each in records if each.family == own.family and each is not own]
 
 
 def _effect(plant: Plant, name: str) -> Effect:

@@ -16,8 +16,9 @@ from .omnibus import Rest
 from .periodic import FREQUENCY
 from .result import Unexplained, Verdict
 from .rounds import Search
+from .view import LEAST_SIZE
 
-__all__ = ["unnamed", "verdict_of"]
+__all__ = ["relatives", "unnamed", "verdict_of"]
 
 WORTH_SHARE: Final = 0.25
 """What is left counts against the names where it is worth this share of what they gained."""
@@ -47,7 +48,7 @@ def unnamed(
         Residuals of the surrogates.
     """
     excess = _excess(evidence, selection.models[-1], null)
-    told = _told(left, None)
+    told = _told(left, LEAST_SIZE)
     if excess < LEAST_EXCESS:
         # A line over time is what the replays took for noise, and none of their making.
         return tuple(each for each in told if each.coordinate == FREQUENCY.name)
@@ -73,8 +74,19 @@ def verdict_of(selection: Search, left: Sequence[Unexplained], decided: bool) ->
     return "missing_effect" if selection.choices else "nothing_missing"
 
 
-def _told(left: Rest, least: float | None) -> tuple[Unexplained, ...]:
-    views = left.flagged() if least is None else left.flagged(least)
+def relatives(selection: Search, place: int) -> list[str]:
+    """Other effects of the same family as one that was accepted.
+
+    Two that look alike, named beside each other, together imitate a third more often than they are
+    both there.
+    """
+    records = [choice.winner.candidate.record for choice in selection.choices]
+    own = records[place]
+    return [each.name for each in records if each.family == own.family and each is not own]
+
+
+def _told(left: Rest, least: float) -> tuple[Unexplained, ...]:
+    views = left.flagged(least)
     return tuple(Unexplained(view.coordinate.name, view.share) for view in views)
 
 
