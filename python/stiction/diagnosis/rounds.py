@@ -175,7 +175,7 @@ def _round(
             found.rows[score.candidate.name] = _screened(score)
             if not score.testable:
                 found.blind.append(score.candidate.record)
-    passing = [s for s in scores if s.testable and s.score > s.threshold and _promises(s)]
+    passing = [score for score in scores if _promises(score)]
     trials = [
         _trial(evidence, found.models[-1], signatures, score, friction)
         for score in passing[:REFITTED]
@@ -192,11 +192,13 @@ def _round(
 
 
 def _promises(score: Score) -> bool:
-    """Whether a refit may show more than the score on rows held out.
+    """Whether a candidate is worth a refit: it explains more than noise, and it carries over.
 
     Gains of a base that has lost a recording carry over badly; what explains much and far more than
     noise is worth a look with everything fitted anew.
     """
+    if not score.testable or score.score <= score.threshold:
+        return False
     return score.heldout > 0.0 or score.score > max(MUCH, MANY_TIMES * score.threshold)
 
 
@@ -243,7 +245,7 @@ def _sharpen(
     own = signatures.second_of(choice.winner.name)
     model = found.models[-1]
     (score,) = screen(_problem(evidence, model, centred, bias), own, friction)
-    if not (score.testable and score.score > score.threshold and score.heldout > 0.0):
+    if not _promises(score):
         return
     trial = _trial(evidence, model, own, score, friction)
     if not trial.reason:
@@ -333,10 +335,11 @@ def _swap(
     again = choose(trials)
     if again is None:
         return
-    found.choices[place] = again
+    choices = [*found.choices[:place], again, *found.choices[place + 1 :]]
     if again.winner.name != record.name:
         _logger.info("%s stands better than %s", again.winner.name, record.name)
-        found.models[:] = _chain(evidence, found.models[0], found.choices, again.winner.model)
+        found.models[:] = _chain(evidence, found.models[0], choices, again.winner.model)
+    found.choices[:] = choices
     for trial in trials:
         found.rows[trial.name] = _tried(trial, again)
 
@@ -351,11 +354,11 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
         return with_effect(plant, score.candidate, (share * score.gains).tolist())
 
     # A simulated motion breaks away or does not: slopes tell little of what a whole gain does.
-    shares = SHARES if any(isinstance(f, ShootingForm) for f in evidence.forms) else (1.0,)
-    starts = [begun(share) for share in shares]
-    if len(starts) > 1:
-        starts = [min(starts, key=lambda plant: power_of(evidence, plant, base.nuisances))]
-    model = fitted(evidence, starts[0], base.nuisances)
+    start = begun(1.0)
+    if any(isinstance(form, ShootingForm) for form in evidence.forms):
+        plants = [begun(share) for share in SHARES]
+        start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
+    model = fitted(evidence, start, base.nuisances)
     if model.power < base.power:
         return model
     # A contact that all but loses its track has a kink on every side: then the effect alone moves
