@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from stiction.diagnosis.candidates import candidates, left_out, present, scales_
 from stiction.diagnosis.decide import Choice, Trial, choose
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import Gain, HeldOut, gain_of
+from stiction.diagnosis.model import Model, fitted
 from stiction.diagnosis.noise import measure_noise
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.replay import centre, surrogate_residuals
@@ -280,6 +283,27 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
         "ambiguous", (unsure,), None, (), ""
     )
     assert Gain(0.5, (0.4, 0.6)).to_dict() == {"value": 0.5, "ci95": [0.4, 0.6]}
+
+
+def test_an_interrupted_refit_ends_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*given: Any, **named: Any) -> Model:
+        model = fitted(*given, **named)
+        return replace(model, solution=replace(model.solution, interrupted=True))
+
+    # An effort that nobody logged: something to be found.
+    recordings = [
+        st.Recording(whole.time, whole.input - 0.03, whole.position, role=role)
+        for role, whole in (
+            (role, recorded(k)) for k, role in enumerate(("train", "select", "test"))
+        )
+    ]
+    plant = true_plant()
+    assert st.diagnose(plant, recordings, surrogates=4).effects
+    monkeypatch.setattr("stiction.diagnosis.rounds.fitted", interrupted)
+    found = st.diagnose(plant, recordings, surrogates=4)
+    assert not found.success
+    assert found.effects == ()
+    assert found.baseline is not None
 
 
 def test_an_interrupted_diagnosis_keeps_the_best_so_far(

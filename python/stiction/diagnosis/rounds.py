@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from ..catalogue import EffectRecord, effects
+from ..fitting.rows import Nuisances
 from ..plant import Plant
 from ..shooting import ShootingForm
 from ..trajectory import FloatArray
@@ -119,12 +120,8 @@ def search(
             _logger.info("found %s", choice.winner.name)
             _sharpen(evidence, found, signatures, centred, bias, friction)
             dropped |= _drop(evidence, found)
-            if choice.winner.model.solution.interrupted:
-                found.interrupted = True
-                break
-        if not found.interrupted:
-            for place in range(len(found.choices) - 1):
-                _swap(evidence, found, place, signatures, centred, bias, friction)
+        for place in range(len(found.choices) - 1):
+            _swap(evidence, found, place, signatures, centred, bias, friction)
     except KeyboardInterrupt:
         found.interrupted = True
     return found
@@ -189,6 +186,18 @@ def _round(
         if choice is not None or not found.choices:
             found.rows[trial.name] = _tried(trial, choice)
     return choice
+
+
+def _fitted(evidence: Evidence, plant: Plant, nuisances: Nuisances, *, only: str = "") -> Model:
+    """The plant fitted, whole or not at all.
+
+    A fit keeps its best at Ctrl-C and goes on from there; one of several that make a decision must
+    end all of them.
+    """
+    model = fitted(evidence, plant, nuisances, only=only)
+    if model.solution.interrupted:
+        raise KeyboardInterrupt
+    return model
 
 
 def _promises(score: Score) -> bool:
@@ -262,7 +271,7 @@ def _renew(evidence: Evidence, found: Search, choice: Choice) -> bool:
     effect's gain.
     """
     model, base = choice.winner.model, found.models[-1]
-    alone = fitted(evidence, without_effect(model.plant, choice.winner.name), model.nuisances)
+    alone = _fitted(evidence, without_effect(model.plant, choice.winner.name), model.nuisances)
     if alone.power > (1.0 - WORTH_RENEWING) * base.power:
         return False
     _logger.info("the base does better from another start")
@@ -281,7 +290,7 @@ def _drop(evidence: Evidence, found: Search) -> set[str]:
         name = choice.winner.name
         if whole.strength(choice.winner.candidate) >= LEAST_STRENGTH:
             continue
-        less = fitted(evidence, without_effect(whole.plant, name), whole.nuisances)
+        less = _fitted(evidence, without_effect(whole.plant, name), whole.nuisances)
         if heldout_gain(less, whole)[0] > LEAST_GAIN:
             continue
         latest = found.choices[-1].winner.name
@@ -300,7 +309,7 @@ def _chain(evidence: Evidence, base: Model, choices: Sequence[Choice], last: Mod
     plants = [last.plant]
     for later in reversed(choices[1:]):
         plants.append(without_effect(plants[-1], later.winner.name))
-    between = [fitted(evidence, plant, last.nuisances) for plant in reversed(plants[1:])]
+    between = [_fitted(evidence, plant, last.nuisances) for plant in reversed(plants[1:])]
     return [base, *between, last]
 
 
@@ -325,7 +334,7 @@ def _swap(
     kin = {name for name, other in tried.items() if other.family == record.family}
     if len(kin) < 2 or any(name in effect.parameters for name in record.second):
         return
-    less = fitted(evidence, without_effect(whole.plant, record.name), whole.nuisances)
+    less = _fitted(evidence, without_effect(whole.plant, record.name), whole.nuisances)
     scores = screen(_problem(evidence, less, centred, bias), signatures, friction)
     trials = [
         _trial(evidence, less, signatures, score, friction)
@@ -358,7 +367,7 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
     if any(isinstance(form, ShootingForm) for form in evidence.forms):
         plants = [begun(share) for share in SHARES]
         start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
-    model = fitted(evidence, start, base.nuisances)
+    model = _fitted(evidence, start, base.nuisances)
     if model.power < base.power:
         return model
     # A contact that all but loses its track has a kink on every side: then the effect alone moves
@@ -366,8 +375,8 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
     tried = [model]
     for share in (1.0, CAUTIOUS):
         start = with_effect(base.plant, score.candidate, (share * score.gains).tolist())
-        alone = fitted(evidence, start, base.nuisances, only=score.candidate.name)
-        tried.append(fitted(evidence, alone.plant, alone.nuisances))
+        alone = _fitted(evidence, start, base.nuisances, only=score.candidate.name)
+        tried.append(_fitted(evidence, alone.plant, alone.nuisances))
         if alone.power < base.power:
             break
     return min(tried, key=lambda each: each.power)
