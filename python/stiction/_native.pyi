@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 _Floats = npt.NDArray[np.float64]
 
-__all__ = ["FrictionModel", "Motor", "Nothing", "__version__", "effects", "laws"]
+__all__ = ["FrictionModel", "Motor", "Nothing", "RowKernel", "__version__", "effects", "laws"]
 
 __version__: Final[str]
 
@@ -108,6 +108,17 @@ class Motor:
         load: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> tuple[_Floats, _Floats, _Floats]: ...
+    def follow_columns(
+        self,
+        position: npt.ArrayLike,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        parameters: Sequence[str],
+        kernel: RowKernel,
+        *,
+        load: npt.ArrayLike | None = None,
+        start: dict[str, float] | None = None,
+    ) -> _Floats: ...
     def signatures(
         self,
         position: npt.ArrayLike,
@@ -119,6 +130,18 @@ class Motor:
         start: dict[str, float] | None = None,
         threads: int = 1,
     ) -> tuple[_Floats, _Floats, _Floats]: ...
+    def signature_columns(
+        self,
+        position: npt.ArrayLike,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        candidates: Iterable[tuple[str, dict[str, float]]],
+        kernel: RowKernel,
+        *,
+        load: npt.ArrayLike | None = None,
+        start: dict[str, float] | None = None,
+        threads: int = 1,
+    ) -> _Floats: ...
     def shoot(
         self,
         position: npt.ArrayLike,
@@ -194,6 +217,18 @@ class Motor:
     def state(self, value: dict[str, Any]) -> None: ...
     @property
     def statistics(self) -> dict[str, int]: ...
+
+@final
+class RowKernel:
+    def __new__(
+        cls,
+        weights: npt.ArrayLike,
+        second: npt.ArrayLike,
+        every: int,
+        inertia: float = 0.0,
+        *,
+        held: bool = False,
+    ) -> RowKernel: ...
 
 @final
 class Nothing:

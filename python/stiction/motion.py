@@ -12,11 +12,6 @@ from .trajectory import FloatArray
 
 __all__ = ["Kernel", "count_of", "evenly", "held", "noise_of", "play", "smooth"]
 
-SMOOTHING_SHARE: Final = 0.1
-"""Support over which a position is smoothed before it drives friction, as a share of the kernel's:
-3 ms where that has 30 ms."""
-
-
 WIDEST: Final = 1e6
 """Samples; a wider kernel is a slip of the units."""
 

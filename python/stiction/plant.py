@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from . import plant_file
 from ._native import FrictionModel
+from .catalogue import LawRecord, laws
 from .errors import InputError
 from .motor import Motor
 from .parameter import Parameter
@@ -35,6 +36,16 @@ class Friction:
         """The friction model; what is not stated takes the catalogue's default."""
         values = {name: parameter.value for name, parameter in self.parameters.items()}
         return FrictionModel(self.law, **values, **self.options)
+
+    @property
+    def record(self) -> LawRecord:
+        """The catalogue's record of the law."""
+        return next(record for record in laws() if record.name == self.law)
+
+    @property
+    def springy(self) -> bool:
+        """Whether the contact yields before it slides, so that displacements count as they are."""
+        return any(parameter.name == "initial_stiffness" for parameter in self.record.parameters)
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from ._native import RowKernel
+from .adaptive import adaptively_smoothed
 from .errors import InputError, NotEnoughData
 from .motion import (
-    SMOOTHING_SHARE,
     WIDEST,
     Kernel,
     count_of,
@@ -41,8 +42,10 @@ NOISE_SHARE: Final = 0.02
 """The kernel is widened until the inertia term holds less position noise than this share of the
 effort: a coarse encoder needs more than 30 ms."""
 NOISY_STEP: Final = 0.01
-"""Noise of the position over the rms step from row to row above which the motion that drives
-friction is smoothed; below it smoothing would only smear stops into slow motion."""
+"""Noise of the position over the rms step from row to row above which the motion that drives a
+rigid contact is smoothed; below it smoothing would only smear stops into slow motion."""
+SMOOTHING_SHARE: Final = 0.1
+"""Support over which it then is, as a share of the kernel's: 3 ms where that has 30 ms."""
 ACCELERATION_SHARE: Final = 0.1
 """Where no inertia is stated: share of the acceleration that may be noise."""
 
@@ -141,6 +144,8 @@ class WeakForm:
         white = float(np.sqrt(max(noise**2 - self.count**2 / 12.0, 0.0)))
         flickers = white > FLICKER_SHARE * self.count
         self._backlash = max(self.count, BACKLASH_TIMES * white) if flickers else 0.0
+        self._springy = plant.friction.springy
+        self._noise = max(noise, self.count / np.sqrt(12.0))
         noisy = noise > NOISY_STEP * float(np.sqrt(np.mean(np.diff(x) ** 2)))
         self._smoothing = max(self.dt, SMOOTHING_SHARE * self.kernel.support) if noisy else self.dt
         self.readings = x
@@ -168,6 +173,11 @@ class WeakForm:
         return np.ones(len(self), dtype=np.bool_)
 
     @property
+    def adapts(self) -> bool:
+        """Whether readings are smoothed as far as their motion allows, and not all alike."""
+        return self._springy and self._backlash == 0.0
+
+    @property
     def followed_late(self) -> bool:
         """Whether noise had to be kept from friction by a backlash, which turns round late."""
         return self._backlash > 0.0
@@ -187,6 +197,8 @@ class WeakForm:
 
     def driving(self, readings: FloatArray) -> FloatArray:
         """The motion that drives friction, from readings of a position; same shape."""
+        if self.adapts:
+            return adaptively_smoothed(readings, self.dt, self._noise)
         return smooth(play(readings, self._backlash), self.dt, self._smoothing)
 
     def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
@@ -252,15 +264,16 @@ class WeakForm:
         ``start.force``.
         """
         motor = self._follower(plant, self.position)
-        needed, driven, ahead = motor.follow_sensitivity(
+        found = motor.follow_columns(
             self.position,
             self.input,
             self.dt,
             list(paths),
+            self._rows(plant),
             load=self.load[:-1],
             start=start,
         )
-        columns = self._columns(plant, needed, driven, ahead)
+        columns: FloatArray = found.T
         if "body.inertia" in paths:
             place = list(paths).index("body.inertia")
             columns[:, place] -= self.acceleration
@@ -286,28 +299,27 @@ class WeakForm:
             In the order of the candidates and of the gains of each.
         """
         motor = self._follower(plant, self.position)
-        needed, driven, ahead = motor.signatures(
+        found = motor.signature_columns(
             self.position,
             self.input,
             self.dt,
             list(candidates),
+            self._rows(plant),
             load=self.load[:-1],
             start=start,
         )
-        return self._columns(plant, needed, driven, ahead)
-
-    def _columns(
-        self, plant: Plant, needed: FloatArray, driven: FloatArray, ahead: FloatArray
-    ) -> FloatArray:
-        """Columns of a Jacobian from derivatives at the sample ends, a row each."""
-        gained = -needed
-        moved = np.flatnonzero(np.any(driven, axis=1))
-        if len(moved) and not self.prescribed:
-            gained[moved] += _centred(driven[moved])
-        columns = np.ascontiguousarray(self._mean(gained).T)
-        for k in np.flatnonzero(np.any(ahead, axis=1)):
-            columns[:, k] -= plant.inertia * self._bent(ahead[k])
+        columns: FloatArray = found.T
         return columns
+
+    def _rows(self, plant: Plant) -> RowKernel:
+        """What the core needs to see its derivatives as rows."""
+        return RowKernel(
+            self.kernel.weights[::-1].copy(),
+            self.kernel.second,
+            self.stride,
+            plant.inertia,
+            held=not self.prescribed,
+        )
 
     def _bent(self, ahead: FloatArray) -> FloatArray:
         """Second derivative, through the kernel, of a distance at the sample ends."""

@@ -661,6 +661,16 @@ REFUSED = {
         lambda: machine().signatures([0.0, 0.1], [0.1], DT, [], threads=1),
         ["threads = 0"],
     ),
+    "a kernel with an even number of weights": (
+        lambda: st._native.RowKernel([0.5, 0.5], [1.0, -1.0, -1.0, 1.0], 1),
+        lambda: st._native.RowKernel([1.0], [1.0, -2.0, 1.0], 1),
+        ["odd number"],
+    ),
+    "a kernel every 0 samples": (
+        lambda: st._native.RowKernel([1.0], [1.0, -2.0, 1.0], 0),
+        lambda: st._native.RowKernel([1.0], [1.0, -2.0, 1.0], 3),
+        ["spacing of 1 or more"],
+    ),
 }
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.motion import Kernel
 
 from .rigs import CONTACTS, INERTIA, drawn_rig, motor
 
@@ -283,6 +284,33 @@ def test_efforts_along_a_motion_are_differentiated_by_every_parameter(kind):
     assert compared > 5
 
 
+@pytest.mark.parametrize("held", [True, False])
+@pytest.mark.parametrize("effects", [None, EFFECTS])
+def test_columns_are_derivatives_seen_through_the_kernel(held, effects):
+    machine = motor("hook", effects=effects, gravity_amplitude=0.05)
+    time = np.arange(601) * 1e-3
+    path = 0.02 * np.sin(9.0 * time) + 1e-3 * np.sin(41.0 * time)
+    current = np.cos(7.0 * time[:-1])
+    paths = [p for p, v in machine.parameters.items() if np.isfinite(v) and v]
+    kernel, inertia = Kernel(0.03, 1e-3), 0.007
+    rows = st._native.RowKernel(kernel.weights, kernel.second, 5, inertia, held=held)
+
+    def seen(derivatives):
+        needed, driven, ahead = derivatives
+        centred = 0.5 * (driven + np.column_stack([driven[:, 1:], driven[:, -1:]]))
+        bent = np.array([kernel.second_derivative(each)[::5] for each in ahead])
+        measured = centred if held else np.zeros_like(centred)
+        return kernel.mean(measured - needed, every=5) - inertia * bent
+
+    columns = machine.follow_columns(path, current, 1e-3, paths, rows)
+    expected = seen(machine.follow_sensitivity(path, current, 1e-3, paths))
+    assert columns.shape == expected.shape
+    assert np.allclose(columns, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
+    columns = machine.signature_columns(path, current, 1e-3, CANDIDATES, rows)
+    expected = seen(machine.signatures(path, current, 1e-3, CANDIDATES))
+    assert np.allclose(columns, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
+
+
 CANDIDATES = [
     ("stribeck", {"velocity": 0.02}),
     ("cogging", {"order": 7.0}),
@@ -293,6 +321,7 @@ CANDIDATES = [
     ("direction_asymmetry", {}),
     ("position_dependent_friction", {"order": 2.0}),
     ("viscous_quadratic", {}),
+    ("encoder_eccentricity", {}),
 ]
 
 

@@ -96,6 +96,18 @@ def test_hardening_at_the_start_leaves_less_creep():
     assert np.allclose(hard, 0.2, rtol=1e-12)
 
 
+@pytest.mark.parametrize("kind", ["maxwell_slip", "hook", "rated"])
+def test_a_force_that_no_contact_holds_levels_off(kind):
+    # A fit may try any number; what lies beyond break-away would throw the contact into a slide.
+    rest = np.zeros(SAMPLES + 1)
+    level = {"maxwell_slip": "coulomb"}.get(KINDS[kind][0], "breakaway")
+    most = machine(kind).parameters[f"friction.{level}"]
+    held = [needed(machine(kind), {"force": f * most}, rest)[0] for f in (0.5, 0.98, 1.0, 3.0, 1e3)]
+    assert held[0] == pytest.approx(0.5 * most, rel=0.01)  # creep takes the rest
+    assert np.all(np.diff(held) > 0.0)
+    assert held[-1] < most
+
+
 @pytest.mark.parametrize("hardening", [0.0, 2e-5])
 @pytest.mark.parametrize("direction", [1.0, -1.0])
 @pytest.mark.parametrize(

@@ -32,19 +32,29 @@ DT = 1e-3
 COUNT = 2.0 * math.pi / 2**18
 
 
-def recorded(seed: int, *, seconds: float = 7.0, noise: float = 0.004, **labels: object):
+def recorded(
+    seed: int,
+    *,
+    seconds: float = 7.0,
+    noise: float = 0.004,
+    stiffness: float = 3000.0,
+    **labels: object,
+):
     """A machine of the core, moved by sines: pieces are looked at here, not what they find."""
     source = np.random.default_rng(seed)
     time = np.arange(round(seconds / DT)) * DT
     waves = [0.3 * np.sin(w * time + source.uniform(0, 6)) for w in (2.0, 5.3, 13.0)]
     effort = np.sum(waves, axis=0)
-    motor = st.Motor(0.006, friction=st.FrictionModel("maxwell_slip", coulomb=0.25, viscous=0.02))
+    friction = st.FrictionModel(
+        "maxwell_slip", coulomb=0.25, viscous=0.02, initial_stiffness=stiffness
+    )
+    motor = st.Motor(0.006, friction=friction)
     position = np.concatenate([[0.0], motor.simulate(effort[:-1], DT).position])
     measured = effort + noise * source.standard_normal(len(time))
     return st.Recording(time, measured, np.round(position / COUNT) * COUNT, **labels)
 
 
-def true_plant() -> st.Plant:
+def true_plant(stiffness: float = 3000.0) -> st.Plant:
     return st.Plant.from_dict(
         {
             "drive": {"input": "torque_nm"},
@@ -52,7 +62,7 @@ def true_plant() -> st.Plant:
             "friction": {
                 "law": "maxwell_slip",
                 "coulomb": 0.25,
-                "initial_stiffness": 3000.0,
+                "initial_stiffness": stiffness,
                 "viscous": 0.02,
             },
         }
@@ -85,9 +95,13 @@ def test_without_select_the_recordings_of_train_are_left_out_in_turn() -> None:
     assert np.all(np.sum([plan.held for plan in folds], axis=0) == 1)
 
 
-def test_surrogates_hold_the_noise_that_the_recording_holds(evidence: Evidence) -> None:
+def test_surrogates_hold_the_noise_that_the_recording_holds() -> None:
+    # 35 counts within the reach F_c/k. Where there are 4 the contact rings faster than the sensor
+    # shows, and what that leaves no surrogate holds: there shooting takes over.
+    plant, none = true_plant(300.0), Nuisances()
+    recordings = [recorded(k, role=r, stiffness=300.0) for k, r in enumerate(("train", "select"))]
+    evidence = Evidence(plant, recordings)
     evidence.weigh()
-    plant, none = true_plant(), Nuisances()
     for rows in evidence.shown:
         # Counts that the contact feels look like noise of the effort too: never less than it is.
         assert 0.0036 < measure_noise(rows, plant, none).effort < 0.0056

@@ -108,6 +108,12 @@ pub enum Error {
         /// The path as given.
         path: String,
     },
+    /// A kernel whose parts do not belong together.
+    #[error(
+        "weights do not fit; give an odd number of them, two more for the second \
+         derivative, and a spacing of 1 or more"
+    )]
+    Kernel,
     /// Array lengths that do not fit.
     #[error("{name} has {given} values where {wanted} are needed; give one value a sample")]
     Length {

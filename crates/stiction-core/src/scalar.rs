@@ -6,8 +6,10 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_dual::{DualNum, DualSVec64};
 
+use crate::trig::sin_cos;
+
 /// Derivative columns carried by one [`Dual`]: one pass of the model yields this many.
-pub const COLUMNS: usize = 8;
+pub const COLUMNS: usize = 12;
 
 /// A value with its derivatives with respect to [`COLUMNS`] seeded parameters.
 pub type Dual = DualSVec64<COLUMNS>;
@@ -58,19 +60,19 @@ pub trait Scalar:
     /// Sine.
     #[inline]
     fn sin(self) -> Self {
-        let (s, c) = self.re().sin_cos();
+        let (s, c) = sin_cos(self.re());
         self.chain(s, c)
     }
     /// Cosine.
     #[inline]
     fn cos(self) -> Self {
-        let (s, c) = self.re().sin_cos();
+        let (s, c) = sin_cos(self.re());
         self.chain(c, -s)
     }
     /// Sine and cosine, for the price of one.
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        let (s, c) = self.re().sin_cos();
+        let (s, c) = sin_cos(self.re());
         (self.chain(s, c), self.chain(c, -s))
     }
     /// √x with derivative 0 at 0, where the true one is infinite and would turn into NaN.

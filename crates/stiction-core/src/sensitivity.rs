@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use crate::effects::{AnyEffect, EffectRecord, Effects, Hook, Passage, Situation};
 use crate::error::{Error, Result};
 use crate::follow::Efforts;
+use crate::kernel::RowKernel;
 use crate::motor::{EffectSpec, MotorSpec, PerSample, Running};
 use crate::scalar::{COLUMNS, Dual, Scalar};
 
@@ -118,9 +119,6 @@ pub struct EffortSensitivity {
     pub ahead: Vec<f64>,
 }
 
-/// The rows of a pass: needed, driven, ahead.
-type Rows<'a> = [&'a mut [f64]; 3];
-
 /// A motion that was measured or prescribed, and what acted meanwhile.
 #[derive(Debug, Clone, Copy)]
 pub struct MeasuredMotion<'a> {
@@ -141,7 +139,7 @@ impl EffortSensitivity {
     }
 
     /// Each row of its own.
-    fn rows(&mut self, motion: &MeasuredMotion<'_>) -> impl Iterator<Item = Rows<'_>> {
+    fn rows(&mut self, motion: &MeasuredMotion<'_>) -> Vec<[&mut [f64]; 3]> {
         let size = motion.samples().max(1);
         let (driven, ahead) = (self.driven.chunks_mut(size), self.ahead.chunks_mut(size));
         let both = driven.zip(ahead);
@@ -149,8 +147,12 @@ impl EffortSensitivity {
             .chunks_mut(size)
             .zip(both)
             .map(|(needed, (driven, ahead))| [needed, driven, ahead])
+            .collect()
     }
 }
+
+/// Derivatives by one parameter at every sample end: needed, driven, ahead.
+type Traces = [Vec<f64>; 3];
 
 impl MeasuredMotion<'_> {
     /// Samples between the positions.
@@ -158,17 +160,56 @@ impl MeasuredMotion<'_> {
         self.positions.len().saturating_sub(1)
     }
 
-    /// Follows the motion and fills the rows of a pass, one for each seeded column.
-    fn differentiate(&self, running: &mut Running<Dual>, rows: &mut [Rows<'_>]) {
+    fn traces(&self) -> Traces {
+        [(); 3].map(|()| vec![0.0; self.samples()])
+    }
+
+    /// Follows the motion and fills the traces of a pass, one for each seeded column.
+    fn differentiate(&self, running: &mut Running<Dual>, traces: &mut [Traces]) {
         running.follow(self.positions, self.inputs, self.load, self.dt, |k, efforts| {
             let short = efforts.friction - efforts.ambient;
-            for (column, [needed, driven, ahead]) in rows.iter_mut().enumerate() {
+            for (column, [needed, driven, ahead]) in traces.iter_mut().enumerate() {
                 needed[k] = Scalar::partial(short, column);
                 driven[k] = Scalar::partial(efforts.driven, column);
                 ahead[k] = Scalar::partial(efforts.ahead, column);
             }
         });
     }
+}
+
+/// Where the traces of a parameter go.
+trait Target: Send {
+    fn take(&mut self, traces: &Traces);
+}
+
+impl Target for [&mut [f64]; 3] {
+    fn take(&mut self, traces: &Traces) {
+        for (row, trace) in self.iter_mut().zip(traces) {
+            row.copy_from_slice(trace);
+        }
+    }
+}
+
+/// A column of rows seen through a kernel.
+struct Column<'a> {
+    kernel: &'a RowKernel<'a>,
+    values: &'a mut [f64],
+}
+
+impl Target for Column<'_> {
+    fn take(&mut self, [needed, driven, ahead]: &Traces) {
+        self.kernel.column([needed, driven, ahead], self.values);
+    }
+}
+
+/// Columns of this many parameters, one after the other, and the targets that fill them.
+fn columns<'a>(
+    values: &'a mut [f64],
+    motion: &MeasuredMotion<'_>,
+    kernel: &'a RowKernel<'a>,
+) -> Vec<Column<'a>> {
+    let rows = kernel.rows(motion.samples()).max(1);
+    values.chunks_mut(rows).map(|values| Column { kernel, values }).collect()
 }
 
 /// Follows given positions and differentiates the efforts by the parameters at these paths: all of
@@ -180,14 +221,40 @@ pub fn follow_sensitivity(
     paths: &[String],
 ) -> Result<EffortSensitivity> {
     let mut result = EffortSensitivity::zeros(paths.len(), motion);
-    let mut rows = result.rows(motion);
-    passes(spec, start, paths, |running, _, number| {
-        let mut own: Vec<Rows<'_>> = rows.by_ref().take(number).collect();
-        motion.differentiate(running, &mut own);
-        Ok(())
-    })?;
-    drop(rows);
+    follow_into(spec, start, motion, paths, &mut result.rows(motion))?;
     Ok(result)
+}
+
+/// The same, of measured minus needed effort seen through a kernel: all rows of the first
+/// parameter, then all of the next.
+pub fn follow_columns(
+    spec: &MotorSpec,
+    start: Start<'_>,
+    motion: &MeasuredMotion<'_>,
+    paths: &[String],
+    kernel: &RowKernel<'_>,
+) -> Result<Vec<f64>> {
+    let mut values = vec![0.0; paths.len() * kernel.rows(motion.samples())];
+    follow_into(spec, start, motion, paths, &mut columns(&mut values, motion, kernel))?;
+    Ok(values)
+}
+
+fn follow_into(
+    spec: &MotorSpec,
+    start: Start<'_>,
+    motion: &MeasuredMotion<'_>,
+    paths: &[String],
+    targets: &mut [impl Target],
+) -> Result<()> {
+    let mut traces: Vec<Traces> = Vec::new();
+    passes(spec, start, paths, |running, first, number| {
+        traces.resize_with(number.max(traces.len()), || motion.traces());
+        motion.differentiate(running, &mut traces[..number]);
+        for (target, traces) in targets[first..first + number].iter_mut().zip(&traces) {
+            target.take(traces);
+        }
+        Ok(())
+    })
 }
 
 /// Follows given positions and differentiates the efforts by every gain of effects that the motor
@@ -203,20 +270,52 @@ pub fn signatures(
     candidates: &[EffectSpec],
     threads: usize,
 ) -> EffortSensitivity {
+    let mut result = EffortSensitivity::zeros(gains_of(candidates).len(), motion);
+    signatures_into(spec, start, motion, candidates, threads, result.rows(motion));
+    result
+}
+
+/// The same, of measured minus needed effort seen through a kernel: all rows of the first gain,
+/// then all of the next.
+pub fn signature_columns(
+    spec: &MotorSpec,
+    start: Start<'_>,
+    motion: &MeasuredMotion<'_>,
+    candidates: &[EffectSpec],
+    kernel: &RowKernel<'_>,
+    threads: usize,
+) -> Vec<f64> {
+    let mut values = vec![0.0; gains_of(candidates).len() * kernel.rows(motion.samples())];
+    let targets = columns(&mut values, motion, kernel);
+    signatures_into(spec, start, motion, candidates, threads, targets);
+    values
+}
+
+/// Candidate and place among its parameters of every gain.
+fn gains_of(candidates: &[EffectSpec]) -> Vec<(usize, usize)> {
     let gains = |effect: &'static EffectRecord| {
         let place = |gain: &&str| effect.parameters.iter().position(|p| p.name == *gain);
         effect.facts.gains.iter().filter_map(place)
     };
-    let places: Vec<(usize, usize)> = candidates
+    candidates
         .iter()
         .enumerate()
         .flat_map(|(index, candidate)| gains(candidate.record).map(move |gain| (index, gain)))
-        .collect();
-    let mut result = EffortSensitivity::zeros(places.len(), motion);
+        .collect()
+}
+
+fn signatures_into(
+    spec: &MotorSpec,
+    start: Start<'_>,
+    motion: &MeasuredMotion<'_>,
+    candidates: &[EffectSpec],
+    threads: usize,
+    targets: Vec<impl Target>,
+) {
     let (mut direct, mut seeded) = (Vec::new(), Vec::new());
-    for (place, rows) in places.iter().zip(result.rows(motion)) {
+    for (place, target) in gains_of(candidates).into_iter().zip(targets) {
         let list = if acts_at_once(candidates[place.0].record) { &mut direct } else { &mut seeded };
-        list.push((*place, rows));
+        list.push((place, target));
     }
     if !direct.is_empty() {
         at_once(spec, start, motion, candidates, &mut direct);
@@ -224,12 +323,15 @@ pub fn signatures(
     let work = Mutex::new(seeded.chunks_mut(COLUMNS));
     let next = || work.lock().unwrap_or_else(PoisonError::into_inner).next();
     let passes = || {
+        let mut traces: Vec<Traces> = Vec::new();
         while let Some(pass) = next() {
             let places: Vec<(usize, usize)> = pass.iter().map(|(place, _)| *place).collect();
             let mut running = with_candidates(spec, start, candidates, &places);
-            let mut rows: Vec<Rows<'_>> =
-                pass.iter_mut().map(|(_, rows)| rows.each_mut().map(|row| &mut **row)).collect();
-            motion.differentiate(&mut running, &mut rows);
+            traces.resize_with(pass.len().max(traces.len()), || motion.traces());
+            motion.differentiate(&mut running, &mut traces[..pass.len()]);
+            for ((_, target), traces) in pass.iter_mut().zip(&traces) {
+                target.take(traces);
+            }
         }
     };
     std::thread::scope(|scope| {
@@ -238,8 +340,6 @@ pub fn signatures(
         }
         passes();
     });
-    drop(seeded);
-    result
 }
 
 /// Whether an effect enters the efforts of a sample through that sample alone.
@@ -265,37 +365,39 @@ struct Sample {
     gain: f64,
 }
 
-/// Rows of effects that act at once: what one unit of a gain adds to level, effort or input, times
+/// Traces of effects that act at once: what one unit of a gain adds to level, effort or input, times
 /// the derivative by that. One pass carries the derivatives by the levels, whatever the number of
-/// rows.
+/// gains.
 fn at_once(
     spec: &MotorSpec,
     start: Start<'_>,
     motion: &MeasuredMotion<'_>,
     candidates: &[EffectSpec],
-    rows: &mut [((usize, usize), Rows<'_>)],
+    targets: &mut [((usize, usize), impl Target)],
 ) {
     let samples = samples_along(spec, start, motion);
     let usual = samples.iter().map(|sample| sample.input.abs()).fold(0.0, f64::max);
-    for ((index, gain), [needed, driven, _]) in rows {
+    let mut traces = motion.traces();
+    for ((index, gain), target) in targets {
         let candidate = &candidates[*index];
         let mapped = candidate.record.hooks.contains(&Hook::InputMap);
         let unit = if mapped && usual > 0.0 { SMALL * usual } else { 1.0 };
         let mut own = candidate.values.clone();
         own[*gain] = unit;
         let mut effects = Effects::new(AnyEffect::build(candidate.record.name, &own));
-        for (k, sample) in samples.iter().enumerate() {
+        let [needed, driven, _] = &mut traces;
+        for ((needed, driven), sample) in needed.iter_mut().zip(driven.iter_mut()).zip(&samples) {
             effects.remember(&sample.passage);
             let (dry, viscous) = effects.levels(&sample.at);
             let levels = (dry - 1.0) * sample.by_levels.0 + (viscous - 1.0) * sample.by_levels.1;
-            needed[k] = (levels - effects.effort(&sample.at)) / unit;
-        }
-        if mapped {
-            for (driven, sample) in driven.iter_mut().zip(&samples) {
+            *needed = (levels - effects.effort(&sample.at)) / unit;
+            *driven = 0.0;
+            if mapped {
                 let moved = effects.input(sample.input, &sample.at) - sample.input;
                 *driven = sample.gain * moved / unit;
             }
         }
+        target.take(&traces);
     }
 }
 

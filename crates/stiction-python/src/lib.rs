@@ -4,6 +4,7 @@ mod arrays;
 mod catalogue;
 mod error;
 mod friction_model;
+mod kernel;
 mod motor;
 mod state;
 
@@ -15,6 +16,8 @@ mod _native {
     use super::catalogue::{effects, laws};
     #[pymodule_export]
     use super::friction_model::FrictionModel;
+    #[pymodule_export]
+    use super::kernel::RowKernel;
     #[pymodule_export]
     use super::motor::Motor;
 

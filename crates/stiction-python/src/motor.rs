@@ -11,13 +11,15 @@ use pyo3::types::PyDict;
 use stiction_core::integrate::Integrator;
 use stiction_core::motor::{Column, EffectSpec, Motor as Core, MotorSpec};
 use stiction_core::sensitivity::{
-    EffortSensitivity, MeasuredMotion, Start, follow_sensitivity, sensitivity, signatures,
+    EffortSensitivity, MeasuredMotion, Start, follow_columns, follow_sensitivity, sensitivity,
+    signature_columns, signatures,
 };
 use stiction_core::shoot::{Pull, Windows, check, shoot_response, shoot_sensitivity};
 
 use crate::arrays::{Each, Measured, one_row, target};
 use crate::error::{IntoPython, duration, finite, input_error, velocity};
 use crate::friction_model::FrictionModel;
+use crate::kernel::RowKernel;
 use crate::state::{from_dict, keywords, to_dict};
 
 /// Base of ``stiction.Motor``: everything that needs no Python.
@@ -80,6 +82,21 @@ fn candidates_of(candidates: &Bound<'_, PyAny>) -> PyResult<Vec<EffectSpec>> {
         list.push(EffectSpec::candidate(&pair.0, &numbers).or_input_error(py)?);
     }
     Ok(list)
+}
+
+/// Gains of all candidates.
+fn gains_of(candidates: &[EffectSpec]) -> usize {
+    candidates.iter().map(|effect| effect.record.facts.gains.len()).sum()
+}
+
+fn threads_of(py: Python<'_>, threads: i64) -> PyResult<usize> {
+    if (1..=MOST_THREADS).contains(&threads) {
+        return Ok(threads as usize);
+    }
+    Err(input_error(
+        py,
+        format!("threads = {threads} is out of bounds: allowed is 1 to {MOST_THREADS}"),
+    ))
 }
 
 /// Weights of the samples of a window, and from how many samples to how many the windows start.
@@ -320,6 +337,35 @@ impl Motor {
         arrays(py, rows.or_input_error(py)?, [parameters.len(), measured.samples()])
     }
 
+    /// Exact derivatives, by the parameters at these paths, of measured minus needed effort along
+    /// given positions (shape (n + 1,)), seen through a kernel; shape (parameters, rows). Starts as
+    /// in ``follow_sensitivity``. The motor is left as it was.
+    #[pyo3(signature = (position, current, dt, parameters, kernel, *, load=None, start=None))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn follow_columns<'py>(
+        &self,
+        py: Python<'py>,
+        position: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        parameters: Vec<String>,
+        kernel: &Bound<'py, RowKernel>,
+        load: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let measured = Measured::read(position, current, dt, load)?;
+        let motion = measured.motion()?;
+        let primed = self.start(py, start)?;
+        let kernel = kernel.get().core();
+        let values = py.detach(|| {
+            let core = self.lock().clone();
+            let start = Start { running: core.running(), primed: primed.as_deref() };
+            follow_columns(core.spec(), start, &motion, &parameters, &kernel)
+        });
+        let rows = kernel.rows(measured.samples());
+        PyArray1::from_vec(py, values.or_input_error(py)?).reshape([parameters.len(), rows])
+    }
+
     /// Exact derivatives along given positions (shape (n + 1,)) by the gains of effects beside the
     /// motor's own, each at the gain 0 and in the shape given as (name, parameters): of friction
     /// less gravity and added efforts, of the effort of the drive, and of how far the centre of mass
@@ -341,20 +387,45 @@ impl Motor {
         let measured = Measured::read(position, current, dt, load)?;
         let motion = measured.motion()?;
         let primed = self.start(py, start)?;
-        if !(1..=MOST_THREADS).contains(&threads) {
-            return Err(input_error(
-                py,
-                format!("threads = {threads} is out of bounds: allowed is 1 to {MOST_THREADS}"),
-            ));
-        }
+        let threads = threads_of(py, threads)?;
         let list = candidates_of(candidates)?;
-        let gains = list.iter().map(|effect| effect.record.facts.gains.len()).sum();
         let rows = py.detach(|| {
             let core = self.lock().clone();
             let start = Start { running: core.running(), primed: primed.as_deref() };
-            signatures(core.spec(), start, &motion, &list, threads as usize)
+            signatures(core.spec(), start, &motion, &list, threads)
         });
-        arrays(py, rows, [gains, measured.samples()])
+        arrays(py, rows, [gains_of(&list), measured.samples()])
+    }
+
+    /// The same of measured minus needed effort, seen through a kernel; shape (gains, rows).
+    #[pyo3(signature = (
+        position, current, dt, candidates, kernel, *, load=None, start=None, threads=1,
+    ))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn signature_columns<'py>(
+        &self,
+        py: Python<'py>,
+        position: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        candidates: &Bound<'py, PyAny>,
+        kernel: &Bound<'py, RowKernel>,
+        load: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
+        threads: i64,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let measured = Measured::read(position, current, dt, load)?;
+        let motion = measured.motion()?;
+        let primed = self.start(py, start)?;
+        let threads = threads_of(py, threads)?;
+        let list = candidates_of(candidates)?;
+        let kernel = kernel.get().core();
+        let values = py.detach(|| {
+            let core = self.lock().clone();
+            let start = Start { running: core.running(), primed: primed.as_deref() };
+            signature_columns(core.spec(), start, &motion, &list, &kernel, threads)
+        });
+        PyArray1::from_vec(py, values).reshape([gains_of(&list), kernel.rows(measured.samples())])
     }
 
     /// What each of many short simulations along given positions (shape (n + 1,)) comes to: the sum,

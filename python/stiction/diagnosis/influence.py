@@ -10,12 +10,12 @@ from ..trajectory import FloatArray
 
 __all__ = ["limited"]
 
-MOST_TIMES: Final = 10.0
+MOST_TIMES: Final = 5.0
 """Power of a block over the median one that counts in full."""
 
 
 def limited(*powers: FloatArray) -> tuple[FloatArray, ...]:
-    """Powers per block, each block scaled down where it holds more than ten times the median.
+    """Powers per block, each block scaled down where it holds more than five times the median.
 
     In a block in which a contact breaks away a moment earlier than the model every model is wrong
     by far, whatever effect it holds: a single one would decide between all candidates.

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..fitting.minimise import Solution, minimise
 from ..fitting.rows import Nuisances, Rows, timing_bound
+from ..fitting.slopes import slopes
 from ..fitting.start import free_paths
 from ..parameter import Parameter
 from ..plant import Effect, Plant
@@ -23,7 +24,7 @@ from .regression import step
 
 __all__ = ["Model", "fitted", "power_of", "stepped", "with_effect", "without_effect"]
 
-REFIT_EVALUATIONS: Final = 12
+REFIT_EVALUATIONS: Final = 30
 """A refit starts from the base and an estimate of the gain: it needs few steps."""
 REFIT_CONVERGED: Final = 1e-5
 """Of the power: a fifth of a standard error of any parameter."""
@@ -64,22 +65,27 @@ class Model:
     @cached_property
     def columns(self) -> FloatArray:
         """Derivatives of ``residual`` by what was fitted and does not stand at a bound."""
-        paths = list(self.solution.variables.paths)
-        starts = [(k, name) for k, own in self.nuisances.starts.items() for name in own]
+        return self._slopes(self.evidence.shown)
 
-        def block(rows: Rows) -> FloatArray:
-            own = [j for j, (k, _) in enumerate(starts) if k == rows.index]
-            wanted = [*paths, *(f"start.{starts[j][1]}" for j in own)]
-            found = rows.jacobian(self.plant, wanted, self.nuisances)
-            whole = np.zeros((len(found), len(paths) + len(starts) + 1))
-            whole[:, : len(paths)] = found[:, : len(paths)]
-            for column, j in enumerate(own):
-                whole[:, len(paths) + j] = found[:, len(paths) + column]
-            if self._timing_is_free:
-                whole[:, -1] = rows.late
-            return whole
+    @cached_property
+    def fitted_columns(self) -> FloatArray:
+        """The same of the fitted rows alone."""
+        if "columns" in self.__dict__:
+            return self.columns[self.evidence.fitted]
+        if self.solution.slopes is None:
+            return self._slopes(self.evidence.train)
+        return self._timed(self.solution.slopes)
 
-        return np.nan_to_num(self.evidence.stack(block))
+    def _slopes(self, rows: Sequence[Rows]) -> FloatArray:
+        paths = self.solution.variables.paths
+        blocks = self.evidence.each(lambda r: slopes(r, self.plant, paths, self.nuisances), rows)
+        return self._timed(np.nan_to_num(np.concatenate(blocks)))
+
+    def _timed(self, columns: FloatArray) -> FloatArray:
+        if not self._timing_is_free:
+            columns = columns.copy()
+            columns[:, len(self.solution.variables.paths)] = 0.0
+        return columns
 
     def strength(self, candidate: Candidate) -> float:
         """Gains of an effect over their standard errors: √(γᵀC⁻¹γ), C over blocks of 1 s.
@@ -90,7 +96,7 @@ class Model:
         paths = list(self.solution.variables.paths)
         own = [paths.index(f"effects.{candidate.name}.{name}") for name in candidate.gains]
         fit, block = self.evidence.fitted, self.evidence.cells.block
-        columns, residual = self.columns[fit], self.residual[fit]
+        columns, residual = self.fitted_columns, self.residual[fit]
         scale = np.sqrt(np.sum(columns**2, axis=0))
         shapes = [f"effects.{candidate.name}.{candidate.own(name)}" for name in candidate.shape]
         scale[[paths.index(path) for path in shapes if path in paths]] = 0.0

@@ -17,6 +17,7 @@ from ..fitting.forms import horizon_of
 from ..fitting.forms import told as residual_told
 from ..fitting.minimise import MOST_EVALUATIONS, launch
 from ..fitting.result import FitResult
+from ..fitting.rows import primed
 from ..fitting.solve import evaluate, reweighted
 from ..fitting.start import complete, free_paths
 from ..plant import Effect, Friction, Plant
@@ -292,7 +293,8 @@ def _base(evidence: Evidence, plant: Plant) -> Model:
     else:
         evidence.train[0].weight = 1.0 / max(np.sqrt(np.mean(first.residual**2)), 1e-300)
     evidence.weigh()
-    return fitted(evidence, first.plant, first.nuisances, most=BASE_EVALUATIONS)
+    nuisances = primed(first.plant, evidence.train, first.nuisances)
+    return fitted(evidence, first.plant, nuisances, most=BASE_EVALUATIONS)
 
 
 def _base_of_law(evidence: Evidence, base: Model, law: str) -> Model | None:

@@ -126,8 +126,6 @@ def centre(null: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def true_motion(form: WeakForm) -> FloatArray:
     """The measured motion without its rounding: what stands for the true one; shape (rows,)."""
-    return smooth(
-        form.driving(form.readings),
-        form.dt,
-        max(form.dt, SMOOTHING_SHARE * form.kernel.support),
-    )
+    if form.adapts:
+        return form.position
+    return smooth(form.position, form.dt, max(form.dt, SMOOTHING_SHARE * form.kernel.support))

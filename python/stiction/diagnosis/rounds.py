@@ -36,6 +36,8 @@ MOST_EFFECTS: Final = 4
 """Effects added at most: who lacks more than that needs another law."""
 REFITTED: Final = 5
 """Candidates refitted in a round."""
+SLIGHT: Final = 0.1
+"""A candidate that explains less than this share of one that passed is not refitted beside it."""
 IMITATED: Final = 0.1
 """Share of a signature beside the base below which the base is what hides it."""
 MOST_RENEWALS: Final = 2
@@ -173,13 +175,15 @@ def _round(
             if not score.testable:
                 found.blind.append(score.candidate.record)
     passing = [score for score in scores if _promises(score)]
-    trials = [
-        _trial(evidence, found.models[-1], signatures, score, friction)
-        for score in passing[:REFITTED]
-    ]
-    for score in passing[REFITTED:]:
-        row = found.rows[score.candidate.name]
-        found.rows[row.name] = replace(row, reason="others explain more")
+    trials: list[Trial] = []
+    for score in passing[:REFITTED]:
+        if not _hopeless(score, trials):
+            trials.append(_trial(evidence, found.models[-1], signatures, score, friction))
+    tried = {trial.name for trial in trials}
+    for score in passing:
+        if score.candidate.name not in tried:
+            row = found.rows[score.candidate.name]
+            found.rows[row.name] = replace(row, reason="others explain more")
     choice = choose(trials)
     found.imitated = max((t.gain for t in trials if t.imitates and choice is None), default=0.0)
     for trial in trials:
@@ -209,6 +213,18 @@ def _promises(score: Score) -> bool:
     if not score.testable or score.score <= score.threshold:
         return False
     return score.heldout > 0.0 or score.score > max(MUCH, MANY_TIMES * score.threshold)
+
+
+def _hopeless(score: Score, trials: Sequence[Trial]) -> bool:
+    """Whether one that was refitted and passed explains so much more that this one need not be.
+
+    Members of its family are always asked: what they explain is much the same.
+    """
+    family = score.candidate.record.family
+    passed = [trial for trial in trials if not trial.reason]
+    if any(trial.candidate.record.family == family for trial in passed):
+        return False
+    return any(score.score < SLIGHT * trial.score.score for trial in passed)
 
 
 def _problem(evidence: Evidence, model: Model, centred: FloatArray, bias: FloatArray) -> Problem:

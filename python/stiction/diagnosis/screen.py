@@ -25,6 +25,8 @@ NULL_DEVIATIONS: Final = 5.0
 """And above the surrogates' mean by this many standard deviations."""
 FLIPS: Final = 7
 """Seed of the signs by which blocks are turned round: always the same."""
+DEPENDENT: Final = 1e-12
+"""Least eigenvalue of columns of size 1 below which they are taken as one and the same."""
 SEEN_SIZE: Final = 0.02
 """An effect whose effort is this share of the friction must be seen, or it is not testable."""
 
@@ -156,67 +158,111 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     raw = signatures.columns[fitted]
     columns = base.off(raw)
     power = max(float(residual @ residual), 1e-300)
-    tried = [
-        _tried(candidate, columns[:, own], residual)
-        for candidate, own in zip(signatures.candidates, signatures.slices, strict=True)
-    ]
+    scan = _Scan.of(columns, signatures)
+    gains, explained = scan.regressed(columns.T @ residual)
     best: dict[str, int] = {}
-    for index, (candidate, (score, _, _)) in enumerate(
-        zip(signatures.candidates, tried, strict=True)
-    ):
-        if candidate.name not in best or score > tried[best[candidate.name]][0]:
+    for index, candidate in enumerate(signatures.candidates):
+        if candidate.name not in best or explained[index] > explained[best[candidate.name]]:
             best[candidate.name] = index
     heldout = _heldout(problem, signatures, list(best.values()))
     # What explains most and carries over: taken out for the thresholds of all others.
     carrying = [index for index in best.values() if heldout[index] > 0.0]
-    strongest = max(carrying or best.values(), key=lambda index: tried[index][0])
-    unexplained = residual - columns[:, signatures.slices[strongest]] @ tried[strongest][1]
-    flips = base.off(_flipped(unexplained, problem.block[problem.fitted], null.shape[1]))
+    strongest = max(carrying or best.values(), key=lambda index: explained[index])
+    unexplained = residual - columns[:, signatures.slices[strongest]] @ gains[strongest]
+    flips = _flipped(unexplained, problem.block[fitted], null.shape[1])
     null_power = np.maximum(np.sum(null**2, axis=0), 1e-300)
-    thresholds: dict[str, float] = {}
-    for name in best:
-        reached = [
-            (directions.T @ null, directions.T @ flips)
-            for candidate, (_, _, directions) in zip(signatures.candidates, tried, strict=True)
-            if candidate.name == name and directions is not None
-        ]
-        thresholds[name] = _threshold(
-            [np.sum(noise**2, axis=0) / null_power for noise, _ in reached],
-            [np.sum(turned**2, axis=0) / power for _, turned in reached],
-        )
+    # The columns are free of the base, so what of a residual lies in the base does not matter.
+    noise = scan.explained(columns.T @ null) / null_power
+    turned = scan.explained(columns.T @ flips) / power
+    names = np.array([candidate.name for candidate in signatures.candidates])
+    thresholds = {name: _threshold(noise[names == name], turned[names == name]) for name in best}
     scores = []
     for name, index in best.items():
-        score, gains, _ = tried[index]
         part, whole = columns[:, signatures.slices[index]], raw[:, signatures.slices[index]]
         total = float(np.sum(whole**2))
         left = float(np.sum(part**2)) / total if total > 0.0 else 0.0
         scores.append(
             Score(
                 candidate=signatures.candidates[index],
-                gains=gains,
-                score=score,
+                gains=gains[index],
+                score=float(explained[index]) / power,
                 threshold=thresholds[name],
                 heldout=heldout[index],
                 left=left,
                 visible=left * len(residual) * (SEEN_SIZE * friction) ** 2 / power,
-                signature=part @ gains,
+                signature=part @ gains[index],
             )
         )
     return sorted(scores, key=lambda s: -s.score)
 
 
-def _tried(
-    candidate: Candidate, part: FloatArray, residual: FloatArray
-) -> tuple[float, FloatArray, FloatArray | None]:
-    """Score, gains, and an orthonormal basis of a candidate's columns."""
-    directions, gains = _solve(part, residual)
-    if directions is None:
-        return 0.0, gains, None
-    gains = _bounded(candidate.record, gains)
-    explained = part @ gains
-    power = max(float(residual @ residual), 1e-300)
-    score = (2.0 * float(explained @ residual) - float(explained @ explained)) / power
-    return score, gains, directions
+@dataclass(frozen=True)
+class _Scan:
+    """The regression on every candidate by itself, from products of columns alone.
+
+    A candidate has a few columns and there are hundreds of them: what is summed over rows is summed
+    for all of them at once.
+
+    Attributes
+    ----------
+    candidates : tuple of Candidate
+    slices : tuple of slice
+    normal : list of numpy.ndarray, shape (q, q)
+        SᵀS of each candidate.
+    inverse : list of numpy.ndarray or None, shape (q, q)
+        None where its columns are not independent.
+    """
+
+    candidates: tuple[Candidate, ...]
+    slices: tuple[slice, ...]
+    normal: list[FloatArray]
+    inverse: list[FloatArray | None]
+
+    @classmethod
+    def of(cls, columns: FloatArray, signatures: Signatures) -> _Scan:
+        normal = [columns[:, own].T @ columns[:, own] for own in signatures.slices]
+        inverse = [_inverse(matrix) for matrix in normal]
+        return cls(signatures.candidates, signatures.slices, normal, inverse)
+
+    def regressed(self, products: FloatArray) -> tuple[list[FloatArray], FloatArray]:
+        """Gains of each candidate within their bounds, and the power that they take away.
+
+        ``products`` is Sᵀr, shape (columns,).
+        """
+        gains, explained = [], np.zeros(len(self.candidates))
+        for k, (candidate, own) in enumerate(zip(self.candidates, self.slices, strict=True)):
+            inverse, product = self.inverse[k], products[own]
+            if inverse is None:
+                gains.append(np.zeros(len(product)))
+                continue
+            best = _bounded(candidate.record, inverse @ product)
+            gains.append(best)
+            explained[k] = 2.0 * float(best @ product) - float(best @ self.normal[k] @ best)
+        return gains, explained
+
+    def explained(self, products: FloatArray) -> FloatArray:
+        """Power of each of many residuals that each candidate takes away, gains without bounds.
+
+        Shapes (columns, residuals) and (candidates, residuals).
+        """
+        powers = np.zeros((len(self.candidates), products.shape[1]))
+        for k, own in enumerate(self.slices):
+            inverse = self.inverse[k]
+            if inverse is not None:
+                powers[k] = np.sum(products[own] * (inverse @ products[own]), axis=0)
+        return powers
+
+
+def _inverse(normal: FloatArray) -> FloatArray | None:
+    """Inverse of a normal matrix, None where its columns are not independent."""
+    size = np.sqrt(np.diag(normal))
+    if not np.all(size > 0.0):
+        return None
+    scaled = normal / np.outer(size, size)
+    if len(size) > 1 and float(np.linalg.eigvalsh(scaled)[0]) < DEPENDENT:
+        return None
+    inverse: FloatArray = np.linalg.inv(scaled) / np.outer(size, size)
+    return inverse
 
 
 def _flipped(residual: FloatArray, block: np.ndarray, number: int) -> FloatArray:
@@ -232,10 +278,11 @@ def _flipped(residual: FloatArray, block: np.ndarray, number: int) -> FloatArray
     return flipped
 
 
-def _threshold(noise: Sequence[FloatArray], turned: Sequence[FloatArray]) -> float:
-    """What neither surrogates nor turned blocks reach, over the whole grid, with a margin."""
-    if not noise:
-        return 0.0
+def _threshold(noise: FloatArray, turned: FloatArray) -> float:
+    """What neither surrogates nor turned blocks reach, over the whole grid, with a margin.
+
+    Shapes (grid, residuals).
+    """
     null, flips = np.max(noise, axis=0), np.max(turned, axis=0)
     spread = float(np.std(null, ddof=1)) if len(null) > 1 else 0.0
     return max(
@@ -243,18 +290,6 @@ def _threshold(noise: Sequence[FloatArray], turned: Sequence[FloatArray]) -> flo
         float(np.mean(null)) + NULL_DEVIATIONS * spread,
         NULL_TIMES * float(np.max(flips)),
     )
-
-
-def _solve(part: FloatArray, residual: FloatArray) -> tuple[FloatArray | None, FloatArray]:
-    """An orthonormal basis of the columns, and the gains that fit best."""
-    size = np.sqrt(np.sum(part**2, axis=0))
-    if not np.all(size > 0.0):
-        return None, np.zeros(part.shape[1])
-    directions, triangle = np.linalg.qr(part / size)
-    if np.min(np.abs(np.diag(triangle))) < 1e-8:
-        return None, np.zeros(part.shape[1])
-    gains: FloatArray = np.linalg.solve(triangle, directions.T @ residual) / size
-    return directions, gains
 
 
 def _bounded(record: EffectRecord, gains: FloatArray) -> FloatArray:
@@ -277,8 +312,11 @@ def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) ->
         before += np.bincount(block, residual.held**2, number)
         for index in chosen:
             part = base.project(signatures.columns[:, signatures.slices[index]])
-            _, gains = _solve(part.fit, residual.fit)
-            gains = _bounded(signatures.candidates[index].record, gains)
+            inverse = _inverse(part.fit.T @ part.fit)
+            gains = np.zeros(part.fit.shape[1])
+            if inverse is not None:
+                record = signatures.candidates[index].record
+                gains = _bounded(record, inverse @ (part.fit.T @ residual.fit))
             left = residual.held - part.held @ gains
             after[index] += np.bincount(block, left**2, number)
     shares = {}

@@ -12,15 +12,17 @@ from ..trajectory import FloatArray
 
 __all__ = ["Minimum", "escaped", "levenberg_marquardt"]
 
-FIRST_DAMPING: Final = 1e-3
+FIRST_DAMPING: Final = 1e-2
 """Damping to start with, in units of the scaled normal matrix's diagonal."""
 WORTH_ESCAPING: Final = 1e-3
 """Share of the sum of squares for which a start from beyond a kink is worth while."""
 LEAST_DAMPING, MOST_DAMPING = 1e-12, 1e12
-STRAIGHT: Final = (0.7, 1.3)
-"""Share of what a step promised that it must gain for its slopes to be used once more: a residual
-costs a twentieth of its slopes."""
-MOST_USES: Final = 2
+DEAD: Final = 1e-12
+"""A variable whose slope is this share of the steepest one is left where it is."""
+KEPT: Final = (0.25, 2.0)
+"""Share of what a step promised that it must gain for its slopes to be corrected and used once
+more: a residual costs a tenth of its slopes."""
+MOST_USES: Final = 8
 """Steps that one set of slopes is used for."""
 
 
@@ -34,11 +36,15 @@ class Minimum:
     cost : float
         Sum of squares.
     converged : bool
+    fresh : bool
+        Whether the Jacobian that was asked for last belongs to ``x``, or to the point before a last
+        step that gained less than the tolerance.
     """
 
     x: FloatArray
     cost: float
     converged: bool
+    fresh: bool = False
 
 
 def levenberg_marquardt(
@@ -72,9 +78,9 @@ def levenberg_marquardt(
 
     Notes
     -----
-    Slopes are used for a second step where the first one kept what it promised (Shamanskii,
-    Ukr. Math. J. 19 (1967)); it never ends on such a step. Damping after Nielsen, Damping parameter
-    in Marquardt's method, IMM-REP-1999-05.
+    Slopes are corrected by what each step shows of them and used again (Broyden, Math. Comp. 19
+    (1965)) as long as steps keep what they promise; it never ends on such a step. Damping after
+    Nielsen, Damping parameter in Marquardt's method, IMM-REP-1999-05.
     """
     low, high = bounds
     x = np.clip(begin, low, high)
@@ -91,37 +97,48 @@ def levenberg_marquardt(
         uses += 1
         gradient = slopes.T @ left
         # Scales only grow (Moré 1978): a slope that fades must not make a step run away.
-        largest = np.maximum(largest, np.sqrt(np.diag(normal)))
-        size = np.where(largest > 0.0, largest, 1.0 / scale)
-        held = ((x <= low) & (gradient > 0.0)) | ((x >= high) & (gradient < 0.0))
+        largest = np.maximum(largest, np.sqrt(np.maximum(np.diag(normal), 0.0)))
+        telling = largest * scale
+        dead = telling <= DEAD * np.max(telling)
+        size = np.where(dead, 1.0 / scale, largest)
+        held = dead | ((x <= low) & (gradient > 0.0)) | ((x >= high) & (gradient < 0.0))
         free = np.flatnonzero(~held)
-        if len(free) == 0 or cost == 0.0:
-            return Minimum(x, cost, True)
+        if cost == 0.0 or (len(free) == 0 and uses == 1):
+            return Minimum(x, cost, True, uses == 1)
+        if len(free) == 0:
+            uses = MOST_USES
+            continue
         while True:
             if spent >= most:
                 return Minimum(x, cost, False)
             step = _step(normal, gradient, size, free, damping)
             tried = np.clip(x + step, low, high)
             moved = tried - x
+            promised = _promised(gradient, normal, moved)
             if np.all(np.abs(moved) <= tolerance * (np.abs(x) + tolerance * scale)):
                 if uses > 1:
                     uses = MOST_USES
                     break
-                return Minimum(x, cost, True)
+                return Minimum(x, cost, True, True)
+            if uses > 1 and promised <= tolerance * cost:
+                uses = MOST_USES
+                break
             after = residual(tried)
             spent += 1
             power = float(after @ after)
-            promised = _promised(gradient, normal, moved)
             if power < cost:
                 gained = (cost - power) / promised if promised > 0.0 else 0.0
                 damping *= max(1.0 / 3.0, 1.0 - (2.0 * min(gained, 1.0) - 1.0) ** 3)
                 damping, growth = max(damping, LEAST_DAMPING), 2.0
                 flat = cost - power <= tolerance * cost
+                change = after - left
                 x, left, cost = tried, after, power
                 if flat and uses == 1:
-                    return Minimum(x, cost, True)
-                if flat or not STRAIGHT[0] < gained < STRAIGHT[1]:
+                    return Minimum(x, cost, True, True)
+                if flat or not KEPT[0] < gained < KEPT[1]:
                     uses = MOST_USES
+                elif uses < MOST_USES:
+                    slopes, normal = _corrected(slopes, normal, change, moved, size)
                 break
             if uses > 1:
                 # Slopes of another point: look again before the damping is raised.
@@ -129,10 +146,24 @@ def levenberg_marquardt(
                 break
             # What a step cut at a bound promises says nothing of how much there is to gain.
             if _promised(gradient, normal, step) <= tolerance * cost:
-                return Minimum(x, cost, True)
+                return Minimum(x, cost, True, True)
             damping, growth = damping * growth, 2.0 * growth
             if damping > MOST_DAMPING:
-                return Minimum(x, cost, True)
+                return Minimum(x, cost, True, True)
+
+
+def _corrected(
+    slopes: FloatArray, normal: FloatArray, change: FloatArray, moved: FloatArray, size: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Slopes and normal matrix that explain what the last step changed; else as they were.
+
+    The least change that does so, steps measured in units of ``1/size``.
+    """
+    along = size**2 * moved
+    missed = (change - slopes @ moved) / float(along @ moved)
+    cross = np.outer(slopes.T @ missed, along)
+    normal = normal + cross + cross.T + float(missed @ missed) * np.outer(along, along)
+    return slopes + np.outer(missed, along), normal
 
 
 def escaped(

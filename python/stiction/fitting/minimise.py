@@ -12,7 +12,8 @@ import numpy as np
 from ..plant import Plant
 from ..trajectory import FloatArray
 from .levenberg import Minimum, escaped, levenberg_marquardt
-from .rows import Nuisances, Rows, Start, start_quantities, timing_bound, told_starts
+from .rows import Nuisances, Rows, Start, primed, start_quantities, timing_bound
+from .slopes import places_of, slopes
 from .variables import Variables, records
 
 __all__ = ["MOST_EVALUATIONS", "Solution", "launch", "minimise"]
@@ -26,8 +27,9 @@ FEW_EVALUATIONS: Final = 14
 MOST_ESCAPES: Final = 4
 """Starts from beyond a kink, for laws that stick without a spring."""
 SHRINKING: Final = 10.0
-"""Rows that a factor e of a shape parameter away from its neutral value weighs as much as: about a
-single independent piece of evidence, for neighbouring rows share a kernel."""
+"""Rows that a factor e of a shape parameter away from its neutral value weighs as much as, or a
+start of the usual size: about a single independent piece of evidence, for neighbouring rows share
+a kernel."""
 START_TIMES: Final = 2.0
 """A force at the start is at most this many times the greatest effort that was measured."""
 RUNAWAY: Final = 1e6
@@ -51,6 +53,8 @@ class Solution:
     evaluations : int
     power : float
         Σ w²·r² at the end.
+    slopes : numpy.ndarray or None, shape (n, p + 1 + starts)
+        Derivatives of the fitted rows at the end, as `slopes` gives them, where they are at hand.
     """
 
     plant: Plant
@@ -63,6 +67,7 @@ class Solution:
     message: str
     evaluations: int
     power: float
+    slopes: FloatArray | None = None
 
 
 def minimise(
@@ -86,7 +91,8 @@ def minimise(
     most : int
         Evaluations of the residual at most.
     nuisances : Nuisances, optional
-        Where the nuisances start.
+        Where the nuisances start, and which starts are fitted; without it those are fitted that the
+        rows tell of.
     converged : float
         Relative change of cost or parameters at which it ends.
 
@@ -95,7 +101,7 @@ def minimise(
     Solution
         The best so far after Ctrl-C or too many evaluations, and ``success`` False.
     """
-    return _Minimiser(plant, paths, rows, most, nuisances or Nuisances(), converged).run()
+    return _Minimiser(plant, paths, rows, most, nuisances, converged).run()
 
 
 def launch(
@@ -110,7 +116,8 @@ def launch(
     best = min(first, key=lambda solution: solution.power)
     if best.interrupted or best.success:
         return best
-    whole = minimise(best.plant, paths, rows, most=most, nuisances=best.nuisances)
+    nuisances = primed(best.plant, rows, best.nuisances)
+    whole = minimise(best.plant, paths, rows, most=most, nuisances=nuisances)
     spent = sum(solution.evaluations for solution in first)
     return replace(whole, begin=best.begin, evaluations=whole.evaluations + spent)
 
@@ -124,15 +131,16 @@ class _Minimiser:
         paths: Sequence[str],
         rows: Sequence[Rows],
         most: int,
-        nuisances: Nuisances,
+        nuisances: Nuisances | None,
         converged: float,
     ) -> None:
         self.plant, self.rows, self.most, self.converged = plant, rows, most, converged
         self.variables = Variables.of(plant, paths)
         self.begin = self.variables.vector(np.array([plant.parameters[p].value for p in paths]))
-        self.starts = told_starts(plant, rows)
-        self.primed = sorted({k for k, _ in self.starts})
+        given = primed(plant, rows) if nuisances is None else nuisances
+        self.starts = places_of(given)
         self.evaluations = 0
+        self._slopes: FloatArray | None = None
         self._best: tuple[float, FloatArray] | None = None
         known = records(plant)
         neutral = [known[path].neutral if path in known else None for path in paths]
@@ -148,10 +156,23 @@ class _Minimiser:
             ],
             dtype=np.int64,
         )
-        self.centres = np.log([float(neutral[k] or 1.0) for k in self.shrunk])
+        centres = np.log([float(neutral[k] or 1.0) for k in self.shrunk])
         self.pull = 0.0
-        before = [(nuisances.start(rows[k].index) or {}).get(name, 0.0) for k, name in self.starts]
-        self.full = np.concatenate([self.begin, [nuisances.timing], before])
+        before = [(given.start(index) or {}).get(name, 0.0) for index, name in self.starts]
+        self.full = np.concatenate([self.begin, [given.timing], before])
+        self.usual = np.array([self._usual(name) for _, name in self.starts])
+        # A start that few rows tell of stays near 0, too.
+        self.shrunk = np.append(self.shrunk, len(self.begin) + 1 + np.arange(len(self.starts)))
+        self.centres = np.append(centres, np.zeros(len(self.starts)))
+        self.widths = np.append(np.ones(len(centres)), self.usual)
+
+    def _usual(self, name: str) -> float:
+        """Usual size of a start quantity: that of efforts, or what they bend the contact by."""
+        effort = max(float(np.std(each.form.effort)) for each in self.rows)
+        if name == "force":
+            return max(effort, 1e-300)
+        stiffness = self.plant.friction.parameters.get("initial_stiffness")
+        return 1e-4 if stiffness is None else max(effort / stiffness.value, 1e-300)
 
     def run(self) -> Solution:
         lower, upper = self.variables.bounds()
@@ -169,9 +190,7 @@ class _Minimiser:
         own = np.abs(begin[: len(self.begin)])
         size = np.where(own > 0.0, own, 1e-3 * max(float(np.max(own, initial=0.0)), 1e-300))
         size[self.variables.logarithmic] = 1.0
-        scales = {"force": max(float(np.std(each.form.effort)) for each in self.rows)}
-        starts = [scales.get(name, 1e-4) for _, name in self.starts]
-        scale = np.concatenate([np.where(size > 0.0, size, 1.0), [late], starts])
+        scale = np.concatenate([np.where(size > 0.0, size, 1.0), [late], self.usual])
         interrupted = False
         if len(self.shrunk):
             left = self.residual(begin)
@@ -207,6 +226,7 @@ class _Minimiser:
             message,
             self.evaluations,
             self._best[0] if self._best is not None else float("inf"),
+            None if interrupted or not found.fresh else self._slopes,
         )
 
     def descend(
@@ -226,9 +246,9 @@ class _Minimiser:
     def split(self, full: FloatArray) -> tuple[Plant, Nuisances]:
         """Plant and nuisances of a full vector."""
         count = len(self.begin)
-        starts: dict[int, Start] = {self.rows[k].index: {} for k in self.primed}
-        for (k, name), value in zip(self.starts, full[count + 1 :].tolist(), strict=True):
-            starts[self.rows[k].index][name] = value
+        starts: dict[int, Start] = {}
+        for (index, name), value in zip(self.starts, full[count + 1 :].tolist(), strict=True):
+            starts.setdefault(index, {})[name] = value
         plant = self.variables.plant(self.plant, full[:count])
         return plant, Nuisances(float(full[count]), starts)
 
@@ -240,7 +260,9 @@ class _Minimiser:
             np.concatenate(rows), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY
         )
         if len(self.shrunk):
-            residual = np.append(residual, self.pull * (full[self.shrunk] - self.centres))
+            residual = np.append(
+                residual, self.pull * (full[self.shrunk] - self.centres) / self.widths
+            )
         self.evaluations += 1
         power = float(residual @ residual)
         if self._best is None or power < self._best[0]:
@@ -250,20 +272,14 @@ class _Minimiser:
 
     def jacobian(self, full: FloatArray) -> FloatArray:
         plant, nuisances = self.split(full)
-        count = len(self.begin)
-        blocks = []
-        for k, each in enumerate(self.rows):
-            own = [(j, f"start.{name}") for j, (of, name) in enumerate(self.starts) if of == k]
-            paths = [*self.variables.paths, *(path for _, path in own)]
-            found = each.jacobian(plant, paths, nuisances)[each.mask]
-            block = np.zeros((len(found), len(full)))
-            block[:, :count] = self.variables.chain(found[:, :count], full[:count])
-            block[:, count] = each.late[each.mask]
-            for column, (j, _) in enumerate(own):
-                block[:, count + 1 + j] = found[:, count + column]
-            blocks.append(each.weight * block)
+        count, paths = len(self.begin), self.variables.paths
+        self._slopes = np.nan_to_num(
+            np.vstack([slopes(each, plant, paths, nuisances) for each in self.rows])
+        )
+        found: FloatArray = self._slopes.copy()
+        found[:, :count] = self.variables.chain(found[:, :count], full[:count])
         if len(self.shrunk):
             pulled = np.zeros((len(self.shrunk), len(full)))
-            pulled[np.arange(len(self.shrunk)), self.shrunk] = self.pull
-            blocks.append(pulled)
-        return np.nan_to_num(np.vstack(blocks))
+            pulled[np.arange(len(self.shrunk)), self.shrunk] = self.pull / self.widths
+            found = np.vstack([found, pulled])
+        return found

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..catalogue import effects, laws
+from ..catalogue import effects
 from ..plant import Plant
 from ..recording import Part, Recording
 from ..trajectory import FloatArray
@@ -20,6 +20,7 @@ __all__ = [
     "Nuisances",
     "Rows",
     "Start",
+    "primed",
     "rows_of",
     "start_quantities",
 ]
@@ -105,8 +106,7 @@ def rows_of(form: WeakForm, recording: Recording, index: int, parts: Sequence[Pa
 
 def start_quantities(plant: Plant) -> tuple[str, ...]:
     """Names of what the law of a plant remembers from before a recording."""
-    law = next(record for record in laws() if record.name == plant.friction.law)
-    return tuple(quantity.name for quantity in getattr(law, "start", ()))
+    return tuple(quantity.name for quantity in plant.friction.record.start)
 
 
 def timing_bound(plant: Plant, rows: Sequence[Rows]) -> float:
@@ -120,14 +120,23 @@ def timing_bound(plant: Plant, rows: Sequence[Rows]) -> float:
     return TIMING_SHARE * min(each.form.dt for each in rows)
 
 
+def primed(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances | None = None) -> Nuisances:
+    """Nuisances with a start, at 0 if it was not there, for all that the rows tell of."""
+    before = nuisances or Nuisances()
+    starts: dict[int, Start] = {}
+    for index, name in told_starts(plant, rows):
+        starts.setdefault(index, {})[name] = (before.start(index) or {}).get(name, 0.0)
+    return Nuisances(before.timing, starts)
+
+
 def told_starts(plant: Plant, rows: Sequence[Rows]) -> list[tuple[int, str]]:
-    """Starts that the rows tell of: index into ``rows`` and quantity."""
+    """Starts that the rows tell of: index of the recording and quantity."""
     names = start_quantities(plant)
     if not names:
         return []
     told = []
     virgin = Nuisances(starts={each.index: dict.fromkeys(names, 0.0) for each in rows})
-    for k, each in enumerate(rows):
+    for each in rows:
         left = each.residual(plant, virgin)[each.mask]
         columns = each.jacobian(plant, [f"start.{name}" for name in names], virgin)[each.mask]
         size = float(np.sqrt(np.mean(left**2)))
@@ -136,5 +145,5 @@ def told_starts(plant: Plant, rows: Sequence[Rows]) -> list[tuple[int, str]]:
         for name, column in zip(names, columns.T, strict=True):
             typical = scales.get(name, 0.1 * float(np.ptp(each.form.position)))
             if np.max(np.abs(column)) * typical > TOLD * size:
-                told.append((k, name))
+                told.append((each.index, name))
     return told

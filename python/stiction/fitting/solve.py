@@ -17,7 +17,8 @@ from ..trajectory import FloatArray
 from .forms import forms_of, horizon_of, set_clocks
 from .minimise import MOST_EVALUATIONS, Solution, launch, minimise
 from .result import FitParameter, FitResult
-from .rows import Nuisances, Rows, rows_of
+from .rows import Nuisances, Rows, primed, rows_of
+from .slopes import slopes
 from .start import complete, free_paths
 from .statistics import (
     correlations,
@@ -119,7 +120,11 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     if len(train) > 1 and not first.interrupted:
         reweighted(train, first.plant, first.nuisances)
         solution = minimise(
-            first.plant, paths, train, most=max_evaluations, nuisances=first.nuisances
+            first.plant,
+            paths,
+            train,
+            most=max_evaluations,
+            nuisances=primed(first.plant, train, first.nuisances),
         )
         evaluations += solution.evaluations
     return evaluate(
@@ -188,7 +193,7 @@ def evaluate(
     """
     plant, variables, nuisances = solution.plant, solution.variables, solution.nuisances
     paths = variables.paths
-    jacobians = _jacobians(solution, train)
+    jacobians = [slopes(each, plant, paths, nuisances) for each in train]
     residuals = [each.weight * each.residual(plant, nuisances)[each.mask] for each in train]
     matrix, pieces = covariance(jacobians, residuals, [each.per_block for each in train])
     matrix = matrix[: len(paths), : len(paths)]
@@ -237,24 +242,6 @@ def evaluate(
         timing_offset=nuisances.timing,
         starts={names[index]: dict(start) for index, start in nuisances.starts.items()},
     )
-
-
-def _jacobians(solution: Solution, rows: Sequence[Rows]) -> list[FloatArray]:
-    """Weighted derivatives by parameters, then by nuisances: they take their share of evidence."""
-    paths, nuisances = list(solution.variables.paths), solution.nuisances
-    starts = [(k, name) for k, own in nuisances.starts.items() for name in own]
-    jacobians = []
-    for each in rows:
-        own = [j for j, (k, _) in enumerate(starts) if k == each.index]
-        wanted = [*paths, *(f"start.{starts[j][1]}" for j in own)]
-        found = each.jacobian(solution.plant, wanted, nuisances)[each.mask]
-        block = np.zeros((len(found), len(paths) + 1 + len(starts)))
-        block[:, : len(paths)] = found[:, : len(paths)]
-        block[:, len(paths)] = each.late[each.mask]
-        for column, j in enumerate(own):
-            block[:, len(paths) + 1 + j] = found[:, len(paths) + column]
-        jacobians.append(each.weight * block)
-    return jacobians
 
 
 def _sides(

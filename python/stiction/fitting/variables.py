@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..catalogue import ParameterRecord, effects, laws
+from ..catalogue import ParameterRecord, effects
 from ..plant import Plant
 from ..trajectory import FloatArray
 
@@ -43,8 +43,7 @@ _BODY: Final = {
 
 def records(plant: Plant) -> dict[str, ParameterRecord]:
     """The catalogue's record of every parameter of law and effects, by path."""
-    law = next(record for record in laws() if record.name == plant.friction.law)
-    found = {f"friction.{p.name}": p for p in law.parameters}
+    found = {f"friction.{p.name}": p for p in plant.friction.record.parameters}
     by_name = {record.name: record for record in effects()}
     for effect in plant.effects:
         for p in by_name[effect.name].parameters:

@@ -2,6 +2,7 @@
 
 use super::elements::lag::follow;
 use super::elements::plastic::{Creep, Plastic};
+use super::elements::reachable::reachable;
 use super::elements::series;
 use super::elements::spring::{Curve, Loading, SpringState, VirginCurve, Walk};
 use super::elements::stribeck::{fall, steepest};
@@ -61,7 +62,7 @@ parameters! {
 parameters! {
     /// What a contact of [`HsiehPan`] may bring along.
     pub struct HsiehPanStart {
-        force: Effort, "force of the spring at the start, on the first loading curve, σ_0",
+        force: Effort, "force of the spring at the start, on the first loading curve; levels off from 98 % of F_s on, σ_0",
             default Value(0.0), neutral Some(0.0), typical 0.1, bounds -1e9, 1e9;
         hardening: Position, "work hardening at the start, h_0",
             default Value(0.0), neutral Some(0.0), typical 5e-5, bounds 0.0, 1e6;
@@ -387,7 +388,6 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
 
     const PARAMETERS: &'static [ParameterSpec] = HsiehPanParameters::<f64>::SPECS;
     const OPTIONAL: &'static [&'static str] = &[
-        "hardening_exponent",
         "stribeck_velocity",
         "stribeck_exponent",
         "slip_distance",
@@ -462,11 +462,12 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
 
     fn primed(&self, values: &[S]) -> HsiehPanState<S> {
         let start = HsiehPanStart::from_values(values);
+        let force = reachable(start.force, self.parameters.breakaway);
         let mut state = self.initial();
-        state.spring.place_on_virgin(&self.curve, start.force);
-        state.series = start.force;
+        state.spring.place_on_virgin(&self.curve, force);
+        state.series = force;
         // As after a long time at this force: its loading rate is 0.
-        state.filtered = start.force;
+        state.filtered = force;
         state.hardening = start.hardening;
         state
     }

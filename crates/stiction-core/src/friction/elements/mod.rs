@@ -4,6 +4,7 @@ pub mod contact_age;
 pub mod lag;
 pub mod memory;
 pub mod plastic;
+pub mod reachable;
 pub mod series;
 pub mod spring;
 pub mod stribeck;

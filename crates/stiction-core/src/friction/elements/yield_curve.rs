@@ -1,5 +1,6 @@
 //! First loading of elasto-slide elements without number, their yield points spread as one likes.
 
+use super::reachable::reachable;
 use super::spring::{Loading, Response, masing};
 use crate::scalar::{Scalar, logarithmic_mean};
 
@@ -7,10 +8,6 @@ use crate::scalar::{Scalar, logarithmic_mean};
 const EDGES: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 3.0];
 /// Groups of elements.
 pub const GROUPS: usize = EDGES.len() + 1;
-
-/// Shares of F_c by which a force at the start stays below it: where it begins to level off, and
-/// what it approaches. At F_c itself the curve has no slope and no place.
-const LEVELLING: (f64, f64) = (0.02, 0.001);
 
 /// What a group of elements, and all that yield later, do: m·v(y) + l·(y − E) + o.
 #[derive(Debug, Clone, Copy)]
@@ -86,18 +83,9 @@ impl<S: Scalar> YieldCurve<S> {
         }
     }
 
-    /// A force that the curve reaches: itself up to 98 % of F_c, beyond that levelling off with a
-    /// slope that is continuous and never 0, so that a fit finds its way back.
+    /// A force that the curve reaches.
     pub fn reachable(&self, force: S) -> S {
-        let (begin, end) = LEVELLING;
-        let s = if force.re() < 0.0 { -1.0 } else { 1.0 };
-        let beyond = force * s / self.coulomb - (1.0 - begin);
-        if beyond.re() <= 0.0 {
-            return force;
-        }
-        let width = begin - end;
-        let short = S::constant(width) / (beyond / width + 1.0) + end;
-        self.coulomb * (-(short - 1.0)) * s
+        reachable(force, self.coulomb)
     }
 
     /// Where the virgin curve has a reachable force.

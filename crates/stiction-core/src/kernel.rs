@@ -1,0 +1,95 @@
+//! The kernel through which efforts are compared: means about stamps, every so many samples.
+
+use crate::error::{Error, Result};
+
+/// A kernel over the samples of a motion.
+#[derive(Debug, Clone, Copy)]
+pub struct RowKernel<'a> {
+    /// Weights of the mean, in the order of the samples; an odd number of them.
+    pub mean: &'a [f64],
+    /// Weights of the mean of the second derivative; two more.
+    pub second: &'a [f64],
+    /// Spacing of the results in samples.
+    pub every: usize,
+    /// Inertia, which turns what the sensor does not show of the motion into effort.
+    pub inertia: f64,
+    /// Whether the drive holds its effort between samples and counts as measured.
+    pub held: bool,
+}
+
+impl RowKernel<'_> {
+    /// Checks the numbers of weights and the spacing.
+    pub fn check(&self) -> Result<()> {
+        let fits = self.every > 0 && self.second.len() == self.mean.len() + 2;
+        if fits && self.mean.len() % 2 == 1 { Ok(()) } else { Err(Error::Kernel) }
+    }
+
+    /// Results from so many samples.
+    pub fn rows(&self, samples: usize) -> usize {
+        (samples + 1).saturating_sub(self.second.len()).div_ceil(self.every)
+    }
+
+    /// Measured minus needed effort, from derivatives at the sample ends: `needed` and `driven`
+    /// efforts, and how far the centre of mass is `ahead` of the reading.
+    pub fn column(&self, [needed, driven, ahead]: [&[f64]; 3], column: &mut [f64]) {
+        let any = |values: &[f64]| values.iter().any(|value| *value != 0.0);
+        for (place, value) in column.iter_mut().enumerate() {
+            let first = place * self.every + 1;
+            *value = -inner(&needed[first..first + self.mean.len()], self.mean);
+        }
+        if self.held && any(driven) {
+            let last = driven.len() - 1;
+            let centred: Vec<f64> =
+                (0..=last).map(|k| 0.5 * (driven[k] + driven[last.min(k + 1)])).collect();
+            for (place, value) in column.iter_mut().enumerate() {
+                let first = place * self.every + 1;
+                *value += inner(&centred[first..first + self.mean.len()], self.mean);
+            }
+        }
+        if any(ahead) {
+            for (place, value) in column.iter_mut().enumerate() {
+                let first = place * self.every;
+                let bent = inner(&ahead[first..first + self.second.len()], self.second);
+                *value -= self.inertia * bent;
+            }
+        }
+    }
+}
+
+/// Sum of products, in eight sums side by side.
+#[inline]
+fn inner(values: &[f64], weights: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut sums = [0.0; LANES];
+    let (some, other) = (values.chunks_exact(LANES), weights.chunks_exact(LANES));
+    let rest: f64 = some.remainder().iter().zip(other.remainder()).map(|(v, w)| v * w).sum();
+    for (v, w) in some.zip(other) {
+        for lane in 0..LANES {
+            sums[lane] += v[lane] * w[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_column_is_the_mean_of_what_is_measured_less_what_is_needed() {
+        let (mean, second) = ([0.25, 0.5, 0.25], [0.25, 0.0, -0.5, 0.0, 0.25]);
+        let kernel = RowKernel { mean: &mean, second: &second, every: 2, inertia: 3.0, held: true };
+        let ramp: Vec<f64> = (0..12).map(f64::from).collect();
+        let square: Vec<f64> = ramp.iter().map(|x| x * x).collect();
+        let zeros = vec![0.0; 12];
+        let mut column = vec![0.0; kernel.rows(12)];
+        assert_eq!(column.len(), 4);
+        kernel.column([&ramp, &zeros, &zeros], &mut column);
+        assert_eq!(column, [-2.0, -4.0, -6.0, -8.0]);
+        // Held efforts count half a sample later.
+        kernel.column([&zeros, &ramp, &zeros], &mut column);
+        assert_eq!(column, [2.5, 4.5, 6.5, 8.5]);
+        kernel.column([&zeros, &zeros, &square], &mut column);
+        assert_eq!(column, [-6.0; 4]);
+    }
+}

@@ -1,0 +1,57 @@
+//! `RowKernel`: what rows of an effort residual are seen through.
+
+use pyo3::prelude::*;
+use stiction_core::kernel::RowKernel as Core;
+
+use crate::arrays::one_row;
+use crate::error::{IntoPython, finite};
+
+/// Means of efforts about stamps that lie ``every`` samples apart, by weights, and of the second
+/// derivative of a position by the weights ``second``, two more, times ``inertia``; an effort that
+/// is ``held`` from sample to sample counts half a sample later.
+#[pyclass(frozen, module = "stiction._native")]
+pub struct RowKernel {
+    mean: Vec<f64>,
+    second: Vec<f64>,
+    every: usize,
+    inertia: f64,
+    held: bool,
+}
+
+impl RowKernel {
+    pub fn core(&self) -> Core<'_> {
+        Core {
+            mean: &self.mean,
+            second: &self.second,
+            every: self.every,
+            inertia: self.inertia,
+            held: self.held,
+        }
+    }
+}
+
+#[pymethods]
+impl RowKernel {
+    #[new]
+    #[pyo3(signature = (weights, second, every, inertia=0.0, *, held=false))]
+    fn new(
+        py: Python<'_>,
+        weights: &Bound<'_, PyAny>,
+        second: &Bound<'_, PyAny>,
+        every: i64,
+        inertia: f64,
+        held: bool,
+    ) -> PyResult<Self> {
+        let numbers =
+            |name, value| -> PyResult<Vec<f64>> { Ok(one_row(name, value)?.as_slice()?.to_vec()) };
+        let kernel = Self {
+            mean: numbers("weights", weights)?,
+            second: numbers("second", second)?,
+            every: usize::try_from(every).unwrap_or(0),
+            inertia: finite(py, "inertia", inertia)?,
+            held,
+        };
+        kernel.core().check().or_input_error(py)?;
+        Ok(kernel)
+    }
+}
