@@ -80,6 +80,7 @@ def scored(case, made, threads=1):
     found = st.diagnose(plant, session, without=case.without, threads=threads)
     families = {record.name: record.family for record in st.effects()}
     names = [effect.name for effect in made.effects]
+    known = oracle(plant, session, made, found.baseline) if names else (0.0, 0.0)
     return {
         "key": case.key,
         "at": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -94,7 +95,8 @@ def scored(case, made, threads=1):
         "found": [_cause(cause, families) for cause in found.effects],
         "unexplained": [[each.coordinate, each.share] for each in found.unexplained],
         "gain": None if found.gain is None else found.gain.value,
-        "clair": 0.0 if not names else clair(plant, session, made, found.baseline),
+        "clair": known[0],
+        "distance": known[1],
         "intervals": _intervals(made, found),
         "left": _left(found),
         "candidates": [row.to_dict() for row in found.candidates],
@@ -104,8 +106,13 @@ def scored(case, made, threads=1):
     }
 
 
-def clair(plant, session, made, baseline):
-    """Gain of who knows the hidden torque: taken off the input, base refitted, same weights."""
+def oracle(plant, session, made, baseline):
+    """What can be gained and seen by who knows the hidden torque: `clair` and `distance`.
+
+    clair: gain once it is taken off the input and the base is refitted; same weights, test rows.
+    distance: its signal-to-noise ratio over the rows of train, the base projected off: the square
+    root of its power per sample over the noise of the torque.
+    """
     torque = [r.torque_nm + r.truth["hidden"] for r in made.recordings]
     seen = Evidence(plant, session.recordings, threads=1)
     clean = Evidence(plant, as_session(made, torque).recordings, threads=1)
@@ -116,10 +123,28 @@ def clair(plant, session, made, baseline):
     seen.weigh()
     clean.weigh()
     base = fitted(seen, base.plant, base.nuisances)
-    oracle = fitted(clean, base.plant, base.nuisances)
+    known = fitted(clean, base.plant, base.nuisances)
     before = open_residuals(seen, [(base.plant, base.nuisances)])
-    after = open_residuals(clean, [(oracle.plant, oracle.nuisances)])
-    return 1.0 - float(np.sum(after.residuals[0] ** 2) / np.sum(before.residuals[0] ** 2))
+    after = open_residuals(clean, [(known.plant, known.nuisances)])
+    gain = 1.0 - float(np.sum(after.residuals[0] ** 2) / np.sum(before.residuals[0] ** 2))
+    return gain, _distance(made, seen, clean, base)
+
+
+def _distance(made, seen, clean, base):
+    signal, columns = [], []
+    for own, other in zip(seen.train, clean.train, strict=True):
+        moved = own.residual(base.plant, base.nuisances) - other.residual(
+            base.plant, base.nuisances
+        )
+        # Every sample has the same noise: weights of recordings are of no use here.
+        signal.append(np.sqrt(own.form.stride) * moved[own.mask])
+    weights = np.concatenate([np.full(int(r.mask.sum()), r.weight) for r in seen.train])
+    columns = base.fitted_columns / weights[:, None]
+    signal = np.concatenate(signal)
+    scale = np.sqrt(np.sum(columns**2, axis=0))
+    live = columns[:, scale > 0.0] / scale[scale > 0.0]
+    left = signal - live @ np.linalg.lstsq(live, signal, rcond=1e-8)[0]
+    return float(np.linalg.norm(left)) / (made.spec.noise * made.plant["coulomb"])
 
 
 def _truth(effect):

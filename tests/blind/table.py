@@ -15,6 +15,8 @@ from .control import shuffled
 BINS = (0.0, 0.01, 0.02, 0.04, 0.07, 0.12, 0.20, 0.40, 1.0)
 """Edges of clair, the gain of an oracle; below .02 silence is right."""
 SILENCE_IS_RIGHT = 0.02
+FEWEST = 12
+"""Sessions from which a curve can be drawn."""
 LARGE, MIDDLE = (0.25, 1.0), (0.1, 0.25)
 FOREIGN_FROM = 0.15
 EXPECTED = {
@@ -193,6 +195,7 @@ def _rates(kinds):
         ("intervals of gains that cover the truth", _share(covered, len(intervals))),
         ("control: name with labels shuffled", rate(shuffled(clear), named)),
         ("gain ÷ clair, right class", _quantiles(ratio)),
+        ("single: distance d at which 80 % of the classes are right", _distance(single)),
         ("seconds for a diagnosis", _quantiles([row["seconds"] for row in every])),
     ]
     lines = [line for line in lines if line[1] != NOTHING]
@@ -214,6 +217,26 @@ def _both(row):
 def _has_twin(name):
     known = {record.name for record in st.effects()}
     return any(name in pair and pair <= known for pair in PAIRS)
+
+
+def _distance(rows):
+    """Where a logistic curve over log d passes 80 %, with the interval of its delta method."""
+    rows = [row for row in rows if row.get("distance", 0.0) > 0.0]
+    right = np.array([1.0 if classed(row) else 0.0 for row in rows])
+    if len(rows) < FEWEST or right.min() == right.max():
+        return NOTHING
+    place = np.log([row["distance"] for row in rows])
+    columns = np.column_stack([np.ones(len(rows)), place])
+    curve = np.zeros(2)
+    for _ in range(100):
+        share = 1.0 / (1.0 + np.exp(-columns @ curve))
+        normal = columns.T @ (columns * (share * (1.0 - share))[:, None]) + 1e-9 * np.eye(2)
+        curve = curve + np.clip(np.linalg.solve(normal, columns.T @ (right - share)), -2.0, 2.0)
+    at = (math.log(4.0) - curve[0]) / curve[1]
+    slope = np.array([-1.0, -at]) / curve[1]
+    width = 1.96 * math.sqrt(float(slope @ np.linalg.solve(normal, slope)))
+    low, middle, high = (math.exp(min(at + k * width, 700.0)) for k in (-1.0, 0.0, 1.0))
+    return f"{middle:.0f} ({low:.0f}–{high:.0f}), n = {len(rows)}"
 
 
 def _quantiles(values):
