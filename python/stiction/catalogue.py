@@ -103,6 +103,7 @@ class EffectRecord:
     channels: tuple[str, ...]
     look_alikes: tuple[str, ...]
     experiment: str
+    plan: str
     gains: tuple[str, ...]
     shapes: tuple[ShapeRecord, ...]
     second: tuple[str, ...]
@@ -154,6 +155,7 @@ def effects() -> tuple[EffectRecord, ...]:
             channels=tuple(entry["channels"]),
             look_alikes=tuple(entry["look_alikes"]),
             experiment=entry["experiment"],
+            plan=entry["plan"],
             gains=tuple(entry["gains"]),
             shapes=tuple(
                 ShapeRecord(s["parameter"], s["scale"], tuple(s["grid"]), s["fitted"])

@@ -74,6 +74,7 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         dict.set_item("channels", effect.facts.channels.to_vec())?;
         dict.set_item("look_alikes", effect.facts.look_alikes.to_vec())?;
         dict.set_item("experiment", effect.facts.experiment)?;
+        dict.set_item("plan", effect.facts.plan)?;
         dict.set_item("means", effect.facts.means)?;
         dict.set_item("remedy", effect.facts.remedy)?;
         dict.set_item("gains", effect.facts.gains.to_vec())?;

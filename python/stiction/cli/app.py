@@ -11,6 +11,7 @@ from .diagnose import diagnose
 from .fit import fit
 from .init import init
 from .paper import paper
+from .plan import plan
 from .simulate import simulate
 
 __all__ = ["build"]
@@ -24,6 +25,6 @@ def build() -> cyclopts.App:
         version=f"stiction {__version__}",
         help_format="plaintext",
     )
-    for verb in (init, demo, simulate, fit, diagnose, laws, effects, paper):
+    for verb in (init, demo, simulate, fit, diagnose, plan, laws, effects, paper):
         app.command(verb)
     return app

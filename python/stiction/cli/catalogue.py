@@ -88,7 +88,7 @@ def effects(
         f"enters at: {listed(record.hooks)}",
         f"shows in: {record.coordinate}",
         f"looks like: {listed(record.look_alikes)}",
-        f"told apart by: {record.experiment}",
+        f"told apart by: {record.experiment} (stiction plan: {record.plan})",
         f"channels needed: {listed(record.channels) if record.channels else 'input and position'}",
         "",
         *_parameters(record.parameters),

@@ -12,34 +12,59 @@ from .words import joined
 
 __all__ = ["NO_COORDINATE", "advise"]
 
+_RAMPS: Final = ("ramps", "two-way ramps of constant speed over three decades, without rests")
+_TURNS: Final = ("turns", "slow full turns (or full strokes) both ways, twice")
+_FULL_TURNS: Final = ("turns", "slow full turns both ways, twice")
+_CHIRP: Final = ("chirp", "a chirp of the input up to a tenth of the sampling rate")
+_DWELLS: Final = ("dwells", "rests of 0.1 to 5 s, each followed by slow and by fast loading")
+_CYCLE: Final = (
+    "cycle",
+    "from cold: a short cycle, again after minutes of rest, again after long fast motion",
+)
 BY_COORDINATE: Final = {
-    "velocity": "two-way ramps of constant speed over three decades, without rests",
-    "speed": "two-way ramps of constant speed over three decades, without rests",
-    "position": "slow full turns (or full strokes) both ways, twice",
-    "position along the motion": "slow full turns (or full strokes) both ways, twice",
-    "angle": "slow full turns both ways, twice",
-    "angle along the motion": "slow full turns both ways, twice",
-    "order over position": "slow full turns (or full strokes) both ways, twice",
-    "order along the motion": "slow full turns (or full strokes) both ways, twice",
-    "order over position, times acceleration": "fast constant speed over many turns, and sines of "
-    "high acceleration",
-    "order over position, times effort": "slow full turns (or full strokes) with loads either way",
-    "response to the effort": "a chirp of the input up to a tenth of the sampling rate",
-    "frequency": "5 s of rest and 5 s of constant speed, with what runs nearby on and off",
-    "acceleration": "sines of one speed at different frequencies, so that accelerations differ",
-    "rest before the slide": "rests of 0.1 to 5 s, each followed by slow and by fast loading",
-    "loading before the slide": "equal rests, each followed by another rate of loading over two "
-    "decades",
-    "path along the motion": "a short reference cycle at start, middle and end, and one long rest",
-    "effort": "large efforts at low acceleration, and the same accelerations with a known load",
-    "rate of the effort": "a chirp of the input up to a tenth of the sampling rate",
-    "distance since the reversal": "small loops below break-away, nested, with holds",
-    "time since the reversal": "rests of 0.1 to 5 s, each followed by slow and by fast loading",
-    "session time": "a short reference cycle at start, middle and end, and one long rest",
-    "session time along the motion": "a short reference cycle at start, middle and end, and one "
-    "long rest",
+    "velocity": _RAMPS,
+    "speed": _RAMPS,
+    "position": _TURNS,
+    "position along the motion": _TURNS,
+    "angle": _FULL_TURNS,
+    "angle along the motion": _FULL_TURNS,
+    "order over position": _TURNS,
+    "order along the motion": _TURNS,
+    "order over position, times acceleration": (
+        "fast",
+        "fast constant speed over many turns, and sines of high acceleration",
+    ),
+    "order over position, times effort": (
+        "sines",
+        "sines of high acceleration, and slow full turns (or full strokes) with loads either way",
+    ),
+    "response to the effort": _CHIRP,
+    "frequency": (
+        "rests",
+        "5 s of rest and 5 s of constant speed, with what runs nearby on and off",
+    ),
+    "acceleration": (
+        "sines",
+        "sines of one speed at different frequencies, so that accelerations differ",
+    ),
+    "rest before the slide": _DWELLS,
+    "loading before the slide": (
+        "dwells",
+        "equal rests, each followed by another rate of loading over two decades",
+    ),
+    "path along the motion": _CYCLE,
+    "effort": (
+        "pulses",
+        "large efforts at low acceleration, and the same accelerations with a known load",
+    ),
+    "rate of the effort": _CHIRP,
+    "distance since the reversal": ("loops", "small loops below break-away, nested, with holds"),
+    "time since the reversal": _DWELLS,
+    "session time": _CYCLE,
+    "session time along the motion": _CYCLE,
 }
-"""An experiment that shows more of what depends on a coordinate."""
+"""An experiment of `stiction plan`, and what matters in it, that shows more of what depends on a
+coordinate."""
 NO_COORDINATE: Final = "nothing that was looked at"
 """Where more is left than noise and it shows in no coordinate."""
 
@@ -63,29 +88,26 @@ def advise(
         Recording and what was found in it.
     """
     records = {record.name: record for record in effects()}
-    advice: list[Advice] = []
+    advice: dict[str, Advice] = {}
+
+    def add(plan: str, what: str, reason: str, separates: tuple[str, ...] = ()) -> None:
+        # The first reason to record an experiment is the best one.
+        advice.setdefault(plan, Advice(f"{plan}: {what}", reason, separates))
+
     for cause in causes:
-        if cause.decided:
-            continue
         names = (cause.name, *cause.look_alikes)
-        for name in names:
-            experiment = records[name].experiment
-            if all(experiment != given.experiment for given in advice):
-                reason = f"it tells {joined(names)} apart"
-                advice.append(Advice(experiment, reason, names))
+        for name in () if cause.decided else names:
+            record = records[name]
+            add(record.plan, record.experiment, f"it tells {joined(names)} apart", names)
     for left in unexplained[:2]:
-        if left.coordinate == NO_COORDINATE:
-            continue
-        experiment = BY_COORDINATE[left.coordinate]
-        if all(experiment != given.experiment for given in advice):
-            reason = (
-                f"what is left depends on {left.coordinate}, and more of it is needed to see how"
-            )
-            advice.append(Advice(experiment, reason, ()))
+        if left.coordinate in BY_COORDINATE:
+            reason = f"what is left depends on {left.coordinate}, and more of it shows how"
+            add(*BY_COORDINATE[left.coordinate], reason)
     for record in blind:
         reason = f"these data cannot show {record.name}"
-        advice.append(Advice(record.experiment, reason, (record.name,)))
+        add(record.plan, record.experiment, reason, (record.name,))
+    remedies = []
     for name, check in checks:
         if check.verdict == "fault" and check.try_:
-            advice.append(Advice(check.try_, f"{name}: {check.what}", ()))
-    return tuple(advice)
+            remedies.append(Advice(check.try_, f"{name}: {check.what}", ()))
+    return (*advice.values(), *remedies)

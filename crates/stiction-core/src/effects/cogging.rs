@@ -45,6 +45,7 @@ impl<S: Scalar> Effect<S> for Cogging<S> {
         channels: &[],
         look_alikes: &["torque_bias"],
         experiment: "slow full turns both ways",
+        plan: "turns",
         gains: &["cosine", "sine"],
         shapes: &[Shape { parameter: "order", scale: Scale::Order, grid: &[], fitted: true }],
         second: &["cosine_2", "sine_2", "order_2"],

@@ -40,6 +40,7 @@ impl<S: Scalar> Effect<S> for CreepHardening<S> {
         channels: &[],
         look_alikes: &[],
         experiment: "holds of 5 s and more at three levels from 0.3 to 0.95 of break-away",
+        plan: "loops",
         gains: &["creep"],
         shapes: &[
             Shape { parameter: "exponent", scale: Scale::One, grid: &[2.0], fitted: false },

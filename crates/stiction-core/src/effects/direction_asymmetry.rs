@@ -39,6 +39,7 @@ impl<S: Scalar> Effect<S> for DirectionAsymmetry<S> {
         channels: &[],
         look_alikes: &["torque_bias"],
         experiment: "pre-sliding loops and rests at zero input; a change of load",
+        plan: "loops",
         gains: &["coulomb", "viscous"],
         shapes: &[Shape { parameter: "velocity", scale: Scale::Speed, grid: &[-0.2, 0.15, 0.4], fitted: true }],
         second: &[],

@@ -34,6 +34,7 @@ impl<S: Scalar> Effect<S> for DriveDeadband<S> {
         channels: &[],
         look_alikes: &[],
         experiment: "braking and coasting: input and motion of opposite signs",
+        plan: "pulses",
         gains: &["deadband"],
         shapes: &[],
         second: &[],

@@ -49,6 +49,7 @@ impl<S: Scalar> Effect<S> for DwellStrengthening<S> {
         channels: &[],
         look_alikes: &["stribeck", "rate_dependent_breakaway"],
         experiment: "rests of 0.1 to 5 s, each followed by slow and by fast loading",
+        plan: "dwells",
         gains: &["strength"],
         shapes: &[
             Shape { parameter: "time", scale: Scale::One, grid: &[0.3, 1.0, 3.0], fitted: true },

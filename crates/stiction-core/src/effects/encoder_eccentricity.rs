@@ -35,6 +35,7 @@ impl<S: Scalar> Effect<S> for EncoderEccentricity<S> {
         channels: &[],
         look_alikes: &[],
         experiment: "fast constant speed over many turns, both ways",
+        plan: "fast",
         gains: &["cosine", "sine"],
         shapes: &[],
         second: &[],

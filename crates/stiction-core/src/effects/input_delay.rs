@@ -39,6 +39,7 @@ impl<S: Scalar> Effect<S> for InputDelay<S> {
         channels: &[],
         look_alikes: &[],
         experiment: "chirp of the input above 1/(10 times the delay)",
+        plan: "chirp",
         gains: &["delay"],
         shapes: &[],
         second: &[],

@@ -178,6 +178,8 @@ pub struct EffectFacts {
     pub look_alikes: &'static [&'static str],
     /// Experiment that separates it from them.
     pub experiment: &'static str,
+    /// Which of the experiments that `stiction plan` writes that is.
+    pub plan: &'static str,
     /// Its parameters in which it is linear and which are 0 at the neutral point.
     pub gains: &'static [&'static str],
     /// Its other parameters, each with a grid.

@@ -44,6 +44,7 @@ impl<S: Scalar> Effect<S> for PositionDependentFriction<S> {
         channels: &[],
         look_alikes: &["torque_constant_ripple"],
         experiment: "sine of high acceleration: the input varies at the same position",
+        plan: "sines",
         gains: &["cosine", "sine"],
         shapes: &[Shape { parameter: "order", scale: Scale::Order, grid: &[], fitted: true }],
         second: &["cosine_2", "sine_2", "order_2"],

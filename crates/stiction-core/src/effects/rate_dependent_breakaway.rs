@@ -55,6 +55,7 @@ impl<S: Scalar> Effect<S> for RateDependentBreakaway<S> {
         channels: &[],
         look_alikes: &["stribeck", "dwell_strengthening"],
         experiment: "equal rests, each followed by another rate of loading over two decades",
+        plan: "dwells",
         gains: &["strength"],
         shapes: &[
             Shape {

@@ -35,7 +35,9 @@ impl<S: Scalar> Effect<S> for RunIn<S> {
         coordinate: "cumulative path, odd in direction",
         channels: &[],
         look_alikes: &["warm_up"],
-        experiment: "one reference cycle repeated through the session, with a long rest in its middle",
+        experiment: "from cold, a session of its own: a short cycle, again after minutes of rest, again \
+                     after long fast motion",
+        plan: "cycle",
         gains: &["coulomb"],
         shapes: &[Shape {
             parameter: "distance",

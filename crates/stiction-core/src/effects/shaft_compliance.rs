@@ -41,6 +41,7 @@ impl<S: Scalar> Effect<S> for ShaftCompliance<S> {
         channels: &[],
         look_alikes: &[],
         experiment: "chirp of the input through the resonance",
+        plan: "chirp",
         gains: &["compliance"],
         shapes: &[
             Shape { parameter: "inertia_share", scale: Scale::One, grid: &[0.5], fitted: false },

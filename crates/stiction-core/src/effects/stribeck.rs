@@ -38,6 +38,7 @@ impl<S: Scalar> Effect<S> for Stribeck<S> {
         channels: &[],
         look_alikes: &["dwell_strengthening", "rate_dependent_breakaway"],
         experiment: "two-way constant-speed ramps over three decades, without rests",
+        plan: "ramps",
         gains: &["excess"],
         shapes: &[
             Shape {

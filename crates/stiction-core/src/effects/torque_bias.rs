@@ -33,6 +33,7 @@ impl<S: Scalar> Effect<S> for TorqueBias<S> {
         channels: &[],
         look_alikes: &["direction_asymmetry"],
         experiment: "pre-sliding loops and rests at zero input; the machine mounted the other way round",
+        plan: "loops",
         gains: &["bias"],
         shapes: &[],
         second: &[],

@@ -46,6 +46,7 @@ impl<S: Scalar> Effect<S> for TorqueConstantRipple<S> {
         look_alikes: &["position_dependent_friction"],
         experiment: "sine of high acceleration, and loads either way: the input varies at the same \
                      position",
+        plan: "sines",
         gains: &["cosine", "sine"],
         shapes: &[Shape { parameter: "order", scale: Scale::Order, grid: &[], fitted: true }],
         second: &["cosine_2", "sine_2", "order_2"],

@@ -32,6 +32,7 @@ impl<S: Scalar> Effect<S> for ViscousQuadratic<S> {
         channels: &[],
         look_alikes: &[],
         experiment: "top speed at least three times the normal one",
+        plan: "fast",
         gains: &["quadratic"],
         shapes: &[],
         second: &[],

@@ -38,7 +38,9 @@ impl<S: Scalar> Effect<S> for WarmUp<S> {
         coordinate: "session clock, odd in direction",
         channels: &[],
         look_alikes: &["run_in"],
-        experiment: "one reference cycle repeated through the session, with a long rest in its middle",
+        experiment: "from cold, a session of its own: a short cycle, again after minutes of rest, again \
+                     after long fast motion",
+        plan: "cycle",
         gains: &["coulomb", "viscous"],
         shapes: &[Shape {
             parameter: "time",

@@ -1,0 +1,63 @@
+"""``stiction plan``: signals to record with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from ..plan import plan as run
+from ..plant import Plant
+from .answer import answer, folder
+
+__all__ = ["plan"]
+
+
+def plan(
+    plant: Path,
+    *,
+    position: float | None = None,
+    speed: float | None = None,
+    effort: float | None = None,
+    rate: float = 1000.0,
+    only: tuple[str, ...] = (),
+    seed: int = 0,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Write input and reference signals with which to record a machine, a figure of each.
+
+    Parameters
+    ----------
+    plant
+        Plant file; what it leaves out takes the catalogue's defaults.
+    position
+        Greatest distance from where the machine stands, rad or m.
+    speed
+        Greatest speed, rad/s or m/s.
+    effort
+        Greatest effort of the drive, N·m or N.
+    rate
+        Samples a second.
+    only
+        Experiment to plan; may be given several times, all without it.
+    seed
+        Of everything random.
+    out
+        Folder for the signals, ./<plant>-plan/ without it.
+    json
+        Print JSON.
+    """
+    made = run(
+        Plant.load(plant),
+        position=position,
+        speed=speed,
+        effort=effort,
+        rate=rate,
+        only=only,
+        seed=seed,
+    )
+    where = made.save(folder(Path(f"{plant.stem}-plan") if out is None else out))
+    text = f"{made!r}\n\nsignals: {where / 'signals'}\nfill in: {where / 'session.toml'}"
+    answer(text, made.to_dict(), as_json=json)

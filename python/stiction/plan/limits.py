@@ -1,0 +1,166 @@
+"""How far, how fast and how hard a machine may be moved, and what its plant says of its size."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ..errors import InputError
+from ..plant import Plant
+from ..wording import listed
+
+__all__ = ["Limits", "Sizes", "sizes_of"]
+
+MARGIN: Final = 0.85
+"""Share of every limit that is planned for: a controller overshoots."""
+EFFORT_TIMES: Final = 4.0
+"""Greatest effort over the friction where neither limit nor plant states one."""
+LEAST_EFFORT: Final = 1.3
+"""And the least one in which anything can be moved with purpose."""
+SHARE_TO_ACCELERATE: Final = 0.5
+"""Of the effort beyond friction: the rest is the controller's."""
+BLEND_S: Final = 0.15
+"""Least time to full speed: what a position loop of some 10 Hz follows without overshoot."""
+LOADED: Final = 0.95
+"""Share of the sliding friction at which pre-sliding counts as over."""
+SLOW_S: Final = 100.0
+"""Time in which the range is crossed to measure friction without its viscous part."""
+STEPS: Final = 400
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Bounds of a machine, about the position in which it stands.
+
+    Attributes
+    ----------
+    position : float or None
+        Greatest distance from there, rad or m; one turn where a rotary plant states none.
+    speed : float or None
+        rad/s or m/s.
+    effort : float or None
+        Of the drive, N·m or N; that of the plant's drive where none is given.
+    """
+
+    position: float | None = None
+    speed: float | None = None
+    effort: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("position", "speed", "effort"):
+            value = getattr(self, name)
+            if value is not None and not (math.isfinite(value) and value > 0.0):
+                raise InputError(f"{name} = {value:g} is out of bounds: give a number above 0")
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """What signals are sized by; margins are taken off already.
+
+    Attributes
+    ----------
+    reach, speed, acceleration : float
+        Greatest distance from the start, speed and acceleration of a reference.
+    effort : float
+        Greatest effort of an input.
+    friction : float
+        Level of the sliding friction.
+    presliding : float
+        Displacement in which a contact comes to a slide, 0 where it does not yield.
+    inertia : float
+    """
+
+    reach: float
+    speed: float
+    acceleration: float
+    effort: float
+    friction: float
+    presliding: float
+    inertia: float
+
+
+def sizes_of(plant: Plant, limits: Limits) -> Sizes:
+    """Sizes of the signals for a plant.
+
+    Raises
+    ------
+    InputError
+        No inertia; a linear plant without a limit of position; an effort that moves nothing; a
+        plant of prescribed motion.
+    """
+    if plant.prescribed_motion:
+        raise InputError(
+            f"{plant.source}: [drive] kind = 'prescribed_motion' has no input to plan; signals are "
+            "planned for machines that are driven"
+        )
+    plant.motor()  # refuses a plant that cannot be simulated
+    inertia = plant.inertia
+    reach = limits.position
+    if reach is None and plant.motion == "linear":
+        raise InputError(
+            f"{plant.source}: how far the machine may go is not known; give position (--position), "
+            "the distance in m on either side of where it stands"
+        )
+    reach = MARGIN * (2.0 * math.pi if reach is None else reach)
+    friction, presliding = _contact(plant, reach)
+    gain = abs(float(plant.drive.get("gain", 1.0)))
+    own = gain * float(plant.drive.get("limit", math.inf))
+    weight = _steady(plant)
+    given = math.inf if limits.effort is None else limits.effort
+    most = min(own, given)
+    if not math.isfinite(most):
+        most = EFFORT_TIMES * (friction + weight)
+    if most < LEAST_EFFORT * (friction + weight):
+        taken = listed(
+            [f"friction {friction:.3g}", *([f"gravity {weight:.3g}"] if weight > 0.0 else [])]
+        )
+        raise InputError(
+            f"{plant.source}: an effort of {most:.3g} {plant.effort_unit} moves nothing: {taken} "
+            f"takes it; give {LEAST_EFFORT * (friction + weight):.3g} or more"
+        )
+    most *= MARGIN
+    spare = SHARE_TO_ACCELERATE * (most - friction - weight)
+    acceleration = max(spare, 0.05 * most) / inertia
+    speed = math.sqrt(acceleration * reach)
+    if limits.speed is not None:
+        speed = min(speed, MARGIN * limits.speed)
+    speed = _carried(plant, speed, friction + spare)
+    acceleration = min(acceleration, 0.5 * math.pi * speed / BLEND_S)
+    return Sizes(reach, speed, acceleration, most, friction, presliding, inertia)
+
+
+def _contact(plant: Plant, reach: float) -> tuple[float, float]:
+    """Level of the sliding friction and pre-sliding displacement: the law loaded slowly."""
+    places = np.concatenate([[0.0], reach * np.logspace(-9.0, 0.0, STEPS)])
+    duration = SLOW_S / STEPS
+    model = plant.friction.model()
+    speeds = np.diff(places) / duration
+    force = np.array([model.step(float(v), duration) for v in speeds])
+    level = float(np.max(force))
+    if not (math.isfinite(level) and level > 0.0):
+        raise InputError(
+            f"{plant.source}: [friction] {plant.friction.law} holds nothing; state its level"
+        )
+    first = int(np.flatnonzero(force >= LOADED * level)[0])
+    return level, float(places[first + 1]) if first > 0 else 0.0
+
+
+def _steady(plant: Plant) -> float:
+    """Greatest effort that gravity takes."""
+    names = ("gravity_amplitude", "weight_n")
+    return float(sum(abs(plant.body[n].value) for n in names if n in plant.body))
+
+
+def _carried(plant: Plant, speed: float, effort: float) -> float:
+    """The speed, or a lower one at which friction leaves something of the effort."""
+    for _ in range(60):
+        model = plant.friction.model()
+        span = 10.0 / STEPS
+        force = [model.step(speed, span) for _ in range(STEPS)][-1]
+        if force <= effort:
+            break
+        speed *= 0.8
+    return speed

@@ -1,0 +1,254 @@
+"""A plan: signals, their files and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from ..errors import InputError
+from ..plant import Plant
+from ..trajectory import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["Plan", "Signal"]
+
+ROLES: Final = ("train", "select", "test")
+PAUSE_S: Final = 5.0
+"""Between recordings."""
+LONG_REST_S: Final = 120.0
+"""After the first cycle, while the machine is cold."""
+
+
+@dataclass(frozen=True)
+class Signal:
+    """What a recording is made with.
+
+    Attributes
+    ----------
+    experiment : str
+    kind : {"reference", "input"}
+    purpose : str
+    role : str
+        Of the recording that it makes.
+    time, values : numpy.ndarray, shape (n,)
+        Values in rad or m about the start, or in the unit of the drive's input.
+    column : str
+        Their name in the file.
+    expected : numpy.ndarray, shape (n,)
+        Position that the plant comes to, rad or m about the start; a reference itself.
+    greatest : dict of str to float
+        Greatest distance, speed and effort that the plant comes to.
+    """
+
+    experiment: str
+    kind: str
+    purpose: str
+    role: str
+    time: FloatArray
+    values: FloatArray
+    column: str
+    expected: FloatArray
+    greatest: dict[str, float]
+
+    @property
+    def name(self) -> str:
+        """Of its files."""
+        return f"{self.experiment}-{self.role}"
+
+    @property
+    def duration(self) -> float:
+        """In seconds."""
+        return float(self.time[-1])
+
+    def __repr__(self) -> str:
+        most = ", ".join(f"{name} {value:.3g}" for name, value in self.greatest.items())
+        return f"Signal({self.name}, {self.kind}, {self.duration:.1f} s, greatest {most})"
+
+    def save(self, where: str | Path) -> Path:
+        """Write it as CSV into a folder; returns the path."""
+        path = Path(where) / f"{self.name}.csv"
+        rows = np.column_stack([self.time, self.values])
+        with path.open("w", encoding="utf-8", newline="\n") as file:
+            file.write(f"time_s,{self.column}\n")
+            np.savetxt(file, rows, fmt="%.9g", delimiter=",")
+        return path
+
+    def plot(self) -> Figure:
+        """The signal over time, and where it takes the machine."""
+        from .. import plot
+
+        rows = 2 if self.kind == "input" else 1
+        figure, axes = plot.figure(
+            rows, height=2.2 * rows, title=f"{self.experiment}: {self.purpose}", sharex=True
+        )
+        axes[0].plot(*plot.thinned(self.time, self.values), color=plot.SIMULATED, lw=0.9)
+        axes[0].set_ylabel(self.column)
+        if self.kind == "input":
+            axes[1].plot(*plot.thinned(self.time, self.expected), color=plot.ACCENT, lw=0.9)
+            axes[1].set_ylabel("simulated position")
+        axes[-1].set_xlabel("time / s")
+        return figure
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Signals for a session of one machine.
+
+    Attributes
+    ----------
+    plant : Plant
+    signals : tuple of Signal
+        In the order of the session.
+    notes : tuple of str
+        What was left out or made smaller, and why.
+    success : bool
+    message : str
+    """
+
+    plant: Plant
+    signals: tuple[Signal, ...]
+    notes: tuple[str, ...] = ()
+    success: bool = True
+    message: str = ""
+
+    def __getitem__(self, name: str) -> Signal:
+        """A signal by its name, such as ``ramps-train``.
+
+        Raises
+        ------
+        InputError
+            There is no such signal.
+        """
+        for signal in self.signals:
+            if signal.name == name:
+                return signal
+        known = ", ".join(signal.name for signal in self.signals)
+        raise InputError(f"plan: there is no signal '{name}'; there are {known}")
+
+    def schedule(self) -> list[dict[str, Any]]:
+        """What to record when: file, role, kind and start of every recording, pauses included."""
+        entries: list[dict[str, Any]] = []
+        written: set[str] = set()
+        at = 0.0
+        for each in _session_order(self.signals):
+            if each is None:
+                at += LONG_REST_S
+                continue
+            name = each.name if each.name not in written else f"{each.name}-again"
+            entry = {
+                "file": f"{name}.csv",
+                "role": each.role if name == each.name else "test",
+                "kind": each.experiment,
+                "start_s": round(at, 3),
+                "signal": f"{each.name}.csv",
+            }
+            if name != each.name:
+                entry["replicate_of"] = f"{each.name}.csv"
+            written.add(name)
+            entries.append(entry)
+            at += each.duration + PAUSE_S
+        return entries
+
+    def save(self, where: str | Path) -> Path:
+        """Write signals, figures, plan.json and a session.toml to be filled with recordings.
+
+        Raises
+        ------
+        InputError
+            The folder cannot be written.
+        """
+        from .. import plot
+        from ..json_text import json_of
+
+        folder = Path(where)
+        try:
+            (folder / "signals").mkdir(parents=True, exist_ok=True)
+            for signal in self.signals:
+                signal.save(folder / "signals")
+                plot.save(signal.plot(), folder / "signals" / f"{signal.name}.svg")
+            (folder / "plan.json").write_text(json_of(self.to_dict()) + "\n", encoding="utf-8")
+            (folder / "session.toml").write_text(self._session(), encoding="utf-8")
+            self.plant.save(folder / "plant.toml")
+        except OSError as error:
+            raise InputError(
+                f"{folder}: cannot be written ({error.strerror}); give another folder with --out"
+            ) from None
+        return folder
+
+    def to_dict(self) -> dict[str, Any]:
+        """As in plan.json."""
+        return {
+            "signals": [
+                {
+                    "name": s.name,
+                    "experiment": s.experiment,
+                    "kind": s.kind,
+                    "purpose": s.purpose,
+                    "role": s.role,
+                    "column": s.column,
+                    "duration_s": s.duration,
+                    "greatest": s.greatest,
+                }
+                for s in self.signals
+            ],
+            "schedule": self.schedule(),
+            "notes": list(self.notes),
+        }
+
+    def _session(self) -> str:
+        lines = [
+            "# Recordings to be made with the signals beside this file, in this order. Input as it",
+            "# was commanded, and as it was measured where that differs; position; reference;",
+            "# temperature and load where they are known. start_s is the clock of the whole",
+            "# session: write down when each recording began, pauses included.",
+            'plant = "plant.toml"',
+        ]
+        for entry in self.schedule():
+            lines += [
+                "",
+                f"# {'moved again exactly as ' if 'replicate_of' in entry else 'with '}"
+                f"signals/{entry['signal']}",
+                "[[recordings]]",
+                f'file = "{entry["file"]}"',
+                f'role = "{entry["role"]}"',
+                f'kind = "{entry["kind"]}"',
+                f"start_s = {entry['start_s']}",
+            ]
+            if "replicate_of" in entry:
+                lines.append(f'replicate_of = "{entry["replicate_of"]}"')
+        return "\n".join(lines) + "\n"
+
+    def __repr__(self) -> str:
+        total = sum(signal.duration for signal in self.signals)
+        head = f"{len(self.signals)} signals, {total:.0f} s in all"
+        return "\n".join([head, *(f"  {signal!r}" for signal in self.signals), *self.notes])
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{escape(s.name)}</td><td>{escape(s.purpose)}</td>"
+            f"<td>{s.duration:.1f} s</td></tr>"
+            for s in self.signals
+        )
+        return f"<table><tr><th>signal</th><th>purpose</th><th>length</th></tr>{rows}</table>"
+
+
+def _session_order(signals: Sequence[Signal]) -> list[Signal | None]:
+    """Each role in turn, and one signal once more; None is a long rest.
+
+    The cycle comes first of all, while the machine is cold, and again right after a long rest: time
+    has gone on then and the machine has not moved. It comes again in the middle and at the end.
+    """
+    cycle = [s for s in signals if s.experiment == "cycle"]
+    others = [s for s in signals if s.experiment != "cycle"]
+    by_role = [s for role in ROLES for s in others if s.role == role]
+    half = len(by_role) // 2
+    again = [s for s in others if s.kind == "reference"][:1]
+    begin: list[Signal | None] = [cycle[0], None, cycle[1]] if cycle else [None]
+    return [*begin, *by_role[:half], *cycle[2:], *by_role[half:], *again, *cycle[:1]]

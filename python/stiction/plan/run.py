@@ -1,0 +1,185 @@
+"""Makes a plan: every experiment as large as the limits allow, checked by simulation."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from ..errors import InputError
+from ..plant import Plant
+from ..trajectory import FloatArray
+from ..wording import did_you_mean, listed
+from .experiments import EXPERIMENTS, Experiment
+from .limits import Limits, Sizes, sizes_of
+from .result import ROLES, Plan, Signal
+
+__all__ = ["plan"]
+
+RATES: Final = (50.0, 1e5)
+LEVELS: Final = ("coulomb", "breakaway")
+"""Parameters that say how large friction is."""
+SMALLER: Final = 0.75
+TRIES: Final = 16
+"""Shares by which a signal is made smaller until it stays within the limits."""
+INPUTS: Final = {
+    "current_a": "current_a",
+    "voltage_v": "voltage_v",
+    "torque_nm": "torque_nm",
+    "force_n": "force_n",
+}
+
+_logger = logging.getLogger(__name__)
+
+
+def plan(
+    plant: Plant,
+    *,
+    position: float | None = None,
+    speed: float | None = None,
+    effort: float | None = None,
+    rate: float = 1000.0,
+    only: Sequence[str] = (),
+    seed: int = 0,
+) -> Plan:
+    """Signals with which to record a machine, sized by its plant.
+
+    Each experiment comes in three realisations, one for each role. References are for a machine
+    under its controller, inputs for its drive alone. All stay 15 % below the limits: references by
+    the effort that following them takes, inputs by simulation of the plant.
+
+    Parameters
+    ----------
+    plant : Plant
+        As far as it is known: what its file leaves out takes the catalogue's defaults.
+    position, speed, effort : float, optional
+        Limits, see `Limits`.
+    rate : float
+        Samples a second.
+    only : sequence of str
+        Names of experiments; all without it.
+    seed : int
+        Of everything random.
+
+    Raises
+    ------
+    InputError
+        A limit that is no number above 0, or within which the machine cannot be moved; an unknown
+        experiment.
+    """
+    if not RATES[0] <= rate <= RATES[1]:
+        raise InputError(
+            f"rate = {rate:g} is out of bounds: allowed is {RATES[0]:g} to {RATES[1]:g} samples/s"
+        )
+    known = [experiment.name for experiment in EXPERIMENTS]
+    for name in only:
+        if name not in known:
+            raise InputError(
+                f"only: there is no experiment '{name}'{did_you_mean(name, known)}; there are "
+                f"{listed(known)}"
+            )
+    limits = Limits(position, speed, effort)
+    sizes = sizes_of(plant, limits)
+    signals, notes = [], _guessed(plant)
+    for experiment in EXPERIMENTS:
+        if only and experiment.name not in only:
+            continue
+        if experiment.name == "loops" and sizes.presliding == 0.0:
+            notes.append(
+                "loops are left out: the law of this plant does not yield before it slides"
+            )
+            continue
+        _logger.info("planning %s", experiment.name)
+        made = [
+            _signal(
+                plant, experiment, sizes, 1.0 / rate, role, [seed, k, known.index(experiment.name)]
+            )
+            for k, role in enumerate(ROLES)
+        ]
+        kept = [signal for signal in made if signal is not None]
+        if len(kept) < len(made):
+            notes.append(f"{experiment.name} is left out: nothing of it stays within the limits")
+            continue
+        signals += kept
+    if not signals:
+        raise InputError(f"{plant.source}: no signal stays within these limits; widen one of them")
+    return Plan(plant, tuple(signals), tuple(notes), True, f"{len(signals)} signals")
+
+
+def _guessed(plant: Plant) -> list[str]:
+    """What the plant does not say of the sizes that signals are made by."""
+    levels = [p.name for p in plant.friction.record.parameters if p.name in LEVELS]
+    silent = [name for name in levels if name not in plant.friction.parameters]
+    if len(silent) < len(levels) or not levels:
+        return []
+    return [
+        f"{plant.source} states no level of friction: signals are sized by the catalogue's "
+        f"{listed(silent)}; fit the plant to any recording first"
+    ]
+
+
+def _signal(
+    plant: Plant,
+    experiment: Experiment,
+    sizes: Sizes,
+    dt: float,
+    role: str,
+    seed: Sequence[int],
+) -> Signal | None:
+    """The signal, made smaller until it stays within the limits; None where nothing is left."""
+    share = 1.0
+    for _ in range(TRIES):
+        values = experiment.build(plant, sizes, dt, np.random.default_rng(seed), share)
+        if experiment.kind == "reference":
+            path, effort = values, _needed(plant, values, dt)
+        else:
+            path, effort = _moved(plant, values, dt), values
+        speeds = np.diff(path, prepend=path[0]) / dt
+        greatest = {
+            "distance": float(np.max(np.abs(path))),
+            "speed": float(np.max(np.abs(speeds))),
+            "effort": float(np.max(np.abs(effort))),
+        }
+        allowed = {"distance": sizes.reach, "speed": sizes.speed, "effort": sizes.effort}
+        # Rounding to samples is no fault.
+        if all(greatest[name] <= 1.02 * allowed[name] for name in allowed):
+            gain = 1.0 if experiment.kind == "reference" else float(plant.drive.get("gain", 1.0))
+            reference = "reference_rad" if plant.motion == "rotary" else "reference_m"
+            return Signal(
+                experiment.name,
+                experiment.kind,
+                experiment.purpose,
+                role,
+                np.asarray(np.arange(len(values)) * dt, dtype=np.float64),
+                values / gain,
+                reference if experiment.kind == "reference" else _input_of(plant),
+                path,
+                greatest,
+            )
+        share *= SMALLER
+    return None
+
+
+def _input_of(plant: Plant) -> str:
+    given = str(plant.drive.get("input", ""))
+    return INPUTS.get(given, "torque_nm" if plant.motion == "rotary" else "force_n")
+
+
+def _needed(plant: Plant, path: FloatArray, dt: float) -> FloatArray:
+    """Effort that following a path takes: inertia, friction, gravity; shape (n,)."""
+    motor = plant.follower()
+    motor.reset(float(path[0]), 0.0)
+    _, ambient, friction, _ = motor.follow(path, np.zeros(len(path) - 1), dt)
+    bend = np.diff(path, 2, prepend=path[0], append=path[-1]) / dt**2
+    needed = plant.inertia * bend
+    needed[1:] += friction - ambient
+    return np.asarray(needed)
+
+
+def _moved(plant: Plant, effort: FloatArray, dt: float) -> FloatArray:
+    """Position that the plant comes to with an effort, about its start; shape (n,)."""
+    gain = float(plant.drive.get("gain", 1.0))
+    run = plant.simulate(effort[:-1] / gain, dt, outputs=["position"])
+    return np.concatenate([[0.0], run.position])

@@ -1,0 +1,121 @@
+"""Whether what a diagnosis advises to record tells its look-alikes apart.
+
+A session with one effect of a declared pair; where its diagnosis is undecided, the experiment that
+it advises is planned for the plant that it found, recorded on the same machine, and added.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from tests.reference.more_recordings import Wanted, record_more
+from tests.reference.session_reference import make_sessions
+
+import stiction as st
+from stiction.plan import plan
+
+from .score import as_plant, as_session
+from .table import wilson
+
+PAIRED = (
+    "torque_bias",
+    "direction_asymmetry",
+    "warm_up",
+    "run_in",
+    "torque_constant_ripple",
+    "position_dependent_friction",
+    "dwell_strengthening",
+    "rate_dependent_breakaway",
+    "stribeck",
+)
+FIRST_SEED = 10_000_000
+REACH = 6.0
+"""rad on either side: the machine may make a turn."""
+PAUSE_S, LONG_REST_S = 2.0, 90.0
+COLD = ("cycle", "rest", "cycle", "fast", "cycle", "rest", "fast", "cycle")
+"""What tells time from path: a machine that is cold, rests, and then travels."""
+
+
+def advised(found):
+    """Names of the planned experiments that tell undecided causes apart, the first one first."""
+    names = [advice.experiment.split(":")[0] for advice in found.advice if advice.separates]
+    return list(dict.fromkeys(names))
+
+
+def recorded(made, found, name):
+    """The session with the advised experiment recorded after it; of a cycle a session from cold."""
+    gain = float(found.plant.drive.get("gain", 1.0))
+    cold = name == "cycle"
+    names = ("cycle", "fast") if cold else (name,)
+    signals = plan(found.plant, position=REACH, only=names).signals
+    order = COLD if cold else (name,)
+    at = 0.0 if cold else max(r.start_s + r.time_s[-1] for r in made.recordings) + PAUSE_S
+    wanted = []
+    for each in order:
+        if each == "rest":
+            at += LONG_REST_S
+            continue
+        for signal in (s for s in signals if s.experiment == each):
+            kind = {"reference": "reference", "input": "torque"}[signal.kind]
+            values = signal.values if kind == "reference" else signal.values * gain
+            wanted.append(Wanted(signal.experiment, signal.role, at, **{kind: values}))
+            at += signal.duration + PAUSE_S
+    more = record_more(made, wanted, cold=cold)
+    return replace(made, recordings=more if cold else [*made.recordings, *more])
+
+
+def resolved(made):
+    """Verdicts before and after; None where nothing was undecided."""
+    names = [effect.name for effect in made.effects]
+    before = st.diagnose(as_plant(made), as_session(made), threads=1)
+    told = advised(before)
+    if before.verdict != "ambiguous" or not told:
+        return {"hidden": names, "before": before.verdict, "advised": told, "resolved": None}
+    session = recorded(made, before, told[0])
+    after = st.diagnose(as_plant(made), as_session(session), threads=1)
+    causes = [(cause.name, cause.decided) for cause in after.effects]
+    return {
+        "hidden": names,
+        "before": before.verdict,
+        "said": [[c.name, *c.look_alikes] for c in before.effects],
+        "advised": told,
+        "after": after.verdict,
+        "found": causes,
+        "resolved": after.verdict == "missing_effect" and [n for n, _ in causes] == names,
+    }
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="python -m tests.blind.resolve", description=__doc__)
+    parser.add_argument("--number", type=int, default=18)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--base", default="maxwell_slip")
+    parser.add_argument("--size", type=float, default=0.008)
+    parser.add_argument("--effects", default=",".join(PAIRED))
+    parser.add_argument("--out", type=Path, default=Path("resolve.jsonl"))
+    args = parser.parse_args()
+    names = args.effects.split(",")
+    rows = []
+    for k in range(args.number):
+        seed = FIRST_SEED + 10_000 * args.seed + k
+        hidden = ((names[k % len(names)], args.size),)
+        (made,) = make_sessions([{"seed": seed, "base": args.base, "hidden": hidden}])
+        row = {"seed": seed, "base": args.base} | resolved(made)
+        rows.append(row)
+        with args.out.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(row) + "\n")
+        print(json.dumps(row), flush=True)
+    asked = [row for row in rows if row["resolved"] is not None]
+    right = int(np.sum([row["resolved"] for row in asked]))
+    if asked:
+        low, high = wilson(right, len(asked))
+        share = 100.0 * right / len(asked)
+        print(f"resolved: {right}/{len(asked)} = {share:.1f} % ({100 * low:.1f}–{100 * high:.1f})")
+
+
+if __name__ == "__main__":
+    main()
