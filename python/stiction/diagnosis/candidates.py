@@ -211,8 +211,22 @@ def _grid(record: EffectRecord, scales: Scales) -> Iterator[Candidate]:
                 low, high = min(axes[-1]) / wider, max(axes[-1]) * wider
                 limits[shape.parameter] = (max(low, bounds[0]), min(high, bounds[1]))
     for point in product(*axes):
-        names = (s.parameter for s in shapes)
-        yield Candidate(record, dict(zip(names, point, strict=True)), tuple(free), limits)
+        own = dict(zip((s.parameter for s in shapes), point, strict=True))
+        near = {
+            s.parameter: _neighbours(own[s.parameter], scales)
+            for s in shapes
+            if s.scale == "order" and s.parameter in free
+        }
+        yield Candidate(record, own, tuple(free), {**limits, **near})
+
+
+def _neighbours(order: float, scales: Scales) -> tuple[float, float]:
+    """Orders that a refit may go to: halfway beyond the next ones, which are candidates themselves.
+
+    Below half the lowest one a wave turns into an offset and a slope, of any size.
+    """
+    step = scales.orders[0]
+    return max(0.5 * step, order - 1.5 * step), order + 1.5 * step
 
 
 def _axis(scale: str, grid: Sequence[float], scales: Scales) -> tuple[Sequence[float], bool]:
