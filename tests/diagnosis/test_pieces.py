@@ -369,6 +369,8 @@ def test_findings_hold_every_field_that_others_build_on() -> None:
         }  # fmt: skip
         for parameter in model["parameters"].values():
             assert set(parameter) == {"value", "ci95", "unit", "at_bound"}
-    assert set(found["data"]) == {"checks", "split", "residual", "hashes", "noise"}
+    assert set(found["data"]) == {
+        "checks", "split", "replicates", "residual", "hashes", "noise",
+    }  # fmt: skip
     if not found["effects"]:
         assert found["extended"] == found["baseline"]

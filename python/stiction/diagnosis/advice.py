@@ -96,7 +96,7 @@ def advise(
 
     for cause in causes:
         names = (cause.name, *cause.look_alikes)
-        for name in () if cause.decided else names:
+        for name in () if cause.decided or not cause.look_alikes else names:
             record = records[name]
             add(record.plan, record.experiment, f"it tells {joined(names)} apart", names)
     for left in unexplained[:2]:

@@ -11,36 +11,35 @@ from typing import Any, Final
 import numpy as np
 
 from .. import __version__
-from ..catalogue import laws as all_laws
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import horizon_of
 from ..fitting.forms import told as residual_told
-from ..fitting.minimise import MOST_EVALUATIONS, launch
+from ..fitting.minimise import MOST_EVALUATIONS
 from ..fitting.result import FitResult
-from ..fitting.rows import primed
-from ..fitting.solve import evaluate, reweighted
-from ..fitting.start import complete, free_paths
-from ..plant import Effect, Friction, Plant
+from ..fitting.solve import evaluate
+from ..plant import Effect, Plant
 from ..recording import Check, Recording
 from ..recording.checks import check
 from ..recording.split import name_of
 from ..session import Session
 from ..trajectory import FloatArray
-from ..wording import did_you_mean, listed
 from .advice import advise
+from .base import base_of
 from .candidates import left_out, scales_of
+from .ceiling import ceiling_of
 from .coordinates import Look, looks
 from .evidence import Evidence
-from .gain import Gain, HeldOut, gain_of, open_residuals
+from .gain import HeldOut, gain_of, open_residuals
+from .laws import THE_LAW, Rival, better_law, law_names, law_rows, rivals_of
 from .loop import replayed
-from .model import Model, fitted
+from .model import Model
 from .noise import Noise
 from .omnibus import Rest, rest
 from .own import own_view
 from .pictures import Pictures, Stretch
 from .regression import refitted
 from .replay import centre, surrogate_residuals
-from .result import Cause, Diagnosis, LawRow, ModelSummary
+from .result import Cause, Diagnosis, ModelSummary, Unexplained
 from .rounds import Search, friction_of, search, summary_rows
 from .verdict import relatives, unnamed, verdict_of
 from .view import View
@@ -105,7 +104,7 @@ def diagnose(
         raise InputError('session: plant is missing; write plant = "plant.toml", or give one')
     _check_numbers(surrogates, seed, threads)
     unwanted = left_out(without)
-    others = _law_names(laws, machine.friction.law)
+    others = law_names(laws, machine.friction.law)
     checks = [(name_of(r, k), c) for k, r in enumerate(whole) for c in check(r)]
     data: dict[str, Any] = {
         "checks": [
@@ -115,6 +114,7 @@ def diagnose(
         "split": None,
         "hashes": list(whole.hashes),
         "noise": [],
+        "replicates": None,
         "residual": None,
     }
     found = Diagnosis(
@@ -161,20 +161,6 @@ def _check_numbers(surrogates: int, seed: int, threads: int | None) -> None:
             )
 
 
-def _law_names(wanted: Sequence[str], own: str) -> list[str]:
-    """Laws to compare with the plant's own."""
-    known = [record.name for record in all_laws()]
-    if list(wanted) == ["all"]:
-        return [name for name in known if name != own]
-    for name in wanted:
-        if name not in known:
-            raise InputError(
-                f"laws: '{name}' is unknown{did_you_mean(name, known)}; known are all, "
-                f"{listed(known)}"
-            )
-    return [name for name in dict.fromkeys(wanted) if name != own]
-
-
 def _repairs(session: Session) -> list[tuple[str, Check]]:
     """What was mended on reading."""
     means = "these rows were filled in from their neighbours"
@@ -207,7 +193,13 @@ def _usable(checks: Sequence[tuple[str, Check]], session: Session) -> tuple[Sess
     if 2 * len(kept) < len(names) or "train" in lost:
         return None, f"The data cannot be used: {first}.{more}"
     left_out = "1 recording is" if len(told) == 1 else f"{len(told)} recordings are"
-    return Session(kept, session.plant), f"{left_out} left out: {first}.{more}"
+    places = {k: j for j, k in enumerate(k for k, name in enumerate(names) if name not in told)}
+    repeats = {
+        places[k]: places[of]
+        for k, of in session.replicates.items()
+        if k in places and of in places
+    }
+    return Session(kept, session.plant, repeats), f"{left_out} left out: {first}.{more}"
 
 
 def _testable(
@@ -223,12 +215,12 @@ def _testable(
     _logger.info("looking through %d recordings", len(session))
     evidence = Evidence(found.plant, session.recordings, threads=threads)
     _logger.info("fitting the base")
-    base = _base(evidence, found.plant)
+    base = base_of(evidence, found.plant)
     horizon = horizon_of(base.plant, base.nuisances, evidence.train, evidence.forms)
     if horizon is not None:
         _logger.info("fitting it again, simulated over %.0f ms", 1e3 * horizon)
         evidence = Evidence(found.plant, session.recordings, threads=threads, horizon=horizon)
-        base = _base(evidence, base.plant)
+        base = base_of(evidence, base.plant)
     found = replace(found, split=evidence.split.describe())
     data = {
         **found.data,
@@ -264,50 +256,26 @@ def _testable(
         )
         for k, choice in enumerate(selection.choices)
     )
-    rivals = [] if selection.interrupted else [_base_of_law(evidence, base, law) for law in others]
+    rivals = [] if selection.interrupted else rivals_of(selection, others)
     # Every decision is taken: now, and once, the rows that test.
     _logger.info("opening the test rows")
-    models = [*selection.models, *(model for model in rivals if model is not None)]
+    models = [*selection.models, *(rival.model for rival in rivals if rival.model is not None)]
     test = open_residuals(evidence, [(m.plant, m.nuisances) for m in models])
+    ends = (base.plant, base.nuisances), (final.plant, final.nuisances)
+    ceiling = ceiling_of(evidence, session.replicates, ends)
+    data["replicates"] = None if ceiling is None else ceiling.to_dict()
     found = _concluded(
         replace(found, data=data),
         evidence,
         selection,
         (before, left),
         causes,
-        (others, rivals),
+        rivals,
         test,
         null,
         checks,
     )
-    return replayed(found, evidence, base, final)
-
-
-def _base(evidence: Evidence, plant: Plant) -> Model:
-    """The plant fitted twice: the second time with recordings weighted by what is left in each."""
-    starts = complete(plant, [rows.form for rows in evidence.train])
-    paths = free_paths(starts[0])
-    first = Model(evidence, launch(starts, paths, evidence.train, most=BASE_EVALUATIONS))
-    if len(evidence.train) > 1:
-        reweighted(evidence.train, first.plant, first.nuisances)
-    else:
-        evidence.train[0].weight = 1.0 / max(np.sqrt(np.mean(first.residual**2)), 1e-300)
-    evidence.weigh()
-    nuisances = primed(first.plant, evidence.train, first.nuisances)
-    return fitted(evidence, first.plant, nuisances, most=BASE_EVALUATIONS)
-
-
-def _base_of_law(evidence: Evidence, base: Model, law: str) -> Model | None:
-    """The plant with another law, fitted with the same weights; None where it cannot be."""
-    _logger.info("fitting law %s", law)
-    bare = replace(base.plant, friction=Friction(law))
-    try:
-        starts = complete(bare, [rows.form for rows in evidence.train])
-        paths = free_paths(starts[0])
-        return Model(evidence, launch(starts, paths, evidence.train, most=BASE_EVALUATIONS))
-    except InputError as error:
-        _logger.info("%s: %s", law, error)
-        return None
+    return replayed(replace(found, ceiling=ceiling), evidence, base, final)
 
 
 def _noise_entry(evidence: Evidence, index: int, noise: Noise) -> dict[str, Any]:
@@ -325,7 +293,7 @@ def _concluded(
     selection: Search,
     rests: tuple[Rest, Rest],
     own: tuple[tuple[View, View], ...],
-    compared: tuple[Sequence[str], Sequence[Model | None]],
+    rivals: Sequence[Rival],
     test: HeldOut | None,
     null: FloatArray,
     checks: Sequence[tuple[str, Check]],
@@ -336,11 +304,12 @@ def _concluded(
     results = {id(m): _evaluated(evidence, m) for m in (base, final)}
     baseline = _summary(evidence, base, results[id(base)], test, 0, floor)
     extended = _summary(evidence, final, results[id(final)], test, len(selection.choices), floor)
+    better, own_law = better_law(final, rivals), base.plant.friction.law
     causes = []
     for k, choice in enumerate(selection.choices):
         record = choice.winner.candidate.record
-        rivals = {rival.name for rival in choice.rivals}
-        others = [name for name in relatives(selection, k) if name not in rivals]
+        close = {rival.name for rival in choice.rivals}
+        others = [name for name in relatives(selection, k) if name not in close]
         fitted_values = {
             path: p
             for path, p in results[id(final)].parameters.items()
@@ -350,7 +319,7 @@ def _concluded(
             Cause(
                 name=record.name,
                 family=record.family,
-                decided=choice.decided and not others,
+                decided=choice.decided and not others and better is None,
                 look_alikes=(*(rival.name for rival in choice.rivals), *others),
                 parameters=fitted_values,
                 gain=None if test is None else gain_of(test, k, k + 1, found.seed),
@@ -364,21 +333,27 @@ def _concluded(
     if causes and test is not None:
         gain = gain_of(test, 0, len(causes), found.seed)
     unexplained = unnamed(evidence, selection, rests[1], null)
+    if better is not None and not causes and not unexplained:
+        unexplained = (Unexplained(THE_LAW, better.beside),)
     verdict = verdict_of(selection, unexplained, all(cause.decided for cause in causes))
     reason = "These data cannot be tested: the base imitates every effect, so none could be seen."
     return replace(
         found,
         verdict=verdict,
-        sentence=sentence(verdict, causes, gain, unexplained, reason),
+        sentence=("" if better is None else f"{better.words(own_law, bool(causes))} ")
+        + sentence(verdict, causes, gain, unexplained, reason),
         plant=final.plant,
         effects=tuple(causes),
         gain=gain,
         candidates=summary_rows(selection),
-        laws=_law_rows(compared, len(selection.models), test, found.seed),
+        laws=law_rows(rivals, len(selection.models), test, found.seed),
         baseline=baseline,
         extended=extended,
         unexplained=unexplained,
-        advice=advise(causes, unexplained, selection.blind, checks),
+        advice=(
+            *([] if better is None else [better.advice()]),
+            *advise(causes, unexplained, selection.blind, checks),
+        ),
         success=not selection.interrupted,
         message=(
             "interrupted: this is the best so far"
@@ -459,32 +434,6 @@ def _floor(evidence: Evidence, null: FloatArray) -> float:
     """rms of what noise and rounding leave over the rows fitted."""
     physical = (null / evidence.weights[:, None])[evidence.fitted]
     return float(np.sqrt(np.mean(physical**2)))
-
-
-def _law_rows(
-    compared: tuple[Sequence[str], Sequence[Model | None]],
-    first: int,
-    test: HeldOut | None,
-    seed: int,
-) -> tuple[LawRow, ...]:
-    rows = []
-    index = first
-    for law, model in zip(*compared, strict=False):
-        if model is None:
-            rows.append(LawRow(law, None, "could not be fitted to these data"))
-            continue
-        gain: Gain | None = None if test is None else gain_of(test, 0, index, seed)
-        index += 1
-        if gain is None:
-            reason = "fitted, and no rows were left to test on"
-        elif gain.ci95[0] > 0.0:
-            reason = f"explains {100 * gain.value:.1f} % of what the plant's law leaves"
-        elif gain.ci95[1] < 0.0:
-            reason = f"leaves {1.0 - gain.value:.3g} times the power that the plant's law leaves"
-        else:
-            reason = "explains about as much as the plant's law"
-        rows.append(LawRow(law, gain, reason))
-    return tuple(sorted(rows, key=lambda r: -(r.gain.value if r.gain else -1e300)))
 
 
 def _stretches(

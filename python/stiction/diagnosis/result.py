@@ -16,6 +16,7 @@ from .loop import Replay
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from .ceiling import Ceiling
     from .pictures import Pictures
 
 __all__ = [
@@ -246,8 +247,8 @@ class Diagnosis:
     unexplained : tuple of Unexplained
     advice : tuple of Advice
     data : dict
-        ``checks``, ``split``, ``hashes``, ``noise``, and in a sentence which ``residual`` was used
-        and why.
+        ``checks``, ``split``, ``hashes``, ``noise``, ``replicates``, and in a sentence which
+        ``residual`` was used and why.
     plant : Plant
         Extended, complete, ready to simulate; as given where nothing could be fitted.
     success : bool
@@ -259,6 +260,8 @@ class Diagnosis:
         How long it took.
     split : str
         Which rows trained, decided and tested, in words; "" where nothing was split.
+    ceiling : Ceiling or None
+        How much of the error could be explained, where recordings were made twice.
     pictures : Pictures or None
         What the figures are drawn from.
     """
@@ -281,6 +284,7 @@ class Diagnosis:
     seed: int = 0
     seconds: float = 0.0
     split: str = field(default="", repr=False)
+    ceiling: Ceiling | None = None
     pictures: Pictures | None = field(default=None, repr=False, compare=False)
 
     def to_dict(self) -> dict[str, Any]:

@@ -114,6 +114,8 @@ def _cause(cause: Cause) -> str:
     own = f"{cause.name} ({cause.what.partition(':')[0]})"
     if cause.decided:
         return own
+    if not cause.look_alikes:
+        return f"{own}, perhaps"
     known = {record.name: f"{record.name} ({record.summary})" for record in catalogue()}
     names = [own, *(known.get(name, name) for name in cause.look_alikes)]
     either = "either" if len(names) == 2 else "one of"
@@ -183,6 +185,8 @@ def summary(diagnosis: Diagnosis) -> str:
         if diagnosis.effects and after.heldout_relative is not None:
             told += f" before, {100 * after.heldout_relative:.2f} % after"
         lines += ["", told]
+    if diagnosis.ceiling is not None:
+        lines.append(diagnosis.ceiling.words(bool(diagnosis.effects)))
     if looped := loop_words(diagnosis):
         lines.append(looped)
     if diagnosis.laws:

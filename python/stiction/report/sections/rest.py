@@ -48,9 +48,18 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
         "rows": rows,
         "both": bool(diagnosis.effects),
         "level": _level(diagnosis),
+        "ceiling": _ceiling(diagnosis),
         "picture": drawings.get("coordinates"),
     }
     return Section("rest", "What is left", content)
+
+
+def _ceiling(diagnosis: Diagnosis) -> str:
+    """What repeats tell of how much could be explained."""
+    if diagnosis.ceiling is None:
+        return ""
+    told = diagnosis.ceiling.words(bool(diagnosis.effects))
+    return f"{told[0].upper()}{told[1:]} (rms, share of the measured effort)."
 
 
 def _level(diagnosis: Diagnosis) -> dict[str, Any] | None:

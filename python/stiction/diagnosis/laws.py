@@ -1,0 +1,172 @@
+"""Other friction laws in place of the plant's: causes of their own, beside the effects."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from ..catalogue import laws as all_laws
+from ..errors import InputError
+from ..fitting.minimise import launch
+from ..fitting.start import complete, free_paths
+from ..plant import Friction
+from ..wording import did_you_mean, listed
+from .base import BASE_EVALUATIONS
+from .decide import DECIDED_Z, heldout_gain
+from .gain import Gain, HeldOut, gain_of
+from .model import Model
+from .result import Advice, LawRow
+from .rounds import Search
+
+__all__ = ["THE_LAW", "Rival", "better_law", "law_names", "law_rows", "rivals_of"]
+
+THE_LAW: Final = "the friction law"
+"""What is left depends on, where another law leaves less of it."""
+YIELDING: Final = "maxwell_slip"
+"""Law that is tried unasked beside names given to a plant whose law does not yield: a contact that
+does imitates many effects then."""
+WORTH_MORE: Final = 0.1
+"""Share of what is left with all effects that another law alone must remove to be the likelier
+cause."""
+
+_logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Another law, fitted to the same rows with nothing added.
+
+    Attributes
+    ----------
+    law : str
+    asked : bool
+        Whether somebody wanted to see it.
+    model : Model or None
+        None where it could not be fitted.
+    beside : float
+        Share that it removes, on rows that decide, of what the plant leaves with all its effects.
+    z : float
+        That over its standard error.
+    """
+
+    law: str
+    asked: bool
+    model: Model | None
+    beside: float = 0.0
+    z: float = 0.0
+
+    @property
+    def better(self) -> bool:
+        """Whether it explains clearly more than what was named."""
+        return self.beside > WORTH_MORE and self.z > DECIDED_Z
+
+    def words(self, own: str, named: bool) -> str:
+        """What that means, in a sentence."""
+        summary = next(record.summary for record in all_laws() if record.name == self.law)
+        beside = ", whatever is added to it" if named else ""
+        return (
+            f"The friction law itself lacks something: {self.law} ({summary}) leaves "
+            f"{100 * self.beside:.0f} % less than {own}{beside}."
+        )
+
+    def advice(self) -> Advice:
+        """What to do about it."""
+        return Advice(
+            f'state law = "{self.law}" in the plant file and diagnose again',
+            "effects beside a law that lacks something stand for that",
+            (),
+        )
+
+
+def law_names(wanted: Sequence[str], own: str) -> list[str]:
+    """Laws to compare with the plant's own."""
+    known = [record.name for record in all_laws()]
+    if list(wanted) == ["all"]:
+        return [name for name in known if name != own]
+    for name in wanted:
+        if name not in known:
+            raise InputError(
+                f"laws: '{name}' is unknown{did_you_mean(name, known)}; known are all, "
+                f"{listed(known)}"
+            )
+    return [name for name in dict.fromkeys(wanted) if name != own]
+
+
+def rivals_of(selection: Search, wanted: Sequence[str]) -> list[Rival]:
+    """The laws to compare, fitted.
+
+    Parameters
+    ----------
+    selection : Search
+    wanted : sequence of str
+        Names of laws that were asked for.
+    """
+    base, final = selection.models[0], selection.models[-1]
+    names = list(wanted)
+    rigid = not base.plant.friction.springy
+    if rigid and selection.choices and YIELDING not in names:
+        names.append(YIELDING)
+    rivals = []
+    for law in names:
+        model = _fitted(base, law)
+        beside, z = (0.0, 0.0) if model is None else heldout_gain(final, model)
+        rivals.append(Rival(law, law in wanted, model, beside, z))
+    return rivals
+
+
+def better_law(final: Model, rivals: Sequence[Rival]) -> Rival | None:
+    """The law that explains most beside the last model, None where none does clearly."""
+    better = [rival for rival in rivals if rival.better]
+    return max(better, key=lambda rival: rival.beside) if better else None
+
+
+def _fitted(base: Model, law: str) -> Model | None:
+    """The plant with another law, fitted with the same weights; None where it cannot be."""
+    _logger.info("fitting law %s", law)
+    evidence = base.evidence
+    bare = replace(base.plant, friction=Friction(law))
+    try:
+        starts = complete(bare, [rows.form for rows in evidence.train])
+        paths = free_paths(starts[0])
+        return Model(evidence, launch(starts, paths, evidence.train, most=BASE_EVALUATIONS))
+    except InputError as error:
+        _logger.info("%s: %s", law, error)
+        return None
+
+
+def law_rows(
+    rivals: Sequence[Rival], first: int, test: HeldOut | None, seed: int
+) -> tuple[LawRow, ...]:
+    """Laws with what they gain over the plant's own, the best first.
+
+    Parameters
+    ----------
+    rivals : sequence of Rival
+    first : int
+        Place of the first of them among the models that were tested.
+    test : HeldOut or None
+    seed : int
+    """
+    rows = []
+    index = first
+    for rival in rivals:
+        if rival.model is None:
+            if rival.asked:
+                rows.append(LawRow(rival.law, None, "could not be fitted to these data"))
+            continue
+        gain: Gain | None = None if test is None else gain_of(test, 0, index, seed)
+        index += 1
+        if not (rival.asked or rival.better):
+            continue
+        if gain is None:
+            reason = "fitted, and no rows were left to test on"
+        elif gain.ci95[0] > 0.0:
+            reason = f"explains {100 * gain.value:.1f} % of what the plant's law leaves"
+        elif gain.ci95[1] < 0.0:
+            reason = f"leaves {1.0 - gain.value:.3g} times the power that the plant's law leaves"
+        else:
+            reason = "explains about as much as the plant's law"
+        rows.append(LawRow(rival.law, gain, reason))
+    return tuple(sorted(rows, key=lambda r: -(r.gain.value if r.gain else -1e300)))

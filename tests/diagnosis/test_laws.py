@@ -1,0 +1,54 @@
+"""Other laws as causes: what a law lacks is not put down to an effect."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import pytest
+from tests.blind.score import as_plant, as_session
+from tests.reference.session_reference import make_sessions
+
+import stiction as st
+from stiction.plant import Friction
+
+SECONDS = 72.0
+
+
+@cache
+def made(base: str) -> Any:
+    return make_sessions([{"seed": 31, "seconds": SECONDS, "base": base}])[0]
+
+
+def with_law(base: str, law: str, **keywords: Any) -> st.Diagnosis:
+    plant = replace(as_plant(made(base)), friction=Friction(law))
+    return st.diagnose(plant, as_session(made(base)), surrogates=6, **keywords)
+
+
+@pytest.mark.parametrize("base", ["maxwell_slip", "hsieh_pan"])
+def test_a_contact_that_yields_is_no_effect_beside_coulomb(base: str) -> None:
+    found = with_law(base, "coulomb")
+    assert not any(cause.decided for cause in found.effects)
+    assert found.verdict in ("ambiguous", "unexplained")
+    if found.effects:
+        assert "maxwell_slip" in found.sentence
+        assert [row.law for row in found.laws] == ["maxwell_slip"]
+
+
+def test_a_better_law_is_told_with_its_gain() -> None:
+    found = with_law("hsieh_pan", "maxwell_slip", laws=("all",))
+    first = found.laws[0]
+    assert first.law == "hsieh_pan"
+    assert first.gain is not None
+    assert first.gain.ci95[0] > 0.5
+    # Creep beside the law is the effect that the better law has: told, and not for sure.
+    assert "hsieh_pan" in found.sentence or found.verdict == "missing_effect"
+
+
+def test_the_right_law_is_not_beaten() -> None:
+    found = with_law("maxwell_slip", "maxwell_slip", laws=("all",))
+    assert found.verdict == "nothing_missing"
+    assert all(row.gain is None or row.gain.value < 0.1 for row in found.laws)
+    assert {row.law for row in found.laws} == {law.name for law in st.laws()} - {"maxwell_slip"}
+    assert "law" not in found.sentence
