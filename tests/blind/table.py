@@ -26,7 +26,7 @@ EXPECTED = {
         "angle along the motion",
         "order along the motion",
     },
-    "torque_bursts": {"session time"},
+    "torque_bursts": {"session time", "single moments in time"},
     "half_turn_asymmetry": {"position", "angle", "order over position"},
     "root_speed_drag": {"speed", "velocity"},
     "wandering_bias": {"session time"},

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.advice import BY_COORDINATE
+from stiction.diagnosis.advice import BY_COORDINATE, MOMENTS
 from stiction.diagnosis.contact import slides_of
 from stiction.diagnosis.coordinates import BEND, BRAKING, COORDINATES, Coordinate
 from stiction.diagnosis.omnibus import Rest, View
@@ -42,6 +42,7 @@ def test_no_coordinate_belongs_to_an_effect_that_is_not_there() -> None:
 
 def test_every_coordinate_has_a_hint_and_an_experiment() -> None:
     names = {each.name for each in (*COORDINATES, *ORDERS, *COUPLED, RESPONSE, FREQUENCY)}
+    names.add(MOMENTS)
     assert set(HINTS) == names
     assert set(BY_COORDINATE) == names
 

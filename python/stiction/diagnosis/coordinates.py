@@ -83,6 +83,8 @@ class Coordinate:
         Name of a wider coordinate that mostly shows the same.
     rows : str
         Which rows have a place in it, "" where all have.
+    fine : bool
+        What depends on it may do so in a narrow place.
     """
 
     name: str
@@ -95,15 +97,20 @@ class Coordinate:
     upright: str = ""
     refines: str = ""
     rows: str = ""
+    fine: bool = False
 
 
 COORDINATES: Final = (
     Coordinate("velocity", "velocity, {x}/s", False, lambda look: look.velocity),
     Coordinate("speed", "speed, {x}/s", True, lambda look: np.abs(look.velocity), logarithmic=True),
-    Coordinate("position", "position, {x}", False, lambda look: look.position),
-    Coordinate("position along the motion", "position, {x}", True, lambda look: look.position),
-    Coordinate("angle", "angle in the turn, rad", False, lambda look: look.angle),
-    Coordinate("angle along the motion", "angle in the turn, rad", True, lambda look: look.angle),
+    Coordinate("position", "position, {x}", False, lambda look: look.position, fine=True),
+    Coordinate(
+        "position along the motion", "position, {x}", True, lambda look: look.position, fine=True
+    ),
+    Coordinate("angle", "angle in the turn, rad", False, lambda look: look.angle, fine=True),
+    Coordinate(
+        "angle along the motion", "angle in the turn, rad", True, lambda look: look.angle, fine=True
+    ),
     Coordinate("acceleration", "acceleration, {x}/s²", False, lambda look: look.acceleration),
     Coordinate("effort", "measured effort, {f}", False, lambda look: look.effort),
     Coordinate("rate of the effort", "rate of the effort, {f}/s", False, lambda look: look.rate),

@@ -16,6 +16,8 @@ __all__ = ["BINS", "SLOW_BINS", "smoother", "stacked"]
 
 BINS: Final = 24
 """Stretches of a coordinate, each with as many rows."""
+FINE_BINS: Final = 72
+"""And of one in which a narrow place may matter: a patch of a turn is some tenths of a radian."""
 SLOW_BINS: Final = 6
 """Stretches of the session clock where recordings have roles of their own: each stretch must hold
 some that are fitted and some that are not."""
@@ -140,7 +142,8 @@ def _stretches(
     known = values[placed]
     if edges is None:
         slow = _is_slow(coordinate, evidence)
-        number = SLOW_BINS if slow else min(BINS, max(len(known) // ROWS, FEWEST_BINS))
+        most = FINE_BINS if coordinate.fine else BINS
+        number = SLOW_BINS if slow else min(most, max(len(known) // ROWS, FEWEST_BINS))
         inner = np.linspace(0.0, 1.0, number + 1)[1:-1]
         edges = np.unique(np.quantile(known, inner)) if len(known) else np.zeros(0)
     # Stretches that hold nothing, between equal values, are left out.

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
-from .advice import NO_COORDINATE
+from .advice import MOMENTS, NO_COORDINATE
 from .decide import LEAST_GAIN
 from .evidence import Evidence
 from .model import Model
@@ -28,6 +28,10 @@ shows in no coordinate: a law is no exact image of a machine."""
 LEAST_EXCESS: Final = -3.0
 """Where noise alone would leave four times the power that is left, nothing of it is unexplained:
 the replays have lost the machine, as where a dry contact sticks and slips at random."""
+WINDOW_S: Final = 0.2
+"""Length of the windows in which single moments are looked for."""
+FEW_WINDOWS: Final = 0.35
+"""Share of all windows in which moments are single ones."""
 BESIDE_A_NAME: Final = 0.0015
 """Share of the friction from which on what is left counts beside a name: what imitates a cause
 leaves little, spread over many coordinates."""
@@ -59,7 +63,8 @@ def unnamed(
         # What was refused as an imitation shows that there is something to imitate.
         told = (Unexplained(left.views[0].coordinate.name, selection.imitated),)
     if not told and excess > MOST_EXCESS:
-        told = (Unexplained(NO_COORDINATE, excess),)
+        bursts = _at_moments(evidence, selection.models[-1], null)
+        told = (Unexplained(MOMENTS if bursts else NO_COORDINATE, excess),)
     return told
 
 
@@ -96,6 +101,31 @@ def _outweighs(selection: Search, left: Sequence[Unexplained]) -> bool:
         return False
     before, after = (float(m.blocks[1].sum()) for m in (selection.models[0], selection.models[-1]))
     return left[0].share * after > WORTH_SHARE * (before - after)
+
+
+def _at_moments(evidence: Evidence, model: Model, null: FloatArray) -> bool:
+    """Whether most of what noise does not explain lies in few short windows.
+
+    A window stands out where it holds more than any window of any surrogate of its recording.
+    """
+    outstanding, excess, windows = 0.0, 0.0, [0, 0]
+    for rows in evidence.shown:
+        own = evidence.cells.recording == rows.index
+        length = max(1, round(WINDOW_S / (rows.form.dt * rows.form.stride)))
+        number = int(own.sum()) // length
+        if number == 0:
+            continue
+        first = np.flatnonzero(own)[: number * length].reshape(number, length)
+        power = np.sum(model.residual[first] ** 2, axis=1)
+        noise = np.sum(null[first] ** 2, axis=1)
+        beyond = np.maximum(power - float(np.mean(noise)), 0.0)
+        out = power > float(np.max(noise))
+        outstanding += float(beyond[out].sum())
+        excess += float(beyond.sum())
+        windows[0] += int(out.sum())
+        windows[1] += number
+    few = windows[0] < FEW_WINDOWS * windows[1]
+    return few and outstanding > MOST_EXCESS * excess > 0.0
 
 
 def _excess(evidence: Evidence, model: Model, null: FloatArray) -> float:

@@ -21,6 +21,7 @@ HINTS: Final = {
     "acceleration": "inertia, or a part that moves by itself",
     "response to the effort": "a delay, a filter of the drive, or a shaft that gives",
     "frequency": "the mains, a fan, a neighbouring machine",
+    "single moments in time": "something nearby: another machine, a cable that catches, a person",
     "effort": "the drive: gain, saturation, dead zone",
     "rate of the effort": "a delay or lag between input and effort",
     "distance since the reversal": "friction just after a turn: pre-sliding, backlash",
