@@ -15,7 +15,7 @@ import pytest
 import stiction as st
 from stiction.cli import run
 from stiction.diagnosis.candidates import candidates, left_out, present, scales_of
-from stiction.diagnosis.decide import Choice, Trial, choose
+from stiction.diagnosis.decide import Choice, Trial, choose, strangers
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import Gain, HeldOut, gain_of
 from stiction.diagnosis.model import Model, fitted
@@ -238,6 +238,8 @@ def test_no_stranger_is_named_where_what_explains_most_imitates() -> None:
     imitates = tried(1.0, 1, "imitates something else", family="offset", uneven=0.6)
     relative, stranger = tried(0.5, 1, family="offset"), tried(0.5, 1, family="angle")
     assert choose([imitates, stranger]) is None
+    assert strangers([imitates, stranger, relative], stranger) == [imitates]
+    assert strangers([imitates, stranger, relative], relative) == []
     chosen = choose([imitates, relative])
     assert chosen is not None
     assert chosen.winner is relative

@@ -17,7 +17,7 @@ from .influence import limited
 from .model import Model
 from .screen import Score
 
-__all__ = ["Choice", "Trial", "choose", "heldout_gain", "judge", "log_gain"]
+__all__ = ["Choice", "Trial", "choose", "heldout_gain", "judge", "log_gain", "strangers"]
 
 LEAST_GAIN: Final = 0.025
 """Held-out gain below which an effect is not worth a name."""
@@ -253,16 +253,7 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
     if not accepted:
         return None
     winner = accepted[0]
-    # The cause itself would explain more than what imitates it, and what is refused for its spread
-    # over blocks alone may be that cause. A relative of the winner may imitate the winner.
-    family = winner.candidate.record.family
-    strangers = [
-        t
-        for t in ranked
-        if (t.imitates and t.candidate.record.family != family)
-        or (t.by_blocks and not _alike(winner, t))
-    ]
-    if any((1.0 - NEAR) * stranger.worth > winner.worth for stranger in strangers):
+    if strangers(trials, winner):
         return None
     # Who falls short by a little on its own may still be what the winner imitates.
     rivals = [
@@ -275,6 +266,23 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
     ]
     head = _head(winner, rivals)
     return Choice(head, tuple(trial for trial in (winner, *rivals) if trial is not head))
+
+
+def strangers(trials: Sequence[Trial], winner: Trial) -> list[Trial]:
+    """Who may be the cause that a winner imitates, the best first.
+
+    The cause itself would explain more than what imitates it, and what is refused for its spread
+    over blocks alone may be that cause. A relative of the winner may imitate the winner.
+    """
+    family = winner.candidate.record.family
+    found = [
+        t
+        for t in trials
+        if (t.imitates and t.candidate.record.family != family)
+        or (t.by_blocks and not _alike(winner, t))
+    ]
+    found = [t for t in found if (1.0 - NEAR) * t.worth > winner.worth]
+    return sorted(found, key=lambda t: -t.worth)
 
 
 def _head(winner: Trial, rivals: Sequence[Trial]) -> Trial:

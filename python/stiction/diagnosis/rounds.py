@@ -23,6 +23,7 @@ from .decide import (
     choose,
     heldout_gain,
     judge,
+    strangers,
 )
 from .evidence import Evidence
 from .model import Model, fitted, power_of, stepped, with_effect, without_effect
@@ -184,11 +185,40 @@ def _round(
         if score.candidate.name not in tried:
             row = found.rows[score.candidate.name]
             found.rows[row.name] = replace(row, reason="others explain more")
-    choice = choose(trials)
+    choice = choose(trials) or _beside(evidence, trials, signatures, centred, bias, friction)
     found.imitated = max((t.gain for t in trials if t.imitates and choice is None), default=0.0)
     for trial in trials:
         if choice is not None or not found.choices:
             found.rows[trial.name] = _tried(trial, choice)
+    return choice
+
+
+def _beside(
+    evidence: Evidence,
+    trials: Sequence[Trial],
+    signatures: Signatures,
+    centred: FloatArray,
+    bias: FloatArray,
+    friction: float,
+) -> Choice | None:
+    """What would pass, had not another trial looked like the cause that it imitates.
+
+    Two causes at once make each other's strength uneven: the one that was refused for that is asked
+    again beside the one that passed. If it passes there, both are causes.
+    """
+    passed = sorted((t for t in trials if not t.reason), key=lambda t: -t.worth)
+    other = next((t for w in passed[:1] for t in strangers(trials, w) if t.imitates), None)
+    if other is None:
+        return None
+    choice = choose([trial for trial in trials if trial is not other])
+    if choice is None:
+        return None
+    model = choice.winner.model
+    scores = screen(_problem(evidence, model, centred, bias), signatures, friction)
+    score = next(each for each in scores if each.candidate.name == other.name)
+    if not _promises(score) or _trial(evidence, model, signatures, score, friction).reason:
+        return None
+    _logger.info("%s passes beside %s", other.name, choice.winner.name)
     return choice
 
 
