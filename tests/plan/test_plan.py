@@ -228,6 +228,30 @@ def test_what_cannot_be_planned_is_one_sentence(name: str, made: Plan) -> None:
     assert all(word in str(told.value) for word in words)
 
 
+@pytest.mark.parametrize(
+    "limits",
+    [
+        {"position": 1e-12},
+        {"position": 1e9},
+        {"speed": 1e-9},
+        {"speed": 1e9},
+        {"effort": 1e12},
+        {"position": 1e-9, "rate": 50.0},
+    ],
+)
+def test_absurd_limits_give_signals_or_one_sentence(limits: dict[str, float], made: Plan) -> None:
+    absurd, told = None, ""
+    try:
+        absurd = plan(made.plant, **limits)  # type: ignore[arg-type]
+    except st.InputError as error:
+        told = str(error)
+    assert (absurd is None) == bool(told)
+    assert "\n" not in told
+    for signal in () if absurd is None else absurd.signals:
+        assert signal.duration < 200.0
+        assert np.isfinite(signal.values).all()
+
+
 def test_a_linear_machine_must_say_how_far_it_may_go(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -23,6 +23,8 @@ RAMP_S: Final = 2.0
 RESTS_S: Final = (0.1, 0.3, 1.0, 3.0, 5.0)
 LOADINGS: Final = (0.01, 0.1, 0.5)
 """Rests, and the shares of the greatest speed at which they end."""
+LOADING_S: Final = 4.0
+"""Time that a loading takes at most."""
 LEVELS: Final = (0.3, 0.6, 0.95)
 HOLD_S: Final = 5.0
 """Levels of the holds in shares of friction, and how long they last."""
@@ -39,6 +41,10 @@ CHIRP_S: Final = 15.0
 CHIRP_TO: Final = 0.1
 """End of a chirp in shares of the sampling rate."""
 STEADY_S: Final = 5.0
+CROSSING_S: Final = 15.0
+"""Time in which the range is crossed at most; a slow machine then crosses a part of it."""
+FASTEST: Final = 0.05
+"""Frequency of a sine at most, in shares of the sampling rate."""
 
 Kind = Literal["reference", "input"]
 Build = Callable[[Plant, Sizes, float, np.random.Generator, float], FloatArray]
@@ -69,7 +75,8 @@ def _tracking(
 ) -> FloatArray:
     time = np.arange(round(MULTISINE_S / dt)) * dt
     low, high = 0.1, 0.25 * math.sqrt(sizes.acceleration / (0.05 * sizes.reach)) / math.pi
-    orders = low * (max(high, 2.0 * low) / low) ** (np.arange(WAVES) / (WAVES - 1))
+    high = min(max(high, 2.0 * low), FASTEST / dt)
+    orders = low * (high / low) ** (np.arange(WAVES) / (WAVES - 1))
     waves = [
         np.sin(2.0 * math.pi * f * time + source.uniform(0.0, 2.0 * math.pi)) / f for f in orders
     ]
@@ -101,7 +108,8 @@ def _dwells(
         rest, loading = cells[int(k)]
         motion.rest(rest)
         speed = share * loading * sizes.speed
-        distance = min(0.5 * sizes.reach, max(20.0 * sizes.presliding, 0.4 * speed))
+        distance = max(20.0 * sizes.presliding, 0.4 * speed)
+        distance = min(0.5 * sizes.reach, LOADING_S * speed, distance)
         # On in the same direction or back: a contact remembers from where it came.
         turn = float(source.choice([-1.0, 1.0]))
         sign = turn if abs(motion.at + turn * distance) <= sizes.reach else -turn
@@ -134,10 +142,10 @@ def _crossings(
 ) -> FloatArray:
     motion = Motion(dt, share * sizes.acceleration)
     motion.rest(0.5)
-    sign = float(source.choice([-1.0, 1.0]))
+    far = min(sizes.reach, CROSSING_S * share * speed) * float(source.choice([-1.0, 1.0]))
     for _ in range(times):
-        motion.go(sign * sizes.reach, share * speed)
-        motion.go(-sign * sizes.reach, share * speed)
+        motion.go(far, share * speed)
+        motion.go(-far, share * speed)
     motion.go(0.0, share * speed)
     motion.rest(0.5)
     return motion.positions()
@@ -154,7 +162,7 @@ def _sines(
         )
         # The last one of a block is of high acceleration: the input varies at the same place.
         for times in (0.3, 1.0):
-            frequency = max(times * share * fastest, 0.15)
+            frequency = min(max(times * share * fastest, 0.15), FASTEST / dt)
             samples = round(3.0 / frequency / dt)
             wave = np.sin(2.0 * math.pi * frequency * np.arange(samples) * dt)
             motion.add(_within(amplitude * wave * tapered(samples, 0.2), sizes, dt, share))
@@ -181,7 +189,7 @@ def _rests(
     motion = Motion(dt, share * sizes.acceleration)
     motion.rest(STEADY_S)
     speed = min(sizes.speed, source.uniform(1.5, 1.8) * sizes.reach / STEADY_S)
-    distance = 0.9 * sizes.reach * float(source.choice([-1.0, 1.0]))
+    distance = min(0.9 * sizes.reach, STEADY_S * speed) * float(source.choice([-1.0, 1.0]))
     motion.go(-distance, sizes.speed * 0.5)
     motion.go(distance, share * speed)
     motion.go(-distance, share * speed)
