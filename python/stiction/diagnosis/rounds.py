@@ -445,7 +445,9 @@ def _tried(trial: Trial, choice: Choice | None) -> CandidateRow:
     score = trial.score
     if choice is not None and trial is choice.winner:
         reason = f"accepted beside a look-alike: {trial.reason}" if trial.reason else "accepted"
-    elif trial.reason or choice is None:
+    elif choice is None:
+        reason = trial.reason or "passes, but may imitate one that was refused and explains more"
+    elif trial.reason:
         reason = trial.reason
     elif trial in choice.rivals:
         reason = f"these data cannot tell it from {choice.winner.name}"
