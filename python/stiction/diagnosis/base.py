@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import numpy as np
 
 from ..fitting.minimise import MOST_EVALUATIONS, launch
@@ -14,20 +12,18 @@ from ..plant import Plant
 from .evidence import Evidence
 from .model import Model, fitted
 
-__all__ = ["BASE_EVALUATIONS", "base_of"]
-
-BASE_EVALUATIONS: Final = MOST_EVALUATIONS
+__all__ = ["base_of"]
 
 
 def base_of(evidence: Evidence, plant: Plant) -> Model:
     """The plant fitted twice: the second time with recordings weighted by what is left in each."""
     starts = complete(plant, [rows.form for rows in evidence.train])
     paths = free_paths(starts[0])
-    first = Model(evidence, launch(starts, paths, evidence.train, most=BASE_EVALUATIONS))
+    first = Model(evidence, launch(starts, paths, evidence.train, most=MOST_EVALUATIONS))
     if len(evidence.train) > 1:
         reweighted(evidence.train, first.plant, first.nuisances)
     else:
         evidence.train[0].weight = 1.0 / max(np.sqrt(np.mean(first.residual**2)), 1e-300)
     evidence.weigh()
     nuisances = primed(first.plant, evidence.train, first.nuisances)
-    return fitted(evidence, first.plant, nuisances, most=BASE_EVALUATIONS)
+    return fitted(evidence, first.plant, nuisances, most=MOST_EVALUATIONS)

@@ -9,11 +9,10 @@ from typing import Final
 
 from ..catalogue import laws as all_laws
 from ..errors import InputError
-from ..fitting.minimise import launch
+from ..fitting.minimise import MOST_EVALUATIONS, launch
 from ..fitting.start import complete, free_paths
 from ..plant import Friction
 from ..wording import did_you_mean, listed
-from .base import BASE_EVALUATIONS
 from .decide import DECIDED_Z, heldout_gain
 from .gain import Gain, HeldOut, gain_of
 from .model import Model
@@ -111,13 +110,17 @@ def rivals_of(selection: Search, wanted: Sequence[str]) -> list[Rival]:
     rivals = []
     for law in names:
         model = _fitted(base, law)
+        if model is not None and model.solution.interrupted:
+            # Half a fit is no fair comparison: what is known of the effects stays.
+            selection.interrupted = True
+            break
         beside, z = (0.0, 0.0) if model is None else heldout_gain(final, model)
         rivals.append(Rival(law, law in wanted, model, beside, z))
     return rivals
 
 
-def better_law(final: Model, rivals: Sequence[Rival]) -> Rival | None:
-    """The law that explains most beside the last model, None where none does clearly."""
+def better_law(rivals: Sequence[Rival]) -> Rival | None:
+    """The law that explains most beside what was named, None where none does clearly."""
     better = [rival for rival in rivals if rival.better]
     return max(better, key=lambda rival: rival.beside) if better else None
 
@@ -130,7 +133,7 @@ def _fitted(base: Model, law: str) -> Model | None:
     try:
         starts = complete(bare, [rows.form for rows in evidence.train])
         paths = free_paths(starts[0])
-        return Model(evidence, launch(starts, paths, evidence.train, most=BASE_EVALUATIONS))
+        return Model(evidence, launch(starts, paths, evidence.train, most=MOST_EVALUATIONS))
     except InputError as error:
         _logger.info("%s: %s", law, error)
         return None

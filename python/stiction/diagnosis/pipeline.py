@@ -304,7 +304,7 @@ def _concluded(
     results = {id(m): _evaluated(evidence, m) for m in (base, final)}
     baseline = _summary(evidence, base, results[id(base)], test, 0, floor)
     extended = _summary(evidence, final, results[id(final)], test, len(selection.choices), floor)
-    better, own_law = better_law(final, rivals), base.plant.friction.law
+    better, own_law = better_law(rivals), base.plant.friction.law
     causes = []
     for k, choice in enumerate(selection.choices):
         record = choice.winner.candidate.record
