@@ -70,9 +70,8 @@ def adaptively_smoothed(readings: FloatArray, dt: float, noise: float) -> FloatA
     level = uniform_filter1d(minimum_filter1d(level, BLENDED), BLENDED)
     below = np.minimum(level.astype(np.int64), len(halves) - 2)
     share, each = level - below, np.arange(len(readings))
-    smoothed: FloatArray = (1.0 - share) * estimates[below, each] + share * estimates[
-        below + 1, each
-    ]
+    narrow, wide = estimates[below, each], estimates[below + 1, each]
+    smoothed: FloatArray = narrow + share * (wide - narrow)
     return smoothed
 
 

@@ -24,13 +24,6 @@ LEVELS: Final = ("coulomb", "breakaway")
 SMALLER: Final = 0.75
 TRIES: Final = 16
 """Shares by which a signal is made smaller until it stays within the limits."""
-INPUTS: Final = {
-    "current_a": "current_a",
-    "voltage_v": "voltage_v",
-    "torque_nm": "torque_nm",
-    "force_n": "force_n",
-}
-
 _logger = logging.getLogger(__name__)
 
 
@@ -163,8 +156,8 @@ def _signal(
 
 
 def _input_of(plant: Plant) -> str:
-    given = str(plant.drive.get("input", ""))
-    return INPUTS.get(given, "torque_nm" if plant.motion == "rotary" else "force_n")
+    usual = "torque_nm" if plant.motion == "rotary" else "force_n"
+    return str(plant.drive.get("input", usual))
 
 
 def _needed(plant: Plant, path: FloatArray, dt: float) -> FloatArray:
