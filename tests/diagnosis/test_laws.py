@@ -11,6 +11,8 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
+from stiction.diagnosis import laws
+from stiction.diagnosis.model import Model
 from stiction.plant import Friction
 
 SECONDS = 72.0
@@ -52,3 +54,21 @@ def test_the_right_law_is_not_beaten() -> None:
     assert all(row.gain is None or row.gain.value < 0.1 for row in found.laws)
     assert {row.law for row in found.laws} == {law.name for law in st.laws()} - {"maxwell_slip"}
     assert "law" not in found.sentence
+
+
+def test_a_fit_of_a_law_that_was_interrupted_is_not_compared(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    whole = laws._fitted
+
+    def stopped(base: Model, law: str) -> Model | None:
+        model = whole(base, law)
+        assert model is not None
+        return replace(model, solution=replace(model.solution, interrupted=True))
+
+    monkeypatch.setattr(laws, "_fitted", stopped)
+    found = with_law("maxwell_slip", "maxwell_slip", laws=("all",))
+    assert not found.success
+    assert found.message.startswith("interrupted")
+    assert found.laws == ()
+    assert found.verdict == "nothing_missing"

@@ -14,6 +14,7 @@ import pytest
 
 import stiction as st
 from stiction.cli import run
+from stiction.diagnosis import listing
 from stiction.diagnosis.candidates import candidates, left_out, present, scales_of
 from stiction.diagnosis.decide import Choice, Trial, choose, strangers
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
@@ -229,7 +230,9 @@ def tried(
         parameters=parameters,
         record=SimpleNamespace(family=family, name=f"{worth}"),
     )
-    score = SimpleNamespace(signature=np.ones(5), candidate=candidate)
+    score = SimpleNamespace(
+        signature=np.ones(5), candidate=candidate, score=0.1, threshold=0.05, heldout=0.1
+    )
     model = SimpleNamespace(blocks=blocks)
     return Trial(score, model, 0.3, 3.0, worth, 9.0, 0.1, reason, by_blocks, uneven)
 
@@ -243,6 +246,14 @@ def test_no_stranger_is_named_where_what_explains_most_imitates() -> None:
     chosen = choose([imitates, relative])
     assert chosen is not None
     assert chosen.winner is relative
+
+
+def test_every_row_has_a_reason() -> None:
+    passes, refused = tried(0.5, 1), tried(1.0, 1, "imitates something else", family="offset")
+    for choice in (None, choose([passes])):
+        for trial in (passes, refused):
+            assert listing.tried(trial, choice).reason
+    assert "imitate" in listing.tried(passes, None).reason
 
 
 def test_a_strength_that_is_not_quite_even_stands_for_its_family() -> None:

@@ -14,7 +14,6 @@ from .. import __version__
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import horizon_of
 from ..fitting.forms import told as residual_told
-from ..fitting.minimise import MOST_EVALUATIONS
 from ..fitting.result import FitResult
 from ..fitting.solve import evaluate
 from ..plant import Effect, Plant
@@ -31,6 +30,7 @@ from .coordinates import Look, looks
 from .evidence import Evidence
 from .gain import HeldOut, gain_of, open_residuals
 from .laws import THE_LAW, Rival, better_law, law_names, law_rows, rivals_of
+from .listing import in_order
 from .loop import replayed
 from .model import Model
 from .noise import Noise
@@ -40,7 +40,7 @@ from .pictures import Pictures, Stretch
 from .regression import refitted
 from .replay import centre, surrogate_residuals
 from .result import Cause, Diagnosis, ModelSummary, Unexplained
-from .rounds import Search, friction_of, search, summary_rows
+from .rounds import Search, friction_of, search
 from .verdict import relatives, unnamed, verdict_of
 from .view import View
 from .words import sentence, what
@@ -49,7 +49,6 @@ __all__ = ["SURROGATES", "diagnose"]
 
 SURROGATES: Final = 24
 """Replays of the base with noise; more make thresholds smoother and cost in proportion."""
-BASE_EVALUATIONS: Final = MOST_EVALUATIONS
 
 _logger = logging.getLogger(__name__)
 
@@ -345,7 +344,7 @@ def _concluded(
         plant=final.plant,
         effects=tuple(causes),
         gain=gain,
-        candidates=summary_rows(selection),
+        candidates=in_order(selection.rows.values(), selection.choices),
         laws=law_rows(rivals, len(selection.models), test, found.seed),
         baseline=baseline,
         extended=extended,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
@@ -14,6 +14,7 @@ from ..fitting.rows import Nuisances
 from ..plant import Plant
 from ..shooting import ShootingForm
 from ..trajectory import FloatArray
+from . import listing
 from .candidates import Candidate, candidates, present, scales_of
 from .decide import (
     LEAST_GAIN,
@@ -31,7 +32,7 @@ from .replay import centre
 from .result import CandidateRow
 from .screen import Problem, Score, Signatures, screen
 
-__all__ = ["MOST_EFFECTS", "Search", "friction_of", "search", "summary_rows"]
+__all__ = ["MOST_EFFECTS", "Search", "friction_of", "search"]
 
 MOST_EFFECTS: Final = 4
 """Effects added at most: who lacks more than that needs another law."""
@@ -39,8 +40,6 @@ REFITTED: Final = 5
 """Candidates refitted in a round."""
 SLIGHT: Final = 0.1
 """A candidate that explains less than this share of one that passed is not refitted beside it."""
-IMITATED: Final = 0.1
-"""Share of a signature beside the base below which the base is what hides it."""
 MOST_RENEWALS: Final = 2
 """Times that the base is replaced by a better fit of itself."""
 WORTH_RENEWING: Final = 0.005
@@ -172,7 +171,7 @@ def _round(
     for score in scores:
         # Later rounds tell of what is left; what an effect is told by is its first one.
         if not found.choices:
-            found.rows[score.candidate.name] = _screened(score)
+            found.rows[score.candidate.name] = listing.screened(score)
             if not score.testable:
                 found.blind.append(score.candidate.record)
     passing = [score for score in scores if _promises(score)]
@@ -189,7 +188,7 @@ def _round(
     found.imitated = max((t.gain for t in trials if t.imitates and choice is None), default=0.0)
     for trial in trials:
         if choice is not None or not found.choices:
-            found.rows[trial.name] = _tried(trial, choice)
+            found.rows[trial.name] = listing.tried(trial, choice)
     return choice
 
 
@@ -396,7 +395,7 @@ def _swap(
         found.models[:] = _chain(evidence, found.models[0], choices, again.winner.model)
     found.choices[:] = choices
     for trial in trials:
-        found.rows[trial.name] = _tried(trial, again)
+        found.rows[trial.name] = listing.tried(trial, again)
 
 
 def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score) -> Model:
@@ -426,34 +425,6 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
         if alone.power < base.power:
             break
     return min(tried, key=lambda each: each.power)
-
-
-def _screened(score: Score) -> CandidateRow:
-    if not score.testable and score.left > IMITATED:
-        reason = "not testable: 2 % of the friction would not show beside what else is left"
-    elif not score.testable:
-        share = "all" if score.left < 1e-4 else f"all but {100 * score.left:.1g} %"
-        reason = f"not testable: the base imitates {share} of it on these data"
-    elif score.score <= score.threshold:
-        reason = "explains no more than noise does"
-    else:
-        reason = "does not help on rows held out"
-    return CandidateRow(score.candidate.name, score.score, score.threshold, score.heldout, reason)
-
-
-def _tried(trial: Trial, choice: Choice | None) -> CandidateRow:
-    score = trial.score
-    if choice is not None and trial is choice.winner:
-        reason = f"accepted beside a look-alike: {trial.reason}" if trial.reason else "accepted"
-    elif choice is None:
-        reason = trial.reason or "passes, but may imitate one that was refused and explains more"
-    elif trial.reason:
-        reason = trial.reason
-    elif trial in choice.rivals:
-        reason = f"these data cannot tell it from {choice.winner.name}"
-    else:
-        reason = f"{choice.winner.name} explains more"
-    return CandidateRow(trial.name, score.score, score.threshold, trial.gain, reason)
 
 
 def friction_of(evidence: Evidence, base: Model) -> float:
@@ -488,18 +459,3 @@ def _contributed(signatures: Signatures, score: Score, model: Model) -> FloatArr
     gains = model.gains(score.candidate)
     contributed: FloatArray = signatures.columns[:, signatures.slices[index]] @ gains
     return contributed
-
-
-def summary_rows(found: Search) -> tuple[CandidateRow, ...]:
-    """Every effect: accepted ones in their order, then by score."""
-    accepted: Mapping[str, int] = {c.winner.name: k for k, c in enumerate(found.choices)}
-    return tuple(
-        sorted(
-            found.rows.values(),
-            key=lambda row: (
-                accepted.get(row.name, len(accepted)),
-                -(row.score if row.score is not None else -1.0),
-                row.name,
-            ),
-        )
-    )

@@ -1,0 +1,60 @@
+"""What became of each effect, a row each with its reason."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Final
+
+from .decide import Choice, Trial
+from .result import CandidateRow
+from .screen import Score
+
+__all__ = ["in_order", "screened", "tried"]
+
+IMITATED: Final = 0.1
+"""Share of a signature beside the base below which the base is what hides it."""
+
+
+def screened(score: Score) -> CandidateRow:
+    """What the screening says of one that is not refitted."""
+    if not score.testable and score.left > IMITATED:
+        reason = "not testable: 2 % of the friction would not show beside what else is left"
+    elif not score.testable:
+        share = "all" if score.left < 1e-4 else f"all but {100 * score.left:.1g} %"
+        reason = f"not testable: the base imitates {share} of it on these data"
+    elif score.score <= score.threshold:
+        reason = "explains no more than noise does"
+    else:
+        reason = "does not help on rows held out"
+    return CandidateRow(score.candidate.name, score.score, score.threshold, score.heldout, reason)
+
+
+def tried(trial: Trial, choice: Choice | None) -> CandidateRow:
+    """What a refit says, beside the one that was chosen."""
+    score = trial.score
+    if choice is not None and trial is choice.winner:
+        reason = f"accepted beside a look-alike: {trial.reason}" if trial.reason else "accepted"
+    elif choice is None:
+        reason = trial.reason or "passes, but may imitate one that was refused and explains more"
+    elif trial.reason:
+        reason = trial.reason
+    elif trial in choice.rivals:
+        reason = f"these data cannot tell it from {choice.winner.name}"
+    else:
+        reason = f"{choice.winner.name} explains more"
+    return CandidateRow(trial.name, score.score, score.threshold, trial.gain, reason)
+
+
+def in_order(rows: Iterable[CandidateRow], choices: Sequence[Choice]) -> tuple[CandidateRow, ...]:
+    """Every effect: accepted ones in their order, then by score."""
+    accepted: Mapping[str, int] = {c.winner.name: k for k, c in enumerate(choices)}
+    return tuple(
+        sorted(
+            rows,
+            key=lambda row: (
+                accepted.get(row.name, len(accepted)),
+                -(row.score if row.score is not None else -1.0),
+                row.name,
+            ),
+        )
+    )
