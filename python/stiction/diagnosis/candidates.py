@@ -13,6 +13,7 @@ import numpy as np
 from ..catalogue import EffectRecord, effects
 from ..errors import InputError
 from ..plant import Plant
+from ..presliding import presliding
 from ..wording import did_you_mean, listed
 from .evidence import Evidence
 
@@ -28,13 +29,6 @@ WIDER: Final = 1.5
 """A refit may leave the grid of a speed by this factor."""
 MUCH_WIDER: Final = 4.0
 """And that of other sizes by this one."""
-LOADED: Final = 0.95
-"""Share of the sliding friction at which a first loading counts as having come to a slide."""
-LOADING_S: Final = 0.05
-"""Time that such a loading takes: too short to creep, too long for viscous friction to matter."""
-LOADING_STEPS: Final = 500
-LONGEST_LOADING: Final = 20.0
-"""In units of sliding friction over initial stiffness."""
 RESTING_SHARE: Final = 1e-3
 """Of the range of motion: a rest of a contact without a spring."""
 FEWEST_COUNTS: Final = 3.0
@@ -142,7 +136,7 @@ def _units(evidence: Evidence, plant: Plant, span: float) -> dict[str, float]:
     forms = [rows.form for rows in evidence.shown]
     count = max(form.count for form in forms)
     # Without a spring there is no pre-sliding length; a rest is what the sensor takes for one.
-    length = _presliding(plant, sliding, stiffness) if stiffness > 0.0 else RESTING_SHARE * span
+    length = presliding(plant.friction, sliding) if stiffness > 0.0 else RESTING_SHARE * span
     ends = [form.clock + form.time[-1] - form.time[0] for form in forms]
     paths = [form.path + float(np.sum(np.abs(np.diff(form.position)))) for form in forms]
     return {
@@ -151,16 +145,6 @@ def _units(evidence: Evidence, plant: Plant, span: float) -> dict[str, float]:
         "session": max(1e-3, *ends),
         "path": max(1e-9, *paths),
     }
-
-
-def _presliding(plant: Plant, sliding: float, stiffness: float) -> float:
-    """Displacement in which a contact that was never moved comes to a slide."""
-    model = plant.friction.model()
-    step = LONGEST_LOADING * sliding / stiffness / LOADING_STEPS
-    duration = LOADING_S / LOADING_STEPS
-    force = model.simulate(np.full(LOADING_STEPS, step / duration), duration)
-    loaded = np.flatnonzero(force >= LOADED * min(sliding, float(np.max(force))))
-    return step * float(loaded[0] + 1)
 
 
 def left_out(without: Sequence[str]) -> tuple[str, ...]:

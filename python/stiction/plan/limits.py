@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..plant import Plant
+from ..presliding import presliding
 from ..wording import listed
 
 __all__ = ["Limits", "Sizes", "sizes_of"]
@@ -24,8 +25,6 @@ SHARE_TO_ACCELERATE: Final = 0.5
 """Of the effort beyond friction: the rest is the controller's."""
 BLEND_S: Final = 0.15
 """Least time to full speed: what a position loop of some 10 Hz follows without overshoot."""
-LOADED: Final = 0.95
-"""Share of the sliding friction at which pre-sliding counts as over."""
 SLOW_S: Final = 100.0
 """Time in which the range is crossed to measure friction without its viscous part."""
 STEPS: Final = 400
@@ -105,7 +104,8 @@ def sizes_of(plant: Plant, limits: Limits) -> Sizes:
             "the distance in m on either side of where it stands"
         )
     reach = MARGIN * (2.0 * math.pi if reach is None else reach)
-    friction, presliding = _contact(plant, reach)
+    friction = _level(plant, reach)
+    yields = presliding(plant.friction, friction) if plant.friction.springy else 0.0
     gain = abs(float(plant.drive.get("gain", 1.0)))
     own = gain * float(plant.drive.get("limit", math.inf))
     weight = _steady(plant)
@@ -129,23 +129,20 @@ def sizes_of(plant: Plant, limits: Limits) -> Sizes:
         speed = min(speed, MARGIN * limits.speed)
     speed = _carried(plant, speed, friction + spare)
     acceleration = min(acceleration, 0.5 * math.pi * speed / BLEND_S)
-    return Sizes(reach, speed, acceleration, most, friction, presliding, inertia)
+    return Sizes(reach, speed, acceleration, most, friction, yields, inertia)
 
 
-def _contact(plant: Plant, reach: float) -> tuple[float, float]:
-    """Level of the sliding friction and pre-sliding displacement: the law loaded slowly."""
+def _level(plant: Plant, reach: float) -> float:
+    """Level of the sliding friction: that of the law loaded slowly."""
     places = np.concatenate([[0.0], reach * np.logspace(-9.0, 0.0, STEPS)])
     duration = SLOW_S / STEPS
     model = plant.friction.model()
-    speeds = np.diff(places) / duration
-    force = np.array([model.step(float(v), duration) for v in speeds])
-    level = float(np.max(force))
+    level = max(model.step(float(v), duration) for v in np.diff(places) / duration)
     if not (math.isfinite(level) and level > 0.0):
         raise InputError(
             f"{plant.source}: [friction] {plant.friction.law} holds nothing; state its level"
         )
-    first = int(np.flatnonzero(force >= LOADED * level)[0])
-    return level, float(places[first + 1]) if first > 0 else 0.0
+    return level
 
 
 def _steady(plant: Plant) -> float:
