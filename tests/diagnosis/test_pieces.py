@@ -15,7 +15,7 @@ import pytest
 import stiction as st
 from stiction.cli import run
 from stiction.diagnosis import listing
-from stiction.diagnosis.candidates import candidates, left_out, present, scales_of
+from stiction.diagnosis.candidates import Scales, candidates, left_out, present, scales_of
 from stiction.diagnosis.decide import Choice, Trial, choose, strangers
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import Gain, HeldOut, gain_of
@@ -23,11 +23,14 @@ from stiction.diagnosis.model import Model, fitted
 from stiction.diagnosis.noise import measure_noise
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.replay import centre, surrogate_residuals
+from stiction.diagnosis.screen import Signatures
 from stiction.diagnosis.verdict import relatives
 from stiction.diagnosis.words import joined, sentence
 from stiction.fitting.levenberg import escaped, levenberg_marquardt
 from stiction.fitting.rows import Nuisances
 from stiction.fitting.statistics import interval_width
+from stiction.parameter import Parameter
+from stiction.plant import Effect
 
 DT = 1e-3
 COUNT = 2.0 * math.pi / 2**18
@@ -246,6 +249,23 @@ def test_no_stranger_is_named_where_what_explains_most_imitates() -> None:
     chosen = choose([imitates, relative])
     assert chosen is not None
     assert chosen.winner is relative
+
+
+def test_a_second_wave_has_another_order() -> None:
+    (record,) = (each for each in st.effects() if each.name == "cogging")
+    scales = Scales((0.1, 1.0), (1.0, 2.0, 3.0), True, {})
+    whole = tuple(candidates(record, scales))
+    columns = np.zeros((4, 2 * len(whole)))
+    slices = tuple(slice(2 * k, 2 * k + 2) for k in range(len(whole)))
+    effect = Effect("cogging", {"order": Parameter(2.0, fixed=True)})
+    second = Signatures(whole, columns, slices).second_of(effect)
+    assert [each.shape["order"] for each in second.candidates] == [1.0, 3.0]
+    assert all(each.second for each in second.candidates)
+    # Where an order is free a neighbour may come to it as well.
+    free = tuple(candidates(record, Scales((0.1, 1.0), (1.0, 2.0, 3.0, 4.0, 5.0), False, {})))
+    slices = tuple(slice(2 * k, 2 * k + 2) for k in range(len(free)))
+    second = Signatures(free, np.zeros((4, 10)), slices).second_of(effect)
+    assert [each.shape["order"] for each in second.candidates] == [4.0, 5.0]
 
 
 def test_every_row_has_a_reason() -> None:

@@ -296,8 +296,12 @@ def _sharpen(
     choice = found.choices[-1]
     if not choice.winner.candidate.record.second:
         return
-    own = signatures.second_of(choice.winner.name)
     model = found.models[-1]
+    own = signatures.second_of(
+        next(each for each in model.plant.effects if each.name == choice.winner.name)
+    )
+    if not own.candidates:
+        return
     (score,) = screen(_problem(evidence, model, centred, bias), own, friction)
     if not _promises(score):
         return

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..catalogue import EffectRecord
 from ..fitting.rows import Nuisances
-from ..plant import Plant
+from ..plant import Effect, Plant
 from ..trajectory import FloatArray
 from .candidates import Candidate
 from .evidence import Evidence, Plan
@@ -69,14 +69,31 @@ class Signatures:
             at += len(each.record.gains)
         return cls(tuple(candidates), -np.nan_to_num(columns), tuple(slices))
 
-    def second_of(self, name: str) -> Signatures:
-        """Second waves of an effect: at zero amplitude they look like first ones."""
-        own = [k for k, each in enumerate(self.candidates) if each.name == name]
+    def second_of(self, effect: Effect) -> Signatures:
+        """Second waves of an effect: at zero amplitude they look like first ones.
+
+        Its own order is left out: two waves of one order are one wave, of no amplitude in
+        particular.
+        """
+        own = [
+            k
+            for k, each in enumerate(self.candidates)
+            if each.name == effect.name and not _same_order(each, effect)
+        ]
         return Signatures(
             tuple(replace(self.candidates[k], second=True) for k in own),
             self.columns,
             tuple(self.slices[k] for k in own),
         )
+
+
+def _same_order(candidate: Candidate, effect: Effect) -> bool:
+    """Whether a refit of the candidate may come to the order that the effect has."""
+    for name, value in candidate.shape.items():
+        low, high = candidate.limits.get(name, (value, value))
+        if not low <= effect.parameters[name].value <= high:
+            return False
+    return True
 
 
 @dataclass(frozen=True)
