@@ -7,6 +7,7 @@ strength; amplitude 0 changes no bit. What it does is one or more of
 * `viscous_share(s)`: share of viscous friction;
 * `effort(s)`: effort along +x, N m;
 * `slip(s)`: displacement taken out of the contact in this step, rad;
+* `torque(s)` (shaft) or `meet` and `follow` (gap): a second mass behind the first;
 * `reads(x)`: what the sensor reads at position x, rad.
 
 Times are on the session clock, so slow effects run on across recordings.
@@ -14,6 +15,7 @@ Times are on the session clock, so slow effects run on across recordings.
 
 from __future__ import annotations
 
+import zlib
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -37,6 +39,8 @@ class Situation:
     input: np.ndarray = None  # N m, commanded, of this sample
     force: np.ndarray = None  # N m, contact at level 1
     history: np.ndarray = None  # N m, commanded input of all samples, (samples, lanes)
+    load: np.ndarray = None  # N m, external, of this sample
+    temperature: np.ndarray = None  # °C, of this sample
 
 
 @dataclass
@@ -47,7 +51,7 @@ class Setting:
     step: float
     coulomb: np.ndarray
     presliding: np.ndarray  # rad, pre-sliding length
-    inertia: np.ndarray
+    inertia: np.ndarray  # of what is left on the sensor's side
     extra: dict = field(default_factory=dict)
 
 
@@ -56,7 +60,10 @@ class Effect:
 
     forms = ("library",)
     hooks = ()
+    bases = ("coulomb", "maxwell_slip", "hsieh_pan")  # contacts that can have it
     size_support = 0.0  # s, kernel through which the size is measured; 0: none
+    largest = np.inf  # amplitude that physics allows
+    channel = None  # what has to be recorded for it: "load" or "temperature"
 
     def __init__(self, amplitude, shape, setting):
         self.lanes = setting.lanes
@@ -82,6 +89,11 @@ class Effect:
 
 def log_uniform(rng, low, high):
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+
+def stream(seed, *words):
+    """A random stream of its own for each purpose, so that one draw cannot move another."""
+    return np.random.default_rng([seed, *(zlib.crc32(str(w).encode()) for w in words)])
 
 
 def either_sign(rng):

@@ -272,6 +272,8 @@ class CreepHardening(Effect):
     """
 
     hooks = ("slip",)
+    # A rigid contact has no displacement that could creep.
+    bases = ("maxwell_slip", "hsieh_pan")
 
     @staticmethod
     def draw(rng, plant, form):

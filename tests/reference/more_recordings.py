@@ -27,9 +27,12 @@ def record_more(session, wanted, *, cold=False):
     """Recordings of the machine of a session, its clock and path going on, or `cold` from 0."""
     length = max(len(w.torque if w.reference is None else w.reference) for w in wanted)
     number = len(wanted)
+    last = session.recordings[-1]
+    had = {"load": last.load_nm, "temperature": last.temperature_c}
     spec = replace(
         session.spec,
         hidden=(),
+        channels=tuple(name for name, values in had.items() if values is not None),
         kinds=("tracking",) * number,
         roles=("train",),
         seconds=number * length * SAMPLE_TIME,
@@ -41,6 +44,8 @@ def record_more(session, wanted, *, cold=False):
     draft.noise = rng.standard_normal(draft.noise.shape) * (spec.noise * draft.plant["coulomb"])
     draft.start_s = np.array([w.start_s for w in wanted])
     draft.effects = [replace(effect, size=None) for effect in session.effects]
+    warm = None if cold or last.temperature_c is None else float(last.temperature_c[-1])
+    draft.channels = draft.draw_channels(warm)
     _take_paths(simulate(lanes_of([draft], without_effects=True)), [draft])
     if not cold:
         draft.start_path = draft.start_path + sum(
@@ -64,6 +69,11 @@ def _cut(recording, wanted):
     """Without what was appended to make all of one length."""
     rows = len(wanted.torque if wanted.reference is None else wanted.reference)
     reference = recording.reference_rad
+    channels = {
+        name: values[:rows]
+        for name in ("load_nm", "temperature_c")
+        if (values := getattr(recording, name)) is not None
+    }
     truth = {name: values[..., :rows] for name, values in recording.truth.items()}
     return replace(
         recording,
@@ -72,4 +82,5 @@ def _cut(recording, wanted):
         position_rad=recording.position_rad[:rows],
         reference_rad=None if reference is None else reference[:rows],
         truth=truth,
+        **channels,
     )

@@ -1,6 +1,6 @@
 """A plant that shares nothing with the product: many machines simulated in one time loop.
 
-    J x'' = gain u(t) + noise + added efforts - L S(history of x) - (1 + share) F_v x'
+    J x'' = gain u(t) + load + noise + added efforts - L S(history of x) - (1 + share) F_v x'
 
 A lane is one machine in one recording. The scheme is a leapfrog (kick-drift-kick, second order):
 the contact is moved to the middle of each step, velocities live at the ends, viscous friction
@@ -10,7 +10,7 @@ t = k sample_time and the input that holds from there on.
 The hidden torque of an effect is the effort that the base plant would need in addition to
 follow the *same measured motion*:
 
-    J y'' = u + noise - F_base(history of y) + hidden,      y the position as the sensor reads it.
+    J y'' = u + load + noise - F_base(history of y) + hidden,  y the position as the sensor reads.
 
 It is stored as the mean over each sample. A dry contact at rest holds any effort: there the
 hidden torque is 0.
@@ -59,6 +59,8 @@ class Lanes:
     count: float = TURN / 2**18  # rad of one encoder count; 0 reads exactly
     sample_time: float = 1e-3
     substeps: int = 10
+    load: np.ndarray | None = None  # N m, external, acts on the body
+    temperature: np.ndarray | None = None  # °C
 
 
 @dataclass
@@ -86,12 +88,14 @@ class _Effects:
     """The groups of a batch, sorted once by where they enter."""
 
     def __init__(self, batch, step):
-        self.by_hook = {h: [] for h in ("share", "viscous_share", "effort", "slip", "shaft")}
+        hooks = ("share", "viscous_share", "effort", "slip", "shaft", "gap")
+        self.by_hook = {h: [] for h in hooks}
         self.sensors = []
         self.inertia = np.array([p["inertia"] for p in batch.plants])
         self.near_inertia = self.inertia.copy()
         self.lead = np.zeros(len(batch.plants), dtype=int)
-        for group in batch.groups:
+        # A gap parts what a shaft has left on the sensor's side.
+        for group in sorted(batch.groups, key=lambda g: "gap" in g.kind.hooks):
             plants = [batch.plants[i] for i in group.lanes]
             lanes = compact(group.lanes)
             setting = Setting(
@@ -99,21 +103,22 @@ class _Effects:
                 step=step,
                 coulomb=np.array([p["coulomb"] for p in plants]),
                 presliding=np.array([p["presliding"] for p in plants]),
-                inertia=self.inertia[lanes],
+                inertia=self.near_inertia[lanes].copy(),
             )
+            if batch.base not in group.kind.bases:
+                able = " or ".join(group.kind.bases)
+                raise ValueError(f"{group.kind.__name__} needs a contact of {able}")
             effect = group.kind(group.amplitude, group.shape, setting)
             effect.slot = group.slot
             effect.shadow = None
             if ("slip" in effect.hooks or "sensor" in effect.hooks) and batch.base != "coulomb":
                 effect.shadow = contact_of(batch.base, plants, step)
-            elif "slip" in effect.hooks:
-                raise ValueError("a rigid contact has no displacement that could creep")
             for hook in effect.hooks:
                 if hook == "sensor":
                     self.sensors.append(effect)
                 else:
                     self.by_hook[hook].append(effect)
-            if "shaft" in effect.hooks:
+            if "shaft" in effect.hooks or "gap" in effect.hooks:
                 self.near_inertia[lanes] *= effect.near_share
             self.lead[lanes] = np.maximum(self.lead[lanes], getattr(effect, "lead", 0))
         self.slots = 1 + max((g.slot for g in batch.groups), default=-1)
@@ -205,6 +210,11 @@ def simulate(batch):
         u = log[k]
         s.k, s.input = k, u
         held = u + batch.noise[k]
+        if batch.load is not None:
+            s.load = batch.load[k]
+            held = held + s.load
+        if batch.temperature is not None:
+            s.temperature = batch.temperature[k]
         for i in range(batch.substeps):
             np.multiply(v, h, out=dx)
             x += dx
@@ -251,6 +261,14 @@ def simulate(batch):
             force = contact.settle(momentum, effort, level)
             past_v = v
             v = (momentum + effort - force) / (mass + drag)
+            if hooks["gap"]:
+                total = mass.copy()
+                meeting = [e.meet(s, v, total, momentum) for e in hooks["gap"]]
+                if any(meeting):
+                    force = contact.settle(momentum, effort, level)
+                    v = (momentum + effort - force) / (total + drag)
+                for e in hooks["gap"]:
+                    e.follow(s, v)
             mean_v = 0.5 * (v + past_v)
             friction[k] += force
             friction[k] += damping * mean_v
@@ -273,7 +291,7 @@ def _book(parts, hooks, sensors, contact, s, v, past_v, inertia, h):
         share = np.zeros_like(v)
         share[e.lanes] = e.viscous_part_now
         parts[e.slot, e.lanes] -= (contact.viscous_share(share) * mean_v)[e.lanes]
-    for e in hooks["shaft"]:
+    for e in hooks["shaft"] + hooks["gap"]:
         rate = (v[e.lanes] - past_v[e.lanes]) / h
         moving = e.near_share < 1.0
         parts[e.slot, e.lanes] += np.where(moving, e.far_inertia * rate - e.load, 0.0)

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+SAMPLE_TIME = 1e-3
+
 
 @dataclass
 class HiddenEffect:
@@ -36,6 +38,8 @@ class Recording:
     position_rad: np.ndarray  # read by the encoder
     reference_rad: np.ndarray | None
     truth: dict  # hidden, parts (effect, sample), position, velocity, friction
+    load_nm: np.ndarray | None = None  # external effort on the body
+    temperature_c: np.ndarray | None = None
 
     @property
     def name(self):
@@ -77,12 +81,22 @@ class Session:
         return folder
 
 
+def rms_behind_kernel(columns, support):
+    """RMS of columns smoothed by a cubic B-spline of `support` seconds (0: as they are)."""
+    box = round(support / 4.0 / SAMPLE_TIME)
+    for _ in range(4 if box > 1 else 0):
+        total = np.cumsum(columns, axis=0)
+        columns = (total[box:] - total[:-box]) / box
+    return float(np.sqrt(np.mean(columns**2)))
+
+
 def _write_csv(path, recording):
     names = ["time_s", "torque_nm", "position_rad"]
     columns = [recording.time_s, recording.torque_nm, recording.position_rad]
-    if recording.reference_rad is not None:
-        names.append("reference_rad")
-        columns.append(recording.reference_rad)
+    for name in ("reference_rad", "load_nm", "temperature_c"):
+        if (column := getattr(recording, name)) is not None:
+            names.append(name)
+            columns.append(column)
     row = ",".join(["%.3f"] + ["%.12g"] * (len(columns) - 1))
     table = np.column_stack(columns).tolist()
     text = "\n".join([",".join(names), *(row % tuple(line) for line in table)])

@@ -16,19 +16,25 @@ The same seed gives the same machine, experiments and noise, whatever is hidden 
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import dataclass
 
 import numpy as np
 
+from .channel_reference import draw_channels, side_by_side
 from .effect_catalogue import EFFECTS
+from .effect_reference import stream
 from .excitation_reference import KINDS, draw_controller, draw_plant, excite
 from .plant_reference import EffectGroup, Lanes, simulate
-from .recording_reference import HiddenEffect, Recording, Session
+from .recording_reference import (
+    SAMPLE_TIME,
+    HiddenEffect,
+    Recording,
+    Session,
+    rms_behind_kernel,
+)
 
 ROLES = ("train", "select", "test")
 SECONDS = 156.0  # of a session of all kinds and roles
-SAMPLE_TIME = 1e-3
 # Sessions simulated side by side; more lanes fall out of the processor's cache.
 SESSIONS_PER_BATCH = 16
 # A size further from the one asked for than this is corrected, so many times at most.
@@ -52,6 +58,7 @@ class Spec:
     `elements` is the number of elasto-slide elements in the contact (default 14, hsieh_pan 28).
     `one_curve` gives maxwell_slip a smooth curve of one shape parameter (64 elements), which a
     continuous model can take up entirely: a control, in which no mismatch of the curve is left.
+    `channels` are recorded too, "load" or "temperature"; what a hidden effect needs is always.
     """
 
     seed: int
@@ -67,6 +74,7 @@ class Spec:
     size_support: float = 0.0
     elements: int | None = None
     one_curve: bool = False
+    channels: tuple = ()
 
     @property
     def duration(self):
@@ -92,11 +100,6 @@ class Spec:
 # --- drawing
 
 
-def _stream(seed, *words):
-    """A random stream of its own for each purpose, so that one draw cannot move another."""
-    return np.random.default_rng([seed, *(zlib.crc32(str(w).encode()) for w in words)])
-
-
 def _order(spec):
     """(kind, role) in the order of recording: roles take turns, so all see early and late."""
     roles, kinds = spec.roles, spec.kinds
@@ -114,15 +117,15 @@ class Draft:
         self.spec = spec
         seed = spec.seed
         self.plant = draw_plant(
-            spec.base, _stream(seed, "plant", spec.base), spec.elements, spec.one_curve
+            spec.base, stream(seed, "plant", spec.base), spec.elements, spec.one_curve
         )
-        self.controller = draw_controller(self.plant, _stream(seed, "controller"))
+        self.controller = draw_controller(self.plant, stream(seed, "controller"))
         self.order = _order(spec)
         self.excitations = [
-            excite(kind, self.plant, spec.samples, SAMPLE_TIME, _stream(seed, kind, role))
+            excite(kind, self.plant, spec.samples, SAMPLE_TIME, stream(seed, kind, role))
             for kind, role in self.order
         ]
-        place = _stream(seed, "place")
+        place = stream(seed, "place")
         self.start = place.uniform(-np.pi, np.pi, len(self.order))
         pauses = place.uniform(2.0, 6.0, len(self.order))
         pauses[len(self.order) // 2] += 40.0  # one long rest
@@ -131,13 +134,19 @@ class Draft:
         self.start_path = np.zeros(len(self.order))
         rows = spec.lead_rows + spec.samples
         self.noise = np.column_stack(
-            [_stream(seed, "noise", k, r).standard_normal(rows) for k, r in self.order]
+            [stream(seed, "noise", k, r).standard_normal(rows) for k, r in self.order]
         ) * (spec.noise * self.plant["coulomb"])
         lead = np.arange(spec.lead_rows)[:, None] / max(spec.lead_rows, 1)
         turns, phase = place.uniform(2.0, 4.0, (2, len(self.order)))
         wave = np.sin(2.0 * np.pi * (turns * lead + phase)) * (1.0 - lead)
         self.lead_torque = 0.9 * self.plant["coulomb"] * wave
         self.effects = [self._effect(*entry) for entry in spec.hidden]
+        self.channels = self.draw_channels()
+
+    def draw_channels(self, temperature=None):
+        """Channels of the present recordings; the temperature goes on from one if it is given."""
+        own = {EFFECTS[e.name].channel for e in self.effects}
+        return draw_channels(self, own.union(self.spec.channels), temperature)
 
     def _effect(self, name, size, given=None):
         name, _, form = name.partition(":")
@@ -147,7 +156,7 @@ class Draft:
         kind = EFFECTS[name]
         if form not in kind.forms:
             raise ValueError(f"{name} has the forms {', '.join(kind.forms)}, not {form!r}")
-        shape = kind.draw(_stream(self.spec.seed, "effect", name), self.plant, form)
+        shape = kind.draw(stream(self.spec.seed, "effect", name), self.plant, form)
         given = dict(given or {})
         amplitude = given.pop("amplitude", 0.0)
         if unknown := given.keys() - shape.keys():
@@ -156,7 +165,7 @@ class Draft:
         if size is None:
             return HiddenEffect(name, form, None, shape, float(amplitude))
         amplitude = kind.usual(self.plant) * size / 0.01 if size else 0.0
-        return HiddenEffect(name, form, float(size), shape, amplitude)
+        return HiddenEffect(name, form, float(size), shape, min(amplitude, kind.largest))
 
     @property
     def needs_path(self):
@@ -207,6 +216,7 @@ def lanes_of(drafts, without_effects=False):
         sample_time=SAMPLE_TIME,
         substeps=round(spec.rate * SAMPLE_TIME),
         **gains,
+        **side_by_side(drafts),
     )
 
 
@@ -264,15 +274,6 @@ def _reach(run, drafts):
             effect.reached = rms_behind_kernel(hidden, support) / coulomb
 
 
-def rms_behind_kernel(columns, support):
-    """RMS of columns smoothed by a cubic B-spline of `support` seconds (0: as they are)."""
-    box = round(support / 4.0 / SAMPLE_TIME)
-    for _ in range(4 if box > 1 else 0):
-        total = np.cumsum(columns, axis=0)
-        columns = (total[box:] - total[:-box]) / box
-    return float(np.sqrt(np.mean(columns**2)))
-
-
 def _rescale(draft):
     """Scale amplitudes; the second time by the power law that two points give."""
     for effect in draft.effects:
@@ -286,8 +287,9 @@ def _rescale(draft):
                 power = float(np.clip(growth / stretch, 0.5, 4.0))
         effect.last = now
         factor = (effect.size / effect.reached) ** (1.0 / power)
-        usual = EFFECTS[effect.name].usual(draft.plant) * effect.size / 0.01
-        effect.amplitude = min(effect.amplitude * factor, LARGEST_FACTOR * usual)
+        kind = EFFECTS[effect.name]
+        bound = LARGEST_FACTOR * kind.usual(draft.plant) * effect.size / 0.01
+        effect.amplitude = min(effect.amplitude * factor, bound, kind.largest)
 
 
 def _misses(draft):
@@ -320,6 +322,7 @@ def _session(run, draft, at):
                 position_rad=run.position[rows, lane].copy(),
                 reference_rad=None if reference is None else reference + draft.start[i],
                 truth=truth,
+                **draft.channels.of(i),
             )
         )
     return Session(spec, draft.plant, draft.controller, recordings, draft.effects)
@@ -360,7 +363,7 @@ def _as_spec(given):
         return given
     given = dict(given)
     given["hidden"] = tuple(tuple(entry) for entry in given.get("hidden") or ())
-    for name in ("roles", "kinds"):
+    for name in ("roles", "kinds", "channels"):
         if name in given:
             given[name] = tuple(given[name])
     return Spec(**given)
