@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from . import effect_reference, foreign_effect_reference, memory_effect_reference
+from . import (
+    drive_effect_reference,
+    effect_reference,
+    foreign_effect_reference,
+    memory_effect_reference,
+)
 
 # Those that the product's library has, or shall have.
 LIBRARY = {
@@ -22,6 +27,12 @@ LIBRARY = {
     "shaft_compliance": memory_effect_reference.ShaftCompliance,
     "encoder_eccentricity": memory_effect_reference.EncoderEccentricity,
     "creep_hardening": memory_effect_reference.CreepHardening,
+    "gravity_unbalance": drive_effect_reference.GravityUnbalance,
+    "torque_constant_saturation": drive_effect_reference.TorqueConstantSaturation,
+    "drive_saturation": drive_effect_reference.DriveSaturation,
+    "back_emf": drive_effect_reference.BackEmf,
+    "current_loop_lag": drive_effect_reference.CurrentLoopLag,
+    "frictional_lag": drive_effect_reference.FrictionalLag,
 }
 # Those that no library has.
 FOREIGN = {
