@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from . import (
+    contact_effect_reference,
     drive_effect_reference,
     effect_reference,
     foreign_effect_reference,
@@ -33,6 +34,11 @@ LIBRARY = {
     "back_emf": drive_effect_reference.BackEmf,
     "current_loop_lag": drive_effect_reference.CurrentLoopLag,
     "frictional_lag": drive_effect_reference.FrictionalLag,
+    "reverse_point_memory": contact_effect_reference.ReversePointMemory,
+    "relaxation": contact_effect_reference.Relaxation,
+    "temperature_dependent_friction": contact_effect_reference.TemperatureDependentFriction,
+    "load_dependent_friction": contact_effect_reference.LoadDependentFriction,
+    "backlash": contact_effect_reference.Backlash,
 }
 # Those that no library has.
 FOREIGN = {
