@@ -47,7 +47,10 @@ def as_session(made, torque=None):
     recordings = []
     for index, r in enumerate(made.recordings):
         effort = r.torque_nm if torque is None else torque[index]
-        known = {} if r.reference_rad is None else {"reference": r.reference_rad}
+        known = {"reference": r.reference_rad, "load": r.load_nm}
+        if r.temperature_c is not None:
+            known["temperature"] = r.temperature_c + 273.15
+        known = {name: values for name, values in known.items() if values is not None}
         recordings.append(
             st.Recording(
                 r.time_s,
