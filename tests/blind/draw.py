@@ -50,7 +50,8 @@ def library(base=None):
     core = {p.name for law in st.laws() if law.name == base for p in law.parameters}
     core -= {p.name for law in st.laws() if law.name == base for p in law.parameters if p.optional}
     known = {record.name for record in st.effects() if not core.intersection(record.law_terms)}
-    return [name for name in LIBRARY if name in known]
+    able = {name for name, kind in LIBRARY.items() if base is None or base in kind.bases}
+    return [name for name in LIBRARY if name in known & able]
 
 
 def cases(number, seed, base="maxwell_slip", sizes=SIZES, kinds=tuple(MIX), effects=()):
