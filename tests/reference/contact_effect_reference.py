@@ -186,8 +186,8 @@ class LoadDependentFriction(Effect):
 class Backlash(Effect):
     """The share a of the inertia sits behind a gap, free within it; contact is inelastic.
 
-    Foreign: the contact is elastic, a spring and a damper that push and never pull. The sensor
-    and the friction are on the motor's side.
+    Foreign: the contact is elastic and pushes with k y (1 + c y') where it is pressed in by y
+    (Hunt and Crossley 1975). The sensor and the friction are on the motor's side.
     """
 
     forms = ("library", "foreign")
@@ -200,7 +200,7 @@ class Backlash(Effect):
         shape = {"gap": log_uniform(rng, 1e-3, 1e-2)}
         if form == "foreign":
             shape["frequency"] = rng.uniform(60.0, 150.0)  # Hz
-            shape["damping_ratio"] = rng.uniform(0.1, 0.5)
+            shape["damping"] = rng.uniform(1.0, 6.0)  # s/rad
         return shape
 
     @staticmethod
@@ -217,9 +217,7 @@ class Backlash(Effect):
         if hasattr(self, "frequency"):
             self.hooks = ("shaft",)
             reduced = share * (1.0 - share) * inertia
-            omega = 2.0 * np.pi * self.frequency
-            self.stiffness = reduced * omega**2
-            self.damping = 2.0 * self.damping_ratio * reduced * omega
+            self.stiffness = reduced * (2.0 * np.pi * self.frequency) ** 2
 
     def _begin(self, x):
         self.far_x, self.far_v = x.copy(), np.zeros_like(x)
@@ -257,8 +255,9 @@ class Backlash(Effect):
         apart = x - self.far_x
         far_v = 1.5 * self.far_v - 0.5 * self._past
         side = np.sign(apart)
-        push = self.stiffness * (np.abs(apart) - self.edge) + self.damping * side * (v - far_v)
-        torque = side * np.maximum(push, 0.0) * (np.abs(apart) > self.edge)
+        pressed = np.maximum(np.abs(apart) - self.edge, 0.0)
+        lossy = np.maximum(1.0 + self.damping * side * (v - far_v), 0.0)
+        torque = side * self.stiffness * pressed * lossy
         self._past = self.far_v
         far = np.where(self.loose, self.far_inertia, 1.0)
         self.far_v = self.far_v + s.step * torque / far

@@ -53,7 +53,7 @@ class GravityUnbalance(Effect):
 
 
 class TorqueConstantSaturation(DriveLoss):
-    """Gain 1 - a (u/U)²; foreign: a knee at U/2, beyond which the slope falls by a."""
+    """Gain 1 - a (u/U)², U the largest usual input; foreign: slope 1 - a beyond a soft knee."""
 
     forms = ("library", "foreign")
     # Up to a third the torque still grows with the input as far as U.
@@ -61,16 +61,16 @@ class TorqueConstantSaturation(DriveLoss):
 
     @staticmethod
     def draw(rng, plant, form):
-        shape = {"reference": largest_input(plant) * rng.uniform(0.8, 1.2)}
-        if form == "foreign":
-            shape["width"] = rng.uniform(0.05, 0.15) * shape["reference"]
-        return shape
+        if form == "library":
+            return {"reference": largest_input(plant) * rng.uniform(0.8, 1.2)}
+        knee = 0.5 * quick_input(plant) * rng.uniform(0.8, 1.2)
+        return {"knee": knee, "width": knee * rng.uniform(0.1, 0.3)}
 
     def loss(self, u):
-        if not hasattr(self, "width"):
+        if hasattr(self, "reference"):
             return u * (u / self.reference) ** 2
         # The integral of a slope that rises by a tanh from 0 to 1 at the knee, odd in u.
-        w, knee = self.width, 0.5 * self.reference
+        w, knee = self.width, self.knee
         return u + 0.5 * w * (_log_cosh((u - knee) / w) - _log_cosh((u + knee) / w))
 
 
