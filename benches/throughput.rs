@@ -7,7 +7,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use stiction_benches::{DT, SAMPLES, efforts, model, motor, velocities};
 use stiction_core::friction::{Channels, LAWS};
 use stiction_core::integrate::Integrator;
-use stiction_core::motor::{Column, PerSample};
+use stiction_core::motor::{Column, PerSample, Surroundings};
 
 fn laws(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("law");
@@ -46,7 +46,9 @@ fn motors(criterion: &mut Criterion) {
                         (Column::Velocity, v.as_mut_slice()),
                     ];
                     let same = PerSample::Same;
-                    motor.simulate(black_box(&effort), same(0.0), same(DT), columns).unwrap();
+                    motor
+                        .simulate(black_box(&effort), Surroundings::NONE, same(DT), columns)
+                        .unwrap();
                     black_box(x[SAMPLES - 1])
                 });
             });

@@ -76,16 +76,27 @@ class Motor:
         gravity_zero: float = 0.0,
         weight: float = 0.0,
         input_limit: float = ...,
+        servo: dict[str, float] | None = None,
         count: float = 0.0,
         integrator: str = "fast",
     ) -> Motor: ...
-    def step(self, current: float, dt: float, *, load: float = 0.0) -> tuple[float, float]: ...
+    def step(
+        self,
+        current: float,
+        dt: float,
+        *,
+        load: float = 0.0,
+        temperature: float | None = None,
+        enabled: bool = True,
+    ) -> tuple[float, float]: ...
     def run(
         self,
         current: npt.ArrayLike,
         dt: npt.ArrayLike,
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         outputs: Sequence[str] | None = None,
         out: dict[str, _Floats] | None = None,
     ) -> dict[str, _Floats]: ...
@@ -96,6 +107,8 @@ class Motor:
         dt: npt.ArrayLike,
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> tuple[_Floats, _Floats, _Floats, _Floats]: ...
     def follow_sensitivity(
@@ -106,6 +119,8 @@ class Motor:
         parameters: Sequence[str],
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> tuple[_Floats, _Floats, _Floats]: ...
     def follow_columns(
@@ -117,6 +132,8 @@ class Motor:
         kernel: RowKernel,
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> _Floats: ...
     def signatures(
@@ -127,6 +144,8 @@ class Motor:
         candidates: Iterable[tuple[str, dict[str, float]]],
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
         threads: int = 1,
     ) -> tuple[_Floats, _Floats, _Floats]: ...
@@ -139,6 +158,8 @@ class Motor:
         kernel: RowKernel,
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
         threads: int = 1,
     ) -> _Floats: ...
@@ -151,6 +172,8 @@ class Motor:
         stride: int,
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> _Floats: ...
     def accompany(
@@ -162,6 +185,8 @@ class Motor:
         damping: float,
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> tuple[_Floats, _Floats]: ...
     def shoot_sensitivity(
@@ -174,6 +199,8 @@ class Motor:
         parameters: Sequence[str],
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> _Floats: ...
     def shoot_response(
@@ -186,6 +213,8 @@ class Motor:
         parts: int,
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> _Floats: ...
     def sensitivity(
@@ -195,6 +224,8 @@ class Motor:
         parameters: Sequence[str],
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
     ) -> tuple[_Floats, _Floats]: ...
     def adopt(self, other: Motor) -> None: ...
     def settings(self) -> dict[str, Any]: ...

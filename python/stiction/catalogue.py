@@ -90,8 +90,9 @@ class EffectRecord:
     """An effect that a plant may have beside its law.
 
     ``second`` names the parameters of a second wave, in the order of gains and shapes: what repeats
-    with position is seldom a sine. ``law_terms`` are the parameters of laws that are this effect:
-    where a plant states one of them, its law has the effect already.
+    with position is seldom a sine. ``law_terms`` are parameters of laws (``body.`` before them: of
+    the body) that are this effect: where a plant states one of them, it has the effect already.
+    ``rotary_only`` effects need a machine that turns.
     """
 
     name: str
@@ -108,8 +109,14 @@ class EffectRecord:
     shapes: tuple[ShapeRecord, ...]
     second: tuple[str, ...]
     law_terms: tuple[str, ...]
+    rotary_only: bool
     hooks: tuple[str, ...]
     parameters: tuple[ParameterRecord, ...]
+
+    @property
+    def late(self) -> bool:
+        """Whether it lets the effort follow the input late."""
+        return not {"input delay", "input lag"}.isdisjoint(self.hooks)
 
     def to_dict(self) -> dict[str, Any]:
         """The record as plain dicts and lists."""
@@ -163,6 +170,7 @@ def effects() -> tuple[EffectRecord, ...]:
             ),
             second=tuple(entry["second"]),
             law_terms=tuple(entry["law_terms"]),
+            rotary_only=entry["rotary_only"],
             hooks=tuple(entry["hooks"]),
             parameters=_parameters(entry["parameters"]),
         )

@@ -14,7 +14,7 @@ import numpy as np
 
 from .errors import InputError
 from .motion import count_of, evenly, held
-from .residual import starting_velocity
+from .residual import free_run, started, starting_velocity
 from .trajectory import FloatArray
 from .weak_form import Start
 
@@ -32,8 +32,6 @@ INTEGRAL_S: Final = 1.0
 """Stretch at the start of a recording that tells what the integral held before."""
 FAR: Final = 100.0
 """A simulated loop that is away by this many times the range of motion has run away."""
-NO_TIME: Final = 1e-9
-"""Duration of the motionless sample that puts friction into its start state, s."""
 
 Act = Callable[[int, float, float], float]
 """Input of the drive, from the number of the sample, the reading and the measured velocity."""
@@ -229,7 +227,7 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
     Parameters
     ----------
     plant : Plant
-        With a controller.
+        With a controller, or with a servo, whose input is the reference.
     recording : Recording
         With position and reference.
     start : dict, optional
@@ -246,6 +244,8 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
         No controller, no reference, no position; a plant of prescribed motion or without inertia;
         a loop that runs away.
     """
+    if plant.servo:
+        return _servo(plant, recording, start)
     source = str(recording.path) if recording.path is not None else "recording"
     controller = Controller.of(plant)
     if plant.prescribed_motion:
@@ -269,11 +269,13 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
     missed, total = (None, 0.0) if needed is None else _compared(controller, plant, *needed, dt)
     load = recording.channels.get("load")
     loads = [0.0] * len(time) if load is None else held(time, recording.time, load).tolist()
-    motor = _started(plant, begin, start)
+    warmth = recording.channels.get("temperature")
+    warmths = [None] * len(time) if warmth is None else held(time, recording.time, warmth).tolist()
+    motor = started(plant, begin["reading"], begin["velocity"], start)
     act = controller.acting(reference, dt, **begin, total=total)
     bounds = _bounds(reference, measured)
     try:
-        simulated, inputs = _simulated(motor, act, begin, dt, loads, plant.count, bounds)
+        simulated, inputs = _simulated(motor, act, begin, dt, (loads, warmths), plant.count, bounds)
     except InputError as error:
         raise InputError(f"{source}: the loop cannot be simulated: {error}") from None
     if len(simulated) < len(time):
@@ -292,12 +294,20 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
     )
 
 
+def _servo(plant: Plant, recording: Recording, start: Start) -> ClosedLoop:
+    """The loop of a servo, which its own drive closes."""
+    run = free_run(plant, recording, start)
+    assert recording.input is not None
+    goal = recording.input[:-1]
+    return ClosedLoop(run.time, goal, run.measured, run.simulated, goal, run.unit, None)
+
+
 def _simulated(
     motor: Motor,
     act: Act,
     begin: dict[str, float],
     dt: float,
-    loads: list[float],
+    around: tuple[list[float], list[float | None]],
     count: float,
     bounds: tuple[float, float],
 ) -> tuple[list[float], list[float]]:
@@ -305,26 +315,14 @@ def _simulated(
     low, high = bounds
     step, x, v = motor.step, begin["reading"], begin["velocity"]
     positions, inputs = [], []
-    for k, load in enumerate(loads):
+    for k, (load, warmth) in enumerate(zip(*around, strict=True)):
         positions.append(x)
         u = act(k, round(x / count) * count if count else x, v)
         inputs.append(u)
-        x, v = step(u, dt, load=load)
+        x, v = step(u, dt, load=load, temperature=warmth)
         if not low < x < high:
             break
     return positions, inputs
-
-
-def _started(plant: Plant, begin: dict[str, float], start: Start) -> Motor:
-    """The plant's motor at its starting position and velocity, with this friction state."""
-    motor = plant.motor()
-    motor.reset(begin["reading"], begin["velocity"])
-    if start:
-        state = motor.state
-        motor.follow([begin["reading"]] * 2, [0.0], NO_TIME, start=start)
-        kept = ("velocity", "second_velocity", "time")
-        motor.state = {**motor.state, **{name: state[name] for name in kept}}
-    return motor
 
 
 def _bounds(reference: FloatArray, measured: FloatArray) -> tuple[float, float]:

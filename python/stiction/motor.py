@@ -54,6 +54,8 @@ class Motor(_native.Motor):
         dt: npt.ArrayLike,
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         outputs: Sequence[str] | None = None,
         out: dict[str, FloatArray] | None = None,
     ) -> Trajectory:
@@ -67,6 +69,10 @@ class Motor(_native.Motor):
             Duration of a sample in s, or of each.
         load : float or array_like, shape (n,), optional
             External effort, positive along +x.
+        temperature : float or array_like, shape (n,), optional
+            In degC, for what depends on it; without it nobody knows it.
+        enabled : bool or array_like, shape (n,), optional
+            False or 0 where the drive is off; without it the drive is on.
         outputs : sequence of str, optional
             Which columns to compute; all of ``output_names`` without it.
         out : dict of str to numpy.ndarray, optional
@@ -87,7 +93,9 @@ class Motor(_native.Motor):
             raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
         names = None if outputs is None else list(outputs)
         start = float(self.state["time"])
-        columns = self.run(current, dt, load=load, outputs=names, out=out)
+        columns = self.run(
+            current, dt, load=load, temperature=temperature, enabled=enabled, outputs=names, out=out
+        )
         length = len(next(iter(columns.values()))) if columns else np.size(current)
         steps: float | FloatArray
         steps = float(np.asarray(dt)) if np.ndim(dt) == 0 else np.array(dt, dtype=np.float64)
@@ -137,6 +145,7 @@ class Motor(_native.Motor):
             "gravity_zero": 0.0,
             "weight": 0.0,
             "input_limit": float("inf"),
+            "servo": None,
             "count": 0.0,
             "integrator": "fast",
         }

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,7 @@ import numpy.typing as npt
 from . import plant_file
 from ._native import FrictionModel
 from .catalogue import LawRecord, laws
+from .drive import gain_name, servo_numbers
 from .errors import InputError
 from .motor import Motor
 from .parameter import Parameter
@@ -22,6 +23,9 @@ from .trajectory import Trajectory
 from .wording import did_you_mean, listed
 
 __all__ = ["Effect", "Friction", "Plant"]
+
+GRAVITY: Final = 9.80665
+"""m/s²."""
 
 
 @dataclass(frozen=True)
@@ -65,10 +69,12 @@ class Plant:
     motion : {"rotary", "linear"}
         Whether positions are rad or m and efforts N·m or N.
     drive : Mapping
-        ``input`` (name of the input column), ``gain`` (effort per unit of input), ``limit``
-        (greatest magnitude of the input); or ``kind = "prescribed_motion"``.
+        ``input`` (name of the input column), ``gain`` (effort per unit of input; a ``Parameter``
+        where it is fitted), ``limit`` (greatest magnitude of the input); ``kind =
+        "prescribed_motion"``; or ``kind = "servo"`` with its numbers.
     body : Mapping of str to Parameter
-        ``inertia``, ``gravity_amplitude``, ``gravity_zero_rad``, ``weight_n``.
+        ``inertia``, ``gravity_amplitude``, ``gravity_zero_rad``, ``weight_n``, ``payload_kg``,
+        ``payload_m``.
     friction : Friction
     effects : tuple of Effect
     sensor : Mapping of str to float
@@ -141,7 +147,11 @@ class Plant:
 
         table: dict[str, Any] = {"motion": {"kind": self.motion}}
         if self.drive:
-            table["drive"] = dict(self.drive)
+            table["drive"] = {
+                name: {"fixed": False, **_table(value)} if isinstance(value, Parameter) else value
+                for name, value in self.drive.items()
+                if not (name == "input" and self.servo)
+            }
         if self.body:
             table["body"] = plain(self.body)
         table["friction"] = {
@@ -163,6 +173,17 @@ class Plant:
         return self.drive.get("kind") == "prescribed_motion"
 
     @property
+    def servo(self) -> bool:
+        """Whether the input is a goal position."""
+        return self.drive.get("kind") == "servo"
+
+    @property
+    def gain(self) -> float:
+        """Effort per unit of input; of a servo per ampere."""
+        gain = self.drive.get(gain_name(self.drive), 1.0)
+        return gain.value if isinstance(gain, Parameter) else float(gain)
+
+    @property
     def effort_unit(self) -> str:
         """Unit of effort."""
         return "N·m" if self.motion == "rotary" else "N"
@@ -181,7 +202,7 @@ class Plant:
 
     @property
     def inertia(self) -> float:
-        """Inertia (mass).
+        """Inertia (mass), payload included.
 
         Raises
         ------
@@ -189,7 +210,7 @@ class Plant:
             The file states none.
         """
         if "inertia" in self.body:
-            return self.body["inertia"].value
+            return self.body["inertia"].value + self.payload[0]
         if self.prescribed_motion:
             return 0.0
         raise InputError(
@@ -197,9 +218,55 @@ class Plant:
         )
 
     @property
+    def payload(self) -> tuple[float, float]:
+        """What the payload adds to inertia (mass) and to the amplitude of the pendulum torque."""
+        mass, lever = self._payload
+        own = 0.0 if self.motion == "linear" else mass * lever * GRAVITY
+        return mass * lever**2, own
+
+    @property
+    def _payload(self) -> tuple[float, float]:
+        """Mass that hangs on the machine, kg, and how far from its axis, m (1 for a linear one)."""
+        mass, lever = (self.body.get(name) for name in ("payload_kg", "payload_m"))
+        if mass is None or (lever is None and self.motion == "rotary"):
+            return 0.0, 0.0
+        return mass.value, 1.0 if lever is None else lever.value
+
+    @property
+    def gravity(self) -> float:
+        """Amplitude of the pendulum torque, payload included, N·m."""
+        own = self.body["gravity_amplitude"].value if "gravity_amplitude" in self.body else 0.0
+        return own + self.payload[1]
+
+    @property
+    def _weight(self) -> float:
+        """Weight of the payload of a plant that lifts, N; one that states no weight moves level."""
+        lifts = self.motion == "linear" and "weight_n" in self.body
+        return self._payload[0] * GRAVITY if lifts else 0.0
+
+    @property
+    def hangs(self) -> bool:
+        """Whether it carries a load that need not be recorded."""
+        return self.gravity != 0.0 or "gravity_amplitude" in self.body or "weight_n" in self.body
+
+    def under(self, settings: Mapping[str, float]) -> Plant:
+        """The plant with what was set for one recording (``Recording.settings``)."""
+        if not settings:
+            return self
+        payload = {n: Parameter(v, fixed=True) for n, v in settings.items() if n.startswith("pay")}
+        servo = {name: value for name, value in settings.items() if name not in payload}
+        if servo and not self.servo:
+            raise InputError(
+                f"{self.source}: {listed(servo)} is set for a recording, and only a servo has it; "
+                "write [drive] kind = 'servo', or leave it out"
+            )
+        return replace(self, drive={**self.drive, **servo}, body={**self.body, **payload})
+
+    @property
     def parameters(self) -> Mapping[str, Parameter]:
         """Every stated parameter by its path, such as ``friction.coulomb``."""
-        paths = {f"body.{name}": p for name, p in self.body.items()}
+        paths = {f"drive.{n}": p for n, p in self.drive.items() if isinstance(p, Parameter)}
+        paths |= {f"body.{name}": p for name, p in self.body.items()}
         paths |= {f"friction.{name}": p for name, p in self.friction.parameters.items()}
         for effect in self.effects:
             paths |= {f"effects.{effect.name}.{n}": p for n, p in effect.parameters.items()}
@@ -231,6 +298,7 @@ class Plant:
 
         plant = replace(
             self,
+            drive=MappingProxyType({**self.drive, **part("drive.")}),
             body=part("body."),
             friction=replace(self.friction, parameters=part("friction.")),
             effects=tuple(replace(e, parameters=part(f"effects.{e.name}.")) for e in self.effects),
@@ -263,13 +331,14 @@ class Plant:
 
         return Motor(
             inertia,
-            float(self.drive.get("gain", 1.0)),
+            self.gain,
             self.friction.model(),
             effects={e.name: {n: p.value for n, p in e.parameters.items()} for e in self.effects},
-            gravity_amplitude=body("gravity_amplitude"),
+            gravity_amplitude=self.gravity,
             gravity_zero=body("gravity_zero_rad"),
-            weight=body("weight_n"),
+            weight=body("weight_n") + self._weight,
             input_limit=float(self.drive.get("limit", np.inf)),
+            servo=servo_numbers(self.drive),
             count=self.count,
             integrator=integrator,
         )
@@ -280,6 +349,8 @@ class Plant:
         dt: npt.ArrayLike,
         *,
         load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
         outputs: list[str] | None = None,
         position: float = 0.0,
         velocity: float = 0.0,
@@ -300,7 +371,9 @@ class Plant:
             )
         motor = self.motor()
         motor.reset(position, velocity)
-        return motor.simulate(input, dt, load=load, outputs=outputs)
+        return motor.simulate(
+            input, dt, load=load, temperature=temperature, enabled=enabled, outputs=outputs
+        )
 
     def _check(self) -> None:
         """Refuse what the catalogue refuses, naming the file."""
@@ -318,3 +391,9 @@ class Plant:
             f"<tr><td>{path}</td><td>{p.value:.6g}</td></tr>" for path, p in self.parameters.items()
         )
         return f"<p>{self!r}</p><table><tr><th>parameter</th><th>value</th></tr>{rows}</table>"
+
+
+def _table(parameter: Parameter) -> dict[str, float | bool]:
+    """A parameter as a table, whatever it holds."""
+    given = parameter.to_toml()
+    return given if isinstance(given, dict) else {"value": given}

@@ -4,30 +4,33 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from .drive import read_drive
 from .errors import InputError
+from .keys import choice, known
 from .parameter import Parameter, number
 from .recording.units import Motion
-from .wording import did_you_mean, listed
+from .wording import listed
 
 __all__ = ["Parts", "parse", "read", "read_toml", "render"]
 
 MOTIONS: Final = ("rotary", "linear")
-INPUTS: Final = ("current_a", "voltage_v", "torque_nm", "force_n")
-"""What a drive may be commanded in."""
-
-LEAST_GAIN: Final = 1e-12
-"""Effort per unit of input; no unit of an input is that large."""
-
 _TABLES: Final = ("motion", "drive", "body", "friction", "effects", "sensor", "controller")
-_DRIVE: Final = ("kind", "input", "gain", "limit")
-_BODY: Final = ("inertia", "gravity_amplitude", "gravity_zero_rad", "weight_n")
+_BODY: Final = (
+    "inertia",
+    "gravity_amplitude",
+    "gravity_zero_rad",
+    "weight_n",
+    "payload_kg",
+    "payload_m",
+)
+_PAYLOAD: Final = ("payload_kg", "payload_m")
+"""What hangs on the machine is weighed and measured, never fitted."""
 _DERIVATIVES: Final = ("backward", "backward_of_two_sample_mean", "measured")
-_OTHER_MOTION: Final = {"rotary": "force_n", "linear": "torque_nm"}
 _CONTROLLERS: Final = {
     "pd": (("kp",), ("kd",)),
     "pid": (("kp", "ki"), ("kd",)),
@@ -106,10 +109,13 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
     kind = choice(motion_table.get("kind", "rotary"), MOTIONS, f"{source}: [motion] kind")
     motion: Motion = "linear" if kind == "linear" else "rotary"
     law, friction, options = _friction(section(table, "friction", source), source)
+    drive = read_drive(section(table, "drive", source), motion, f"{source}: [drive]")
+    body = _body(section(table, "body", source), motion, source)
+    _check_scale(drive, body, friction, source)
     return Parts(
         motion=motion,
-        drive=_drive(section(table, "drive", source), motion, source),
-        body=_body(section(table, "body", source), motion, source),
+        drive=drive,
+        body=body,
         law=law,
         friction=friction,
         options=options,
@@ -119,57 +125,12 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
     )
 
 
-def known(table: Mapping[str, Any], allowed: Iterable[str], where: str) -> None:
-    """Refuse keys that are not allowed."""
-    allowed = list(allowed)
-    for key in table:
-        if key not in allowed:
-            raise InputError(
-                f"{where}: '{key}' is unknown{did_you_mean(key, allowed)}; "
-                f"allowed are {listed(allowed)}"
-            )
-
-
-def choice(given: Any, allowed: Iterable[str], where: str) -> str:
-    """Take one of the allowed words."""
-    allowed = list(allowed)
-    if not isinstance(given, str) or given not in allowed:
-        near = did_you_mean(given, allowed) if isinstance(given, str) else ""
-        raise InputError(f"{where} = {given!r} is unknown{near}; allowed are {listed(allowed)}")
-    return given
-
-
 def section(table: Mapping[str, Any], name: str, source: str) -> Mapping[str, Any]:
     """The table ``[name]``, empty where it is not there."""
     given = table.get(name, {})
     if not isinstance(given, Mapping):
         raise InputError(f"{source}: {name} = {given!r} is not a table; write it as [{name}]")
     return given
-
-
-def _drive(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Any]:
-    where = f"{source}: [drive]"
-    known(given, _DRIVE, where)
-    drive: dict[str, Any] = {}
-    if "kind" in given:
-        drive["kind"] = choice(given["kind"], ("direct", "prescribed_motion"), f"{where} kind")
-    if "input" in given:
-        allowed = [name for name in INPUTS if name != _OTHER_MOTION[motion]]
-        drive["input"] = choice(given["input"], allowed, f"{where} input of a {motion} plant")
-    for name in ("gain", "limit"):
-        if name in given:
-            drive[name] = number(given[name], f"{where} {name}")
-    gain = drive.get("gain", 1.0)
-    if gain == 0.0:
-        raise InputError(f"{where} gain = 0 moves nothing; give the effort per unit of input")
-    if not LEAST_GAIN <= abs(gain) <= 1.0 / LEAST_GAIN:
-        raise InputError(
-            f"{where} gain = {gain} is out of bounds: allowed are magnitudes from {LEAST_GAIN:g} "
-            f"to {1.0 / LEAST_GAIN:g}"
-        )
-    if drive.get("limit", 1.0) <= 0.0:
-        raise InputError(f"{where} limit = {drive['limit']} is not above 0")
-    return drive
 
 
 def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Parameter]:
@@ -182,11 +143,37 @@ def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Param
             f"{where} inertia = {body['inertia'].value} is out of bounds: allowed is a finite "
             f"number from 0 in {unit}"
         )
+    for name in _PAYLOAD:
+        if name in body:
+            if not 0.0 <= body[name].value < math.inf:
+                raise InputError(
+                    f"{where} {name} = {body[name].value} is out of bounds: give a finite number "
+                    "from 0"
+                )
+            body[name] = Parameter(body[name].value, fixed=True)
+    if "payload_m" in body and motion == "linear":
+        raise InputError(f"{where} payload_m is for rotary plants; a linear one carries payload_kg")
     if "weight_n" in body and motion == "rotary":
         raise InputError(
             f"{where} weight_n is for linear plants; use gravity_amplitude for a rotary one"
         )
     return body
+
+
+def _check_scale(
+    drive: Mapping[str, Any],
+    body: Mapping[str, Parameter],
+    friction: Mapping[str, Parameter],
+    source: str,
+) -> None:
+    """Refuse to fit the gain where everything that it scales is fitted as well."""
+    free = [name for name, value in drive.items() if isinstance(value, Parameter)]
+    stated = (*body.values(), *friction.values())
+    if free and not any(parameter.fixed and parameter.value != 0.0 for parameter in stated):
+        raise InputError(
+            f"{source}: [drive] {free[0]} is to be fitted, and inertia, gravity and friction scale "
+            "with it: state a payload_kg, or one of them as { value = …, fixed = true }"
+        )
 
 
 def _friction(

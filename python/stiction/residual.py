@@ -10,18 +10,28 @@ import numpy as np
 from .errors import InputError
 from .motion import count_of
 from .trajectory import FloatArray, Trajectory
-from .weak_form import WeakForm
+from .weak_form import Start, WeakForm
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from .motor import Motor
     from .plant import Plant
     from .recording import Recording
 
-__all__ = ["EffortResidual", "FreeRun", "effort_residual", "free_run", "starting_velocity"]
+__all__ = [
+    "EffortResidual",
+    "FreeRun",
+    "effort_residual",
+    "free_run",
+    "started",
+    "starting_velocity",
+]
 
 STARTING_S: Final = 0.010
 """Stretch at the start of a recording that tells the starting velocity."""
+NO_TIME: Final = 1e-9
+"""Duration of the motionless sample that puts friction into its start state, s."""
 
 
 @dataclass(frozen=True)
@@ -114,6 +124,11 @@ class FreeRun:
         return float(np.sqrt(np.mean((self.measured - self.simulated) ** 2)))
 
     @property
+    def mean_absolute(self) -> float:
+        """Mean magnitude of measured minus simulated position."""
+        return float(np.mean(np.abs(self.measured - self.simulated)))
+
+    @property
     def greatest(self) -> float:
         """Greatest magnitude of measured minus simulated position."""
         return float(np.max(np.abs(self.measured - self.simulated)))
@@ -126,7 +141,12 @@ class FreeRun:
 
     def to_dict(self) -> dict[str, Any]:
         """The numbers, for JSON."""
-        return {"rms": self.rms, "greatest": self.greatest, "unit": self.unit}
+        return {
+            "rms": self.rms,
+            "mean_absolute": self.mean_absolute,
+            "greatest": self.greatest,
+            "unit": self.unit,
+        }
 
     def plot(self) -> Figure:
         """A figure of both motions and of their difference."""
@@ -159,28 +179,44 @@ def effort_residual(
     return EffortResidual(form.time, measured, model, form.kernel.support, plant.effort_unit)
 
 
-def free_run(plant: Plant, recording: Recording) -> FreeRun:
+def free_run(plant: Plant, recording: Recording, start: Start = None) -> FreeRun:
     """Simulate the recorded input from the measured start and compare the motion.
 
-    The starting velocity is the slope of a parabola through the first rows.
+    The starting velocity is the slope of a parabola through the first rows. The input of a servo is
+    its goal: then the loop is closed by the servo itself.
+
+    Parameters
+    ----------
+    plant : Plant
+    recording : Recording
+        With position and input.
+    start : dict, optional
+        Friction state at the first row (see ``LawRecord.start``); without it the friction was
+        never moved.
 
     Raises
     ------
     InputError
-        No position or no input; a plant without inertia.
+        No position or no input; a plant without inertia or of prescribed motion.
     """
     position, source = _needed(recording)
     if recording.input is None:
         raise InputError(f"{source}: there is no input, so nothing can run freely")
-    steps = np.diff(recording.time)
+    if plant.prescribed_motion:
+        raise InputError(
+            f"{plant.source}: [drive] kind = 'prescribed_motion' has no input to simulate; use "
+            "Motor.follow or a drive with an input"
+        )
+    plant = plant.under(recording.settings)
     velocity = starting_velocity(recording.time, position, plant.count or count_of(position))
-    load = recording.channels.get("load")
-    trajectory = plant.simulate(
+    beside = (recording.channels.get(name) for name in ("load", "temperature", "enabled"))
+    load, temperature, enabled = (None if values is None else values[:-1] for values in beside)
+    trajectory = started(plant, float(position[0]), velocity, start).simulate(
         recording.input[:-1],
-        steps,
-        load=None if load is None else load[:-1],
-        position=float(position[0]),
-        velocity=velocity,
+        np.diff(recording.time),
+        load=load,
+        temperature=temperature,
+        enabled=enabled,
     )
     return FreeRun(
         recording.time[1:],
@@ -189,6 +225,18 @@ def free_run(plant: Plant, recording: Recording) -> FreeRun:
         trajectory,
         plant.position_unit,
     )
+
+
+def started(plant: Plant, position: float, velocity: float, start: Start) -> Motor:
+    """The plant's motor at its starting position and velocity, with this friction state."""
+    motor = plant.motor()
+    motor.reset(position, velocity)
+    if start:
+        state = motor.state
+        motor.follow([position] * 2, [0.0], NO_TIME, start=start)
+        kept = ("velocity", "second_velocity", "time")
+        motor.state = {**motor.state, **{name: state[name] for name in kept}}
+    return motor
 
 
 def starting_velocity(time: FloatArray, position: FloatArray, count: float) -> float:

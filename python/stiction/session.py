@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from .errors import InputError
+from .keys import choice, known
 from .parameter import number
 from .plant import Plant
-from .plant_file import choice, known, read_toml, section
-from .recording import Columns, Recording
+from .plant_file import read_toml, section
+from .recording import SETTINGS, Columns, Recording
 from .recording.session_clock import starts_of
 from .recording.split import BLOCK_S, EDGE_S, Split, name_of, split
 from .recording.units import FloatArray, Motion
@@ -22,7 +23,7 @@ from .wording import counted, did_you_mean, listed
 __all__ = ["Session", "load", "load_recording"]
 
 _TABLES = ("plant", "columns", "recordings")
-_RECORDING = ("file", "role", "kind", "start_s", "replicate_of", "columns")
+_RECORDING = ("file", "role", "kind", "start_s", "replicate_of", "columns", *SETTINGS)
 _ROLES = ("train", "select", "test")
 
 
@@ -216,6 +217,9 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         if not math.isfinite(start):
             raise InputError(f"{where} start_s = {start} is not a finite number of seconds")
         own = {**columns, **section(entry, "columns", where)}
+        settings = {
+            name: number(entry[name], f"{where} {name}") for name in SETTINGS if name in entry
+        }
         recordings.append(
             load_recording(
                 file,
@@ -224,6 +228,7 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
                 role=role,
                 kind=kind,
                 start_s=start,
+                settings=settings,
                 keep_faulty=keep_faulty,
                 where=source,
             )

@@ -94,7 +94,7 @@ class ShootingForm(WeakForm):
         NaN where the plant cannot be simulated at this sample time (see ``Motor.simulate``).
         """
         measured = self.measured(plant)
-        return measured, measured - plant.inertia * self._missed(plant, start)
+        return measured, measured - self.own(plant).inertia * self._missed(plant, start)
 
     def late(self, plant: Plant) -> FloatArray:
         """As for the weak form where the machine moves; at rest a timing offset shows nothing."""
@@ -116,12 +116,12 @@ class ShootingForm(WeakForm):
                 self.kernel.second,
                 self.stride,
                 wanted,
-                load=self.load[:-1],
+                **self.around,
                 start=start,
             )
         except InputError:
             return np.zeros((len(self), len(wanted)))
-        columns: FloatArray = plant.inertia * moved.T
+        columns: FloatArray = self.own(plant).inertia * moved.T
         if "body.inertia" in wanted:
             columns[:, wanted.index("body.inertia")] += self._missed(plant, start)
         return columns
@@ -143,7 +143,7 @@ class ShootingForm(WeakForm):
             self.input,
             self.dt,
             list(candidates),
-            load=self.load[:-1],
+            **self.around,
             start=start,
         )
         weights = self.kernel.second
@@ -155,7 +155,7 @@ class ShootingForm(WeakForm):
             weights,
             self.stride,
             number,
-            load=self.load[:-1],
+            **self.around,
             start=start,
         )
         edges = [k * (len(weights) // number) for k in range(number)] + [len(weights)]
@@ -167,7 +167,7 @@ class ShootingForm(WeakForm):
             for part, (first, last) in enumerate(pairwise(edges)):
                 mean = (total[starts + last] - total[starts + first]) / (last - first)
                 answer += response[part] * mean
-            columns[:, k] = plant.inertia * (answer - self._bent(shift))
+            columns[:, k] = self.own(plant).inertia * (answer - self._bent(shift))
         return columns
 
     def accompanied(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
@@ -184,14 +184,15 @@ class ShootingForm(WeakForm):
             Load together with the effort of the pull: under it the plant makes this motion.
         """
         rate = min(PULL_RATE / self.kernel.support, STEADY / self.dt)
+        inertia = self.own(plant).inertia
         motor = self._follower(plant, self.position)
         readings, pull = motor.accompany(
             self.position,
             self.input,
             self.dt,
-            plant.inertia * rate**2,
-            2.0 * plant.inertia * rate,
-            load=self.load[:-1],
+            inertia * rate**2,
+            2.0 * inertia * rate,
+            **self.around,
             start=start,
         )
         return np.concatenate([self.position[:1], readings]), self.load[:-1] + pull
@@ -212,7 +213,7 @@ class ShootingForm(WeakForm):
         """
         motion = self.driving(readings)
         got = self._shot(plant, start, motion, load)
-        missed: FloatArray = plant.inertia * (got - self.accelerations(readings))
+        missed: FloatArray = self.own(plant).inertia * (got - self.accelerations(readings))
         return missed
 
     def from_readings_alone(self, plant: Plant, start: Start = None) -> FloatArray:
@@ -239,6 +240,8 @@ class ShootingForm(WeakForm):
                 self.kernel.second,
                 self.stride,
                 load=load,
+                temperature=self.around["temperature"],
+                enabled=self.around["enabled"],
                 start=start,
             )
         except InputError:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final, TypedDict
 
 import numpy as np
 
@@ -27,12 +28,21 @@ if TYPE_CHECKING:
     from .plant import Plant
     from .recording import Recording
 
-__all__ = ["Candidate", "Start", "WeakForm"]
+__all__ = ["Around", "Candidate", "Start", "WeakForm"]
 
 Start = dict[str, float] | None
 """Friction state at the first row of a recording; None where it was never moved."""
 Candidate = tuple[str, dict[str, float]]
 """An effect that may be missing, with the values of its shape parameters."""
+
+
+class Around(TypedDict):
+    """What acts beside the input; shapes (rows - 1,)."""
+
+    load: FloatArray | None
+    temperature: FloatArray | None
+    enabled: FloatArray | None
+
 
 SUPPORTS_S: Final = (0.030, 0.300)
 """Narrowest and widest kernel that is chosen; 28 to 50 ms suit machines sampled at 1 kHz."""
@@ -105,6 +115,8 @@ class WeakForm:
         every: float | None = None,
     ) -> None:
         source = str(recording.path) if recording.path is not None else "recording"
+        self.settings = recording.settings
+        plant = self.own(plant)
         if recording.position is None:
             raise InputError(f"{source}: there is no measured position to compare with")
         self.prescribed = plant.prescribed_motion or recording.input is None
@@ -122,11 +134,14 @@ class WeakForm:
         x = np.interp(time, recording.time, recording.position)
         u = held(time, recording.time, driving)
         noise = noise_of(x)
+        warmth, on = (recording.channels.get(name) for name in ("temperature", "enabled"))
+        self.temperature = None if warmth is None else held(time, recording.time, warmth)
+        self.enabled = None if on is None else held(time, recording.time, on)
+        driven = u if self.prescribed else _commanded(plant, u, x, self.dt)
         if support is not None:
             self.kernel = Kernel(support, self.dt)
         elif "inertia" in plant.body or self.prescribed:
-            gain = 1.0 if self.prescribed else float(plant.drive.get("gain", 1.0))
-            level = NOISE_SHARE * abs(gain) * float(np.sqrt(np.mean(u**2)))
+            level = NOISE_SHARE * float(np.sqrt(np.mean(driven**2)))
             inertia = plant.inertia
             self.kernel = _narrowest(self.dt, lambda k: inertia * noise * k.roughness <= level)
         else:
@@ -139,7 +154,7 @@ class WeakForm:
         self.stride = 1 if every is None else max(1, round(every / self.dt))
         load = recording.channels.get("load")
         self.load = np.zeros_like(x) if load is None else held(time, recording.time, load)
-        self.effort = u
+        self.effort = driven / plant.gain
         self.count = plant.count or count_of(x)
         white = float(np.sqrt(max(noise**2 - self.count**2 / 12.0, 0.0)))
         flickers = white > FLICKER_SHARE * self.count
@@ -168,6 +183,19 @@ class WeakForm:
         return self._thin(self.kernel.second_derivative(position[1:]))
 
     @property
+    def around(self) -> Around:
+        """What acted beside the input in every sample, as ``Motor.follow`` takes it."""
+        return {
+            "load": self.load[:-1],
+            "temperature": None if self.temperature is None else self.temperature[:-1],
+            "enabled": None if self.enabled is None else self.enabled[:-1],
+        }
+
+    def own(self, plant: Plant) -> Plant:
+        """The plant as it was set for this recording."""
+        return plant.under(self.settings)
+
+    @property
     def reached(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
         """Rows that noise of the effort reaches: all of them; shape (n,)."""
         return np.ones(len(self), dtype=np.bool_)
@@ -190,10 +218,19 @@ class WeakForm:
         """Effort of the drive and load (prescribed motion: the measured one); shape (n,)."""
         if self.prescribed:
             return self._mean(self.effort[1:] + _centred(self.load[:-1]))
-        gain = float(plant.drive.get("gain", 1.0))
-        limit = float(plant.drive.get("limit", np.inf))
-        drive = gain * np.clip(self.input, -limit, limit)
+        drive = self._driven(plant, self.input)
         return self._mean(_centred(drive) + _centred(self.load[:-1]))
+
+    def _driven(self, plant: Plant, given: FloatArray) -> FloatArray:
+        """Effort of the drive for an input held over each sample, effects left out."""
+        plant = self.own(plant)
+        if not plant.servo:
+            limit = float(plant.drive.get("limit", np.inf))
+            return plant.gain * np.clip(given, -limit, limit)
+        motor = replace(plant, effects=()).follower()
+        motor.reset(float(self.position[0]), 0.0)
+        drive: FloatArray = motor.follow(self.position, given, self.dt, **self.around)[0]
+        return drive
 
     def driving(self, readings: FloatArray) -> FloatArray:
         """The motion that drives friction, from readings of a position; same shape."""
@@ -212,7 +249,7 @@ class WeakForm:
         # one is the mean of what held before and after, or it is half a sample late.
         measured = self.effort[1:] if self.prescribed else _centred(drive)
         measured = measured + _centred(self.load[:-1])
-        inertial = plant.inertia * (self.acceleration + self._bent(ahead))
+        inertial = self.own(plant).inertia * (self.acceleration + self._bent(ahead))
         return self._mean(measured), inertial + self._mean(needed)
 
     def along(
@@ -230,17 +267,17 @@ class WeakForm:
             motion,
             self.input,
             self.dt,
-            load=self.load[:-1],
+            **self.around,
             start=start,
         )
         return drive, friction - ambient, ahead
 
     def inertial(self, plant: Plant, position: FloatArray, ahead: FloatArray) -> FloatArray:
         """Inertia term of a motion whose centre of mass is that far ahead of the sensor."""
-        return plant.inertia * (self.accelerations(position) + self._bent(ahead))
+        return self.own(plant).inertia * (self.accelerations(position) + self._bent(ahead))
 
     def _follower(self, plant: Plant, motion: FloatArray) -> Motor:
-        motor = plant.follower()
+        motor = self.own(plant).follower()
         motor.reset(float(motion[0]), 0.0, time=self.clock, path=self.path)
         return motor
 
@@ -250,7 +287,11 @@ class WeakForm:
         Input and position are read by different parts of a machine, at instants that nobody
         calibrated: an offset of a fraction of a sample must not be taken for a delay.
         """
-        gain = 1.0 if self.prescribed else float(plant.drive.get("gain", 1.0))
+        if self.own(plant).servo:
+            before = np.concatenate([self.input[:1], self.input[:-1]])
+            late = self._driven(plant, before) - self._driven(plant, self.input)
+            return self._mean(_centred(late)) / self.dt
+        gain = 1.0 if self.prescribed else plant.gain
         rate = np.gradient(self.effort, self.dt)[1:]
         limit = float(plant.drive.get("limit", np.inf))
         if not self.prescribed and np.isfinite(limit):
@@ -270,7 +311,7 @@ class WeakForm:
             self.dt,
             list(paths),
             self._rows(plant),
-            load=self.load[:-1],
+            **self.around,
             start=start,
         )
         columns: FloatArray = found.T
@@ -305,7 +346,7 @@ class WeakForm:
             self.dt,
             list(candidates),
             self._rows(plant),
-            load=self.load[:-1],
+            **self.around,
             start=start,
         )
         columns: FloatArray = found.T
@@ -317,7 +358,7 @@ class WeakForm:
             self.kernel.weights[::-1].copy(),
             self.kernel.second,
             self.stride,
-            plant.inertia,
+            self.own(plant).inertia,
             held=not self.prescribed,
         )
 
@@ -333,6 +374,17 @@ class WeakForm:
     def _thin(self, values: FloatArray) -> FloatArray:
         thinned: FloatArray = values[:: self.stride]
         return thinned
+
+
+def _commanded(plant: Plant, given: FloatArray, position: FloatArray, dt: float) -> FloatArray:
+    """Effort that a drive would give for its input, without limit; roughly, for sizes alone."""
+    if not plant.servo:
+        return plant.gain * given
+    servo = plant.drive
+    duty = np.clip(servo["proportional"] * (given - position), -1.0, 1.0)
+    voltage = servo["supply_v"] * duty - plant.gain * np.gradient(position, dt)
+    effort: FloatArray = plant.gain * voltage / servo["resistance_ohm"]
+    return effort
 
 
 def _too_few(source: str, samples: int, support: float) -> str:

@@ -34,6 +34,16 @@ STRENGTHS = {
     "run_in": lambda a, s: {"coulomb": a},
     "encoder_eccentricity": lambda a, s: _wave(a, s),
     "creep_hardening": lambda a, s: {"creep": a},
+    "relaxation": lambda a, s: {"speed": a},
+    "gravity_unbalance": lambda a, s: _wave(a, s),
+    "drive_saturation": lambda a, s: {"share": a},
+    "back_emf": lambda a, s: {"slope": a},
+    "current_loop_lag": lambda a, s: {"time": a},
+    "frictional_lag": lambda a, s: {"excess": a},
+    "reverse_point_memory": lambda a, s: {"share": a},
+    "temperature_dependent_friction": lambda a, s: {"coulomb": a, "viscous": a * s["viscous_part"]},
+    "load_dependent_friction": lambda a, s: {"drive": a, "back_drive": a * s["back"]},
+    "backlash": lambda a, s: {"inertia_share": a},
 }
 
 
@@ -49,7 +59,7 @@ def as_session(made, torque=None):
         effort = r.torque_nm if torque is None else torque[index]
         known = {"reference": r.reference_rad, "load": r.load_nm}
         if r.temperature_c is not None:
-            known["temperature"] = r.temperature_c + 273.15
+            known["temperature"] = r.temperature_c
         known = {name: values for name, values in known.items() if values is not None}
         recordings.append(
             st.Recording(

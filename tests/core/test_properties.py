@@ -299,8 +299,12 @@ def test_neutral_effects_change_no_bit(kind, integrator):
     one, other = plain.simulate(current, DT), dressed.simulate(current, DT)
     for name in one:
         assert np.array_equal(one[name], other[name]), name
-    # A delay has inputs on their way, some effects a memory: these are there with them alone.
-    assert dressed.state.keys() == plain.state.keys() | {"input_history", "effect_memory"}
+    # Delay and lag have inputs on their way, some effects a memory: these come with them alone.
+    assert dressed.state.keys() == plain.state.keys() | {
+        "input_history",
+        "lagged_input",
+        "effect_memory",
+    }
     assert plain.statistics == dressed.statistics
 
 

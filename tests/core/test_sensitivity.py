@@ -387,3 +387,20 @@ def test_signatures_are_the_same_for_any_number_of_threads():
         other = machine.signatures(path, current, 1e-3, candidates, threads=threads)
         assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
     assert machine.signatures(path, current, 1e-3, [])[0].shape == (0, 800)
+
+
+def test_two_shapes_of_one_relaxation_are_seen_each_for_itself():
+    """A contact relaxes in one way of a kind at a time: candidates must not shadow each other."""
+    motor = st.Motor(inertia=0.0076, torque_constant=1.0, friction=st.FrictionModel("maxwell_slip"))
+    position = 2e-4 * np.sin(5e-3 * np.arange(2001))
+    shapes = [("creep_hardening", {"rate": 0.8}), ("creep_hardening", {"rate": 3.0})]
+    shapes += [("relaxation", {"exponent": 1.0}), ("relaxation", {"exponent": 4.0})]
+    shapes += [("backlash", {"gap": 1e-4}), ("backlash", {"gap": 1e-3})]
+
+    def seen(candidates):
+        return np.concatenate(motor.signatures(position, np.zeros(2000), 1e-3, candidates), axis=1)
+
+    together = seen(shapes)
+    for each, row in zip(shapes, together, strict=True):
+        assert np.any(row != 0.0), each
+        assert np.array_equal(row, seen([each])[0]), each

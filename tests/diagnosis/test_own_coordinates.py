@@ -10,7 +10,7 @@ import pytest
 import stiction as st
 from stiction.diagnosis.advice import BY_COORDINATE, MOMENTS
 from stiction.diagnosis.contact import slides_of
-from stiction.diagnosis.coordinates import BEND, BRAKING, COORDINATES, Coordinate
+from stiction.diagnosis.coordinates import COORDINATES, UNJUDGED, Coordinate
 from stiction.diagnosis.omnibus import Rest, View
 from stiction.diagnosis.own import OWN, Wave, own_coordinate
 from stiction.diagnosis.periodic import COUPLED, FREQUENCY, ORDERS
@@ -33,7 +33,7 @@ def test_every_effect_has_a_coordinate_of_its_own(record: st.EffectRecord) -> No
     assert coordinate.name
     assert ", " in coordinate.axis
     if not isinstance(OWN[record.name], Wave):
-        assert coordinate.name in {each.name for each in (*COORDINATES, BEND, BRAKING)}
+        assert coordinate.name in {each.name for each in (*COORDINATES, *UNJUDGED)}
 
 
 def test_no_coordinate_belongs_to_an_effect_that_is_not_there() -> None:
@@ -141,7 +141,7 @@ def test_rows_without_a_place_are_left_out_and_a_factor_is_divided_by() -> None:
 
 
 def view_of(name: str, share: float) -> View:
-    coordinate = next(each for each in (*COORDINATES, BRAKING) if each.name == name)
+    coordinate = next(each for each in (*COORDINATES, *UNJUDGED) if each.name == name)
     flat = np.zeros(2)
     return View(coordinate, flat, flat, flat, flat, share, threshold=0.02, size=0.01)
 

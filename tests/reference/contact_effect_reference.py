@@ -9,21 +9,33 @@ import numpy as np
 
 from .effect_reference import Effect, log_uniform
 
+# Slip distances over l of elements of one force each.
+LADDER = (0.125, 0.25, 0.5, 1.0)
+
+
+def ladder_curve(ratio):
+    """Virgin curve of a few elements."""
+    return sum(np.minimum(ratio / slip, 1.0) for slip in LADDER) / len(LADDER)
+
+
+def exponential_curve(bend):
+    """Virgin curve with a constant of `bend` l."""
+    return lambda ratio: np.expm1(-ratio / bend) / np.expm1(-1.0 / bend)
+
 
 class ReversePoints:
     """A hysteresis operator in [-1, 1] that keeps the list of its reverse points (Masing 1926).
 
-    From a reverse point (z, m) a branch follows m ± 2 f(|x - z| / 2), the virgin curve doubled,
-    f(d) = (1 - exp(-d / w)) / (1 - exp(-l / w)) up to d = l and 1 beyond. A branch that comes to
-    the reverse point before the last closes a loop: both are wiped out, and the branch that had
-    been left there goes on. Sliding at ± 1 drags the origin of the virgin curve along.
+    From a reverse point (z, m) a branch follows m ± 2 f(|x - z| / 2), the virgin curve doubled;
+    f(d) = curve(d / l) up to d = l and 1 beyond. A branch that comes to the reverse point before
+    the last closes a loop: both are wiped out, and the branch that had been left there goes on.
+    Sliding at ± 1 drags the origin of the virgin curve along.
     """
 
     DEPTH = 48  # a loop within as many loops is forgotten
 
-    def __init__(self, length, width, lanes):
-        self.length, self.width = length, width
-        self.full = -np.expm1(-length / width)
+    def __init__(self, length, curve, lanes):
+        self.length, self.curve = length, curve
         self.columns = np.arange(lanes)
         self.places = np.zeros((self.DEPTH, lanes))
         self.values = np.zeros((self.DEPTH, lanes))
@@ -32,7 +44,7 @@ class ReversePoints:
         self.x, self.origin, self.value = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
 
     def virgin(self, distance):
-        return -np.expm1(-np.minimum(distance, self.length) / self.width) / self.full
+        return self.curve(np.minimum(distance / self.length, 1.0))
 
     def move(self, dx):
         """Value after a move."""
@@ -72,8 +84,12 @@ class ReversePoints:
 
 
 class ReversePointMemory(Effect):
-    """Dry friction (1 - a) law + a F_c m: part of it yields, and remembers where it turned."""
+    """Dry friction (1 - a) law + a F_c m: part of it yields, and remembers where it turned.
 
+    The virgin curve of m is that of four elements; foreign: an exponential.
+    """
+
+    forms = ("library", "foreign")
     hooks = ("share", "effort")
     # What yields has a law of its own already.
     bases = ("coulomb",)
@@ -81,11 +97,12 @@ class ReversePointMemory(Effect):
 
     @staticmethod
     def draw(rng, plant, form):
-        length = log_uniform(rng, 1e-3, 1e-2)
-        return {"length": length, "width": length * rng.uniform(0.25, 0.6)}
+        shape = {"length": log_uniform(rng, 1e-3, 1e-2)}
+        return shape | ({"bend": rng.uniform(0.25, 0.6)} if form == "foreign" else {})
 
     def prepare(self):
-        self.memory = ReversePoints(self.length, self.width, self.amplitude.size)
+        curve = exponential_curve(self.bend) if hasattr(self, "bend") else ladder_curve
+        self.memory = ReversePoints(self.length, curve, self.amplitude.size)
 
     def effort(self, s):
         return -self.amplitude * self.setting.coulomb * self.memory.move(s.dx[self.lanes])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from .contact_effect_reference import ReversePoints
+from .contact_effect_reference import LADDER, ReversePoints, exponential_curve, ladder_curve
 from .effect_catalogue import EFFECTS
 from .effect_reference import Setting, Situation
 from .excitation_reference import draw_plant
@@ -36,8 +36,11 @@ def test_friction_follows_a_growing_speed_late(pure):
         assert share == pytest.approx(expected, abs=1e-5)
 
 
-def points(lanes=1, length=1e-3, width=4e-4):
-    return ReversePoints(length, width, lanes)
+LENGTH, BEND = 1e-3, 0.4
+
+
+def points(curve=None):
+    return ReversePoints(LENGTH, curve or exponential_curve(BEND), 1)
 
 
 def go(memory, *turns):
@@ -71,29 +74,35 @@ def test_branches_of_reverse_points_are_congruent_and_end_at_one():
     assert up - low == pytest.approx(full - back, abs=1e-9)
 
 
-def test_reverse_points_do_what_many_elements_in_parallel_do():
-    length, width, n = 1e-3, 4e-4, 4000
-    memory = points(length=length, width=width)
-    slip = length * (np.arange(n) + 0.5) / n
-    # Elements of the virgin curve: minus its curvature, and what it has left at its end.
-    edges = length * np.arange(n + 1) / n
-    slope = np.exp(-edges / width) / width / memory.full
+def elements_of_the_exponential(number):
+    """Slip distances and stiffnesses: minus its curvature, and what it has left at its end."""
+    edges = np.arange(number + 1) / number
+    slope = np.exp(-edges / BEND) / BEND / -math.expm1(-1.0 / BEND)
     stiffness = -np.diff(slope)
     stiffness[-1] += slope[-1]
-    extension = np.zeros(n)
-    moves = np.random.default_rng(2).normal(0.0, 1.0, 60).cumsum() * 4e-4
-    x = 0.0
-    for goal in moves:
-        dx = goal - x
+    return LENGTH * (edges[1:] + edges[:-1]) / 2.0, stiffness / LENGTH
+
+
+@pytest.mark.parametrize("form", ["library", "foreign"])
+def test_reverse_points_do_what_elements_in_parallel_do(form):
+    if form == "library":
+        memory, bound = points(ladder_curve), 1e-9
+        slip = LENGTH * np.array(LADDER)
+        stiffness = 1.0 / len(LADDER) / slip
+    else:
+        memory, bound = points(), 2e-3
+        slip, stiffness = elements_of_the_exponential(4000)
+    extension, x = np.zeros(slip.size), 0.0
+    for goal in np.random.default_rng(2).normal(0.0, 0.4 * LENGTH, 200).cumsum():
+        extension = np.clip(extension + goal - x, -slip, slip)
+        value = memory.move(np.array([goal - x]))[0]
         x = goal
-        extension = np.clip(extension + dx, -slip, slip)
-        value = memory.move(np.array([dx]))[0]
-        assert value == pytest.approx(stiffness @ extension, abs=2e-3)
+        assert value == pytest.approx(stiffness @ extension, abs=bound)
 
 
 def test_memory_of_reverse_points_is_booked_against_a_rigid_contact():
     plant = draw_plant("coulomb", np.random.default_rng(5)) | {"viscous": 0.0}
-    level, a, shape = plant["coulomb"], 0.3, {"length": 4e-3, "width": 1.5e-3}
+    level, a, shape = plant["coulomb"], 0.3, {"length": 4e-3, "bend": 0.375}
     torque = np.where(T < 0.1, 2.0, np.where(T < 0.2, -2.0, 0.0)) * level
     run = run_of("reverse_point_memory", torque, a, shape, plant=plant, substeps=10)
     x, v = run.true_position[:, 0], run.velocity[:, 0]

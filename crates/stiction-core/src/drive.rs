@@ -5,28 +5,39 @@ use std::collections::VecDeque;
 use crate::error::{Error, Result};
 use crate::friction::{Entry, EntryReader};
 use crate::scalar::Scalar;
+use crate::servo::{Servo, within};
 
-/// Gain and limit of the drive.
+/// Gain and limit of the drive, and the servo in it where it has one.
 #[derive(Debug, Clone, Copy)]
 pub struct Drive<S> {
-    /// Effort per unit of input.
+    /// Effort per unit of input; of a servo per ampere.
     pub gain: S,
     /// Greatest magnitude of the input that gets through; infinite means no limit.
     pub limit: f64,
+    /// What makes an effort of a goal position.
+    pub servo: Option<Servo>,
 }
 
 impl<S: Scalar> Drive<S> {
-    /// Effort for an input.
+    /// Effort for what it is commanded: an input, or the voltage of a servo.
     #[inline]
-    pub fn effort(&self, input: S) -> S {
-        let held = if input.re() > self.limit {
-            S::constant(self.limit)
-        } else if input.re() < -self.limit {
-            S::constant(-self.limit)
-        } else {
-            input
-        };
-        self.gain * held
+    pub fn effort(&self, command: S, velocity: S) -> S {
+        match &self.servo {
+            None => self.gain * within(command, self.limit),
+            Some(servo) => self.gain * servo.current(self.gain, command, velocity),
+        }
+    }
+
+    /// Effort per unit of the command.
+    pub fn slope(&self, command: f64, velocity: f64) -> f64 {
+        let gain = self.gain.re();
+        match &self.servo {
+            None if command.abs() <= self.limit => gain,
+            Some(servo) if servo.current(gain, command, velocity).abs() < servo.current_limit => {
+                gain / servo.resistance
+            }
+            None | Some(_) => 0.0,
+        }
     }
 }
 
@@ -142,6 +153,111 @@ impl<S: Scalar> DelayLine<S> {
     }
 }
 
+/// A first-order lag of the input and what has come through it.
+#[derive(Debug, Clone, Copy)]
+pub struct Lag<S> {
+    time: S,
+    followed: S,
+}
+
+impl<S: Scalar> Lag<S> {
+    /// Name of its entry in a state.
+    pub const ENTRY: &'static str = "lagged_input";
+
+    /// A lag that nothing has passed yet.
+    pub fn new(time: S) -> Self {
+        Self { time, followed: S::constant(0.0) }
+    }
+
+    /// Takes in the input of a sample and gives the mean over it of what follows it:
+    /// u + (i − u)·(T/dt)·(1 − e^(−dt/T)), i as it was before.
+    #[inline(never)] // motors without a lag are not to carry it through their loop
+    pub fn pass(&mut self, input: S, dt: f64) -> S {
+        let behind = self.followed - input;
+        if self.time.re() <= 0.0 {
+            self.followed = input;
+            // No lag changes no bit, and shows its derivative: x + (−0) is x, also where that is −0.
+            return input + self.time.chain(-0.0, behind.re() / dt);
+        }
+        let share = S::constant(dt) / self.time;
+        let gone = -((-share).exp_m1());
+        self.followed = input - behind * (gone - 1.0);
+        input + behind * gone / share
+    }
+}
+
+/// What the input passes on its way to the drive: first a delay, then a lag.
+#[derive(Debug, Clone)]
+pub struct Way<S> {
+    delay: Option<DelayLine<S>>,
+    lag: Option<Lag<S>>,
+}
+
+impl<S: Scalar> Way<S> {
+    /// The way through a delay and a lag, where there are any.
+    pub fn new(delay: Option<S>, lag: Option<S>) -> Self {
+        Self { delay: delay.map(DelayLine::new), lag: lag.map(Lag::new) }
+    }
+
+    /// Mean of what arrives during a sample.
+    #[inline]
+    pub fn pass(&mut self, input: f64, dt: f64) -> S {
+        let late = match &mut self.delay {
+            None => S::constant(input),
+            Some(line) => line.pass(input, dt),
+        };
+        match &mut self.lag {
+            None => late,
+            Some(lag) => lag.pass(late, dt),
+        }
+    }
+
+    /// Forgets all inputs: before, they were 0.
+    pub fn clear(&mut self) {
+        if let Some(line) = &mut self.delay {
+            line.clear();
+        }
+        if let Some(lag) = &mut self.lag {
+            lag.followed = S::constant(0.0);
+        }
+    }
+
+    /// Takes over what is on its way in another machine with the same delay.
+    pub fn resume<T: Scalar>(&mut self, other: &Way<T>) {
+        if let (Some(line), Some(other)) = (&mut self.delay, &other.delay) {
+            line.resume(other);
+        }
+        if let (Some(lag), Some(other)) = (&mut self.lag, &other.lag) {
+            lag.followed = S::constant(other.followed.re());
+        }
+    }
+
+    /// Names of its entries in a state.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        let delay = self.delay.as_ref().map(|_| DelayLine::<f64>::ENTRY);
+        delay.into_iter().chain(self.lag.as_ref().map(|_| Lag::<f64>::ENTRY))
+    }
+
+    /// What is on the way, as entries of a state.
+    pub fn entries(&self) -> impl Iterator<Item = (&'static str, Entry)> {
+        let delay = self.delay.as_ref().map(DelayLine::entry);
+        let lag = self.lag.as_ref();
+        let lag = lag.map(|lag| (Lag::<S>::ENTRY, Entry::Number(lag.followed.re())));
+        delay.into_iter().chain(lag)
+    }
+
+    /// Takes what is on the way from the entries of a state.
+    pub fn restore(&mut self, read: &mut EntryReader<'_>) -> Result<()> {
+        if let Some(line) = &mut self.delay {
+            line.restore(read)?;
+        }
+        if let Some(lag) = &mut self.lag {
+            lag.followed = S::constant(read.number(Lag::<S>::ENTRY, false)?);
+        }
+        Ok(())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -199,6 +315,29 @@ mod tests {
             assert_eq!(got.re().to_bits(), input.to_bits());
             assert_eq!(Scalar::partial(got, 3), (before - input) / dt);
             before = input;
+        }
+    }
+
+    #[test]
+    fn a_lag_passes_a_sine_as_its_response_says() {
+        for time in [0.0, 1e-5, 3e-3, 0.05] {
+            let (dt, w) = (1e-4, 60.0_f64);
+            let mut lag = Lag::new(Dual::variable(time, 0));
+            let response = |time: f64, t: f64| {
+                let (real, imaginary) = (1.0, w * time);
+                ((w * t).sin() * real - (w * t).cos() * imaginary) / (1.0 + imaginary * imaginary)
+            };
+            for k in 0..20_000 {
+                let t = f64::from(k) * dt;
+                // Held at the value in the middle: its mean over the sample, nearly.
+                let middle = t + 0.5 * dt;
+                let got = lag.pass(Dual::constant((w * middle).sin()), dt);
+                if t > 1.0 {
+                    assert!((got.re() - response(time, middle)).abs() < 1e-4, "{time} {t}");
+                    let chord = (response(time + 1e-7, middle) - response(time, middle)) / 1e-7;
+                    assert!((Scalar::partial(got, 0) - chord).abs() < 0.01 * w, "{time} {t}");
+                }
+            }
         }
     }
 

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use crate::drive::DelayLine;
-use crate::effects::{Passage, SecondMass, Situation};
+use crate::drive::Way;
+use crate::effects::{Passage, Situation};
 use crate::friction::LawState;
-use crate::integrate::{Along, Twist, through_events};
+use crate::integrate::{Along, Beyond, through_events};
 use crate::model::CHUNK;
-use crate::motor::{PerSample, Running};
+use crate::motor::{PerSample, Running, Surroundings};
 use crate::scalar::Scalar;
 
 /// Efforts at the end of a sample.
@@ -23,8 +23,8 @@ pub struct Efforts<S> {
     pub ahead: S,
     /// Where the plant then is.
     pub at: Situation<S>,
-    /// What of the input reached the drive.
-    pub input: S,
+    /// What the drive is commanded: what of the input reached it, or the voltage of a servo.
+    pub command: S,
 }
 
 /// The positions behind the readings, three in a row, and what is derived from them.
@@ -91,11 +91,11 @@ impl<S: Scalar> Running<S> {
         &mut self,
         positions: &[f64],
         inputs: PerSample<'_>,
-        load: PerSample<'_>,
+        around: Surroundings<'_>,
         dt: PerSample<'_>,
         row: impl FnMut(usize, Efforts<S>),
     ) {
-        self.follow_on(positions, 0..positions.len() - 1, inputs, load, dt, row);
+        self.follow_on(positions, 0..positions.len() - 1, inputs, around, dt, row);
     }
 
     /// Follows some of the samples, from where the last one before them ended. A second mass swings
@@ -105,11 +105,11 @@ impl<S: Scalar> Running<S> {
         positions: &[f64],
         samples: Range<usize>,
         inputs: PerSample<'_>,
-        load: PerSample<'_>,
+        around: Surroundings<'_>,
         dt: PerSample<'_>,
         mut row: impl FnMut(usize, Efforts<S>),
     ) {
-        let mut line = self.line.as_mut();
+        let mut way = self.way.as_mut();
         let machine = &mut self.machine;
         let zero = S::constant(0.0);
         let misreads = machine.effects.misreads();
@@ -119,8 +119,8 @@ impl<S: Scalar> Running<S> {
             if misreads { sensor.behind(reading) } else { reading }
         };
         let inertia = machine.body.inertia;
-        let mut twist =
-            machine.effects.second_mass().map(|mass: SecondMass<S>| Twist::new(&mass, inertia));
+        let masses = machine.effects.second_masses().iter();
+        let mut beyond: Vec<Beyond<S>> = masses.map(|mass| Beyond::new(mass, inertia)).collect();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let mut track = Track::new(positions, &actual, samples.start);
             let mut velocity = track.velocity(&dt);
@@ -130,7 +130,7 @@ impl<S: Scalar> Running<S> {
                 }
                 let duration = dt.at(k);
                 let span = S::constant(duration);
-                let load = S::constant(load.at(k));
+                let load = S::constant(around.load.at(k));
                 let before = velocity;
                 track.advance();
                 velocity = track.velocity(&dt);
@@ -140,6 +140,8 @@ impl<S: Scalar> Running<S> {
                 run.velocity = velocity;
                 run.time += span;
                 run.path += displacement.abs();
+                run.temperature = around.temperature_at(k);
+                run.enabled = around.enabled_at(k);
                 run.second_position = run.position;
                 run.second_velocity = velocity;
                 if machine.effects.remembers() {
@@ -147,7 +149,7 @@ impl<S: Scalar> Running<S> {
                     machine.effects.remember(&passage);
                 }
                 let at = run.situation();
-                let input = arriving(&mut line, inputs.at(k), duration);
+                let input = arriving(&mut way, inputs.at(k), duration);
                 let (effort, driven, ambient) = machine.efforts(&at, input, load);
                 let channels = machine.channels(&at, effort, load);
                 let mut at_contact = displacement;
@@ -163,10 +165,13 @@ impl<S: Scalar> Running<S> {
                 if misreads {
                     ahead += track.at[1] - positions[k + 1];
                 }
-                if let Some(twist) = &mut twist {
-                    ahead += twist.advance(track.acceleration(&dt), duration);
+                for mass in &mut beyond {
+                    ahead += mass.advance(track.acceleration(&dt), duration);
                 }
-                row(k, Efforts { driven, ambient, friction: run.friction, ahead, at, input });
+                let at = machine.at_contact(&at, load);
+                let command = machine.command(input, &at);
+                machine.wind(run, input, duration);
+                row(k, Efforts { driven, ambient, friction: run.friction, ahead, at, command });
             }
         });
     }
@@ -174,9 +179,9 @@ impl<S: Scalar> Running<S> {
 
 /// What of the input reaches the drive during a sample.
 #[inline]
-pub(crate) fn arriving<S: Scalar>(line: &mut Option<&mut DelayLine<S>>, input: f64, dt: f64) -> S {
-    match line {
+pub(crate) fn arriving<S: Scalar>(way: &mut Option<&mut Way<S>>, input: f64, dt: f64) -> S {
+    match way {
         None => S::constant(input),
-        Some(line) => line.pass(input, dt),
+        Some(way) => way.pass(input, dt),
     }
 }

@@ -21,6 +21,7 @@ pub mod parameter;
 pub mod scalar;
 pub mod sensitivity;
 pub mod sensor;
+pub mod servo;
 pub mod shoot;
 pub mod trig;
 pub mod wave;

@@ -1,7 +1,7 @@
 //! A motor: machine, friction and the way they run together.
 
 use crate::body::Body;
-use crate::drive::{DelayLine, Drive};
+use crate::drive::{Drive, Way};
 use crate::effects::{AnyEffect, EffectRecord, Effects, effect_record};
 use crate::error::{Error, Result};
 use crate::follow::arriving;
@@ -12,6 +12,7 @@ use crate::parameter::resolve;
 use crate::scalar::Scalar;
 use crate::sensitivity::MeasuredMotion;
 use crate::sensor::Sensor;
+use crate::servo::Servo;
 use crate::shoot::{Pull, Windows};
 
 /// An effect with every parameter decided.
@@ -63,6 +64,8 @@ pub struct MotorSpec {
     pub gain: f64,
     /// Greatest magnitude of the input that gets through.
     pub input_limit: f64,
+    /// What makes an effort of a goal position, where the input is one.
+    pub servo: Option<Servo>,
     /// Amplitude of the pendulum torque.
     pub gravity_amplitude: f64,
     /// Position at which the pendulum hangs.
@@ -86,6 +89,7 @@ impl MotorSpec {
             inertia,
             gain,
             input_limit: f64::INFINITY,
+            servo: None,
             gravity_amplitude: 0.0,
             gravity_zero: 0.0,
             weight: 0.0,
@@ -125,12 +129,17 @@ impl MotorSpec {
         Ok(())
     }
 
+    /// Path of the effort per unit: of input, or of a servo's current.
+    fn gain_path(&self) -> &'static str {
+        if self.servo.is_some() { "drive.torque_constant" } else { "drive.gain" }
+    }
+
     /// Paths and values of all parameters: `body.inertia`, `friction.coulomb`,
     /// `effects.cogging.cosine` … in a fixed order.
     pub fn parameters(&self) -> Vec<(String, f64)> {
         let mut list = vec![
             ("body.inertia".to_owned(), self.inertia),
-            ("drive.gain".to_owned(), self.gain),
+            (self.gain_path().to_owned(), self.gain),
             ("body.gravity_amplitude".to_owned(), self.gravity_amplitude),
             ("body.gravity_zero_rad".to_owned(), self.gravity_zero),
             ("body.weight_n".to_owned(), self.weight),
@@ -157,7 +166,7 @@ impl MotorSpec {
         let effects = Effects::new(effects);
         let law = self.friction.law(friction);
         let machine = Machine::new(
-            Drive { gain: first[1], limit: self.input_limit },
+            Drive { gain: first[1], limit: self.input_limit, servo: self.servo },
             Body::new(first[0], first[2], first[3], first[4]),
             effects,
             Sensor { count: self.count },
@@ -205,6 +214,58 @@ impl Column {
     }
 }
 
+/// What acts on a machine beside its input.
+#[derive(Debug, Clone, Copy)]
+pub struct Surroundings<'a> {
+    /// External effort, positive along +x.
+    pub load: PerSample<'a>,
+    /// Temperature in °C, where it is known.
+    pub temperature: Option<PerSample<'a>>,
+    /// Whether the drive is on, 0 where it is not; always on without it.
+    pub enabled: Option<PerSample<'a>>,
+}
+
+impl Surroundings<'_> {
+    /// No load, a temperature that nobody knows, and a drive that is on.
+    pub const NONE: Self = Self { load: PerSample::Same(0.0), temperature: None, enabled: None };
+
+    /// Whether the drive is on in a sample.
+    #[inline]
+    pub fn enabled_at(&self, k: usize) -> bool {
+        self.enabled.is_none_or(|each| each.at(k) != 0.0)
+    }
+
+    /// The temperature at a sample.
+    #[inline]
+    pub fn temperature_at(&self, k: usize) -> Option<f64> {
+        self.temperature.map(|each| each.at(k))
+    }
+
+    /// Those from one sample to before another.
+    pub fn between(&self, from: usize, to: usize) -> Self {
+        Self {
+            load: self.load.between(from, to),
+            temperature: self.temperature.map(|each| each.between(from, to)),
+            enabled: self.enabled.map(|each| each.between(from, to)),
+        }
+    }
+
+    /// Refuses numbers that are not as many as the samples.
+    pub fn check(&self, wanted: usize) -> Result<()> {
+        self.load.check("load", wanted)?;
+        for (name, each) in [("temperature", self.temperature), ("enabled", self.enabled)] {
+            each.map_or(Ok(()), |each| each.check(name, wanted))?;
+        }
+        Ok(())
+    }
+}
+
+impl<'a> From<PerSample<'a>> for Surroundings<'a> {
+    fn from(load: PerSample<'a>) -> Self {
+        Self { load, ..Surroundings::NONE }
+    }
+}
+
 /// A number for every sample, or one for all.
 #[derive(Debug, Clone, Copy)]
 pub enum PerSample<'a> {
@@ -221,6 +282,16 @@ impl PerSample<'_> {
         match self {
             Self::Same(value) => *value,
             Self::Each(values) => values[k],
+        }
+    }
+
+    /// Refuses numbers that are not as many as the samples.
+    pub fn check(&self, name: &str, wanted: usize) -> Result<()> {
+        match self {
+            Self::Each(values) if values.len() != wanted => {
+                Err(Error::Length { name: name.to_owned(), given: values.len(), wanted })
+            }
+            Self::Same(_) | Self::Each(_) => Ok(()),
         }
     }
 
@@ -251,8 +322,8 @@ pub struct Running<S: Scalar> {
     pub state: AnyState<S>,
     /// Body.
     pub run: Run<S>,
-    /// Inputs on their way to the drive, where an effect delays them.
-    pub line: Option<DelayLine<S>>,
+    /// Inputs on their way to the drive, where an effect delays them or lets them lag.
+    pub way: Option<Way<S>>,
     /// Integrator.
     pub integrator: Integrator,
     /// ω·h above which it divides a sample.
@@ -266,9 +337,10 @@ impl<S: Scalar> Running<S> {
         let state = law.initial();
         let zero = S::constant(0.0);
         let run = machine.start(zero, zero);
-        let line = machine.effects.delay().map(DelayLine::new);
+        let (delay, lag) = (machine.effects.delay(), machine.effects.lag());
+        let way = (delay.is_some() || lag.is_some()).then(|| Way::new(delay, lag));
         let integrator = spec.integrator;
-        Self { machine, law, state, run, line, integrator, longest_phase: LONGEST_PHASE }
+        Self { machine, law, state, run, way, integrator, longest_phase: LONGEST_PHASE }
     }
 
     /// Goes on from where another motor is; its state depends on no parameter of this one.
@@ -277,30 +349,32 @@ impl<S: Scalar> Running<S> {
         self.run = from.run.lift();
         self.machine.effects.resume(&from.machine.effects);
         self.machine.refresh(&mut self.run);
-        if let (Some(line), Some(from)) = (&mut self.line, &from.line) {
-            line.resume(from);
+        if let (Some(way), Some(from)) = (&mut self.way, &from.way) {
+            way.resume(from);
         }
     }
 
-    /// One sample.
+    /// One sample, at the temperature of the run.
     #[inline]
     pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<()> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let parts = whole_parts(parts(&self.machine, law, dt, self.longest_phase), dt)?;
             state.make_room(parts as usize + CHUNK / 4);
             let before = self.run;
+            let arrived = arriving(&mut self.way.as_mut(), input, dt);
             sample(
                 &self.machine,
                 law,
                 state,
                 &mut self.run,
-                arriving(&mut self.line.as_mut(), input, dt),
+                arrived,
                 S::constant(load),
                 dt,
                 parts,
                 self.integrator,
             );
-            self.machine.remember(&before, &self.run);
+            self.machine.wind(&mut self.run, arrived, dt);
+            self.machine.remember(&before, &mut self.run);
         });
         Ok(())
     }
@@ -309,22 +383,23 @@ impl<S: Scalar> Running<S> {
     pub fn simulate(
         &mut self,
         inputs: &[f64],
-        load: PerSample<'_>,
+        around: Surroundings<'_>,
         dt: PerSample<'_>,
         row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
     ) -> Result<()> {
-        self.simulate_under(inputs, |k| S::constant(load.at(k)), dt, row)
+        self.simulate_under(inputs, around, |_| S::constant(0.0), dt, row)
     }
 
-    /// As [`Self::simulate`], under a load that may depend on parameters.
+    /// As [`Self::simulate`], with a load added that may depend on parameters.
     pub(crate) fn simulate_under(
         &mut self,
         inputs: &[f64],
-        load: impl Fn(usize) -> S,
+        around: Surroundings<'_>,
+        added: impl Fn(usize) -> S,
         dt: PerSample<'_>,
         mut row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
     ) -> Result<()> {
-        let mut line = self.line.as_mut();
+        let mut way = self.way.as_mut();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let mut known = f64::NAN;
             let mut divided = 1;
@@ -344,19 +419,23 @@ impl<S: Scalar> Running<S> {
                         state.make_room(room + CHUNK / 4);
                     }
                     room -= divided as usize;
+                    self.run.temperature = around.temperature_at(index);
+                    self.run.enabled = around.enabled_at(index);
                     let before = self.run;
+                    let arrived = arriving(&mut way, *input, dt);
                     sample(
                         &self.machine,
                         law,
                         state,
                         &mut self.run,
-                        arriving(&mut line, *input, dt),
-                        load(index),
+                        arrived,
+                        added(index) + around.load.at(index),
                         dt,
                         divided,
                         self.integrator,
                     );
-                    self.machine.remember(&before, &self.run);
+                    self.machine.wind(&mut self.run, arrived, dt);
+                    self.machine.remember(&before, &mut self.run);
                     let seen = &*state;
                     row(index, &self.run, &self.machine, &|column| seen.output(column));
                 }
@@ -403,21 +482,12 @@ impl Motor {
     pub fn simulate(
         &mut self,
         inputs: &[f64],
-        load: PerSample<'_>,
+        around: Surroundings<'_>,
         dt: PerSample<'_>,
         columns: &mut [(Column, &mut [f64])],
     ) -> Result<()> {
-        for (name, each) in [("load", load), ("dt", dt)] {
-            if let PerSample::Each(values) = each
-                && values.len() != inputs.len()
-            {
-                return Err(Error::Length {
-                    name: name.to_owned(),
-                    given: values.len(),
-                    wanted: inputs.len(),
-                });
-            }
-        }
+        around.check(inputs.len())?;
+        dt.check("dt", inputs.len())?;
         for (_, values) in columns.iter() {
             if values.len() != inputs.len() {
                 return Err(Error::Length {
@@ -427,7 +497,7 @@ impl Motor {
                 });
             }
         }
-        self.running.simulate(inputs, load, dt, |k, run, machine, output| {
+        self.running.simulate(inputs, around, dt, |k, run, machine, output| {
             for (column, values) in columns.iter_mut() {
                 values[k] = match column {
                     Column::Position => run.position,
@@ -447,18 +517,14 @@ impl Motor {
         &mut self,
         positions: &[f64],
         inputs: PerSample<'_>,
-        load: PerSample<'_>,
+        around: Surroundings<'_>,
         dt: PerSample<'_>,
         efforts: [&mut [f64]; 4],
     ) -> Result<()> {
         let wanted = positions.len().saturating_sub(1);
-        for (name, each) in [("input", inputs), ("load", load), ("dt", dt)] {
-            if let PerSample::Each(values) = each
-                && values.len() != wanted
-            {
-                return Err(Error::Length { name: name.to_owned(), given: values.len(), wanted });
-            }
-        }
+        inputs.check("input", wanted)?;
+        around.check(wanted)?;
+        dt.check("dt", wanted)?;
         let [driven, ambient, friction, ahead] = efforts;
         for array in [&driven, &ambient, &friction, &ahead] {
             if array.len() != wanted {
@@ -466,7 +532,7 @@ impl Motor {
                 return Err(Error::Length { name, given: array.len(), wanted });
             }
         }
-        self.running.follow(positions, inputs, load, dt, |k, efforts| {
+        self.running.follow(positions, inputs, around, dt, |k, efforts| {
             driven[k] = efforts.driven;
             ambient[k] = efforts.ambient;
             friction[k] = efforts.friction;
@@ -505,9 +571,19 @@ impl Motor {
         self.running.state = self.running.law.initial();
         self.running.run = self.running.machine.start(position, velocity);
         self.running.machine.effects.forget();
-        if let Some(line) = &mut self.running.line {
-            line.clear();
+        if let Some(way) = &mut self.running.way {
+            way.clear();
         }
+    }
+
+    /// Sets the temperature in °C that the next steps have.
+    pub fn set_temperature(&mut self, temperature: Option<f64>) {
+        self.running.run.temperature = temperature;
+    }
+
+    /// Switches the drive on or off for the next steps.
+    pub fn set_enabled(&mut self, enabled: bool) {
+        self.running.run.enabled = enabled;
     }
 
     /// Sets the session clock and the path travelled so far.
@@ -540,9 +616,10 @@ impl Motor {
             ("second_position", number(run.second_position)),
             ("second_velocity", number(run.second_velocity)),
             ("relaxed", number(run.relaxed)),
+            ("wound", number(run.wound)),
             ("ambient", number(run.ambient())),
         ];
-        entries.extend(self.running.line.as_ref().map(DelayLine::entry));
+        entries.extend(self.running.way.iter().flat_map(Way::entries));
         let effects = &self.running.machine.effects;
         entries.extend(effects.remembers().then(|| effects.entry()));
         entries.extend(with_state!(&self.running.state, |state| state.entries()));
@@ -551,11 +628,11 @@ impl Motor {
 
     /// Sets body and friction state from named entries.
     pub fn restore(&mut self, entries: &[(String, Entry)]) -> Result<()> {
-        let mut line = self.running.line.clone();
+        let mut way = self.running.way.clone();
         let mut effects = self.running.machine.effects.clone();
         let own = |name: &str| {
             BODY.contains(&name)
-                || (line.is_some() && name == DelayLine::<f64>::ENTRY)
+                || way.iter().flat_map(Way::names).any(|own| own == name)
                 || (effects.remembers() && name == Effects::<f64>::ENTRY)
         };
         let (body, law): (Vec<_>, Vec<_>) =
@@ -570,8 +647,9 @@ impl Motor {
         run.second_position = read.number("second_position", false)?;
         run.second_velocity = read.number("second_velocity", false)?;
         run.relaxed = read.number("relaxed", false)?;
-        if let Some(line) = &mut line {
-            line.restore(&mut read)?;
+        run.wound = read.number("wound", false)?;
+        if let Some(way) = &mut way {
+            way.restore(&mut read)?;
         }
         if effects.remembers() {
             effects.restore(&mut read)?;
@@ -581,7 +659,7 @@ impl Motor {
         run.set_ambient(read.number("ambient", false)?);
         self.running.state = state;
         self.running.run = run;
-        self.running.line = line;
+        self.running.way = way;
         self.running.machine.effects = effects;
         Ok(())
     }
@@ -592,7 +670,7 @@ impl Motor {
     }
 }
 
-const BODY: [&str; 9] = [
+const BODY: [&str; 10] = [
     "position",
     "velocity",
     "time",
@@ -601,5 +679,6 @@ const BODY: [&str; 9] = [
     "second_position",
     "second_velocity",
     "relaxed",
+    "wound",
     "ambient",
 ];

@@ -6,7 +6,7 @@ use crate::effects::{AnyEffect, EffectRecord, Effects, Hook, Passage, Situation}
 use crate::error::{Error, Result};
 use crate::follow::Efforts;
 use crate::kernel::RowKernel;
-use crate::motor::{EffectSpec, MotorSpec, PerSample, Running};
+use crate::motor::{EffectSpec, MotorSpec, PerSample, Running, Surroundings};
 use crate::scalar::{COLUMNS, Dual, Scalar};
 
 /// Derivatives of position and velocity at the end of every sample.
@@ -90,14 +90,14 @@ pub fn sensitivity(
     spec: &MotorSpec,
     start: &Running<f64>,
     inputs: &[f64],
-    load: PerSample<'_>,
+    around: Surroundings<'_>,
     dt: PerSample<'_>,
     paths: &[String],
 ) -> Result<Sensitivity> {
     let columns = || vec![vec![0.0; inputs.len()]; paths.len()];
     let mut result = Sensitivity { position: columns(), velocity: columns() };
     passes(spec, start.into(), paths, |running, first, number| {
-        running.simulate(inputs, load, dt, |k, run, _, _| {
+        running.simulate(inputs, around, dt, |k, run, _, _| {
             for column in 0..number {
                 result.position[first + column][k] = Scalar::partial(run.position, column);
                 result.velocity[first + column][k] = Scalar::partial(run.velocity, column);
@@ -126,8 +126,8 @@ pub struct MeasuredMotion<'a> {
     pub positions: &'a [f64],
     /// Inputs.
     pub inputs: PerSample<'a>,
-    /// External efforts.
-    pub load: PerSample<'a>,
+    /// What acts beside them.
+    pub around: Surroundings<'a>,
     /// Durations.
     pub dt: PerSample<'a>,
 }
@@ -166,7 +166,7 @@ impl MeasuredMotion<'_> {
 
     /// Follows the motion and fills the traces of a pass, one for each seeded column.
     fn differentiate(&self, running: &mut Running<Dual>, traces: &mut [Traces]) {
-        running.follow(self.positions, self.inputs, self.load, self.dt, |k, efforts| {
+        running.follow(self.positions, self.inputs, self.around, self.dt, |k, efforts| {
             let short = efforts.friction - efforts.ambient;
             for (column, [needed, driven, ahead]) in traces.iter_mut().enumerate() {
                 needed[k] = Scalar::partial(short, column);
@@ -320,11 +320,11 @@ fn signatures_into(
     if !direct.is_empty() {
         at_once(spec, start, motion, candidates, &mut direct);
     }
-    let work = Mutex::new(seeded.chunks_mut(COLUMNS));
+    let work = Mutex::new(apart(seeded, candidates).into_iter());
     let next = || work.lock().unwrap_or_else(PoisonError::into_inner).next();
     let passes = || {
         let mut traces: Vec<Traces> = Vec::new();
-        while let Some(pass) = next() {
+        while let Some(mut pass) = next() {
             let places: Vec<(usize, usize)> = pass.iter().map(|(place, _)| *place).collect();
             let mut running = with_candidates(spec, start, candidates, &places);
             traces.resize_with(pass.len().max(traces.len()), || motion.traces());
@@ -342,11 +342,37 @@ fn signatures_into(
     });
 }
 
+/// A gain, by candidate and place, and where its traces go.
+type Seeded<T> = ((usize, usize), T);
+
+/// Gains dealt to passes: a contact relaxes in one way of a kind at a time, so candidates of one
+/// effect that does so must not share a pass.
+fn apart<T>(gains: Vec<Seeded<T>>, candidates: &[EffectSpec]) -> Vec<Vec<Seeded<T>>> {
+    let alone = |index: usize| candidates[index].record.hooks.contains(&Hook::StateRelaxation);
+    let mut passes: Vec<Vec<Seeded<T>>> = Vec::new();
+    for gain in gains {
+        let index = gain.0.0;
+        let bars = |(other, _): &Seeded<T>| {
+            let same = candidates[other.0].record.name == candidates[index].record.name;
+            alone(index) && same && other.0 != index
+        };
+        match passes.iter_mut().find(|pass| pass.len() < COLUMNS && !pass.iter().any(bars)) {
+            Some(pass) => pass.push(gain),
+            None => passes.push(vec![gain]),
+        }
+    }
+    passes
+}
+
 /// Whether an effect enters the efforts of a sample through that sample alone.
 fn acts_at_once(record: &EffectRecord) -> bool {
     record.hooks.iter().all(|hook| match hook {
         Hook::FrictionLevel | Hook::AddedEffort | Hook::InputMap => true,
-        Hook::InputDelay | Hook::SensorMap | Hook::StateRelaxation | Hook::SecondMass => false,
+        Hook::InputDelay
+        | Hook::InputLag
+        | Hook::SensorMap
+        | Hook::StateRelaxation
+        | Hook::SecondMass => false,
     })
 }
 
@@ -360,8 +386,8 @@ struct Sample {
     passage: Passage<f64>,
     /// ∂friction/∂(level of dry, of viscous friction).
     by_levels: (f64, f64),
-    input: f64,
-    /// ∂(effort of the drive)/∂input.
+    command: f64,
+    /// ∂(effort of the drive)/∂command.
     gain: f64,
 }
 
@@ -376,7 +402,7 @@ fn at_once(
     targets: &mut [((usize, usize), impl Target)],
 ) {
     let samples = samples_along(spec, start, motion);
-    let usual = samples.iter().map(|sample| sample.input.abs()).fold(0.0, f64::max);
+    let usual = samples.iter().map(|sample| sample.command.abs()).fold(0.0, f64::max);
     let mut traces = motion.traces();
     for ((index, gain), target) in targets {
         let candidate = &candidates[*index];
@@ -393,7 +419,7 @@ fn at_once(
             *needed = (levels - effects.effort(&sample.at)) / unit;
             *driven = 0.0;
             if mapped {
-                let moved = effects.input(sample.input, &sample.at) - sample.input;
+                let moved = effects.input(sample.command, &sample.at) - sample.command;
                 *driven = sample.gain * moved / unit;
             }
         }
@@ -409,24 +435,30 @@ fn samples_along(spec: &MotorSpec, start: Start<'_>, motion: &MeasuredMotion<'_>
     let drive = running.machine.drive;
     let mut before = (running.actual(motion.positions[0]), running.run.friction.re());
     let mut samples = Vec::with_capacity(motion.samples());
-    running.follow(motion.positions, motion.inputs, motion.load, motion.dt, |k, efforts| {
-        let Efforts { friction, at, input, .. } = efforts;
+    running.follow(motion.positions, motion.inputs, motion.around, motion.dt, |k, efforts| {
+        let Efforts { friction, at, command, .. } = efforts;
         let position = at.position.re();
         let (displacement, span) = (position - before.0, motion.dt.at(k));
         let passage = Passage { displacement, friction: before.1, span };
         before = (position, friction.re());
-        let input = input.re();
+        let command = command.re();
         samples.push(Sample {
             at: Situation {
                 position,
                 velocity: at.velocity.re(),
                 time: at.time.re(),
                 path: at.path.re(),
+                moved: at.moved.re(),
+                load: at.load.re(),
+                sliding: at.sliding.re(),
+                temperature: at.temperature,
+                wound: at.wound.re(),
+                enabled: at.enabled,
             },
             passage,
             by_levels: (friction.partial(0), friction.partial(1)),
-            input,
-            gain: if input.abs() <= drive.limit { drive.gain.re() } else { 0.0 },
+            command,
+            gain: if at.enabled { drive.slope(command, at.velocity.re()) } else { 0.0 },
         });
     });
     samples

@@ -50,7 +50,7 @@ impl<S: Scalar> Running<S> {
         added: impl Fn(usize) -> S,
         mut land: impl FnMut(usize, S),
     ) -> Result<()> {
-        let MeasuredMotion { positions, inputs, load, dt } = *motion;
+        let MeasuredMotion { positions, inputs, around, dt } = *motion;
         let held: Vec<f64>;
         let each = match inputs {
             PerSample::Each(values) => values,
@@ -65,7 +65,7 @@ impl<S: Scalar> Running<S> {
         let mut reached = 0;
         for window in 0..windows.number(motion.samples()) {
             let start = window * windows.stride.max(1);
-            self.follow_on(positions, reached..start, inputs, load, dt, |_, _| ());
+            self.follow_on(positions, reached..start, inputs, around, dt, |_, _| ());
             reached = start;
             let end = start + length;
             let track = Track::new(positions, &actual, start);
@@ -76,11 +76,10 @@ impl<S: Scalar> Running<S> {
             shot.run.second_position = shot.run.position;
             shot.run.second_velocity = shot.run.velocity;
             shot.machine.refresh(&mut shot.run);
-            let (load, dt) = (load.between(start, end), dt.between(start, end));
+            let (around, dt) = (around.between(start, end), dt.between(start, end));
             let read = positions[start];
             let mut sum = S::constant(0.0);
-            let load = |k: usize| added(k) + load.at(k);
-            shot.simulate_under(&each[start..end], load, dt, |k, run, machine, _| {
+            shot.simulate_under(&each[start..end], around, &added, dt, |k, run, machine, _| {
                 sum += (machine.effects.sensor(run.position) - read) * windows.weights[k];
             })?;
             land(window, sum);
@@ -108,7 +107,7 @@ impl Running<f64> {
         pull: Pull,
         mut row: impl FnMut(usize, f64, f64),
     ) -> Result<()> {
-        let MeasuredMotion { positions, inputs, load, dt } = *motion;
+        let MeasuredMotion { positions, inputs, around, dt } = *motion;
         let sensor = self.machine.effects.clone();
         let actual = |reading: f64| sensor.behind(reading);
         for k in 0..motion.samples() {
@@ -116,7 +115,9 @@ impl Running<f64> {
             let behind = track.position() - self.run.position;
             let slower = track.velocity(&dt) - self.run.velocity;
             let effort = pull.stiffness * behind + pull.damping * slower;
-            self.step(inputs.at(k), load.at(k) + effort, dt.at(k))?;
+            self.run.temperature = around.temperature_at(k);
+            self.run.enabled = around.enabled_at(k);
+            self.step(inputs.at(k), around.load.at(k) + effort, dt.at(k))?;
             row(k, self.machine.effects.sensor(self.run.position), effort);
         }
         Ok(())

@@ -7,7 +7,7 @@ mod workload;
 
 use stiction_core::friction::{Channels, LAWS};
 use stiction_core::integrate::Integrator;
-use stiction_core::motor::PerSample;
+use stiction_core::motor::{PerSample, Surroundings};
 use workload::{DT, SAMPLES, efforts, model, motor, velocities};
 
 #[test]
@@ -22,7 +22,7 @@ fn the_timed_paths_break_away_and_stick_again() {
         assert!(events > 1, "{}: {counted:?}", record.name);
         let mut motor = motor(record, Integrator::Fast);
         let same = PerSample::Same;
-        motor.simulate(&efforts(), same(0.0), same(DT), &mut []).unwrap();
+        motor.simulate(&efforts(), Surroundings::NONE, same(DT), &mut []).unwrap();
         let counted = motor.statistics();
         let events = if hooked { counted.breakaways.min(counted.sticks) } else { counted.closings };
         assert!(events > 1, "{}: {counted:?}", record.name);

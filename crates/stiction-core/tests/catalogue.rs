@@ -6,13 +6,16 @@ mod common;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use common::{Stream, column, drawn, motor, positions, run};
+use common::{AROUND, Stream, column_amid, drawn, motor, positions, run};
 use stiction_core::effects::{EFFECTS, Scale, neutral_values};
 use stiction_core::friction::{Channels, LAWS, Statistics};
 use stiction_core::model::{FrictionModel, LawSpec};
 use stiction_core::motor::{Column, EffectSpec, Motor, MotorSpec, PerSample, Running};
 use stiction_core::scalar::{Dual, Scalar};
 use stiction_core::sensitivity::sensitivity;
+
+/// Parameters of the body that an effect may be part of.
+const BODY: [&str; 1] = ["body.gravity_amplitude"];
 
 fn files(folder: &str) -> BTreeSet<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(folder);
@@ -76,8 +79,8 @@ fn parameters_are_documented_and_their_defaults_are_allowed() {
             assert_eq!(shape.grid.is_empty(), shape.scale == Scale::Order, "{}", effect.name);
         }
         for term in effect.facts.law_terms {
-            let known = LAWS.iter().any(|law| law.parameters.iter().any(|p| p.name == *term));
-            assert!(known, "{}: no law has {term}", effect.name);
+            let law = LAWS.iter().any(|law| law.parameters.iter().any(|p| p.name == *term));
+            assert!(law || BODY.contains(term), "{}: nothing has {term}", effect.name);
         }
         assert!(!effect.facts.means.is_empty() && !effect.facts.remedy.is_empty());
     }
@@ -196,7 +199,8 @@ fn active_effects_change_the_motion() {
         let spec = LawSpec::new(law.name, &[("breakaway".to_owned(), 0.5)], &[])
             .or_else(|_| LawSpec::new(law.name, &[], &[]))
             .unwrap();
-        let plain = positions(&mut motor(0.0076, spec.clone()), &inputs, 1e-3);
+        let read = Column::Measured;
+        let plain = column_amid(AROUND, &mut motor(0.0076, spec.clone()), read, &inputs, 1e-3);
         for effect in EFFECTS {
             let values = effect.parameters.iter().map(|p| p.typical).collect();
             let with = MotorSpec {
@@ -204,8 +208,7 @@ fn active_effects_change_the_motion() {
                 ..MotorSpec::new(0.0076, 1.0, spec.clone())
             };
             // A sensor that errs shows in its readings alone.
-            let read = Column::Measured;
-            let with = column(&mut Motor::new(with).unwrap(), read, &inputs, 1e-3);
+            let with = column_amid(AROUND, &mut Motor::new(with).unwrap(), read, &inputs, 1e-3);
             assert!(plain != with, "{} on {}", effect.name, law.name);
             assert!(with.iter().all(|x| x.is_finite()), "{} on {}", effect.name, law.name);
         }
@@ -216,11 +219,12 @@ fn active_effects_change_the_motion() {
 /// the neighbouring step leaves the final counts as they were.
 fn end_state(spec: &MotorSpec, inputs: &[f64], dt: f64) -> (f64, Vec<Statistics>) {
     let mut motor = Motor::new(spec.clone()).unwrap();
+    motor.set_temperature(Some(40.0));
     let mut position = 0.0;
     let branches = inputs
         .iter()
         .map(|input| {
-            position = motor.step(*input, 0.0, dt).unwrap().0;
+            position = motor.step(*input, 0.05, dt).unwrap().0;
             motor.statistics()
         })
         .collect();
@@ -254,15 +258,9 @@ fn gradients_equal_central_differences_on_the_same_branches() {
             let parameters = spec.parameters();
             let paths: Vec<String> = parameters.iter().map(|(path, _)| path.clone()).collect();
             let fresh = Motor::new(spec.clone()).unwrap();
-            let exact = sensitivity(
-                &spec,
-                fresh.running(),
-                &inputs,
-                PerSample::Same(0.0),
-                PerSample::Same(dt),
-                &paths,
-            )
-            .unwrap();
+            let exact =
+                sensitivity(&spec, fresh.running(), &inputs, AROUND, PerSample::Same(dt), &paths)
+                    .unwrap();
             for (index, (path, value)) in parameters.iter().enumerate() {
                 let perturbed = |factor: f64| {
                     let mut values: Vec<f64> = parameters.iter().map(|(_, v)| *v).collect();
@@ -310,8 +308,7 @@ fn amplifies_round_off(spec: &MotorSpec, inputs: &[f64], dt: f64) -> bool {
     fn end<S: Scalar>(spec: &MotorSpec, inputs: &[f64], dt: f64) -> f64 {
         let values: Vec<S> = spec.parameters().iter().map(|p| S::constant(p.1)).collect();
         let mut running = Running::<S>::new(spec, &values);
-        let (load, dt) = (PerSample::Same(0.0), PerSample::Same(dt));
-        running.simulate(inputs, load, dt, |_, _, _, _| {}).unwrap();
+        running.simulate(inputs, AROUND, PerSample::Same(dt), |_, _, _, _| {}).unwrap();
         running.run.position.re()
     }
     (end::<f64>(spec, inputs, dt) - end::<Dual>(spec, inputs, dt)).abs() > 1e-12

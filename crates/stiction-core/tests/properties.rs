@@ -7,7 +7,7 @@ use common::{Stream, all_laws, drawn, law, model, motor, positions, run};
 use proptest::prelude::*;
 use stiction_core::friction::{AnyState, Channels, Entry};
 use stiction_core::model::FrictionModel;
-use stiction_core::motor::{Column, Motor, MotorSpec, PerSample, Running};
+use stiction_core::motor::{Column, Motor, MotorSpec, PerSample, Running, Surroundings};
 use stiction_core::scalar::{Dual, Scalar};
 
 /// Equal loops must come back to this share of the range of the force.
@@ -214,7 +214,7 @@ fn across_breakaway(dt: f64) -> (f64, f64) {
                 &spec,
                 fresh.running(),
                 &inputs,
-                PerSample::Same(0.0),
+                Surroundings::NONE,
                 PerSample::Same(dt),
                 &path,
             )
@@ -307,13 +307,13 @@ proptest! {
             let inputs: Vec<f64> = (0..400).map(|k| stream.between(0.6, 1.0) * (f64::from(k) * 0.03).sin()).collect();
             let mut plain = Motor::new(spec.clone()).unwrap();
             let mut x = vec![0.0; inputs.len()];
-            plain.simulate(&inputs, PerSample::Same(0.0), PerSample::Same(5e-4), &mut [(Column::Position, &mut x)]).unwrap();
+            plain.simulate(&inputs, Surroundings::NONE, PerSample::Same(5e-4), &mut [(Column::Position, &mut x)]).unwrap();
             let values: Vec<Dual> = spec.parameters().iter().enumerate()
                 .map(|(k, (_, v))| if k < 8 && v.is_finite() { Dual::variable(*v, k) } else { Dual::constant(*v) })
                 .collect();
             let mut dual = Running::new(&spec, &values);
             let mut y = vec![0.0; inputs.len()];
-            dual.simulate(&inputs, PerSample::Same(0.0), PerSample::Same(5e-4), |k, run, _, _| y[k] = run.position.re()).unwrap();
+            dual.simulate(&inputs, Surroundings::NONE, PerSample::Same(5e-4), |k, run, _, _| y[k] = run.position.re()).unwrap();
             let range = x.iter().fold(1e-12_f64, |r, x| r.max(x.abs()));
             for (x, y) in x.iter().zip(&y) {
                 prop_assert!((x - y).abs() <= 1e-9 * range, "{} {x} {y}", record.name);

@@ -6,7 +6,7 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
-use stiction_core::motor::PerSample;
+use stiction_core::motor::{PerSample, Surroundings};
 use stiction_core::sensitivity::MeasuredMotion;
 
 use crate::error::{duration, input_error};
@@ -130,21 +130,53 @@ impl<'py> Each<'py> {
     }
 }
 
+/// What acts beside the input: external effort, temperature, whether the drive is on.
+pub struct Around<'py> {
+    load: Each<'py>,
+    temperature: Option<Each<'py>>,
+    enabled: Option<Each<'py>>,
+}
+
+impl<'py> Around<'py> {
+    /// Reads load, temperature and whether the drive is on; without a load there is none, without a
+    /// temperature nobody knows it, and a drive is on unless it is said to be off.
+    pub fn read(given: [Option<&Bound<'py, PyAny>>; 3], shape: &[usize]) -> PyResult<Self> {
+        let [load, temperature, enabled] = given;
+        let read = |name: &str, given: Option<&Bound<'py, PyAny>>| {
+            given.map(|given| Each::read(name, Some(given), 0.0, shape)).transpose()
+        };
+        Ok(Self {
+            load: Each::read("load", load, 0.0, shape)?,
+            temperature: read("temperature", temperature)?,
+            enabled: read("enabled", enabled)?,
+        })
+    }
+
+    /// The form that the core takes, usable without the interpreter.
+    pub fn surroundings(&self) -> PyResult<Surroundings<'_>> {
+        Ok(Surroundings {
+            load: self.load.per_sample()?,
+            temperature: self.temperature.as_ref().map(Each::per_sample).transpose()?,
+            enabled: self.enabled.as_ref().map(Each::per_sample).transpose()?,
+        })
+    }
+}
+
 /// A motion that is followed: positions, and what acted in each sample between them.
 pub struct Measured<'py> {
     position: PyReadonlyArrayDyn<'py, f64>,
     current: Each<'py>,
-    load: Each<'py>,
+    around: Around<'py>,
     dt: Each<'py>,
 }
 
 impl<'py> Measured<'py> {
-    /// Reads positions and, for the samples between them, inputs, steps and load.
+    /// Reads positions and, for the samples between them, inputs, steps and what acted beside.
     pub fn read(
         position: &Bound<'py, PyAny>,
         current: &Bound<'py, PyAny>,
         dt: &Bound<'py, PyAny>,
-        load: Option<&Bound<'py, PyAny>>,
+        around: [Option<&Bound<'py, PyAny>>; 3],
     ) -> PyResult<Self> {
         let py = position.py();
         let position = one_row("position", position)?;
@@ -154,8 +186,8 @@ impl<'py> Measured<'py> {
         }
         let current = Each::read("current", Some(current), 0.0, &[n])?;
         let dt = Each::steps("dt", dt, &[n])?;
-        let load = Each::read("load", load, 0.0, &[n])?;
-        Ok(Self { position, current, load, dt })
+        let around = Around::read(around, &[n])?;
+        Ok(Self { position, current, around, dt })
     }
 
     /// Samples between the positions.
@@ -168,7 +200,7 @@ impl<'py> Measured<'py> {
         Ok(MeasuredMotion {
             positions: self.position.as_slice()?,
             inputs: self.current.per_sample()?,
-            load: self.load.per_sample()?,
+            around: self.around.surroundings()?,
             dt: self.dt.per_sample()?,
         })
     }

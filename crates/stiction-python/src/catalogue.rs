@@ -80,6 +80,7 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         dict.set_item("gains", effect.facts.gains.to_vec())?;
         dict.set_item("second", effect.facts.second.to_vec())?;
         dict.set_item("law_terms", effect.facts.law_terms.to_vec())?;
+        dict.set_item("rotary_only", effect.facts.rotary_only)?;
         let shapes = PyList::empty(py);
         for shape in effect.facts.shapes {
             let entry = PyDict::new(py);

@@ -1,5 +1,6 @@
 //! Python binding of stiction-core: module `stiction._native`.
 
+mod arguments;
 mod arrays;
 mod catalogue;
 mod error;

@@ -2,25 +2,26 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use numpy::{
-    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
-    PyUntypedArrayMethods,
-};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stiction_core::integrate::Integrator;
-use stiction_core::motor::{Column, EffectSpec, Motor as Core, MotorSpec};
+use stiction_core::motor::{Column, Motor as Core, MotorSpec};
 use stiction_core::sensitivity::{
     EffortSensitivity, MeasuredMotion, Start, follow_columns, follow_sensitivity, sensitivity,
     signature_columns, signatures,
 };
-use stiction_core::shoot::{Pull, Windows, check, shoot_response, shoot_sensitivity};
+use stiction_core::servo::Servo;
+use stiction_core::shoot::{Pull, shoot_response, shoot_sensitivity};
 
-use crate::arrays::{Each, Measured, one_row, target};
+use crate::arguments::{
+    Shots, candidates_of, effects_of, gains_of, integrator_of, numbers_of, servo_of, threads_of,
+};
+use crate::arrays::{Around, Each, Measured, one_row, target};
 use crate::error::{IntoPython, duration, finite, input_error, velocity};
 use crate::friction_model::FrictionModel;
 use crate::kernel::RowKernel;
-use crate::state::{from_dict, keywords, to_dict};
+use crate::state::{from_dict, to_dict};
 
 /// Base of ``stiction.Motor``: everything that needs no Python.
 #[pyclass(frozen, subclass, module = "stiction._native")]
@@ -46,77 +47,12 @@ impl Motor {
     }
 }
 
-/// Passes are few: more threads than this have nothing to do.
-const MOST_THREADS: i64 = 256;
-
-/// The numbers given for an effect or for a start.
-fn numbers_of(owner: &str, values: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f64)>> {
-    let py = values.py();
-    let values = values
-        .cast::<PyDict>()
-        .map_err(|_| input_error(py, format!("parameters of {owner} are not a dict")))?;
-    let (numbers, words) = keywords(owner, Some(values))?;
-    match words.first() {
-        None => Ok(numbers),
-        Some((option, _)) => {
-            Err(input_error(py, format!("{option} of {owner} is a word; allowed is a number")))
-        }
+fn servo_settings<'py>(py: Python<'py>, servo: &Servo) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (spec, value) in Servo::SPECS.iter().zip(servo.values()) {
+        dict.set_item(spec.name, value)?;
     }
-}
-
-/// Effects that may be missing, from pairs of a name and a dict of shape parameters.
-fn candidates_of(candidates: &Bound<'_, PyAny>) -> PyResult<Vec<EffectSpec>> {
-    let py = candidates.py();
-    let wanted = "give pairs of an effect's name and a dict of its shape, for instance \
-                  [('cogging', {'order': 12.0})]";
-    let each = candidates
-        .try_iter()
-        .map_err(|_| input_error(py, format!("candidates is {candidates}; {wanted}")))?;
-    let mut list = Vec::new();
-    for (k, candidate) in each.enumerate() {
-        let candidate = candidate?;
-        let pair: (String, Bound<'_, PyAny>) = candidate
-            .extract()
-            .map_err(|_| input_error(py, format!("candidates[{k}] is {candidate}; {wanted}")))?;
-        let numbers = numbers_of(&format!("effect {}", pair.0), &pair.1)?;
-        list.push(EffectSpec::candidate(&pair.0, &numbers).or_input_error(py)?);
-    }
-    Ok(list)
-}
-
-/// Gains of all candidates.
-fn gains_of(candidates: &[EffectSpec]) -> usize {
-    candidates.iter().map(|effect| effect.record.facts.gains.len()).sum()
-}
-
-fn threads_of(py: Python<'_>, threads: i64) -> PyResult<usize> {
-    if (1..=MOST_THREADS).contains(&threads) {
-        return Ok(threads as usize);
-    }
-    Err(input_error(
-        py,
-        format!("threads = {threads} is out of bounds: allowed is 1 to {MOST_THREADS}"),
-    ))
-}
-
-/// Weights of the samples of a window, and from how many samples to how many the windows start.
-struct Shots<'py> {
-    weights: PyReadonlyArrayDyn<'py, f64>,
-    stride: usize,
-}
-
-impl<'py> Shots<'py> {
-    fn read(weights: &Bound<'py, PyAny>, stride: i64) -> PyResult<Self> {
-        let py = weights.py();
-        let weights = one_row("weights", weights)?;
-        let shots = Self { weights, stride: usize::try_from(stride).unwrap_or(0) };
-        check(&shots.windows()?).or_input_error(py)?;
-        Ok(shots)
-    }
-
-    fn windows(&self) -> PyResult<Windows<'_>> {
-        Ok(Windows { stride: self.stride, weights: self.weights.as_slice()? })
-    }
+    Ok(dict)
 }
 
 /// Three arrays: needed, driven, ahead.
@@ -144,7 +80,8 @@ impl Motor {
     #[new]
     #[pyo3(signature = (
         inertia, torque_constant=1.0, friction=None, *, effects=None, gravity_amplitude=0.0,
-        gravity_zero=0.0, weight=0.0, input_limit=f64::INFINITY, count=0.0, integrator="fast",
+        gravity_zero=0.0, weight=0.0, input_limit=f64::INFINITY, servo=None, count=0.0,
+        integrator="fast",
     ))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn new(
@@ -157,6 +94,7 @@ impl Motor {
         gravity_zero: f64,
         weight: f64,
         input_limit: f64,
+        servo: Option<&Bound<'_, PyAny>>,
         count: f64,
         integrator: &str,
     ) -> PyResult<Self> {
@@ -171,32 +109,15 @@ impl Motor {
             let core = friction.get().lock();
             (core.spec().clone(), core.state().clone())
         };
-        let integrator = match integrator {
-            "fast" => Integrator::Fast,
-            "reference" => Integrator::Reference,
-            other => {
-                return Err(input_error(
-                    py,
-                    format!("integrator '{other}' is unknown; known: fast, reference"),
-                ));
-            }
-        };
-        let mut list = Vec::new();
-        for (name, values) in effects.into_iter().flatten() {
-            let name: String = name
-                .extract()
-                .map_err(|_| input_error(py, format!("effect name {name} is not a word")))?;
-            let numbers = numbers_of(&format!("effect {name}"), &values)?;
-            list.push(EffectSpec::new(&name, &numbers).or_input_error(py)?);
-        }
         let spec = MotorSpec {
             input_limit,
             gravity_amplitude,
             gravity_zero,
             weight,
             count,
-            effects: list,
-            integrator,
+            servo: servo.map(servo_of).transpose()?,
+            effects: effects_of(effects)?,
+            integrator: integrator_of(py, integrator)?,
             ..MotorSpec::new(inertia, torque_constant, law)
         };
         let mut core = Core::new(spec).or_input_error(py)?;
@@ -205,22 +126,37 @@ impl Motor {
     }
 
     /// One sample with held current; position and velocity at its end.
-    #[pyo3(signature = (current, dt, *, load=0.0))]
-    fn step(&self, py: Python<'_>, current: f64, dt: f64, load: f64) -> PyResult<(f64, f64)> {
+    #[pyo3(signature = (current, dt, *, load=0.0, temperature=None, enabled=true))]
+    fn step(
+        &self,
+        py: Python<'_>,
+        current: f64,
+        dt: f64,
+        load: f64,
+        temperature: Option<f64>,
+        enabled: bool,
+    ) -> PyResult<(f64, f64)> {
         let current = finite(py, "current", current)?;
         let dt = duration(py, "dt", dt)?;
         let load = finite(py, "load", load)?;
-        self.lock().step(current, load, dt).or_input_error(py)
+        let temperature = temperature.map(|t| finite(py, "temperature", t)).transpose()?;
+        let mut core = self.lock();
+        core.set_temperature(temperature);
+        core.set_enabled(enabled);
+        core.step(current, load, dt).or_input_error(py)
     }
 
     /// Samples with held inputs; the arrays asked for, by name.
-    #[pyo3(signature = (current, dt, *, load=None, outputs=None, out=None))]
+    #[pyo3(signature = (current, dt, *, load=None, temperature=None, enabled=None, outputs=None, out=None))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn run<'py>(
         &self,
         py: Python<'py>,
         current: &Bound<'py, PyAny>,
         dt: &Bound<'py, PyAny>,
         load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
         outputs: Option<Vec<String>>,
         out: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyDict>> {
@@ -228,7 +164,7 @@ impl Motor {
         let shape = current.shape().to_vec();
         let n = shape[0];
         let dt = Each::steps("dt", dt, &shape)?;
-        let load = Each::read("load", load, 0.0, &shape)?;
+        let around = Around::read([load, temperature, enabled], &shape)?;
         let law = self.lock().spec().friction.clone();
         let names: Vec<String> = match (outputs, out) {
             (Some(names), _) => names,
@@ -265,12 +201,12 @@ impl Motor {
             arrays.push((column, target(name, &array, n)?));
         }
         let current = current.as_slice()?;
-        let (dt, load) = (dt.per_sample()?, load.per_sample()?);
+        let (dt, around) = (dt.per_sample()?, around.surroundings()?);
         let mut columns = Vec::with_capacity(arrays.len());
         for (column, array) in &mut arrays {
             columns.push((*column, array.as_slice_mut()?));
         }
-        py.detach(|| self.lock().simulate(current, load, dt, &mut columns)).or_input_error(py)?;
+        py.detach(|| self.lock().simulate(current, around, dt, &mut columns)).or_input_error(py)?;
         Ok(result)
     }
 
@@ -278,7 +214,8 @@ impl Motor {
     /// gravity and added efforts, friction, and how far the centre of mass is ahead of the reading
     /// (a second mass, a sensor that errs); each of shape (n,), at the end of each sample.
     /// With start values of the law (`laws()`) the contact begins with these, not as it is.
-    #[pyo3(signature = (position, current, dt, *, load=None, start=None))]
+    #[pyo3(signature = (position, current, dt, *, load=None, temperature=None, enabled=None, start=None))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn follow<'py>(
         &self,
         py: Python<'py>,
@@ -286,21 +223,23 @@ impl Motor {
         current: &Bound<'py, PyAny>,
         dt: &Bound<'py, PyAny>,
         load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Followed<'py>> {
-        let measured = Measured::read(position, current, dt, load)?;
+        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
         let start = self.start(py, start)?;
         let n = measured.samples();
         let mut efforts = [vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0.0; n]];
         {
-            let MeasuredMotion { positions, inputs, load, dt } = measured.motion()?;
+            let MeasuredMotion { positions, inputs, around, dt } = measured.motion()?;
             let arrays = efforts.each_mut().map(Vec::as_mut_slice);
             py.detach(|| {
                 let mut core = self.lock();
                 if let Some(start) = &start {
                     core.prime(start);
                 }
-                core.follow(positions, inputs, load, dt, arrays)
+                core.follow(positions, inputs, around, dt, arrays)
             })
             .or_input_error(py)?;
         }
@@ -314,7 +253,7 @@ impl Motor {
     /// ahead of the reading; each of shape (parameters, n).
     /// Where a start is given its values are parameters too: `start.force` and so on. The motor is
     /// left as it was.
-    #[pyo3(signature = (position, current, dt, parameters, *, load=None, start=None))]
+    #[pyo3(signature = (position, current, dt, parameters, *, load=None, temperature=None, enabled=None, start=None))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn follow_sensitivity<'py>(
         &self,
@@ -324,9 +263,11 @@ impl Motor {
         dt: &Bound<'py, PyAny>,
         parameters: Vec<String>,
         load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Derivatives<'py>> {
-        let measured = Measured::read(position, current, dt, load)?;
+        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
         let motion = measured.motion()?;
         let primed = self.start(py, start)?;
         let rows = py.detach(|| {
@@ -340,7 +281,7 @@ impl Motor {
     /// Exact derivatives, by the parameters at these paths, of measured minus needed effort along
     /// given positions (shape (n + 1,)), seen through a kernel; shape (parameters, rows). Starts as
     /// in ``follow_sensitivity``. The motor is left as it was.
-    #[pyo3(signature = (position, current, dt, parameters, kernel, *, load=None, start=None))]
+    #[pyo3(signature = (position, current, dt, parameters, kernel, *, load=None, temperature=None, enabled=None, start=None))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn follow_columns<'py>(
         &self,
@@ -351,9 +292,11 @@ impl Motor {
         parameters: Vec<String>,
         kernel: &Bound<'py, RowKernel>,
         load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let measured = Measured::read(position, current, dt, load)?;
+        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
         let motion = measured.motion()?;
         let primed = self.start(py, start)?;
         let kernel = kernel.get().core();
@@ -371,7 +314,7 @@ impl Motor {
     /// less gravity and added efforts, of the effort of the drive, and of how far the centre of mass
     /// is ahead of the reading; each of shape (gains, n), in the order of the candidates and of their
     /// gains. The motor is left as it was.
-    #[pyo3(signature = (position, current, dt, candidates, *, load=None, start=None, threads=1))]
+    #[pyo3(signature = (position, current, dt, candidates, *, load=None, temperature=None, enabled=None, start=None, threads=1))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn signatures<'py>(
         &self,
@@ -381,10 +324,12 @@ impl Motor {
         dt: &Bound<'py, PyAny>,
         candidates: &Bound<'py, PyAny>,
         load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
         threads: i64,
     ) -> PyResult<Derivatives<'py>> {
-        let measured = Measured::read(position, current, dt, load)?;
+        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
         let motion = measured.motion()?;
         let primed = self.start(py, start)?;
         let threads = threads_of(py, threads)?;
@@ -399,7 +344,7 @@ impl Motor {
 
     /// The same of measured minus needed effort, seen through a kernel; shape (gains, rows).
     #[pyo3(signature = (
-        position, current, dt, candidates, kernel, *, load=None, start=None, threads=1,
+        position, current, dt, candidates, kernel, *, load=None, temperature=None, enabled=None, start=None, threads=1,
     ))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn signature_columns<'py>(
@@ -411,10 +356,12 @@ impl Motor {
         candidates: &Bound<'py, PyAny>,
         kernel: &Bound<'py, RowKernel>,
         load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
         threads: i64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let measured = Measured::read(position, current, dt, load)?;
+        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
         let motion = measured.motion()?;
         let primed = self.start(py, start)?;
         let threads = threads_of(py, threads)?;
@@ -432,7 +379,7 @@ impl Motor {
     /// by `weights` (shape (samples of a window,)), of what the sensor would read after each sample
     /// less what it read at the start; shape (windows,). Windows start every `stride` samples at the
     /// measured position and velocity, with friction as `follow` leaves it there.
-    #[pyo3(signature = (position, current, dt, weights, stride, *, load=None, start=None))]
+    #[pyo3(signature = (position, current, dt, weights, stride, *, load=None, temperature=None, enabled=None, start=None))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn shoot<'py>(
         &self,
@@ -443,9 +390,11 @@ impl Motor {
         weights: &Bound<'py, PyAny>,
         stride: i64,
         load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let measured = Measured::read(position, current, dt, load)?;
+        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
         let motion = measured.motion()?;
         let shots = Shots::read(weights, stride)?;
         let windows = shots.windows()?;
@@ -463,7 +412,7 @@ impl Motor {
     /// One simulation drawn to given positions (shape (n + 1,)) by a spring and a damper: what the
     /// sensor reads after each sample, and the effort of the pull during it; shape (n,) each. The
     /// motor is left as it was.
-    #[pyo3(signature = (position, current, dt, stiffness, damping, *, load=None, start=None))]
+    #[pyo3(signature = (position, current, dt, stiffness, damping, *, load=None, temperature=None, enabled=None, start=None))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn accompany<'py>(
         &self,
@@ -474,9 +423,11 @@ impl Motor {
         stiffness: f64,
         damping: f64,
         load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Accompanied<'py>> {
-        let measured = Measured::read(position, current, dt, load)?;
+        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
         let motion = measured.motion()?;
         let stiffness = finite(py, "stiffness", stiffness)?;
         let pull = Pull { stiffness, damping: finite(py, "damping", damping)? };
@@ -495,7 +446,7 @@ impl Motor {
     /// Exact derivatives of what `shoot` returns by parameters and start values; shape
     /// (parameters, windows). The motor is left as it was.
     #[pyo3(signature = (
-        position, current, dt, weights, stride, parameters, *, load=None, start=None
+        position, current, dt, weights, stride, parameters, *, load=None, temperature=None, enabled=None, start=None
     ))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn shoot_sensitivity<'py>(
@@ -508,9 +459,11 @@ impl Motor {
         stride: i64,
         parameters: Vec<String>,
         load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let measured = Measured::read(position, current, dt, load)?;
+        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
         let motion = measured.motion()?;
         let shots = Shots::read(weights, stride)?;
         let windows = shots.windows()?;
@@ -527,7 +480,7 @@ impl Motor {
     /// Exact derivatives of what `shoot` returns by an effort along +x that acts during one part of
     /// each window, for every of so many equal parts; shape (parts, windows). The motor is left as
     /// it was.
-    #[pyo3(signature = (position, current, dt, weights, stride, parts, *, load=None, start=None))]
+    #[pyo3(signature = (position, current, dt, weights, stride, parts, *, load=None, temperature=None, enabled=None, start=None))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn shoot_response<'py>(
         &self,
@@ -539,9 +492,11 @@ impl Motor {
         stride: i64,
         parts: i64,
         load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let measured = Measured::read(position, current, dt, load)?;
+        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
         let motion = measured.motion()?;
         let shots = Shots::read(weights, stride)?;
         let windows = shots.windows()?;
@@ -565,8 +520,9 @@ impl Motor {
     /// Exact derivatives of position and velocity by parameters, from the present state.
     ///
     /// Returns two arrays of shape (parameters, n); the motor is left as it was.
-    #[pyo3(signature = (current, dt, parameters, *, load=None))]
+    #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None))]
     #[allow(clippy::type_complexity)]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn sensitivity<'py>(
         &self,
         py: Python<'py>,
@@ -574,16 +530,18 @@ impl Motor {
         dt: &Bound<'py, PyAny>,
         parameters: Vec<String>,
         load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
         let current = one_row("current", current)?;
         let shape = current.shape().to_vec();
         let dt = Each::steps("dt", dt, &shape)?;
-        let load = Each::read("load", load, 0.0, &shape)?;
+        let around = Around::read([load, temperature, enabled], &shape)?;
         let current = current.as_slice()?;
-        let (dt, load) = (dt.per_sample()?, load.per_sample()?);
+        let (dt, around) = (dt.per_sample()?, around.surroundings()?);
         let result = py.detach(|| {
             let core = self.lock().clone();
-            sensitivity(core.spec(), core.running(), current, load, dt, &parameters)
+            sensitivity(core.spec(), core.running(), current, around, dt, &parameters)
         });
         let result = result.or_input_error(py)?;
         Ok((PyArray2::from_vec2(py, &result.position)?, PyArray2::from_vec2(py, &result.velocity)?))
@@ -618,6 +576,7 @@ impl Motor {
         dict.set_item("gravity_zero", spec.gravity_zero)?;
         dict.set_item("weight", spec.weight)?;
         dict.set_item("input_limit", spec.input_limit)?;
+        dict.set_item("servo", spec.servo.map(|servo| servo_settings(py, &servo)).transpose()?)?;
         dict.set_item("count", spec.count)?;
         let integrator = match spec.integrator {
             Integrator::Fast => "fast",

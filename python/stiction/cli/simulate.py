@@ -133,7 +133,7 @@ def _one(plant: Plant, recording: Recording, where: Path, support: float | None)
             files += _figures(run.plot(), where / f"{stem}-free-run")
             lines.append(
                 f"free run: position error {run.rms:.4g} {run.unit} rms, "
-                f"greatest {run.greatest:.4g} {run.unit}"
+                f"{run.mean_absolute:.4g} {run.unit} mean, greatest {run.greatest:.4g} {run.unit}"
             )
             result["free_run"] = run.to_dict()
         if plant.controller and "reference" in recording.channels:

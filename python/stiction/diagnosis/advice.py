@@ -63,6 +63,14 @@ BY_COORDINATE: Final = {
     "rate of the effort": _CHIRP,
     "distance since the reversal": ("loops", "small loops below break-away, nested, with holds"),
     "time since the reversal": _DWELLS,
+    "load along the motion": (
+        "ramps",
+        "steps of a known load at constant speed, both ways",
+    ),
+    "temperature along the motion": (
+        "cycle",
+        "one short cycle repeated at several temperatures, heated by other means than by running",
+    ),
     "session time": _CYCLE,
     "session time along the motion": _CYCLE,
 }

@@ -14,6 +14,7 @@ from ..catalogue import EffectRecord, effects
 from ..errors import InputError
 from ..plant import Plant
 from ..presliding import presliding
+from ..weak_form import WeakForm
 from ..wording import did_you_mean, listed
 from .evidence import Evidence
 
@@ -23,6 +24,8 @@ FEWEST_SPEEDS: Final = (0.02, 0.90)
 """Quantiles of the moving speeds that bound the grid of a speed."""
 STILL: Final = 1e-3
 """Share of the greatest speed below which a machine counts as still."""
+LARGEST: Final = 0.999
+"""Quantile of the input in a recording that counts as its greatest: single samples do not."""
 MOST_ORDERS: Final = 80
 """Orders tried at most."""
 WIDER: Final = 1.5
@@ -142,9 +145,18 @@ def _units(evidence: Evidence, plant: Plant, span: float) -> dict[str, float]:
     return {
         "presliding": max(length, FEWEST_COUNTS * count, 1e-12),
         "loading": max(sliding, 1e-300),
+        "input": max(1e-300, *(_largest(form, plant) for form in forms)),
         "session": max(1e-3, *ends),
         "path": max(1e-9, *paths),
     }
+
+
+def _largest(form: WeakForm, plant: Plant) -> float:
+    """Greatest command that the drive saw: input, or voltage of a servo."""
+    if plant.servo:
+        drive = form.own(plant).drive
+        return float(drive["supply_v"] * drive.get("duty_limit", 1.0))
+    return float(np.quantile(np.abs(form.input), LARGEST))
 
 
 def left_out(without: Sequence[str]) -> tuple[str, ...]:
@@ -174,7 +186,8 @@ def present(plant: Plant, record: EffectRecord) -> bool:
     """Whether the plant holds the effect already, as an effect or as a part of its law."""
     if any(effect.name == record.name for effect in plant.effects):
         return True
-    return any(term in plant.friction.parameters for term in record.law_terms)
+    stated = {*plant.friction.parameters, *(f"body.{name}" for name in plant.body)}
+    return not stated.isdisjoint(record.law_terms)
 
 
 def _grid(record: EffectRecord, scales: Scales) -> Iterator[Candidate]:

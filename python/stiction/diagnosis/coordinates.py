@@ -11,10 +11,17 @@ import numpy as np
 from ..fitting.rows import Rows
 from ..plant import Plant
 from ..trajectory import FloatArray
+from ..weak_form import WeakForm
 from .contact import Slides, slides_of
 from .evidence import Evidence
 
-__all__ = ["BEND", "BRAKING", "COORDINATES", "Coordinate", "Look", "looks"]
+__all__ = [
+    "COORDINATES",
+    "UNJUDGED",
+    "Coordinate",
+    "Look",
+    "looks",
+]
 
 TURNING_SHARE: Final = 1e-3
 """Speeds below this share of the usual one have no direction of their own: the last one holds."""
@@ -38,6 +45,8 @@ class Look:
         Travelled since the session began.
     bend : numpy.ndarray, shape (n,)
         Fourth derivative of the position.
+    load, temperature : numpy.ndarray, shape (n,)
+        What hangs on the machine and pulls at it, and degC; NaN where nothing is known.
     slides : Slides
         Of the contact.
     """
@@ -54,6 +63,8 @@ class Look:
     elapsed: FloatArray
     path: FloatArray
     bend: FloatArray
+    load: FloatArray
+    temperature: FloatArray
     slides: Slides
 
 
@@ -158,6 +169,10 @@ COORDINATES: Final = (
         refines="session time along the motion",
         slow=True,
     ),
+    Coordinate("load along the motion", "load, {f}", True, lambda look: look.load),
+    Coordinate(
+        "temperature along the motion", "temperature, degC", True, lambda look: look.temperature
+    ),
 )
 """Coordinates in which the rest is looked at."""
 BRAKING: Final = Coordinate(
@@ -174,6 +189,33 @@ BEND: Final = Coordinate(
 )
 """What a shaft that gives shows in. What is left is not judged by it: it is largest where a contact
 breaks away, and there the curve of any law misses; the response to the effort tells of a shaft."""
+
+
+LOOP: Final = Coordinate(
+    "speed, speeding up or slowing down",
+    "speed, slowing down below 0, {x}/s",
+    True,
+    lambda look: np.copysign(look.velocity, look.acceleration * look.direction),
+)
+"""Where speeding up and slowing down differ at one speed."""
+CAUGHT: Final = Coordinate(
+    "time since the acceleration turned round",
+    "time since the acceleration turned round, s",
+    False,
+    lambda look: _since(np.sign(look.acceleration), look.time) * np.sign(look.acceleration),
+)
+"""Where a part that flew through a gap is caught. What is left is not judged by it."""
+GIVEN: Final = Coordinate(
+    "velocity, by what the effort gives",
+    "velocity, {x}/s",
+    False,
+    lambda look: look.velocity,
+    factor=lambda look: np.abs(look.effort),
+    upright="residual over the size of the effort, %",
+)
+"""Where a drive gives less of what is asked the faster it runs."""
+UNJUDGED: Final = (BEND, BRAKING, CAUGHT, GIVEN, LOOP)
+"""Coordinates that single effects are drawn over; what is left is not judged by them."""
 
 
 def looks(evidence: Evidence, plant: Plant, clocks: Sequence[float], window: float) -> list[Look]:
@@ -200,15 +242,12 @@ def _look(evidence: Evidence, plant: Plant, clock: float, window: float, rows: R
     usual = float(np.sqrt(np.mean(velocity**2)))
     direction = np.where(np.abs(velocity) > TURNING_SHARE * usual, np.sign(velocity), 0.0)
     direction = _carried(direction)
-    turned = np.flatnonzero(np.diff(direction)) + 1
-    last = np.zeros(len(direction), dtype=np.int64)
-    last[turned] = turned
-    last = np.maximum.accumulate(last)
+    last = _last_change(direction)
     position = form.mean(form.position[1:])
     effort = form.measured(plant)
     spacing = form.dt * form.stride
     since: FloatArray = np.arange(len(direction), dtype=np.float64) - last
-    pulled = effort - plant.inertia * form.acceleration
+    pulled = effort - form.own(plant).inertia * form.acceleration
     return Look(
         time=form.time - evidence.recordings[rows.index].time[0] + clock,
         position=position,
@@ -222,8 +261,37 @@ def _look(evidence: Evidence, plant: Plant, clock: float, window: float, rows: R
         elapsed=since * spacing,
         path=form.path + np.cumsum(np.abs(np.diff(position, prepend=position[:1]))),
         bend=np.gradient(np.gradient(form.acceleration, spacing), spacing),
+        load=_load(plant, form, position),
+        temperature=np.full(len(form), np.nan)
+        if form.temperature is None
+        else form.mean(form.temperature[1:]),
         slides=slides_of(position, pulled, spacing, window),
     )
+
+
+def _load(plant: Plant, form: WeakForm, position: FloatArray) -> FloatArray:
+    """External effort and gravity; NaN where there is neither."""
+    load = form.mean(form.load[1:])
+    plant = form.own(plant)
+    if plant.hangs:
+        body = {name: parameter.value for name, parameter in plant.body.items()}
+        angle = position - body.get("gravity_zero_rad", 0.0)
+        return load - plant.gravity * np.sin(angle) - body.get("weight_n", 0.0)
+    return load if np.any(load) else np.full(len(form), np.nan)
+
+
+def _last_change(values: FloatArray) -> np.ndarray:
+    """Index at which each entry took its value."""
+    turned = np.flatnonzero(np.diff(values)) + 1
+    last = np.zeros(len(values), dtype=np.int64)
+    last[turned] = turned
+    return np.maximum.accumulate(last)
+
+
+def _since(values: FloatArray, time: FloatArray) -> FloatArray:
+    """Time since each entry took its value."""
+    since: FloatArray = time - time[_last_change(values)]
+    return since
 
 
 def _carried(direction: FloatArray) -> FloatArray:

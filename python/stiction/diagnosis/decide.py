@@ -37,6 +37,10 @@ DECIDED_Z: Final = 2.0
 """Difference to the winner over its standard error that tells two candidates apart."""
 ALIKE: Final = 0.5
 """Cosine of two contributions above which they explain the same."""
+THE_SAME: Final = 1e-5
+"""Two fits and contributions that differ by less than this share are one: fits end that near."""
+MANY: Final = 99
+"""More shapes than any effect has."""
 LEAST_STRENGTH: Final = 3.5
 """Gains over their standard errors (the root of Wald's statistic), from residuals correlated within
 blocks: one number that no number of rows makes large by itself."""
@@ -265,7 +269,8 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
         and ((_alike(winner, other) and not _told(winner, other)) or _kin(winner, other))
     ]
     head = _head(winner, rivals)
-    return Choice(head, tuple(trial for trial in (winner, *rivals) if trial is not head))
+    others = (trial for trial in (winner, *rivals) if trial is not head)
+    return Choice(head, tuple(trial for trial in others if not _twins(head, trial)))
 
 
 def strangers(trials: Sequence[Trial], winner: Trial) -> list[Trial]:
@@ -294,7 +299,23 @@ def _head(winner: Trial, rivals: Sequence[Trial]) -> Trial:
     group = [winner, *(trial for trial in rivals if not trial.reason or trial.by_blocks)]
     best = max(trial.worth for trial in group)
     near = [trial for trial in group if trial.worth >= (1.0 - NEAR) * best]
-    return min(near, key=lambda trial: (trial.candidate.parameters, -trial.worth))
+
+    def simplicity(trial: Trial) -> tuple[int, int, float]:
+        shapes = len(trial.candidate.record.shapes) if _twins(trial, winner) else MANY
+        return trial.candidate.parameters, shapes, -trial.worth
+
+    return min(near, key=simplicity)
+
+
+def _twins(one: Trial, other: Trial) -> bool:
+    """Whether two members of a family are one thing: cogging once a turn is an unbalance.
+
+    The narrower of the two names says all that the other does.
+    """
+    if one.candidate.record.family != other.candidate.record.family:
+        return False
+    near = abs(one.worth - other.worth) <= THE_SAME * abs(one.worth)
+    return near and _cosine(one, other) >= 1.0 - THE_SAME
 
 
 def _kin(winner: Trial, other: Trial) -> bool:
@@ -305,9 +326,14 @@ def _kin(winner: Trial, other: Trial) -> bool:
 
 def _alike(one: Trial, other: Trial) -> bool:
     """Whether two candidates explain the same part of the residual."""
+    return _cosine(one, other) > ALIKE
+
+
+def _cosine(one: Trial, other: Trial) -> float:
+    """Magnitude of the cosine of two contributions; 0 where one contributes nothing."""
     a, b = one.score.signature, other.score.signature
     norm = float(np.linalg.norm(a) * np.linalg.norm(b))
-    return norm > 0.0 and abs(float(a @ b)) > ALIKE * norm
+    return abs(float(a @ b)) / norm if norm > 0.0 else 0.0
 
 
 def _told(winner: Trial, other: Trial) -> bool:

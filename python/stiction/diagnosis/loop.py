@@ -13,6 +13,7 @@ from .. import closed_loop
 from ..closed_loop import ClosedLoop
 from ..errors import InputError
 from ..fitting.rows import Mask
+from ..plant import Plant
 from ..recording import Part, Recording
 from ..trajectory import FloatArray
 from ..wording import counted
@@ -74,8 +75,9 @@ def replayed(found: Diagnosis, evidence: Evidence, base: Model, final: Model) ->
         raise SealedError("the test rows are compared with a replay after the last decision")
     split = evidence.split
     wanted = sorted({part.recording for part in (*split.train, *split.test)})
-    wanted = [index for index in wanted if _has_loop(evidence.recordings[index])]
-    if not base.plant.controller or base.plant.prescribed_motion or not wanted:
+    plant = base.plant
+    wanted = [index for index in wanted if _has_loop(plant, evidence.recordings[index])]
+    if not (plant.controller or plant.servo) or plant.prescribed_motion or not wanted:
         return found
     before, told = _runs(evidence, base, wanted)
     after, told_after = (before, told) if final is base else _runs(evidence, final, wanted)
@@ -97,8 +99,9 @@ def replayed(found: Diagnosis, evidence: Evidence, base: Model, final: Model) ->
     )
 
 
-def _has_loop(recording: Recording) -> bool:
-    return "reference" in recording.channels and recording.position is not None
+def _has_loop(plant: Plant, recording: Recording) -> bool:
+    known = plant.servo or "reference" in recording.channels
+    return known and recording.position is not None
 
 
 def _runs(evidence: Evidence, model: Model, wanted: Sequence[int]) -> tuple[Runs, list[str]]:

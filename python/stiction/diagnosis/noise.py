@@ -67,7 +67,7 @@ def measure_noise(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
     else:
         inertial = np.convolve(form.kernel.weights, [1.0, -2.0, 1.0]) / form.dt**2
         moved = position**2 + (count**2 / 12.0 if noise_of(form.readings) > 0.0 else 0.0)
-        made = plant.inertia**2 * moved * _bent(inertial, samples)
+        made = form.own(plant).inertia ** 2 * moved * _bent(inertial, samples)
     effort = max(variance - made, 0.0) / _bent(weights, samples)
     return Noise(position, count, float(np.sqrt(effort)))
 

@@ -71,7 +71,11 @@ def rest(
     position = stacked(evidence, [look.position for look in seen])
     both = np.column_stack([residual, null])
     waves = waves_of(orders, position)
-    views = [smoother(coordinate, evidence, seen, both, friction) for coordinate in COORDINATES]
+    views = [
+        smoother(coordinate, evidence, seen, both, friction)
+        for coordinate in COORDINATES
+        if any(np.any(np.isfinite(coordinate.values(look))) for look in seen)
+    ]
     views += [
         order_view(
             coordinate,

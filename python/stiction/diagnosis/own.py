@@ -11,7 +11,7 @@ import numpy as np
 
 from ..plant import Effect
 from ..trajectory import FloatArray
-from .coordinates import BEND, BRAKING, COORDINATES, Coordinate, Look
+from .coordinates import COORDINATES, UNJUDGED, Coordinate, Look
 from .evidence import Evidence
 from .smoother import smoother
 from .view import View
@@ -88,11 +88,22 @@ OWN: Final[dict[str, str | Wave]] = {
         rows="where the squared speed is larger than the acceleration",
     ),
     "creep_hardening": "time since the reversal",
+    "relaxation": "time since the reversal",
+    "gravity_unbalance": Wave(),
+    "torque_constant_saturation": "effort",
+    "drive_saturation": "effort",
+    "back_emf": "velocity, by what the effort gives",
+    "current_loop_lag": "rate of the effort",
+    "frictional_lag": "speed, speeding up or slowing down",
+    "reverse_point_memory": "distance since the reversal",
+    "temperature_dependent_friction": "temperature along the motion",
+    "load_dependent_friction": "load along the motion",
+    "backlash": "time since the acceleration turned round",
 }
 """Where each effect of the catalogue shows: a coordinate by its name, or its own period."""
 ELSEWHERE: Final = "velocity"
 """Where an effect is drawn that has no entry."""
-_DRAWN: Final = {each.name: each for each in (*COORDINATES, BEND, BRAKING)}
+_DRAWN: Final = {each.name: each for each in (*COORDINATES, *UNJUDGED)}
 # Over its logarithm, what grows with the square of speed would be pressed to the edge.
 _DRAWN["high speed"] = replace(_DRAWN["speed"], logarithmic=False)
 

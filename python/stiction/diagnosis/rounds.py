@@ -135,14 +135,17 @@ def _candidates(
     """What to try, and a row for each effect that is not tried."""
     scales = scales_of(evidence, base.plant)
     channels = set.intersection(*(set(r.channels) for r in evidence.recordings))
+    if all(form.own(base.plant).hangs for form in evidence.forms):
+        channels.add("load")
     tried: list[Candidate] = []
     for record in effects():
         if record.name in without:
             continue
         missing = [name for name in record.channels if name not in channels]
         if present(base.plant, record):
-            own = any(effect.name == record.name for effect in base.plant.effects)
-            reason = "part of the plant" if own else "part of the law"
+            reason = _where(base.plant, record)
+        elif record.rotary_only and base.plant.motion != "rotary":
+            reason = "only a machine that turns can have it"
         elif missing:
             reason = f"not testable: no channel {missing[0]} was recorded"
             found.blind.append(record)
@@ -151,6 +154,14 @@ def _candidates(
             continue
         found.rows[record.name] = CandidateRow(record.name, None, None, None, reason)
     return tried
+
+
+def _where(plant: Plant, record: EffectRecord) -> str:
+    """Where a plant holds an effect already."""
+    if any(effect.name == record.name for effect in plant.effects):
+        return "part of the plant"
+    law = any(term in plant.friction.parameters for term in record.law_terms)
+    return "part of the law" if law else "part of the body"
 
 
 def _round(
@@ -449,7 +460,7 @@ def _friction_is_late(evidence: Evidence, model: Model) -> str:
     """
     effect = model.plant.effects[-1]
     record = next(each for each in effects() if each.name == effect.name)
-    if "input delay" not in record.hooks or not any(f.followed_late for f in evidence.forms):
+    if not record.late or not any(f.followed_late for f in evidence.forms):
         return ""
     (gain,) = record.gains
     if effect.parameters[gain].value > LATE_SHARE * evidence.support:

@@ -169,7 +169,7 @@ def _time(plant: Plant, form: WeakForm) -> float:
 
     White noise of size σ_u per sample moves a mass J by σ_u·√(dt/3)·t^(3/2)/J (rms).
     """
-    effort = abs(float(plant.drive.get("gain", 1.0))) * noise_of(form.effort)
+    effort = abs(plant.gain) * noise_of(form.effort)
     if effort <= 0.0:
         return HORIZONS_S[1]
     moved = plant.inertia * _step(form) / ROUNDED

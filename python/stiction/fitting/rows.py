@@ -114,7 +114,7 @@ def timing_bound(plant: Plant, rows: Sequence[Rows]) -> float:
 
     Both at once would be one number twice: then the delay holds the whole of it.
     """
-    late = {record.name for record in effects() if "input delay" in record.hooks}
+    late = {record.name for record in effects() if record.late}
     if any(effect.name in late for effect in plant.effects):
         return 0.0
     return TIMING_SHARE * min(each.form.dt for each in rows)

@@ -128,11 +128,15 @@ def _regression(plant: Plant, forms: Sequence[WeakForm]) -> tuple[float, float, 
             np.ones_like(speed),
             form.late(plant),
         ]
+        angle = form.mean(form.position[1:])
         if "gravity_amplitude" in plant.body:
-            angle = form.mean(form.position[1:])
             columns += [np.sin(angle), np.cos(angle)]
         blocks.append(np.column_stack(columns)[sliding])
-        efforts.append(form.measured(plant)[sliding])
+        # What a payload needs is known.
+        mass, weight = form.own(plant).payload
+        zero = plant.body["gravity_zero_rad"].value if "gravity_zero_rad" in plant.body else 0.0
+        known = mass * form.acceleration + weight * np.sin(angle - zero)
+        efforts.append((form.measured(plant) - known)[sliding])
     matrix, effort = np.vstack(blocks), np.concatenate(efforts)
     scales = np.maximum(np.sqrt(np.mean(matrix**2, axis=0)), 1e-300)
     solved = np.linalg.lstsq(matrix / scales, effort, rcond=None)[0] / scales

@@ -30,10 +30,19 @@ be 0. The others are varied by their logarithm: a stiffness or a rate is known t
 LEAST_SHARE: Final = 1e-6
 """A parameter varied by its logarithm stays above this share of where it starts."""
 
-INPUT_UNITS: Final = {"current_a": "A", "voltage_v": "V", "torque_nm": "N·m", "force_n": "N"}
-"""Unit of what is measured in the input of the drive."""
+INPUT_UNITS: Final = {
+    "current_a": "A",
+    "voltage_v": "V",
+    "torque_nm": "N·m",
+    "force_n": "N",
+    "goal_rad": "V",
+    "goal_m": "V",
+}
+"""Unit of what is measured in the input of the drive; of a servo in its voltage."""
 
 _BODY: Final = {
+    "drive.gain": (-math.inf, math.inf, ("N·m per unit of input", "N per unit of input")),
+    "drive.torque_constant": (1e-12, math.inf, ("N·m/A", "N/A")),
     "body.inertia": (1e-12, math.inf, ("kg·m²", "kg")),
     "body.gravity_amplitude": (-math.inf, math.inf, ("N·m", "N·m")),
     "body.gravity_zero_rad": (-math.pi, math.pi, ("rad", "rad")),
@@ -103,7 +112,8 @@ class Variables:
         lower, upper = np.array(least), np.array(most)
         positive = (lower >= 0.0) & (begin > 0.0)
         chosen = [
-            not path.startswith("body.") and path.rsplit(".", 1)[-1] not in LINEAR for path in paths
+            not path.startswith(("body.", "drive.")) and path.rsplit(".", 1)[-1] not in LINEAR
+            for path in paths
         ]
         logarithmic = positive & np.array(chosen, dtype=bool)
         logarithmic[list(ratios)] = False

@@ -7,7 +7,7 @@ from .blocks import Part
 from .checks import Check, check
 from .columns import CANONICAL, ROLES, Column, Columns
 from .formats import read_table
-from .recording import Recording
+from .recording import SETTINGS, Recording
 from .repair import Repair
 from .split import Fold, Split
 from .table import Cell, Table
@@ -16,6 +16,7 @@ from .units import UNITS, Unit
 __all__ = [
     "CANONICAL",
     "ROLES",
+    "SETTINGS",
     "UNITS",
     "Cell",
     "Check",

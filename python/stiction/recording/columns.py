@@ -27,6 +27,7 @@ ROLES: Final[dict[str, tuple[str, ...]]] = {
     "temperature": ("temperature",),
     "normal_force": ("force", "pressure"),
     "friction_coefficient": ("ratio",),
+    "enabled": ("ratio",),
 }
 """Every role a column can have, and the quantities it may be measured in."""
 
@@ -36,6 +37,8 @@ CANONICAL: Final[dict[str, tuple[str, str]]] = {
     "voltage_v": ("input", "V"),
     "torque_nm": ("input", "Nm"),
     "force_n": ("input", "N"),
+    "goal_rad": ("input", "rad"),
+    "goal_m": ("input", "m"),
     "position_rad": ("position", "rad"),
     "position_m": ("position", "m"),
     "velocity_rad_s": ("velocity", "rad/s"),
@@ -47,6 +50,7 @@ CANONICAL: Final[dict[str, tuple[str, str]]] = {
     "temperature_c": ("temperature", "degC"),
     "normal_force": ("normal_force", "N"),
     "friction_coefficient": ("friction_coefficient", "1"),
+    "enabled": ("enabled", "1"),
 }
 """Column names that need no mapping: their role and unit.
 

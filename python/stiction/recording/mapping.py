@@ -27,7 +27,15 @@ from .units import (
 )
 
 PRESCRIBED: Final = "prescribed_motion"
-DRIVES: Final = ("current_a", "voltage_v", "torque_nm", "force_n", PRESCRIBED)
+DRIVES: Final = (
+    "current_a",
+    "voltage_v",
+    "torque_nm",
+    "force_n",
+    "goal_rad",
+    "goal_m",
+    PRESCRIBED,
+)
 
 # A motor's torque may drive a screw, so the quantity of the input does not tell the motion.
 _TELLS_MOTION: Final = ("position", "effort", "velocity", "reference", "load")

@@ -26,6 +26,16 @@ from .units import FloatArray, Motion
 SPLIT_ROLES: Final = ("train", "select", "test")
 """What a recording may be used for."""
 
+SETTINGS: Final = (
+    "proportional",
+    "integral",
+    "derivative",
+    "supply_v",
+    "payload_kg",
+    "payload_m",
+)
+"""What may be set anew for a recording: gains and supply of a servo, what hangs on the machine."""
+
 _MAIN: Final = ("time", "input", "position")
 _OPTIONAL: Final = tuple(role for role in ROLES if role not in _MAIN)
 
@@ -53,7 +63,10 @@ class Recording:
     **channels : array_like, shape (rows,)
         Any of ``effort`` (N·m or N, positive along positive motion), ``velocity``,
         ``reference``, ``load``, ``temperature`` (degC), ``normal_force``,
-        ``friction_coefficient``.
+        ``friction_coefficient``, ``enabled`` (0 where the drive is off).
+    settings : mapping of str to float, optional
+        What was set for this recording and differs from the plant: any of ``proportional``,
+        ``integral``, ``derivative``, ``supply_v`` of a servo, ``payload_kg`` and ``payload_m``.
 
     Attributes
     ----------
@@ -87,6 +100,7 @@ class Recording:
     role: str | None
     kind: str
     start_s: float
+    settings: Mapping[str, float]
     quality: tuple[Repair, ...]
     faults: tuple[str, ...]
     notes: tuple[str, ...]
@@ -102,6 +116,7 @@ class Recording:
         role: str | None = None,
         kind: str = "",
         start_s: float = 0.0,
+        settings: Mapping[str, float] | None = None,
         **channels: npt.ArrayLike,
     ) -> None:
         for name in channels:
@@ -121,7 +136,7 @@ class Recording:
             values,
             source="Recording",
             place=lambda row: f"index {row}",
-            labels=_labels(role, kind, start_s),
+            labels=_labels(role, kind, start_s, settings),
         )
 
     @classmethod
@@ -136,6 +151,7 @@ class Recording:
         role: str | None = None,
         kind: str = "",
         start_s: float = 0.0,
+        settings: Mapping[str, float] | None = None,
         keep_faulty: bool = False,
     ) -> Recording:
         """Read a recording from a CSV, MAT, NPZ, JSON or Parquet file.
@@ -153,7 +169,7 @@ class Recording:
             ``force_n`` are the measured effort.
         count_size : float, optional
             Size of one sensor count in rad or m, for columns in ``count``.
-        role, kind, start_s
+        role, kind, start_s, settings
             As for `Recording`.
         keep_faulty : bool
             Load a recording with too many missing cells too, and say so in ``faults``.
@@ -164,7 +180,7 @@ class Recording:
             If the file or a column cannot be used; the message is one sentence that says where
             and what to do.
         """
-        labels = _labels(role, kind, start_s)
+        labels = _labels(role, kind, start_s, settings)
         mapped = Columns.parse(columns)
         table = read_table(path)
         channels = read_channels(table, mapped, drive=drive, motion=motion, count_size=count_size)
@@ -247,6 +263,8 @@ class Recording:
         for name, array in sorted({**main, **self.channels}.items()):
             if array is not None:
                 digest.update(name.encode() + b"\0" + array.astype("<f8").tobytes())
+        for name, value in sorted(self.settings.items()):
+            digest.update(f"{name}={value!r}".encode())
         return digest.hexdigest()
 
     def __len__(self) -> int:
@@ -258,9 +276,14 @@ class Recording:
     def _repr_html_(self) -> str:
         return as_html(self)
 
+    def __getstate__(self) -> dict[str, Any]:
+        # A read-only view of a dict cannot be pickled.
+        return {**self.__dict__, "settings": dict(self.settings)}
+
     def __setstate__(self, state: dict[str, Any]) -> None:
         # Copies and pickles come back with writeable arrays.
         self.__dict__.update(state)
+        self.__dict__["settings"] = MappingProxyType(state["settings"])
         for array in (self.time, self.input, self.position, *self.channels.values()):
             if array is not None:
                 array.flags.writeable = False
@@ -285,7 +308,9 @@ def _flat(name: str, given: npt.ArrayLike) -> FloatArray:
     return flat
 
 
-def _labels(role: str | None, kind: str, start_s: float) -> dict[str, Any]:
+def _labels(
+    role: str | None, kind: str, start_s: float, settings: Mapping[str, float] | None
+) -> dict[str, Any]:
     if role is not None and role not in SPLIT_ROLES:
         raise InputError(
             f"Recording: the role is {role!r}{did_you_mean(str(role), SPLIT_ROLES)}; "
@@ -299,7 +324,19 @@ def _labels(role: str | None, kind: str, start_s: float) -> dict[str, Any]:
         or not math.isfinite(start_s)
     ):
         raise InputError(f"Recording: start_s is {start_s!r}; give a finite number of seconds")
-    return {"role": role, "kind": kind, "start_s": float(start_s)}
+    for name, value in (settings or {}).items():
+        if name not in SETTINGS:
+            raise InputError(
+                f"Recording: there is no setting '{name}'{did_you_mean(name, SETTINGS)}; the "
+                f"settings are {', '.join(SETTINGS)}"
+            )
+        if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
+            raise InputError(f"Recording: the setting {name} is {value!r}; give a number")
+        if not math.isfinite(value):
+            raise InputError(f"Recording: the setting {name} is {value!r}; give a finite number")
+    own = {name: float(value) for name, value in (settings or {}).items()}
+    settled = {"role": role, "kind": kind, "start_s": float(start_s)}
+    return {**settled, "settings": MappingProxyType(own)}
 
 
 def _check_channels(source: str, values: Mapping[str, FloatArray]) -> None:

@@ -30,6 +30,8 @@ HINTS: Final = {
     "loading before the slide": "a contact that holds more when it is loaded slowly",
     "session time": "an offset that drifts during the session",
     "session time along the motion": "friction that drifts during the session: warm-up, wear",
+    "load along the motion": "friction that grows with what the machine carries: gears, screws",
+    "temperature along the motion": "friction that changes with temperature: grease",
     "path along the motion": "friction that changes with use: run-in, wear",
 }
 """By the name of the coordinate."""

@@ -1,6 +1,6 @@
 //! Effort that depends on position alone.
 
-use super::{Effect, EffectFacts, Hook, Scale, Shape, Situation};
+use super::{Effect, EffectFacts, Hook, Memory, Scale, Shape, Situation};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -43,13 +43,14 @@ impl<S: Scalar> Effect<S> for Cogging<S> {
         class: "cogging",
         coordinate: "order spectrum over position, not odd in direction",
         channels: &[],
-        look_alikes: &["torque_bias"],
+        look_alikes: &["torque_bias", "gravity_unbalance"],
         experiment: "slow full turns both ways",
         plan: "turns",
         gains: &["cosine", "sine"],
         shapes: &[Shape { parameter: "order", scale: Scale::Order, grid: &[], fitted: true }],
         second: &["cosine_2", "sine_2", "order_2"],
         law_terms: &[],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {
@@ -58,7 +59,7 @@ impl<S: Scalar> Effect<S> for Cogging<S> {
     }
 
     #[inline]
-    fn effort(&self, at: &Situation<S>) -> S {
+    fn effort(&self, at: &Situation<S>, _memory: &Memory<S>) -> S {
         self.0.at(at.position)
     }
 }

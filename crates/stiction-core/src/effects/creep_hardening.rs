@@ -38,7 +38,7 @@ impl<S: Scalar> Effect<S> for CreepHardening<S> {
         class: "creep",
         coordinate: "time since the reversal or during a hold",
         channels: &[],
-        look_alikes: &[],
+        look_alikes: &["relaxation"],
         experiment: "holds of 5 s and more at three levels from 0.3 to 0.95 of break-away",
         plan: "loops",
         gains: &["creep"],
@@ -48,6 +48,7 @@ impl<S: Scalar> Effect<S> for CreepHardening<S> {
         ],
         second: &[],
         law_terms: &["hardening_coefficient", "hardening_exponent", "creep_rate"],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {
@@ -56,6 +57,6 @@ impl<S: Scalar> Effect<S> for CreepHardening<S> {
 
     fn relaxation(&self) -> Option<Relaxation<S>> {
         let CreepHardeningParameters { creep, exponent, rate } = self.0;
-        Some(Relaxation { creep, exponent, rate })
+        Some(Relaxation::Hardening { creep, exponent, rate })
     }
 }

@@ -44,6 +44,7 @@ impl<S: Scalar> Effect<S> for DirectionAsymmetry<S> {
         shapes: &[Shape { parameter: "velocity", scale: Scale::Speed, grid: &[-0.2, 0.15, 0.4], fitted: true }],
         second: &[],
         law_terms: &[],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {

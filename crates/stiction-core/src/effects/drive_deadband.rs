@@ -39,6 +39,7 @@ impl<S: Scalar> Effect<S> for DriveDeadband<S> {
         shapes: &[],
         second: &[],
         law_terms: &[],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {

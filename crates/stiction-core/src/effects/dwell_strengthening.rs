@@ -68,6 +68,7 @@ impl<S: Scalar> Effect<S> for DwellStrengthening<S> {
         ],
         second: &[],
         law_terms: &[],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {

@@ -40,6 +40,7 @@ impl<S: Scalar> Effect<S> for EncoderEccentricity<S> {
         shapes: &[],
         second: &[],
         law_terms: &[],
+        rotary_only: true,
     };
 
     fn build(values: &[S]) -> Self {

@@ -37,13 +37,14 @@ impl<S: Scalar> Effect<S> for InputDelay<S> {
         class: "lag",
         coordinate: "rate of the input",
         channels: &[],
-        look_alikes: &[],
+        look_alikes: &["current_loop_lag"],
         experiment: "chirp of the input above 1/(10 times the delay)",
         plan: "chirp",
         gains: &["delay"],
         shapes: &[],
         second: &[],
         law_terms: &[],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {

@@ -75,6 +75,7 @@ impl<S: Scalar> Effect<S> for RateDependentBreakaway<S> {
         ],
         second: &[],
         law_terms: &["loading_rate"],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {

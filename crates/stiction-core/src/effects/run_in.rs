@@ -47,6 +47,7 @@ impl<S: Scalar> Effect<S> for RunIn<S> {
         }],
         second: &[],
         law_terms: &[],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {

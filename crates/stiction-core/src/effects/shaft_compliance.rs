@@ -1,6 +1,6 @@
 //! Inertia behind a shaft that gives.
 
-use super::{Effect, EffectFacts, Hook, Scale, SecondMass, Shape};
+use super::{Coupling, Effect, EffectFacts, Hook, Scale, SecondMass, Shape};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -49,6 +49,7 @@ impl<S: Scalar> Effect<S> for ShaftCompliance<S> {
         ],
         second: &[],
         law_terms: &[],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {
@@ -57,6 +58,7 @@ impl<S: Scalar> Effect<S> for ShaftCompliance<S> {
 
     fn second_mass(&self) -> Option<SecondMass<S>> {
         let ShaftComplianceParameters { compliance, inertia_share, damping_ratio } = self.0;
-        Some(SecondMass { compliance, share: inertia_share, damping_ratio })
+        let coupling = Coupling::Shaft { compliance, damping_ratio };
+        Some(SecondMass { share: inertia_share, coupling })
     }
 }

@@ -51,6 +51,7 @@ impl<S: Scalar> Effect<S> for Stribeck<S> {
         ],
         second: &[],
         law_terms: &["stribeck_velocity", "stribeck_exponent"],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {

@@ -1,6 +1,6 @@
 //! Constant effort.
 
-use super::{Effect, EffectFacts, Hook, Situation};
+use super::{Effect, EffectFacts, Hook, Memory, Situation};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -38,6 +38,7 @@ impl<S: Scalar> Effect<S> for TorqueBias<S> {
         shapes: &[],
         second: &[],
         law_terms: &[],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {
@@ -45,7 +46,7 @@ impl<S: Scalar> Effect<S> for TorqueBias<S> {
     }
 
     #[inline]
-    fn effort(&self, _at: &Situation<S>) -> S {
+    fn effort(&self, _at: &Situation<S>, _memory: &Memory<S>) -> S {
         self.0.bias
     }
 }

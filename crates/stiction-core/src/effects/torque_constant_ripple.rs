@@ -51,6 +51,7 @@ impl<S: Scalar> Effect<S> for TorqueConstantRipple<S> {
         shapes: &[Shape { parameter: "order", scale: Scale::Order, grid: &[], fitted: true }],
         second: &["cosine_2", "sine_2", "order_2"],
         law_terms: &[],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {

@@ -1,6 +1,6 @@
 //! Friction that grows with the square of speed.
 
-use super::{Effect, EffectFacts, Hook, Situation};
+use super::{Effect, EffectFacts, Hook, Memory, Situation};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -37,6 +37,7 @@ impl<S: Scalar> Effect<S> for ViscousQuadratic<S> {
         shapes: &[],
         second: &[],
         law_terms: &[],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {
@@ -44,7 +45,7 @@ impl<S: Scalar> Effect<S> for ViscousQuadratic<S> {
     }
 
     #[inline]
-    fn effort(&self, at: &Situation<S>) -> S {
+    fn effort(&self, at: &Situation<S>, _memory: &Memory<S>) -> S {
         -(self.0.quadratic * at.velocity * at.velocity.abs())
     }
 }

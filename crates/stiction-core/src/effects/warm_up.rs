@@ -50,6 +50,7 @@ impl<S: Scalar> Effect<S> for WarmUp<S> {
         }],
         second: &[],
         law_terms: &[],
+        rotary_only: false,
     };
 
     fn build(values: &[S]) -> Self {

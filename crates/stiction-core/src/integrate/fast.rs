@@ -2,7 +2,6 @@
 
 use super::events::Stepper;
 use super::machine::{Machine, Run, hold};
-use crate::effects::Situation;
 use crate::friction::{FrictionLaw, Motion};
 use crate::scalar::Scalar;
 
@@ -38,20 +37,16 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Fast<'_, S> {
         let acceleration = (effort - friction) / machine.inertia;
         let displacement = span * (run.velocity + half * acceleration);
         let predicted = run.velocity + span * acceleration;
-        let end = Situation {
-            position: run.position + displacement,
-            velocity: predicted,
-            time: run.time + span,
-            path: run.path + displacement.abs(),
-        };
+        let end = start.after(displacement, predicted, span);
         let mut next = *run;
         next.position = end.position;
         next.time = end.time;
         next.path = end.path;
+        next.moved = end.moved;
         machine.swing(&start, &end, span, &mut next);
         next.ambient = machine.ambient(&end, next.second_position, next.second_velocity);
         let mut at_contact = displacement;
-        if machine.relaxation.is_some() {
+        if machine.relaxes() {
             let (hardened, crept) = machine.relax(run.relaxed, friction, span);
             next.relaxed = hardened;
             at_contact -= crept;

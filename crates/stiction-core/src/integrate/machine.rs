@@ -3,10 +3,10 @@
 use super::shaft::Shaft;
 use crate::body::Body;
 use crate::drive::Drive;
-use crate::effects::{Effects, Passage, Situation};
+use crate::effects::{Effects, Passage, Relaxation, Situation};
 use crate::friction::Channels;
 use crate::friction::elements::plastic::Plastic;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, sign};
 use crate::sensor::Sensor;
 
 /// Drive, body, effects and sensor.
@@ -21,11 +21,27 @@ pub struct Machine<S: Scalar> {
     /// Position sensor.
     pub sensor: Sensor,
     pub(super) relaxation: Option<Plastic<S>>,
+    pub(super) steady_creep: Option<SteadyCreep<S>>,
     pub(super) shaft: Option<Shaft<S>>,
     /// Friction of slow sliding, which renews the relaxing junctions.
-    sliding: f64,
+    sliding: S,
     /// Inertia on the motor's side of the shaft.
     pub(super) inertia: S,
+}
+
+/// Creep that no hardening stops: its speed at a force is `coefficient`·|F|^n.
+#[derive(Debug, Clone, Copy)]
+pub struct SteadyCreep<S> {
+    coefficient: S,
+    exponent: S,
+}
+
+impl<S: Scalar> SteadyCreep<S> {
+    /// Speed under a force.
+    #[inline]
+    pub fn speed(&self, force: S) -> S {
+        self.coefficient * force.power_of_magnitude(self.exponent) * sign(force.re())
+    }
 }
 
 /// Position, velocity and what else of the body runs from step to step.
@@ -39,6 +55,14 @@ pub struct Run<S> {
     pub time: S,
     /// Path travelled since the session began.
     pub path: S,
+    /// Displacement since effects last took a sample into their memory.
+    pub moved: S,
+    /// Temperature in °C, where it is known.
+    pub temperature: Option<f64>,
+    /// What a servo's distance from its goal has summed up to.
+    pub wound: S,
+    /// Whether the drive is on.
+    pub enabled: bool,
     /// Friction at the end of the last step.
     pub friction: S,
     /// Position of the second mass.
@@ -60,17 +84,27 @@ impl<S: Scalar> Machine<S> {
         sensor: Sensor,
         sliding: S,
     ) -> Self {
-        let relaxation = effects.relaxation().and_then(|r| {
-            let there = r.creep.re() != 0.0 || r.creep.derivative_is_nonzero();
-            (there && sliding.re().is_finite() && sliding.re() > 0.0).then(|| Plastic {
-                coefficient: r.creep / sliding.power_of_magnitude(r.exponent),
-                exponent: r.exponent,
-                rate: r.rate,
-            })
-        });
-        let shaft = effects.second_mass().and_then(|m| Shaft::new(&m, body.inertia));
+        let there = |gain: S| gain.re() != 0.0 || gain.derivative_is_nonzero();
+        let (mut relaxation, mut steady_creep) = (None, None);
+        if sliding.re().is_finite() && sliding.re() > 0.0 {
+            for each in effects.relaxations() {
+                match *each {
+                    Relaxation::Hardening { creep, exponent, rate } if there(creep) => {
+                        let coefficient = creep / sliding.power_of_magnitude(exponent);
+                        relaxation = Some(Plastic { coefficient, exponent, rate });
+                    }
+                    Relaxation::Steady { speed, exponent } if there(speed) => {
+                        let coefficient = speed / sliding.power_of_magnitude(exponent);
+                        steady_creep = Some(SteadyCreep { coefficient, exponent });
+                    }
+                    Relaxation::Hardening { .. } | Relaxation::Steady { .. } => (),
+                }
+            }
+        }
+        let masses = effects.second_masses().iter();
+        let shaft = masses.filter_map(|m| Shaft::new(m, body.inertia)).next_back();
         let inertia = shaft.map_or(body.inertia, |shaft| body.inertia - shaft.inertia);
-        Self { drive, body, effects, sensor, relaxation, shaft, sliding: sliding.re(), inertia }
+        Self { drive, body, effects, sensor, relaxation, steady_creep, shaft, sliding, inertia }
     }
 
     /// A body at this position and velocity.
@@ -81,6 +115,10 @@ impl<S: Scalar> Machine<S> {
             velocity,
             time: zero,
             path: zero,
+            moved: zero,
+            temperature: None,
+            wound: zero,
+            enabled: true,
             friction: zero,
             second_position: position,
             second_velocity: velocity,
@@ -96,22 +134,28 @@ impl<S: Scalar> Machine<S> {
         run.ambient = self.ambient(&run.situation(), run.second_position, run.second_velocity);
     }
 
-    /// Least inertia that a spring acts on.
-    pub(super) fn lightest_inertia(&self) -> f64 {
-        self.inertia.re().min(self.shaft.map_or(f64::INFINITY, |shaft| shaft.inertia.re()))
+    /// Bound of ω² of anything that swings, with this stiffness of the friction.
+    pub(super) fn fastest_square(&self, friction: f64) -> f64 {
+        let effects = self.effects.stiffness(self.sliding.re());
+        let near = friction + effects + self.body.gravity_amplitude.re().abs() + self.servo().0;
+        let shaft = self.shaft.map_or((0.0, 0.0), |shaft| {
+            let stiffness = shaft.stiffness.re();
+            (stiffness, stiffness / shaft.inertia.re())
+        });
+        (near + shaft.0) / self.inertia.re() + shaft.1
     }
 
-    /// Stiffness beside that of the friction.
-    pub(super) fn greatest_stiffness(&self) -> f64 {
-        let shaft = self.shaft.map_or(0.0, |shaft| shaft.stiffness.re());
-        shaft + self.body.gravity_amplitude.re().abs()
+    /// Stiffness and damping by which a servo holds its goal.
+    pub(super) fn servo(&self) -> (f64, f64) {
+        let servo = self.drive.servo.as_ref();
+        servo.map_or((0.0, 0.0), |servo| servo.stiffness_and_damping(self.drive.gain.re()))
     }
 
     /// Shaft effort on the motor's side.
     #[inline]
     pub(super) fn shaft(&self, at: &Situation<S>, position: S, velocity: S) -> S {
         self.shaft.map_or(S::constant(0.0), |shaft| {
-            shaft.stiffness * (position - at.position) + shaft.damping * (velocity - at.velocity)
+            shaft.pull(position - at.position, velocity - at.velocity)
         })
     }
 
@@ -137,58 +181,112 @@ impl<S: Scalar> Machine<S> {
     /// Effort that does not come from input and load.
     #[inline]
     pub(super) fn ambient(&self, at: &Situation<S>, second: S, second_velocity: S) -> S {
-        let effort = self.body.gravity(at.position) + self.effects.effort(at);
+        let effort = self.surroundings(at);
         if self.shaft.is_some() { effort + self.shaft(at, second, second_velocity) } else { effort }
+    }
+
+    /// Gravity and added efforts.
+    #[inline]
+    fn surroundings(&self, at: &Situation<S>) -> S {
+        let at = Situation { sliding: self.sliding, ..*at };
+        self.body.gravity(at.position) + self.effects.effort(&at)
+    }
+
+    /// What the drive is commanded: the input, or the voltage that a servo makes of its goal.
+    #[inline]
+    pub fn command(&self, input: S, at: &Situation<S>) -> S {
+        match &self.drive.servo {
+            None => input,
+            Some(servo) => servo.voltage(self.error(input, at), at.velocity, at.wound),
+        }
+    }
+
+    /// Distance of what the sensor reads from the goal.
+    #[inline]
+    fn error(&self, goal: S, at: &Situation<S>) -> S {
+        goal - if self.effects.misreads() { self.effects.sensor(at.position) } else { at.position }
     }
 
     /// Effort of the drive.
     #[inline]
     pub(super) fn driven(&self, input: S, at: &Situation<S>) -> S {
-        self.drive.effort(self.effects.input(input, at))
+        if !at.enabled {
+            return S::constant(0.0);
+        }
+        self.drive.effort(self.effects.input(self.command(input, at), at), at.velocity)
+    }
+
+    /// Lets a servo sum up its distance from the goal over a sample.
+    #[inline]
+    pub fn wind(&self, run: &mut Run<S>, goal: S, span: f64) {
+        if let Some(servo) = &self.drive.servo
+            && run.enabled
+        {
+            let error = self.error(goal, &run.situation());
+            run.wound = servo.wind(error, run.velocity, run.wound, S::constant(span));
+        }
     }
 
     /// All effort but friction and shaft, then the drive's share and the rest of it.
     #[inline]
     pub fn efforts(&self, at: &Situation<S>, input: S, load: S) -> (S, S, S) {
         let driven = self.driven(input, at);
-        let ambient = self.body.gravity(at.position) + self.effects.effort(at);
+        let ambient = self.surroundings(at);
         (driven + load + ambient, driven, ambient)
+    }
+
+    /// A situation with what it lacks of the contact: its load and its friction.
+    #[inline]
+    pub fn at_contact(&self, at: &Situation<S>, load: S) -> Situation<S> {
+        Situation { load: load + self.body.gravity(at.position), sliding: self.sliding, ..*at }
     }
 
     /// What reaches the contact.
     #[inline]
     pub fn channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
-        let (level, viscous_level) = self.effects.levels(at);
-        Channels { effort, load, level, viscous_level, temperature: None }
+        let (level, viscous_level) = if self.effects.changes_levels() {
+            self.effects.levels(&self.at_contact(at, load))
+        } else {
+            self.effects.levels(at)
+        };
+        Channels { effort, load, level, viscous_level, temperature: at.temperature }
     }
 
     /// Whether a friction of this size slides, which renews relaxing junctions.
     #[inline]
     pub(super) fn slides(&self, friction: S) -> bool {
-        friction.re().abs() >= SLIDING_SHARE * self.sliding
+        friction.re().abs() >= SLIDING_SHARE * self.sliding.re()
     }
 
-    /// Hardening of the relaxation module after a step under this friction, and how far it crept.
+    /// Hardening of the relaxation module after a step under this friction, and how far the contact
+    /// crept.
     #[inline]
     pub fn relax(&self, hardened: S, friction: S, span: S) -> (S, S) {
         let zero = S::constant(0.0);
-        let Some(module) = self.relaxation else { return (zero, zero) };
         if self.slides(friction) {
             return (zero, zero);
         }
-        let creep = module.creep(hardened, friction, |_| zero, zero, span);
-        (hardened + creep.hardening, creep.displacement)
+        let (mut after, mut crept) = (hardened, zero);
+        if let Some(module) = self.relaxation {
+            let creep = module.creep(hardened, friction, |_| zero, zero, span);
+            after += creep.hardening;
+            crept += creep.displacement;
+        }
+        if let Some(creep) = self.steady_creep {
+            crept += creep.speed(friction) * span;
+        }
+        (after, crept)
     }
 
     /// Whether the contact creeps of itself.
     #[inline]
     pub fn relaxes(&self) -> bool {
-        self.relaxation.is_some()
+        self.relaxation.is_some() || self.steady_creep.is_some()
     }
 
     /// Lets effects remember the sample that a run went through, from where it stood before.
     #[inline]
-    pub fn remember(&mut self, before: &Run<S>, run: &Run<S>) {
+    pub fn remember(&mut self, before: &Run<S>, run: &mut Run<S>) {
         if self.effects.remembers() {
             let passage = Passage {
                 displacement: run.position - before.position,
@@ -196,6 +294,7 @@ impl<S: Scalar> Machine<S> {
                 span: run.time - before.time,
             };
             self.effects.remember(&passage);
+            run.moved = S::constant(0.0);
         }
     }
 }
@@ -212,6 +311,11 @@ impl<S: Scalar> Run<S> {
             velocity: self.velocity,
             time: self.time,
             path: self.path,
+            moved: self.moved,
+            temperature: self.temperature,
+            wound: self.wound,
+            enabled: self.enabled,
+            ..Situation::resting()
         }
     }
 
@@ -233,6 +337,10 @@ impl<S: Scalar> Run<S> {
             velocity: lift(self.velocity),
             time: lift(self.time),
             path: lift(self.path),
+            moved: lift(self.moved),
+            temperature: self.temperature,
+            wound: lift(self.wound),
+            enabled: self.enabled,
             friction: lift(self.friction),
             second_position: lift(self.second_position),
             second_velocity: lift(self.second_velocity),
@@ -261,10 +369,11 @@ pub(super) fn hold<S: Scalar, L: crate::friction::FrictionLaw<S>>(
     run.time += span;
     // A second mass goes on swinging on the shaft of a motor that is held.
     machine.swing(&at, &at, span, run);
-    if machine.relaxation.is_some() {
+    if machine.relaxes() {
         let (hardened, crept) = machine.relax(run.relaxed, effort, span);
         run.relaxed = hardened;
         run.position += crept;
+        run.moved += crept;
         run.path += crept.abs();
     }
     machine.refresh(run);

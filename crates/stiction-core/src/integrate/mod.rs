@@ -15,7 +15,7 @@ mod shaft;
 pub use contact::{Along, Held};
 pub use events::{Stepper, quiet, through_events};
 pub use machine::{Machine, Run};
-pub use shaft::Twist;
+pub use shaft::Beyond;
 
 use crate::friction::FrictionLaw;
 use crate::scalar::Scalar;
@@ -51,10 +51,9 @@ pub fn parts<S: Scalar, L: FrictionLaw<S>>(
     dt: f64,
     longest: f64,
 ) -> f64 {
-    let lightest = machine.lightest_inertia();
-    let stiffness = law.greatest_stiffness() + machine.greatest_stiffness();
-    let phase = dt * (stiffness / lightest).sqrt() / longest;
-    let calming = dt * law.greatest_damping() / lightest / LONGEST_DAMPING;
+    let lightest = machine.inertia.re();
+    let phase = dt * machine.fastest_square(law.greatest_stiffness()).sqrt() / longest;
+    let calming = dt * (law.greatest_damping() + machine.servo().1) / lightest / LONGEST_DAMPING;
     let falling = dt * law.steepest_fall() / lightest / LONGEST_DAMPING;
     phase.max(calming).max(falling.min(MOST_PARTS_FOR_A_FALL)).ceil().max(1.0)
 }
@@ -108,7 +107,7 @@ mod tests {
 
     fn machine() -> Machine<f64> {
         Machine::new(
-            Drive { gain: 1.0, limit: f64::INFINITY },
+            Drive { gain: 1.0, limit: f64::INFINITY, servo: None },
             Body::new(INERTIA, 0.0, 0.0, 0.0),
             Effects::new([]),
             Sensor::default(),
@@ -143,7 +142,7 @@ mod tests {
         let (share, stiffness, input) = (0.4, 50.0, 0.2);
         let mut machine = machine();
         let inertia = INERTIA * share;
-        machine.shaft = Some(super::shaft::Shaft { inertia, stiffness, damping: 0.0 });
+        machine.shaft = Some(super::shaft::Shaft { inertia, stiffness, damping: 0.0, play: None });
         machine.inertia = INERTIA * (1.0 - share);
         let omega = (stiffness / (INERTIA * share * (1.0 - share))).sqrt();
         for integrator in [Integrator::Fast, Integrator::Reference] {

@@ -15,12 +15,13 @@ pub(super) struct Reference<'a, S: Scalar> {
     pub load: S,
 }
 
-/// Displacement, velocity, both of the second mass, relaxation, internal variables of the law.
-const SIZE: usize = 5 + INTERNAL;
+/// Displacement, velocity, both of the second mass, hardening of the relaxation, steady creep,
+/// internal variables of the law.
+const SIZE: usize = 6 + INTERNAL;
 
 impl<S: Scalar> Reference<'_, S> {
     fn motion(&self, y: &[S; SIZE], span: S, friction: S) -> Motion<S> {
-        let crept = (y[4] - self.run.relaxed) * sign(friction.re());
+        let crept = (y[4] - self.run.relaxed) * sign(friction.re()) + y[5];
         Motion {
             displacement: y[0] - crept,
             duration: span,
@@ -30,12 +31,7 @@ impl<S: Scalar> Reference<'_, S> {
     }
 
     fn situation(&self, y: &[S; SIZE], span: S) -> Situation<S> {
-        Situation {
-            position: self.run.position + y[0],
-            velocity: y[1],
-            time: self.run.time + span,
-            path: self.run.path + y[0].abs(),
-        }
+        self.run.situation().after(y[0], y[1], span)
     }
 
     fn effort(&self, at: &Situation<S>, y: &[S; SIZE]) -> S {
@@ -53,7 +49,7 @@ impl<S: Scalar> Reference<'_, S> {
         let at = self.situation(y, span);
         let effort = self.effort(&at, y);
         let channels = machine.channels(&at, effort, self.load);
-        let internal = [y[5], y[6], y[7]];
+        let internal = [y[6], y[7], y[8]];
         let motion = self.motion(y, span, self.run.friction);
         let (friction, inner) = law.rates(state, &motion, &internal, &channels);
         let zero = S::constant(0.0);
@@ -63,12 +59,17 @@ impl<S: Scalar> Reference<'_, S> {
             Some(module) if !machine.slides(friction) => module.hardening_rate(y[4], friction),
             _ => zero,
         };
+        let creeping = match machine.steady_creep {
+            Some(creep) if !machine.slides(friction) => creep.speed(friction),
+            _ => zero,
+        };
         [
             y[1],
             (effort - friction) / machine.inertia,
             y[3],
             second,
             relaxing,
+            creeping,
             inner[0],
             inner[1],
             inner[2],
@@ -88,6 +89,7 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Reference<'_, S> {
             run.second_position,
             run.second_velocity,
             run.relaxed,
+            S::constant(0.0),
             a,
             b,
             c,
@@ -115,7 +117,7 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Reference<'_, S> {
         let trial = law.settle(
             state,
             &motion,
-            &[y[5], y[6], y[7]],
+            &[y[6], y[7], y[8]],
             &self.machine.channels(&at, effort, self.load),
         );
         let friction = law.outcome(&trial).force;
@@ -124,6 +126,10 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Reference<'_, S> {
             velocity: y[1],
             time: at.time,
             path: at.path,
+            moved: at.moved,
+            temperature: at.temperature,
+            wound: run.wound,
+            enabled: run.enabled,
             friction,
             second_position: y[2],
             second_velocity: y[3],

@@ -1,9 +1,9 @@
 //! A second mass on a shaft: as part of a simulated machine, and seen from a measured motion.
 
-use crate::effects::SecondMass;
-use crate::scalar::Scalar;
+use crate::effects::{Coupling, SecondMass};
+use crate::scalar::{Scalar, sign};
 
-/// The shaft of a machine that is simulated.
+/// The shaft of a machine that is simulated, or the gap in its place.
 #[derive(Debug, Clone, Copy)]
 pub struct Shaft<S> {
     /// Inertia beyond the shaft.
@@ -12,19 +12,125 @@ pub struct Shaft<S> {
     pub stiffness: S,
     /// Damping.
     pub damping: S,
+    /// How far the second mass is from either end of the gap when it is in the middle.
+    pub play: Option<S>,
 }
 
+/// What stops a mass at the end of a gap swings that fast against both masses, 1/s: fast beside any
+/// motion of a machine and slow enough to be simulated.
+const STOP: f64 = 2.0 * std::f64::consts::PI * 300.0;
+
 impl<S: Scalar> Shaft<S> {
-    /// The shaft of a body of this inertia; a rigid one is none.
+    /// The shaft of a body of this inertia; a rigid one is none, nor is one with nothing behind it.
     pub fn new(mass: &SecondMass<S>, inertia: S) -> Option<Self> {
-        if mass.compliance.re() == 0.0 {
-            return None;
-        }
         let far = inertia * mass.share;
-        let stiffness = S::constant(1.0) / mass.compliance;
         let reduced = far * -(mass.share - 1.0);
-        let damping = mass.damping_ratio * 2.0 * (stiffness * reduced).sqrt();
-        Some(Self { inertia: far, stiffness, damping })
+        match mass.coupling {
+            Coupling::Shaft { compliance, damping_ratio } => {
+                if compliance.re() == 0.0 {
+                    return None;
+                }
+                let stiffness = S::constant(1.0) / compliance;
+                let damping = damping_ratio * 2.0 * (stiffness * reduced).sqrt();
+                Some(Self { inertia: far, stiffness, damping, play: None })
+            }
+            Coupling::Gap { width } => {
+                if far.re() == 0.0 {
+                    return None;
+                }
+                // Critically damped: it does not rebound.
+                let (stiffness, damping) = (reduced * STOP * STOP, reduced * 2.0 * STOP);
+                Some(Self { inertia: far, stiffness, damping, play: Some(width * 0.5) })
+            }
+        }
+    }
+
+    /// Effort on the motor where the second mass is that far ahead of it, and that much faster.
+    #[inline]
+    pub fn pull(&self, ahead: S, faster: S) -> S {
+        let Some(play) = self.play else {
+            return self.stiffness * ahead + self.damping * faster;
+        };
+        let side = sign(ahead.re());
+        let beyond = ahead * side - play;
+        if beyond.re() <= 0.0 {
+            return S::constant(0.0);
+        }
+        // Its damping sets in over a hundredth of the gap: a jump in the force would end inside a
+        // step, and no derivative would be right.
+        let depth = beyond / (play * 0.02);
+        let set_in = if depth.re() < 1.0 { depth } else { S::constant(1.0) };
+        let push = self.stiffness * beyond + self.damping * faster * side * set_in;
+        // The end of a gap pushes and never pulls.
+        if push.re() > 0.0 { push * side } else { S::constant(0.0) }
+    }
+}
+
+/// A second mass seen from a measured motion of the motor.
+#[derive(Debug, Clone, Copy)]
+pub enum Beyond<S> {
+    /// On a shaft.
+    Shaft(Twist<S>),
+    /// In a gap.
+    Gap(Flight<S>),
+}
+
+impl<S: Scalar> Beyond<S> {
+    /// At rest.
+    pub fn new(mass: &SecondMass<S>, inertia: S) -> Self {
+        match mass.coupling {
+            Coupling::Shaft { compliance, damping_ratio } => {
+                Self::Shaft(Twist::new(mass.share, compliance, damping_ratio, inertia))
+            }
+            Coupling::Gap { width } => Self::Gap(Flight::new(mass.share, width)),
+        }
+    }
+
+    /// Goes through a sample at whose end the motor has this acceleration; gives how far the centre
+    /// of mass is then ahead of the motor.
+    pub fn advance(&mut self, acceleration: S, span: f64) -> S {
+        match self {
+            Self::Shaft(twist) => twist.advance(acceleration, span),
+            Self::Gap(flight) => flight.advance(acceleration, span),
+        }
+    }
+}
+
+/// How far a second mass is ahead of a motor whose motion is given, where it flies free in a gap.
+///
+/// e'' = −x'' inside, with an acceleration that changes linearly over a sample; at an end it stays
+/// until the motor leaves it behind.
+#[derive(Debug, Clone, Copy)]
+pub struct Flight<S> {
+    share: S,
+    play: S,
+    ahead: S,
+    rate: S,
+    before: S,
+}
+
+impl<S: Scalar> Flight<S> {
+    /// In the middle of the gap.
+    pub fn new(share: S, width: S) -> Self {
+        let zero = S::constant(0.0);
+        Self { share, play: width * 0.5, ahead: zero, rate: zero, before: zero }
+    }
+
+    /// As [`Beyond::advance`].
+    pub fn advance(&mut self, acceleration: S, span: f64) -> S {
+        let (from, to) = (self.before, acceleration);
+        self.before = to;
+        let bent = (from * 2.0 + to) * (span * span / 6.0);
+        self.ahead += self.rate * span - bent;
+        self.rate -= (from + to) * (0.5 * span);
+        let side = sign(self.ahead.re());
+        if (self.ahead * side - self.play).re() >= 0.0 {
+            self.ahead = self.play * side;
+            if self.rate.re() * side > 0.0 {
+                self.rate = S::constant(0.0);
+            }
+        }
+        self.share * self.ahead
     }
 }
 
@@ -47,20 +153,19 @@ pub struct Twist<S> {
 
 impl<S: Scalar> Twist<S> {
     /// A shaft at rest.
-    pub fn new(mass: &SecondMass<S>, inertia: S) -> Self {
+    pub fn new(share: S, compliance: S, damping_ratio: S, inertia: S) -> Self {
         let zero = S::constant(0.0);
         Self {
-            share: mass.share,
-            square: mass.compliance * mass.share * inertia,
-            ratio: mass.damping_ratio * (-(mass.share - 1.0)).sqrt(),
+            share,
+            square: compliance * share * inertia,
+            ratio: damping_ratio * (-(share - 1.0)).sqrt(),
             ahead: zero,
             rate: zero,
             before: zero,
         }
     }
 
-    /// Goes through a sample at whose end the motor has this acceleration; gives how far the centre
-    /// of mass is then ahead of the motor.
+    /// As [`Beyond::advance`].
     pub fn advance(&mut self, acceleration: S, span: f64) -> S {
         let (from, to) = (self.before, acceleration);
         self.before = to;
@@ -94,9 +199,39 @@ mod tests {
     const SHARE: f64 = 0.4;
     const INERTIA: f64 = 0.01;
 
-    fn mass<S: Scalar>(compliance: S) -> SecondMass<S> {
+    fn twist<S: Scalar>(compliance: S) -> Twist<S> {
         let constant = S::constant;
-        SecondMass { compliance, share: constant(SHARE), damping_ratio: constant(0.05) }
+        Twist::new(constant(SHARE), compliance, constant(0.05), constant(INERTIA))
+    }
+
+    #[test]
+    fn a_free_mass_crosses_its_gap_in_the_time_that_the_motor_leaves_it_behind() {
+        // The motor brakes evenly from rest against the front end: e = a·t²/2 until the other end.
+        let (gap, braking, dt) = (2e-3, 40.0, 1e-4);
+        let mut flight = Flight::new(SHARE, gap);
+        for _ in 0..500 {
+            flight.advance(braking, dt);
+        }
+        assert_eq!(flight.ahead, -0.5 * gap);
+        flight.advance(-braking, dt);
+        for k in 1..200 {
+            let ahead = flight.advance(-braking, dt);
+            // Half a sample late: the acceleration turns round over the first one.
+            let t = f64::from(k) * dt;
+            let exact = (-0.5 * gap + 0.5 * braking * t * t).min(0.5 * gap);
+            assert!((ahead - SHARE * exact).abs() < SHARE * braking * dt * (t + dt), "{k}");
+        }
+        assert_eq!(flight.ahead, 0.5 * gap);
+    }
+
+    #[test]
+    fn the_end_of_a_gap_pushes_and_never_pulls() {
+        let mass = SecondMass { share: SHARE, coupling: Coupling::Gap { width: 2e-3 } };
+        let stop = Shaft::new(&mass, INERTIA).unwrap();
+        assert_eq!(stop.pull(0.9e-3, 5.0), 0.0);
+        assert!(stop.pull(1.1e-3, 0.0) > 0.0 && stop.pull(-1.1e-3, 0.0) < 0.0);
+        assert_eq!(stop.pull(1.1e-3, -5.0), 0.0);
+        assert!(Shaft::new(&SecondMass { share: 0.0, ..mass }, INERTIA).is_none());
     }
 
     #[test]
@@ -106,7 +241,7 @@ mod tests {
         for frequency in [30.0, 80.0, 4000.0] {
             let omega = 2.0 * std::f64::consts::PI * frequency;
             let compliance = 1.0 / (omega * omega * SHARE * INERTIA);
-            let mut twist = Twist::new(&mass(compliance), INERTIA);
+            let mut shaft = twist(compliance);
             let (r, z) = (w / omega, 0.05 * (1.0 - SHARE).sqrt());
             // e = r²/(1 − r² + 2ζr·i)·x
             let (a, b) = (1.0 - r * r, 2.0 * z * r);
@@ -114,7 +249,7 @@ mod tests {
             let mut worst: f64 = 0.0;
             for k in 1..60_000 {
                 let t = f64::from(k) * dt;
-                let ahead = twist.advance(-w * w * (w * t).sin(), dt);
+                let ahead = shaft.advance(-w * w * (w * t).sin(), dt);
                 let exact = SHARE * size * (a * (w * t).sin() - b * (w * t).cos());
                 if t > 5.0 {
                     worst = worst.max((ahead - exact).abs() / (SHARE * size * a.hypot(b)));
@@ -126,9 +261,9 @@ mod tests {
 
     #[test]
     fn a_rigid_shaft_shows_the_derivative_by_its_compliance() {
-        let mut rigid = Twist::new(&mass(Dual::variable(0.0, 0)), Dual::constant(INERTIA));
+        let mut rigid = twist(Dual::variable(0.0, 0));
         let small = 1e-9;
-        let mut soft = Twist::new(&mass(small), INERTIA);
+        let mut soft = twist(small);
         for k in 1..2000 {
             let acceleration = (f64::from(k) * 0.02).sin();
             let exact = rigid.advance(Dual::constant(acceleration), 1e-3);

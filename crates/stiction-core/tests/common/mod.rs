@@ -3,7 +3,7 @@
 
 use stiction_core::friction::{Channels, LAWS, LawRecord};
 use stiction_core::model::{FrictionModel, LawSpec};
-use stiction_core::motor::{Column, Motor, MotorSpec, PerSample};
+use stiction_core::motor::{Column, Motor, MotorSpec, PerSample, Surroundings};
 
 /// A deterministic stream of numbers in 0 … 1: tests need spread, not quality.
 pub struct Stream(u64);
@@ -52,11 +52,27 @@ pub fn positions(motor: &mut Motor, inputs: &[f64], dt: f64) -> Vec<f64> {
 }
 
 pub fn column(motor: &mut Motor, column: Column, inputs: &[f64], dt: f64) -> Vec<f64> {
+    column_amid(Surroundings::NONE, motor, column, inputs, dt)
+}
+
+pub fn column_amid(
+    around: Surroundings<'_>,
+    motor: &mut Motor,
+    column: Column,
+    inputs: &[f64],
+    dt: f64,
+) -> Vec<f64> {
     let mut values = vec![0.0; inputs.len()];
-    let (load, dt) = (PerSample::Same(0.0), PerSample::Same(dt));
-    motor.simulate(inputs, load, dt, &mut [(column, &mut values)]).unwrap();
+    motor.simulate(inputs, around, PerSample::Same(dt), &mut [(column, &mut values)]).unwrap();
     values
 }
+
+/// Some load and some warmth: there are effects that come with them alone.
+pub const AROUND: Surroundings<'_> = Surroundings {
+    load: PerSample::Same(0.05),
+    temperature: Some(PerSample::Same(40.0)),
+    enabled: None,
+};
 
 /// Parameters drawn within about a factor 3 of the typical ones, inside the bounds and in order.
 pub fn drawn(record: &'static LawRecord, stream: &mut Stream) -> LawSpec {

@@ -269,7 +269,8 @@ def saturation(
 ) -> Check:
     """Whether the input rests at its limits.
 
-    An input that moves in steps anyway is at an extreme by intent and passes.
+    An input that moves in steps anyway is at an extreme by intent and passes; so is the goal of a
+    servo.
 
     Parameters
     ----------
@@ -285,6 +286,8 @@ def saturation(
     values = recording.input
     if values is None or not np.all(np.isfinite(values)) or np.ptp(values) == 0.0:
         return Check(name, "fine", "there is no changing input to look at")
+    if recording.units.get("input") in ("rad", "m") or "proportional" in recording.settings:
+        return Check(name, "fine", "the input is a goal, which has no limits of its own")
     at_limit = np.zeros(len(values), dtype=np.bool_)
     for extreme in (values.min(), values.max()):
         for start, stop in runs(values == extreme):

@@ -1,0 +1,62 @@
+//! Inertia behind a gap.
+
+use super::{Coupling, Effect, EffectFacts, Hook, Scale, SecondMass, Shape};
+use crate::parameter::ParameterSpec;
+use crate::parameters;
+use crate::scalar::Scalar;
+
+parameters! {
+    /// Parameters of [`Backlash`].
+    pub struct BacklashParameters {
+        inertia_share: One, "share of the inertia behind the gap",
+            default Value(0.0), neutral Some(0.0), typical 0.3, bounds 0.0, 0.95;
+        gap: Position, "width of the gap",
+            default Value(1e-3), neutral None, typical 5e-3, bounds 1e-12, 1e3;
+    }
+}
+
+/// A second mass that flies free between the two ends of a gap, which stop it without rebound.
+///
+/// The sensor is on the motor, and so is the friction. While the second mass flies the motor is lighter;
+/// when it is caught the motor is slowed at once.
+///
+/// Neutral: no inertia behind the gap, whatever its width.
+/// Source: Nordin, Gutman, Automatica 38 (2002) 1633-1649, controlling mechanical systems with
+/// backlash; the gap without a spring.
+#[derive(Debug, Clone)]
+pub struct Backlash<S>(BacklashParameters<S>);
+
+impl<S: Scalar> Effect<S> for Backlash<S> {
+    const PARAMETERS: &'static [ParameterSpec] = BacklashParameters::<f64>::SPECS;
+    const HOOKS: &'static [Hook] = &[Hook::SecondMass];
+    const FACTS: EffectFacts = EffectFacts {
+        summary: "a part of the inertia lies behind a gap",
+        means: "at each change of the effort's sign the load is lost and caught again: knocks, \
+                 limit cycles, and an error of position as wide as the gap",
+        remedy: "preload the gear, measure at the load, or cross the gap slowly; look for worn \
+                 teeth, a key, a loose coupling",
+        class: "backlash",
+        coordinate: "time since the effort changed its sign",
+        channels: &[],
+        look_alikes: &["shaft_compliance", "drive_deadband"],
+        experiment: "small reversals, and moves that speed up and slow down without reversing",
+        plan: "chirp",
+        gains: &["inertia_share"],
+        shapes: &[
+            Shape { parameter: "gap", scale: Scale::Presliding, grid: &[1.0, 5.0, 25.0], fitted: true },
+        ],
+        second: &[],
+        law_terms: &[],
+        rotary_only: false,
+    };
+
+    fn build(values: &[S]) -> Self {
+        Self(BacklashParameters::from_values(values))
+    }
+
+
+    fn second_mass(&self) -> Option<SecondMass<S>> {
+        let BacklashParameters { inertia_share, gap } = self.0;
+        Some(SecondMass { share: inertia_share, coupling: Coupling::Gap { width: gap } })
+    }
+}

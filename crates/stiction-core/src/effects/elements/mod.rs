@@ -1,0 +1,5 @@
+//! What all effects are made of.
+
+pub mod facts;
+pub mod situation;
+pub mod sorted;

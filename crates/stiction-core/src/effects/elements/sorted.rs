@@ -1,0 +1,252 @@
+//! The effects of a plant, sorted by where they enter.
+
+use super::situation::{MEMORY, Memory, Passage, Reading, Relaxation, SecondMass, Situation};
+use crate::effects::{AnyEffect, Effect, Hook};
+use crate::error::{Error, Result};
+use crate::friction::{Entry, EntryReader};
+use crate::scalar::Scalar;
+
+/// An effect with what it remembers.
+#[derive(Debug, Clone)]
+struct Kept<S: Scalar> {
+    effect: AnyEffect<S>,
+    memory: Memory<S>,
+}
+
+/// The effects of a plant, sorted once by where they enter.
+#[derive(Debug, Clone)]
+pub struct Effects<S: Scalar> {
+    kept: Vec<Kept<S>>,
+    /// Indices of those on the friction level, the effort, the input and the sensor.
+    levels: Vec<usize>,
+    efforts: Vec<usize>,
+    inputs: Vec<usize>,
+    sensors: Vec<usize>,
+    delay: Option<S>,
+    lag: Option<S>,
+    relaxations: Vec<Relaxation<S>>,
+    second_masses: Vec<SecondMass<S>>,
+    remembers: bool,
+    /// Levels without any effect: 1, and seeded where derivatives by a level are wanted.
+    unit: (S, S),
+}
+
+impl<S: Scalar> Effects<S> {
+    /// Name of what effects remember, as an entry of a state.
+    pub const ENTRY: &'static str = "effect_memory";
+
+    /// Sorts effects by hook. Delays and lags add up.
+    pub fn new(effects: impl IntoIterator<Item = AnyEffect<S>>) -> Self {
+        let mut sorted = Self {
+            kept: Vec::new(),
+            levels: Vec::new(),
+            efforts: Vec::new(),
+            inputs: Vec::new(),
+            sensors: Vec::new(),
+            delay: None,
+            lag: None,
+            relaxations: Vec::new(),
+            second_masses: Vec::new(),
+            remembers: false,
+            unit: (S::constant(1.0), S::constant(1.0)),
+        };
+        for effect in effects {
+            let place = sorted.kept.len();
+            for hook in effect.hooks() {
+                match hook {
+                    Hook::FrictionLevel => sorted.levels.push(place),
+                    Hook::AddedEffort => sorted.efforts.push(place),
+                    Hook::InputMap => sorted.inputs.push(place),
+                    Hook::SensorMap => sorted.sensors.push(place),
+                    Hook::InputDelay => {
+                        sorted.delay = sum(sorted.delay, with_effect!(&effect, |e| e.delay()));
+                    }
+                    Hook::InputLag => {
+                        sorted.lag = sum(sorted.lag, with_effect!(&effect, |e| e.lag()));
+                    }
+                    Hook::StateRelaxation => {
+                        sorted.relaxations.extend(with_effect!(&effect, |e| e.relaxation()));
+                    }
+                    Hook::SecondMass => {
+                        sorted.second_masses.extend(with_effect!(&effect, |e| e.second_mass()));
+                    }
+                }
+            }
+            sorted.remembers |= effect.remembers();
+            let memory = with_effect!(&effect, |e| e.fresh());
+            sorted.kept.push(Kept { effect, memory });
+        }
+        sorted
+    }
+
+    /// Whether any effect changes the friction level.
+    #[inline]
+    pub fn changes_levels(&self) -> bool {
+        !self.levels.is_empty()
+    }
+
+    /// Multipliers of friction and of viscous friction.
+    #[inline]
+    pub fn levels(&self, at: &Situation<S>) -> (S, S) {
+        let (mut friction, mut viscous) = self.unit;
+        for place in &self.levels {
+            let Kept { effect, memory } = &self.kept[*place];
+            let change = with_effect!(effect, |e| e.level(at, memory));
+            friction += change.friction;
+            viscous += change.viscous;
+        }
+        (friction, viscous)
+    }
+
+    /// Seeds the levels of dry and viscous friction, to differentiate by them.
+    pub fn seed_levels(&mut self, friction: S, viscous: S) {
+        self.unit = (friction, viscous);
+    }
+
+    /// Whether any effect remembers what happened before.
+    #[inline]
+    pub fn remembers(&self) -> bool {
+        self.remembers
+    }
+
+    /// Takes a sample into all memories.
+    #[inline]
+    pub fn remember(&mut self, passage: &Passage<S>) {
+        if self.remembers {
+            for Kept { effect, memory } in &mut self.kept {
+                with_effect!(effect, |e| e.remember(memory, passage));
+            }
+        }
+    }
+
+    /// Back to a contact that was never moved.
+    pub fn forget(&mut self) {
+        for Kept { effect, memory } in &mut self.kept {
+            *memory = with_effect!(effect, |e| e.fresh());
+        }
+    }
+
+    /// Takes over what the effects of another plant remember, which depends on no parameter of this
+    /// one; effects beyond those of the other start afresh.
+    pub fn resume(&mut self, other: &Effects<f64>) {
+        for (kept, other) in self.kept.iter_mut().zip(&other.kept) {
+            kept.memory = other.memory.map(S::constant);
+        }
+    }
+
+    fn remembering(&self) -> impl Iterator<Item = &Kept<S>> {
+        self.kept.iter().filter(|kept| kept.effect.remembers())
+    }
+
+    /// Memories as an entry of a state: rows of two numbers, as many for each effect that remembers.
+    pub fn entry(&self) -> (&'static str, Entry) {
+        let numbers: Vec<f64> =
+            self.remembering().flat_map(|kept| kept.memory).map(Scalar::re).collect();
+        let (rows, _) = numbers.as_chunks::<2>();
+        (Self::ENTRY, Entry::Pairs(rows.to_vec()))
+    }
+
+    /// Takes the memories from an entry of a state.
+    pub fn restore(&mut self, read: &mut EntryReader<'_>) -> Result<()> {
+        let rows = read.pairs(Self::ENTRY)?;
+        let (given, wanted) = (rows.len(), self.remembering().count() * MEMORY / 2);
+        if given != wanted {
+            let problem = format!("has {given} rows where the effects of this motor need {wanted}");
+            return Err(Error::State { name: Self::ENTRY.to_owned(), problem });
+        }
+        let mut numbers = rows.as_flattened().iter();
+        let remembering = self.kept.iter_mut().filter(|kept| kept.effect.remembers());
+        for slot in remembering.flat_map(|kept| &mut kept.memory) {
+            *slot = S::constant(numbers.next().copied().unwrap_or(0.0));
+        }
+        Ok(())
+    }
+
+    /// Sum of the added efforts.
+    #[inline]
+    pub fn effort(&self, at: &Situation<S>) -> S {
+        let mut sum = S::constant(0.0);
+        for place in &self.efforts {
+            let Kept { effect, memory } = &self.kept[*place];
+            sum += with_effect!(effect, |e| e.effort(at, memory));
+        }
+        sum
+    }
+
+    /// What the input becomes.
+    #[inline]
+    pub fn input(&self, input: S, at: &Situation<S>) -> S {
+        self.inputs.iter().fold(input, |input, place| {
+            with_effect!(&self.kept[*place].effect, |e| e.input(input, at))
+        })
+    }
+
+    /// What the sensor reads.
+    #[inline]
+    pub fn sensor(&self, position: S) -> S {
+        self.sensors.iter().fold(position, |x, place| {
+            x + with_effect!(&self.kept[*place].effect, |e| e.sensor(x)).error
+        })
+    }
+
+    /// Whether the sensor reads anything but the position.
+    #[inline]
+    pub fn misreads(&self) -> bool {
+        !self.sensors.is_empty()
+    }
+
+    /// The position at which the sensor reads this.
+    pub fn behind(&self, reading: S) -> S {
+        self.sensors.iter().rev().fold(reading, |reading, place| {
+            with_effect!(&self.kept[*place].effect, |e| behind(reading, |x| e.sensor(x)))
+        })
+    }
+
+    /// How late the input arrives, where an effect delays it.
+    pub fn delay(&self) -> Option<S> {
+        self.delay
+    }
+
+    /// Time constant with which the effort follows the input, where an effect lets it lag.
+    pub fn lag(&self) -> Option<S> {
+        self.lag
+    }
+
+    /// What gives way in series with the law.
+    pub fn relaxations(&self) -> &[Relaxation<S>] {
+        &self.relaxations
+    }
+
+    /// Second masses behind shafts and gaps.
+    pub fn second_masses(&self) -> &[SecondMass<S>] {
+        &self.second_masses
+    }
+
+    /// Sum of the stiffnesses that effects add to a contact with this friction of slow sliding.
+    pub fn stiffness(&self, sliding: f64) -> f64 {
+        self.kept.iter().map(|kept| with_effect!(&kept.effect, |e| e.stiffness(sliding))).sum()
+    }
+}
+
+fn sum<S: Scalar>(one: Option<S>, other: Option<S>) -> Option<S> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(one + other),
+        (one, other) => one.or(other),
+    }
+}
+
+/// Newton's iteration for the position behind a reading; the last pass carries the derivatives.
+fn behind<S: Scalar>(reading: S, sensor: impl Fn(S) -> Reading<S>) -> S {
+    let mut x = S::constant(reading.re());
+    for _ in 0..50 {
+        let read = sensor(x);
+        let next = x - (x + read.error - reading) / (read.slope + 1.0);
+        let moved = (next.re() - x.re()).abs();
+        x = next;
+        if moved <= 4.0 * f64::EPSILON * reading.re().abs() {
+            break;
+        }
+    }
+    let read = sensor(S::constant(x.re()));
+    S::constant(x.re()) - (read.error + (x.re()) - reading) / (read.slope + 1.0)
+}

@@ -1,0 +1,116 @@
+//! What the methods of `Motor` are given, as the core takes it.
+
+use numpy::PyReadonlyArrayDyn;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use stiction_core::integrate::Integrator;
+use stiction_core::motor::EffectSpec;
+use stiction_core::servo::Servo;
+use stiction_core::shoot::{Windows, check};
+
+use crate::arrays::one_row;
+use crate::error::{IntoPython, input_error};
+use crate::state::keywords;
+
+/// An integrator by its name.
+pub fn integrator_of(py: Python<'_>, name: &str) -> PyResult<Integrator> {
+    match name {
+        "fast" => Ok(Integrator::Fast),
+        "reference" => Ok(Integrator::Reference),
+        other => {
+            Err(input_error(py, format!("integrator '{other}' is unknown; known: fast, reference")))
+        }
+    }
+}
+
+/// Effects from a dict of names and their parameters.
+pub fn effects_of(effects: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<EffectSpec>> {
+    let mut list = Vec::new();
+    for (name, values) in effects.into_iter().flatten() {
+        let py = values.py();
+        let name: String = name
+            .extract()
+            .map_err(|_| input_error(py, format!("effect name {name} is not a word")))?;
+        let numbers = numbers_of(&format!("effect {name}"), &values)?;
+        list.push(EffectSpec::new(&name, &numbers).or_input_error(py)?);
+    }
+    Ok(list)
+}
+
+/// A servo from a dict of its numbers.
+pub fn servo_of(given: &Bound<'_, PyAny>) -> PyResult<Servo> {
+    Servo::new(&numbers_of("servo", given)?).or_input_error(given.py())
+}
+
+/// Passes are few: more threads than this have nothing to do.
+const MOST_THREADS: i64 = 256;
+
+/// The numbers given for an effect or for a start.
+pub fn numbers_of(owner: &str, values: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f64)>> {
+    let py = values.py();
+    let values = values
+        .cast::<PyDict>()
+        .map_err(|_| input_error(py, format!("parameters of {owner} are not a dict")))?;
+    let (numbers, words) = keywords(owner, Some(values))?;
+    match words.first() {
+        None => Ok(numbers),
+        Some((option, _)) => {
+            Err(input_error(py, format!("{option} of {owner} is a word; allowed is a number")))
+        }
+    }
+}
+
+/// Effects that may be missing, from pairs of a name and a dict of shape parameters.
+pub fn candidates_of(candidates: &Bound<'_, PyAny>) -> PyResult<Vec<EffectSpec>> {
+    let py = candidates.py();
+    let wanted = "give pairs of an effect's name and a dict of its shape, for instance \
+                  [('cogging', {'order': 12.0})]";
+    let each = candidates
+        .try_iter()
+        .map_err(|_| input_error(py, format!("candidates is {candidates}; {wanted}")))?;
+    let mut list = Vec::new();
+    for (k, candidate) in each.enumerate() {
+        let candidate = candidate?;
+        let pair: (String, Bound<'_, PyAny>) = candidate
+            .extract()
+            .map_err(|_| input_error(py, format!("candidates[{k}] is {candidate}; {wanted}")))?;
+        let numbers = numbers_of(&format!("effect {}", pair.0), &pair.1)?;
+        list.push(EffectSpec::candidate(&pair.0, &numbers).or_input_error(py)?);
+    }
+    Ok(list)
+}
+
+/// Gains of all candidates.
+pub fn gains_of(candidates: &[EffectSpec]) -> usize {
+    candidates.iter().map(|effect| effect.record.facts.gains.len()).sum()
+}
+
+pub fn threads_of(py: Python<'_>, threads: i64) -> PyResult<usize> {
+    if (1..=MOST_THREADS).contains(&threads) {
+        return Ok(threads as usize);
+    }
+    Err(input_error(
+        py,
+        format!("threads = {threads} is out of bounds: allowed is 1 to {MOST_THREADS}"),
+    ))
+}
+
+/// Weights of the samples of a window, and from how many samples to how many the windows start.
+pub struct Shots<'py> {
+    weights: PyReadonlyArrayDyn<'py, f64>,
+    stride: usize,
+}
+
+impl<'py> Shots<'py> {
+    pub fn read(weights: &Bound<'py, PyAny>, stride: i64) -> PyResult<Self> {
+        let py = weights.py();
+        let weights = one_row("weights", weights)?;
+        let shots = Self { weights, stride: usize::try_from(stride).unwrap_or(0) };
+        check(&shots.windows()?).or_input_error(py)?;
+        Ok(shots)
+    }
+
+    pub fn windows(&self) -> PyResult<Windows<'_>> {
+        Ok(Windows { stride: self.stride, weights: self.weights.as_slice()? })
+    }
+}

@@ -1,0 +1,97 @@
+"""The drive of a plant file: what makes an effort of the input."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from .errors import InputError
+from .keys import choice, known
+from .parameter import Parameter, number
+from .wording import listed
+
+__all__ = ["GOALS", "SERVO_NUMBERS", "gain_name", "read_drive", "servo_numbers"]
+
+INPUTS: Final = ("current_a", "voltage_v", "torque_nm", "force_n")
+"""What a drive may be commanded in."""
+GOALS: Final = {"rotary": "goal_rad", "linear": "goal_m"}
+"""What a servo is commanded in."""
+KINDS: Final = ("direct", "prescribed_motion", "servo")
+LEAST_GAIN: Final = 1e-12
+"""Effort per unit of input; no unit of an input is that large."""
+SERVO_NUMBERS: Final = {
+    "proportional": "proportional",
+    "integral": "integral",
+    "derivative": "derivative",
+    "duty_limit": "duty_limit",
+    "supply_v": "supply",
+    "resistance_ohm": "resistance",
+    "current_limit_a": "current_limit",
+}
+"""Keys of a servo beside its torque constant, and what ``Motor`` calls them."""
+
+_NEEDED: Final = ("proportional", "supply_v", "resistance_ohm", "torque_constant")
+_OTHER_MOTION: Final = {"rotary": "force_n", "linear": "torque_nm"}
+
+
+def gain_name(drive: Mapping[str, Any]) -> str:
+    """What a drive calls its effort per unit: of input, or of a servo's current."""
+    return "torque_constant" if drive.get("kind") == "servo" else "gain"
+
+
+def servo_numbers(drive: Mapping[str, Any]) -> dict[str, float] | None:
+    """The numbers of a servo as ``Motor`` takes them, None where the drive is none."""
+    if drive.get("kind") != "servo":
+        return None
+    return {SERVO_NUMBERS[key]: float(drive[key]) for key in SERVO_NUMBERS if key in drive}
+
+
+def read_drive(given: Mapping[str, Any], motion: str, where: str) -> dict[str, Any]:
+    """Check the table ``[drive]``; a gain that is to be fitted comes back as a ``Parameter``.
+
+    Raises
+    ------
+    InputError
+        Unknown or missing keys, wrong types, values out of bounds.
+    """
+    kind = choice(given["kind"], KINDS, f"{where} kind") if "kind" in given else None
+    drive: dict[str, Any] = {} if kind is None else {"kind": kind}
+    if kind == "servo":
+        known(given, ("kind", "torque_constant", *SERVO_NUMBERS), f"{where} of kind 'servo'")
+        for name in _NEEDED:
+            if name not in given:
+                raise InputError(
+                    f"{where} {name} is missing; a servo needs {listed(_NEEDED)}: state it"
+                )
+        drive["input"] = GOALS[motion]
+        drive |= {
+            key: number(given[key], f"{where} {key}") for key in SERVO_NUMBERS if key in given
+        }
+    else:
+        known(given, ("kind", "input", "gain", "limit"), where)
+        if "input" in given:
+            allowed = [name for name in INPUTS if name != _OTHER_MOTION[motion]]
+            drive["input"] = choice(given["input"], allowed, f"{where} input of a {motion} plant")
+        if "limit" in given:
+            drive["limit"] = number(given["limit"], f"{where} limit")
+            if drive["limit"] <= 0.0:
+                raise InputError(f"{where} limit = {drive['limit']} is not above 0")
+    name = gain_name(drive)
+    if name in given:
+        drive[name] = _gain(given[name], f"{where} {name}")
+    return drive
+
+
+def _gain(given: Any, where: str) -> float | Parameter:
+    """A gain: exact where it is a plain number, fitted where it is a table that does not fix it."""
+    parameter = Parameter.read(given, where)
+    gain = parameter.value
+    if gain == 0.0:
+        raise InputError(f"{where} = 0 moves nothing; give the effort per unit of input")
+    if not LEAST_GAIN <= abs(gain) <= 1.0 / LEAST_GAIN:
+        raise InputError(
+            f"{where} = {gain} is out of bounds: allowed are magnitudes from {LEAST_GAIN:g} "
+            f"to {1.0 / LEAST_GAIN:g}"
+        )
+    fitted = isinstance(given, dict) and not parameter.fixed
+    return parameter if fitted else gain
