@@ -1,4 +1,4 @@
-"""The oracle of rate-and-state friction against what is published of it and against closed forms."""
+"""The oracle of rate-and-state friction against what is published of it, and closed forms."""
 
 import math
 

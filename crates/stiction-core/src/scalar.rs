@@ -57,6 +57,12 @@ pub trait Scalar:
         let e = self.re().exp_m1();
         self.chain(e, e + 1.0)
     }
+    /// Natural logarithm of a positive number.
+    #[inline]
+    fn ln(self) -> Self {
+        let x = self.re();
+        self.chain(x.ln(), 1.0 / x)
+    }
     /// Sine.
     #[inline]
     fn sin(self) -> Self {
@@ -246,9 +252,10 @@ mod tests {
     #[test]
     fn functions_agree_with_central_differences() {
         type Pair = (fn(Dual) -> Dual, fn(f64) -> f64);
-        let functions: [Pair; 5] = [
+        let functions: [Pair; 6] = [
             (|x| Scalar::exp(x), f64::exp),
             (|x| Scalar::exp_m1(x), f64::exp_m1),
+            (|x| Scalar::ln(x), f64::ln),
             (|x| Scalar::sin(x), f64::sin),
             (|x| Scalar::cos(x), f64::cos),
             (|x| Scalar::sqrt(x), f64::sqrt),

@@ -16,7 +16,8 @@ fn the_timed_paths_break_away_and_stick_again() {
         let mut model = model(record);
         let mut friction = vec![0.0; SAMPLES];
         model.simulate(&velocities(), DT, |_| Channels::default(), &mut friction);
-        let hooked = record.parameters.iter().any(|p| p.name == "breakaway");
+        let slides = ["breakaway", "direct_effect"];
+        let hooked = record.parameters.iter().any(|p| slides.contains(&p.name));
         let counted = model.statistics();
         let events = if hooked { counted.breakaways } else { counted.closings };
         assert!(events > 1, "{}: {counted:?}", record.name);

@@ -65,6 +65,30 @@ pub struct Outcome<S> {
     pub damping: S,
 }
 
+/// What carries a body on through a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Push<S> {
+    /// Velocity at the start.
+    pub velocity: S,
+    /// Friction at the start.
+    pub friction: S,
+    /// All other effort, the mean over the step.
+    pub effort: S,
+    /// Inertia.
+    pub inertia: S,
+    /// Duration.
+    pub span: S,
+}
+
+/// Where a step takes a body.
+#[derive(Debug, Clone, Copy)]
+pub struct Arrival<S> {
+    /// Velocity at the end.
+    pub velocity: S,
+    /// Displacement over the step.
+    pub displacement: S,
+}
+
 /// A change of contact mode inside a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Event {
@@ -143,6 +167,10 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     const PARAMETERS: &'static [ParameterSpec];
     /// Parameters that a fit leaves alone unless they are stated: terms beyond the core of the law.
     const OPTIONAL: &'static [&'static str] = &[];
+    /// Whether friction rises so steeply from rest that the velocity at the end of a step has to be
+    /// solved for together with it ([`FrictionLaw::arrive`]); both integrators then do so, and a
+    /// trial holds the whole state after a step.
+    const STEEP: bool = false;
     /// What a contact may bring along from before a recording, in the order of
     /// [`FrictionLaw::primed`]'s values; at 0, the neutral value of each, it was never moved.
     const START: &'static [ParameterSpec] = &[];
@@ -193,6 +221,12 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn outcome(&self, trial: &Self::Trial) -> Outcome<S>;
     /// Accepts a step.
     fn commit(&self, state: &mut Self::State, trial: &Self::Trial);
+
+    /// Where a step takes a body whose contact ends it in the state of this trial. Asked of a law
+    /// alone whose friction is [`FrictionLaw::STEEP`].
+    fn arrive(&self, _trial: &Self::Trial, push: &Push<S>, _channels: &Channels<S>) -> Arrival<S> {
+        Arrival { velocity: push.velocity, displacement: push.velocity * push.span }
+    }
 
     /// Whether a contact at velocity 0 holds this effort rigidly. May start a slide instead.
     fn holds(&self, _state: &mut Self::State, _channels: &Channels<S>) -> bool {
@@ -402,6 +436,7 @@ laws! {
     coulomb => Coulomb,
     hsieh_pan => HsiehPan,
     maxwell_slip => MaxwellSlip,
+    rate_and_state => RateAndState,
 }
 
 /// The record of the law called `name`.

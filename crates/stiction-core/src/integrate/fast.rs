@@ -2,6 +2,7 @@
 
 use super::events::Stepper;
 use super::machine::{Machine, Run, hold};
+use super::steep;
 use crate::friction::{FrictionLaw, Motion};
 use crate::scalar::Scalar;
 
@@ -29,6 +30,9 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Fast<'_, S> {
     #[inline]
     fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt {
         let (machine, run) = (self.machine, &*self.run);
+        if L::STEEP {
+            return steep::attempt(machine, run, (self.input, self.load), law, state, span);
+        }
         let half = span * 0.5;
         let start = run.situation();
         let effort = machine.driven(self.input, &start) + self.load + run.ambient;

@@ -11,6 +11,7 @@ mod fast;
 mod machine;
 mod reference;
 mod shaft;
+mod steep;
 
 pub use contact::{Along, Held};
 pub use events::{Stepper, quiet, through_events};

@@ -3,6 +3,7 @@
 use super::events::Stepper;
 use super::fast::Attempt;
 use super::machine::{Machine, Run, hold};
+use super::steep;
 use crate::effects::Situation;
 use crate::friction::{FrictionLaw, INTERNAL, Motion};
 use crate::scalar::{Scalar, sign};
@@ -82,6 +83,9 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Reference<'_, S> {
 
     fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt {
         let run = &*self.run;
+        if L::STEEP {
+            return steep::finer(self.machine, run, (self.input, self.load), law, state, span);
+        }
         let [a, b, c] = law.internal(state);
         let start = [
             S::constant(0.0),
