@@ -1,5 +1,6 @@
 //! Rate-and-state friction: a direct effect of speed and an age of the contact.
 
+use super::elements::arcsinh::{Balance, arcsinh_of_exp};
 use super::{
     Arrival, Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
     Push, Statistics,
@@ -34,11 +35,6 @@ parameters! {
             default Value(0.0), neutral Some(0.0), typical 1.0, bounds -60.0, 60.0;
     }
 }
-
-/// Above this argument of [`arcsinh_of_exp`] the square root is its square to the last bit.
-const LARGE: f64 = 20.0;
-/// Newton steps of [`FrictionLaw::arrive`] at most; five to eight are usual.
-const MOST_STEPS: u32 = 60;
 
 /// Rate-and-state friction, regularised so that it is defined at v = 0.
 ///
@@ -103,17 +99,6 @@ impl<S: Scalar> LawState<S> for RateAndStateState<S> {
     fn statistics(&self) -> Statistics {
         self.statistics
     }
-}
-
-/// arsinh(e^x) and its slope; e^x itself may be far out of range.
-#[inline]
-fn arcsinh_of_exp<S: Scalar>(x: S) -> (S, S) {
-    if x.re() > LARGE {
-        return (x + std::f64::consts::LN_2, S::constant(1.0));
-    }
-    let z = x.re().exp();
-    let slope = z / z.hypot(1.0);
-    (x.chain(z.asinh(), slope), x.chain(slope, slope * (1.0 - slope * slope)))
 }
 
 /// (1 − e^(−x))/x for x ≥ 0.
@@ -207,15 +192,6 @@ impl<S: Scalar> RateAndState<S> {
         RateAndStateState { log_age, dry, mode, statistics }
     }
 
-    /// The velocity at which dry friction is `z` times the direct effect.
-    #[inline]
-    fn velocity(&self, z: S, exponent: S) -> S {
-        let v_0 = self.parameters.reference_velocity;
-        if z.re().abs() < 1.0 {
-            return v_0 * 2.0 * (-exponent).exp() * z.chain(z.re().sinh(), z.re().cosh());
-        }
-        v_0 * ((z - exponent).exp() - (-z - exponent).exp())
-    }
 }
 
 impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
@@ -335,10 +311,7 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
         *state = trial.after;
     }
 
-    // J·(v₁ − v₀) = h·(E − F̄) for z₁, with v₁ = v(z₁) and the mean friction
-    // F̄ = L·a·(z₁ − w·δ/(1 + δ²)) + F_v·(v₀ + v₁)/2,  δ = z₁ − z₀,  w = |v₀|/(2·(|v₀| + h·L·a/J)):
-    // the trapezoidal rule where that is safe, the end of the step alone where friction is stiff
-    // or has changed a lot, so that a stop ends at rest and does not ring.
+    // J·(v₁ − v₀) = h·(E − F̄) over the step: see [`Balance`].
     fn arrive(
         &self,
         trial: &RateAndStateTrial<S>,
@@ -353,63 +326,24 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
             let velocity = impulse / (push.inertia + drag);
             return Arrival { velocity, displacement: (before + velocity) * span * 0.5 };
         }
-        let exponent = self.exponent(trial.after.log_age);
-        let heavy = (push.inertia + drag) / (span * direct);
-        let wanted = impulse / (span * direct);
-        let old = (push.friction - before * drag * 2.0 / span) / direct;
-        let speed = before.abs();
-        let weight = speed / (speed + span * direct / push.inertia) * 0.5;
-        let mean = |z: S| {
-            let change = z - old;
-            z - weight * change / (change * change + 1.0)
+        let balance = Balance {
+            heavy: (push.inertia + drag) / (span * direct),
+            wanted: impulse / (span * direct),
+            old: (push.friction - before * drag * 2.0 / span) / direct,
+            scale: self.parameters.reference_velocity,
+            exponent: self.exponent(trial.after.log_age),
         };
-        let excess = |z: S| heavy * self.velocity(z, exponent) + mean(z) - wanted;
-
-        // On real parts, from the side on which the excess is convex, within a bracket.
-        let zero = S::constant(0.0);
-        let side = -sign(excess(zero).re());
-        let (mut low, mut z) = (0.0, 0.0);
-        if side != 0.0 {
-            let reach = side * wanted.re() + 0.25;
-            let v_0 = self.parameters.reference_velocity.re();
-            let inertial = (reach / (heavy.re() * 2.0 * v_0)).ln() + exponent.re();
-            let mut high = arcsinh_of_exp(inertial).0.min(reach);
-            z = high;
-            for _ in 0..MOST_STEPS {
-                let there = side * excess(S::constant(side * z)).re();
-                if there > 0.0 {
-                    high = z;
-                } else {
-                    low = z;
-                }
-                let newton = z - there / self.steepness(side * z, (heavy, exponent, old, weight));
-                let next =
-                    if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-                let moved = (next - z).abs();
-                z = next;
-                if moved <= 1e-15 * z || high - low <= 1e-15 * high {
-                    break;
-                }
-            }
-        }
-        // One step in the full number type carries the derivatives.
-        let root = S::constant(side * z);
-        let slope = self.steepness(side * z, (heavy, exponent, old, weight));
-        let root = root - excess(root) / slope;
-        let by_friction = self.velocity(root, exponent);
-        // The same number from the momentum, which keeps more digits of a fast motion.
-        let fast = (heavy * by_friction).re().abs() > 1.0;
-        let velocity = if fast { (wanted - mean(root)) / heavy } else { by_friction };
+        let (root, velocity) = balance.solve();
         let displacement = (before + velocity) * span * 0.5;
 
         // What a body brakes on its way to rest is done before the step ends.
-        let (changed, push) = (velocity - before, (push.effort - push.friction) / push.inertia);
-        let braking = changed.re() * before.re() < 0.0 && changed.re() * push.re() > 0.0;
-        if !braking || changed.re().abs() >= push.re().abs() * span.re() {
+        let (changed, pace) = (velocity - before, (push.effort - push.friction) / push.inertia);
+        let braking = changed.re() * before.re() < 0.0 && changed.re() * pace.re() > 0.0;
+        if !braking || changed.re().abs() >= pace.re().abs() * span.re() {
             return Arrival { velocity, displacement };
         }
-        let square = (root - old) * (root - old);
-        let early = (span - changed / push) * square / (square + 1.0);
+        let square = (root - balance.old) * (root - balance.old);
+        let early = (span - changed / pace) * square / (square + 1.0);
         Arrival { velocity, displacement: displacement + early * changed * 0.5 }
     }
 
@@ -461,17 +395,5 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
         channels: &Channels<S>,
     ) -> RateAndStateTrial<S> {
         self.advance(state, motion, channels)
-    }
-}
-
-impl<S: Scalar> RateAndState<S> {
-    /// Slope by z of what [`FrictionLaw::arrive`] makes 0.
-    #[inline]
-    fn steepness(&self, z: f64, (heavy, exponent, old, weight): (S, S, S, S)) -> f64 {
-        let q = exponent.re();
-        let by_velocity = self.parameters.reference_velocity.re() * ((z - q).exp() + (-z - q).exp());
-        let square = (z - old.re()) * (z - old.re());
-        let trapezoid = weight.re() * (1.0 - square) / ((1.0 + square) * (1.0 + square));
-        heavy.re() * by_velocity + 1.0 - trapezoid
     }
 }

@@ -1,5 +1,6 @@
 //! Building blocks that several laws share.
 
+pub mod arcsinh;
 pub mod contact_age;
 pub mod lag;
 pub mod memory;
