@@ -90,10 +90,15 @@ class Kernel:
         return np.convolve(values, self._second, "valid")
 
 
-def smooth(values: FloatArray, dt: float, support: float) -> FloatArray:
-    """Weighted mean over a short support; the ends are continued, so the length stays."""
+def smooth(values: FloatArray, dt: float, support: float, *, drifts: bool = False) -> FloatArray:
+    """Weighted mean over a short support; the ends are continued, so the length stays.
+
+    They go on as they are, or, if the values drift, as they have come.
+    """
     weights = Kernel(support, dt).weights
     half = len(weights) // 2
+    if drifts and half < len(values):
+        return np.convolve(np.pad(values, half, "reflect", reflect_type="odd"), weights, "valid")
     return np.convolve(np.pad(values, half, "edge"), weights, "valid")
 
 

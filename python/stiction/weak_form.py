@@ -63,6 +63,9 @@ ACCELERATION_SHARE: Final = 0.1
 FLICKER_SHARE: Final = 0.2
 """White noise beyond this share of a count makes readings flicker, and a follower with a backlash
 keeps that out. Where they do not flicker it would only be late by half a count."""
+TURNING_SHARE: Final = 0.1
+"""Noise of the velocity over its rms above which a machine that is moved seems to turn round: its
+motion is then smoothed over up to the widest kernel."""
 BACKLASH_TIMES: Final = 4.0
 """Width of that backlash in standard deviations of the noise, a count at least: noise turns a slow
 motion round for a sample, and dry friction would turn with it."""
@@ -163,6 +166,7 @@ class WeakForm:
         self._noise = max(noise, self.count / np.sqrt(12.0))
         noisy = noise > NOISY_STEP * float(np.sqrt(np.mean(np.diff(x) ** 2)))
         self._smoothing = max(self.dt, SMOOTHING_SHARE * self.kernel.support) if noisy else self.dt
+        self._steadied = self._turned(x)
         self.readings = x
         self.position = self.driving(x)
         self.input = np.zeros(len(x) - 1) if self.prescribed else u[:-1]
@@ -236,6 +240,8 @@ class WeakForm:
         """The motion that drives friction, from readings of a position; same shape."""
         if self.adapts:
             return adaptively_smoothed(readings, self.dt, self._noise)
+        if self._steadied > 0.0:
+            return smooth(readings, self.dt, self._steadied, drifts=True)
         return smooth(play(readings, self._backlash), self.dt, self._smoothing)
 
     def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
@@ -275,6 +281,25 @@ class WeakForm:
     def inertial(self, plant: Plant, position: FloatArray, ahead: FloatArray) -> FloatArray:
         """Inertia term of a motion whose centre of mass is that far ahead of the sensor."""
         return self.own(plant).inertia * (self.accelerations(position) + self._bent(ahead))
+
+    def _turned(self, readings: FloatArray) -> float:
+        """Support, s, over which noise of a machine that is moved no longer turns its motion round.
+
+        0 where it does not anyway. A machine that is moved does not stop by itself: nothing is
+        smeared by it but what the effort is averaged over, too.
+        """
+        if self._springy or not self.prescribed or len(readings) < 3:
+            return 0.0
+
+        def steady(kernel: Kernel) -> bool:
+            slopes = np.diff(kernel.weights, prepend=0.0, append=0.0) / self.dt
+            speed = np.convolve(readings, slopes, "valid")
+            noise = self._noise * float(np.linalg.norm(slopes))
+            return bool(noise <= TURNING_SHARE * np.sqrt(np.mean(speed**2)))
+
+        if steady(Kernel(self._smoothing, self.dt)):
+            return 0.0
+        return _narrowest(self.dt, steady).support
 
     def _follower(self, plant: Plant, motion: FloatArray) -> Motor:
         motor = self.own(plant).follower()

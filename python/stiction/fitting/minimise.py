@@ -12,7 +12,7 @@ import numpy as np
 from ..plant import Plant
 from ..trajectory import FloatArray
 from .levenberg import Minimum, escaped, levenberg_marquardt
-from .rows import Nuisances, Rows, Start, primed, start_quantities, timing_bound
+from .rows import Nuisances, Rows, Start, numbers, primed, start_quantities, timing_bound
 from .slopes import places_of, slopes
 from .variables import Variables, records
 
@@ -171,6 +171,8 @@ class _Minimiser:
         effort = max(float(np.std(each.form.effort)) for each in self.rows)
         if name == "force":
             return max(effort, 1e-300)
+        if name in (known := numbers(self.plant)):
+            return known[name].typical
         stiffness = self.plant.friction.parameters.get("initial_stiffness")
         return 1e-4 if stiffness is None else max(effort / stiffness.value, 1e-300)
 
@@ -180,6 +182,7 @@ class _Minimiser:
         most = START_TIMES * max(float(np.max(np.abs(each.form.effort))) for each in self.rows)
         span = max(float(np.ptp(each.form.position)) for each in self.rows)
         reach = {"force": (-most, most), "hardening": (0.0, span)}
+        reach |= {name: own.bounds for name, own in numbers(self.plant).items()}
         low = [reach[name][0] for _, name in self.starts]
         high = [reach[name][1] for _, name in self.starts]
         bounds = (

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..catalogue import effects
+from ..catalogue import ParameterRecord, effects
 from ..plant import Plant
 from ..recording import Part, Recording
 from ..trajectory import FloatArray
@@ -20,6 +20,7 @@ __all__ = [
     "Nuisances",
     "Rows",
     "Start",
+    "numbers",
     "primed",
     "rows_of",
     "start_quantities",
@@ -104,6 +105,11 @@ def rows_of(form: WeakForm, recording: Recording, index: int, parts: Sequence[Pa
     return chosen & warm(form, recording)
 
 
+def numbers(plant: Plant) -> dict[str, ParameterRecord]:
+    """Start quantities without a unit: their size and their bounds are those of the catalogue."""
+    return {each.name: each for each in plant.friction.record.start if each.unit == "1"}
+
+
 def start_quantities(plant: Plant) -> tuple[str, ...]:
     """Names of what the law of a plant remembers from before a recording."""
     return tuple(quantity.name for quantity in plant.friction.record.start)
@@ -142,6 +148,7 @@ def told_starts(plant: Plant, rows: Sequence[Rows]) -> list[tuple[int, str]]:
         size = float(np.sqrt(np.mean(left**2)))
         # A quantity in its own unit: what it may do is its slope times a typical size.
         scales = {"force": float(np.sqrt(np.mean(each.form.effort**2)))}
+        scales |= {name: own.typical for name, own in numbers(plant).items()}
         for name, column in zip(names, columns.T, strict=True):
             typical = scales.get(name, 0.1 * float(np.ptp(each.form.position)))
             if np.max(np.abs(column)) * typical > TOLD * size:

@@ -30,6 +30,8 @@ ABOVE_COULOMB: Final = 1.1
 """Break-away over Coulomb friction to start from."""
 
 
+REFERRED: Final = ("rate_and_state",)
+"""Laws whose Coulomb friction is that at a reference speed, which no data tell."""
 HARDENED: Final = 1.0
 """Creep under a held Coulomb friction to start from, in reaches."""
 
@@ -64,6 +66,9 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
         "breakaway": ABOVE_COULOMB * coulomb,
         "viscous": max(viscous, 0.0),
     }
+    if plant.friction.law in REFERRED and "reference_velocity" not in stated:
+        # Any speed would do; that of the data makes Coulomb friction what it is there.
+        stated["reference_velocity"] = Parameter(_usual_speed(forms), fixed=True)
     silent = [name for name in core if name not in stated]
     for name in silent:
         low, high = core[name].bounds
@@ -79,7 +84,18 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
     )
     if "initial_stiffness" in silent:
         return _stiffness(whole, forms, coulomb, silent)
+    if "slip_distance" in silent:
+        span = max(float(np.ptp(form.position)) for form in forms)
+        path = "friction.slip_distance"
+        return _likeliest([whole.with_values({path: share * span}) for share in REACHES], forms)
     return [whole]
+
+
+def _usual_speed(forms: Sequence[WeakForm]) -> float:
+    """Median speed of sliding, to one digit."""
+    speeds = np.abs(np.concatenate([form.velocity for form in forms]))
+    usual = float(np.median(speeds[speeds > SLIDING_SHARE * float(np.sqrt(np.mean(speeds**2)))]))
+    return float(f"{usual:.0e}")
 
 
 def _begun(effect: Effect) -> Effect:
@@ -184,7 +200,11 @@ def _stiffness(
             {path: float(np.clip(value, *bounds[path])) for path, value in own.items()}
         )
 
-    plants = [tried(share * span) for share in REACHES]
+    return _likeliest([tried(share * span) for share in REACHES], forms)
+
+
+def _likeliest(plants: Sequence[Plant], forms: Sequence[WeakForm]) -> list[Plant]:
+    """Those that leave the least residual, the best first."""
     powers = [sum(_power(form.efforts(p)) for form in forms) for p in plants]
     return [plants[k] for k in np.argsort(powers, kind="stable")[:TRIED]]
 
