@@ -168,7 +168,7 @@ class _Minimiser:
 
     def _usual(self, name: str) -> float:
         """Usual size of a start quantity: that of efforts, or what they bend the contact by."""
-        effort = max(float(np.std(each.form.effort)) for each in self.rows)
+        effort = max(float(np.sqrt(np.mean(each.form.effort**2))) for each in self.rows)
         if name == "force":
             return max(effort, 1e-300)
         if name in (known := numbers(self.plant)):

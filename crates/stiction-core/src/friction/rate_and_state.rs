@@ -1,6 +1,6 @@
 //! Rate-and-state friction: a direct effect of speed and an age of the contact.
 
-use super::elements::arcsinh::{Balance, arcsinh_of_exp};
+use super::elements::arcsinh::{Balance, Series, arcsinh_of_exp};
 use super::{
     Arrival, Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
     Push, Statistics,
@@ -23,6 +23,8 @@ parameters! {
             default Value(1e-5), neutral None, typical 1e-5, bounds 1e-12, 1e6;
         reference_velocity: Velocity, "speed at which steady friction is F_0, v_0; no fit can tell it from F_0",
             default Value(1e-3), neutral None, typical 1e-3, bounds 1e-12, 1e6;
+        compliance: Compliance, "yielding of the contact and of what moves it, 1/k: 0 is rigid",
+            default Value(0.0), neutral Some(0.0), typical 3e-4, bounds 0.0, 1e6;
         viscous: Damping, "friction per speed, F_v",
             default Value(0.0), neutral Some(0.0), typical 0.05, bounds 0.0, 1e9;
     }
@@ -33,8 +35,13 @@ parameters! {
     pub struct RateAndStateStart {
         log_age: One, "logarithm of the age of the contact over its age in steady sliding at the reference speed",
             default Value(0.0), neutral Some(0.0), typical 1.0, bounds -60.0, 60.0;
+        force: Effort, "force at the start, of a contact that yields",
+            default Value(0.0), neutral Some(0.0), typical 0.1, bounds -1e9, 1e9;
     }
 }
+
+/// Share of a displacement by which it is varied for a slope.
+const NUDGE: f64 = 1e-5;
 
 /// Rate-and-state friction, regularised so that it is defined at v = 0.
 ///
@@ -42,15 +49,18 @@ parameters! {
 ///
 /// θ' = 1 − |v|·θ/D_c (`evolution="ageing"`) or −(|v|·θ/D_c)·ln(|v|·θ/D_c) (`"slip"`).
 ///
+/// With a compliance 1/k, F' = k·(v − v_s) and v_s, the speed of slip, takes the place of v above.
+///
 /// A body never sticks for good: under half its limit it creeps at v_0·e^(−μ_0/(2a)). A velocity of
 /// exactly 0 is one that is too slow to be known; friction is then whatever holds, up to what the
-/// reference speed needs at this age. Memory: φ. Neutral: b = 0 leaves the age out.
+/// reference speed needs at this age. Memory: φ, and F where the contact yields. Neutral: b = 0 leaves the age out.
 /// Source: Dieterich, J. Geophys. Res. 84 (1979); Ruina, ibid. 88 (1983); regularised as in Rice,
 /// Lapusta, Ranjith, J. Mech. Phys. Solids 49 (2001).
 #[derive(Debug, Clone)]
 pub struct RateAndState<S> {
     parameters: RateAndStateParameters<S>,
     ages: bool,
+    yields: bool,
 }
 
 /// Memory of [`RateAndState`].
@@ -173,6 +183,53 @@ impl<S: Scalar> RateAndState<S> {
         (direct * size * side, direct * slope / speed, by_age)
     }
 
+    /// z = F/a and φ after a displacement of a contact that yields.
+    #[inline]
+    fn slip(&self, state: &RateAndStateState<S>, displacement: S, duration: S) -> (S, S) {
+        let yielding = self.direct() * self.parameters.compliance;
+        let z = state.dry / self.direct();
+        let side = if displacement.re() < 0.0 { -1.0 } else { 1.0 };
+        let series = |log_age: S| Series {
+            way: displacement * side / yielding,
+            creep: duration * self.parameters.reference_velocity / yielding,
+            exponent: self.exponent(log_age),
+        };
+        // The age changes on the way: predicted, then taken from where it counts.
+        let (mut counted, mut result) = (state.log_age, (z, state.log_age));
+        for _ in 0..2 {
+            let (end, share) = series(counted).advance(z * side);
+            let slipped = (displacement - yielding * (end * side - z)).abs();
+            let log_age = self.aged(state.log_age, slipped, duration).0;
+            counted = state.log_age + (log_age - state.log_age) * share;
+            result = (end * side, log_age);
+        }
+        result
+    }
+
+    /// A step of a contact that yields.
+    fn stretch(
+        &self,
+        state: &RateAndStateState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> RateAndStateTrial<S> {
+        let (way, duration) = (motion.displacement, motion.duration);
+        let viscous = self.parameters.viscous * channels.viscous_level;
+        let (z, log_age) = self.slip(state, way, duration);
+        let dry = self.direct() * z;
+        // A slope that only solvers of a host's own ask for.
+        let step = (self.direct() * self.parameters.compliance).re().max(way.re().abs()) * NUDGE;
+        let at = |way: S| self.slip(state, way, duration).0;
+        let by_way = (at(way + step) - at(way - step)) * self.direct() / (2.0 * step);
+        let outcome = Outcome {
+            force: dry * channels.level + viscous * motion.velocity,
+            slope: by_way * channels.level * duration + viscous,
+            damping: viscous,
+        };
+        let after = self.after(state, log_age, dry, motion.velocity.re());
+        RateAndStateTrial { after, outcome }
+    }
+
     /// The state after a step, with its slides counted.
     #[inline]
     fn after(
@@ -199,7 +256,7 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
     type Trial = RateAndStateTrial<S>;
 
     const PARAMETERS: &'static [ParameterSpec] = RateAndStateParameters::<f64>::SPECS;
-    const OPTIONAL: &'static [&'static str] = &["reference_velocity"];
+    const OPTIONAL: &'static [&'static str] = &["reference_velocity", "compliance"];
     const START: &'static [ParameterSpec] = RateAndStateStart::<f64>::SPECS;
     const OPTIONS: &'static [OptionSpec] = &[OptionSpec {
         name: "evolution",
@@ -216,7 +273,8 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
 
     fn build(values: &[S], choices: &[usize]) -> Self {
         let ages = choices.first().is_none_or(|choice| *choice == 0);
-        Self { parameters: RateAndStateParameters::from_values(values), ages }
+        let parameters = RateAndStateParameters::from_values(values);
+        Self { parameters, ages, yields: parameters.compliance.re() > 0.0 }
     }
 
     fn check(_values: &[f64]) -> Result<()> {
@@ -230,7 +288,7 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
 
     fn primed(&self, values: &[S]) -> RateAndStateState<S> {
         let start = RateAndStateStart::from_values(values);
-        RateAndStateState { log_age: start.log_age, ..self.initial() }
+        RateAndStateState { log_age: start.log_age, dry: start.force, ..self.initial() }
     }
 
     fn restore(&self, entries: &[(String, Entry)]) -> Result<RateAndStateState<S>> {
@@ -256,7 +314,8 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
     fn greatest_stiffness(&self) -> f64 {
         // After a sudden step friction changes by b over D_c; it must not be stepped over.
         let p = &self.parameters;
-        p.coulomb.re() * p.evolution_effect.re() / p.slip_distance.re()
+        let spring = if self.yields { 1.0 / p.compliance.re() } else { 0.0 };
+        spring + p.coulomb.re() * p.evolution_effect.re() / p.slip_distance.re()
     }
 
     fn greatest_damping(&self) -> f64 {
@@ -265,7 +324,7 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
 
     #[inline]
     fn force(&self, state: &RateAndStateState<S>, velocity: S, channels: &Channels<S>) -> S {
-        let known = velocity.re() != 0.0;
+        let known = velocity.re() != 0.0 && !self.yields;
         let dry = if known { self.dry(velocity, state.log_age).0 } else { state.dry };
         dry * channels.level + self.parameters.viscous * channels.viscous_level * velocity
     }
@@ -281,6 +340,9 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
         let (log_age, by_way) = self.aged(state.log_age, motion.displacement.abs(), motion.duration);
         let viscous = p.viscous * channels.viscous_level;
         let level = channels.level;
+        if self.yields {
+            return self.stretch(state, motion, channels);
+        }
         if motion.velocity.re() == 0.0 {
             // Too slow to be known: what the reference speed needs is the most that it holds.
             let most = self.dry(p.reference_velocity, log_age).0;
@@ -321,6 +383,15 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
         let (span, before) = (push.span, push.velocity);
         let drag = self.parameters.viscous * channels.viscous_level * span * 0.5;
         let direct = self.direct() * channels.level;
+        if self.yields {
+            // A spring: Verlet's way, and the mean of the forces at its ends.
+            let pace = (push.effort - push.friction) / push.inertia;
+            let dry = trial.after.dry * channels.level;
+            let slowed = push.friction - before * drag * 2.0 / span + dry;
+            let impulse = (push.inertia - drag) * before + span * (push.effort - slowed * 0.5);
+            let velocity = impulse / (push.inertia + drag);
+            return Arrival { velocity, displacement: span * (before + pace * span * 0.5) };
+        }
         let impulse = (push.inertia - drag) * before + span * push.effort;
         if direct.re() <= 0.0 || span.re() <= 0.0 {
             let velocity = impulse / (push.inertia + drag);

@@ -6,6 +6,8 @@ use crate::scalar::{Scalar, sign};
 
 /// Above this argument of [`arcsinh_of_exp`] the square root is its square to the last bit.
 const LARGE: f64 = 20.0;
+/// −q from which on no friction is left that a spring would notice.
+const LOOSE: f64 = 300.0;
 /// Newton steps of [`Balance::solve`] at most; five to eight are usual.
 const MOST_STEPS: u32 = 60;
 
@@ -124,6 +126,71 @@ impl<S: Scalar> Balance<S> {
     }
 }
 
+/// A spring in series with friction that is an arsinh of the speed of slip: over a displacement u·t
+/// A·dz/dt = u − v(z), in units of A = d/k.
+#[derive(Debug, Clone, Copy)]
+pub struct Series<S> {
+    /// u·t/A, not negative.
+    pub way: S,
+    /// V·t/A.
+    pub creep: S,
+    /// q.
+    pub exponent: S,
+}
+
+impl<S: Scalar> Series<S> {
+    /// z at the end, and the share of a change of q over the step that counts.
+    ///
+    /// In e^z that is Riccati's equation with constant coefficients; solved in logarithms.
+    pub fn advance(&self, z: S) -> (S, S) {
+        // What z tends to: arsinh(u/(2·V·e^(−q))).
+        let goal = if self.way.re() > 0.0 {
+            arcsinh_of_exp((self.way / (self.creep * 2.0)).ln() + self.exponent).0
+        } else {
+            S::constant(0.0)
+        };
+        if -self.exponent.re() > LOOSE {
+            return (goal, S::constant(1.0));
+        }
+        let slow = (-self.exponent).exp() * self.creep;
+        let whole = (self.way * self.way + slow * slow * 4.0).sqrt();
+        let decay = whole.re();
+        if decay <= 0.0 {
+            return (z + self.way, S::constant(0.5));
+        }
+        let left = (-whole).exp();
+        let gone = -(-whole).exp_m1();
+        let below = z - goal;
+        let beyond = goal * -2.0;
+        let small = left * beyond.exp();
+        // ln(e^x + e^y) is x + raised(y − x): the first x is written into z, or digits would go.
+        let grown = small.chain(small.re().ln_1p(), 1.0 / (1.0 + small.re()));
+        let over = grown + raised(beyond + gone.ln() - below - grown);
+        let under = raised(beyond + whole) - whole;
+        let under = under + raised(below + gone.ln() - under);
+        (z + over - under, late_share(whole))
+    }
+}
+
+/// ln(1 + e^x).
+#[inline]
+fn raised<S: Scalar>(x: S) -> S {
+    let share = (-x.re().abs()).exp();
+    let slope = if x.re() > 0.0 { 1.0 } else { share } / (1.0 + share);
+    x.chain(x.re().max(0.0) + share.ln_1p(), slope)
+}
+
+/// 1/(1 − e^(−x)) − 1/x: of a target that changes evenly, what a follower at rate x has seen.
+#[inline]
+fn late_share<S: Scalar>(x: S) -> S {
+    let w = x.re();
+    if w < 1e-2 {
+        return x.chain(0.5 + w / 12.0, 1.0 / 12.0 - w * w / 240.0);
+    }
+    let gone = -(-w).exp_m1();
+    x.chain(1.0 / gone - 1.0 / w, 1.0 / (w * w) - (1.0 - gone) / (gone * gone))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,6 +205,27 @@ mod tests {
         let beyond = arcsinh_of_exp(LARGE + 1e-9).0 - arcsinh_of_exp(LARGE).0;
         assert!((beyond - 1e-9).abs() < 1e-14);
         assert!(arcsinh_of_exp(1e6).0.is_finite());
+    }
+
+    #[test]
+    fn a_spring_on_such_friction_follows_small_steps() {
+        for exponent in [0.3, 4.0] {
+            for (way, creep) in [(0.0, 3.0), (1e-4, 1e-3), (2.0, 0.5), (40.0, 2.0)] {
+                for start in [-6.0, 0.0, 1.0, 9.0] {
+                    let (steps, mut z) = (400_000, start);
+                    for _ in 0..steps {
+                        let rate = |z: f64| way - velocity_of(z, creep, exponent);
+                        let middle = z + 0.5 * rate(z) / f64::from(steps);
+                        z += rate(middle) / f64::from(steps);
+                    }
+                    let (exact, _) = Series { way, creep, exponent }.advance(start);
+                    assert!((exact - z).abs() < 1e-5, "{exponent} {way} {start}: {exact} {z}");
+                }
+            }
+        }
+        let deep = Series { way: 3.0, creep: 1.0, exponent: 1e4 };
+        assert!((deep.advance(-5e3).0 + 4997.0).abs() < 1e-9);
+        assert!((deep.advance(1e4).0 - (1e4 + f64::ln(3.0))).abs() < 1.0);
     }
 
     #[test]
