@@ -20,6 +20,7 @@ __all__ = [
     "Nuisances",
     "Rows",
     "Start",
+    "begun",
     "numbers",
     "primed",
     "rows_of",
@@ -115,6 +116,12 @@ def start_quantities(plant: Plant) -> tuple[str, ...]:
     return tuple(quantity.name for quantity in plant.friction.record.start)
 
 
+def begun(plant: Plant, form: WeakForm) -> Start:
+    """Where the start of a recording is looked for: a measured effort tells the force."""
+    force = float(form.effort[0]) if form.prescribed else 0.0
+    return {name: force if name == "force" else 0.0 for name in start_quantities(plant)}
+
+
 def timing_bound(plant: Plant, rows: Sequence[Rows]) -> float:
     """Greatest timing offset, s: half a sample, or 0 where the plant has a delay of its own.
 
@@ -127,11 +134,13 @@ def timing_bound(plant: Plant, rows: Sequence[Rows]) -> float:
 
 
 def primed(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances | None = None) -> Nuisances:
-    """Nuisances with a start, at 0 if it was not there, for all that the rows tell of."""
+    """Nuisances with a start, as begun if it was not there, for all that the rows tell of."""
     before = nuisances or Nuisances()
+    new = {each.index: begun(plant, each.form) for each in rows}
     starts: dict[int, Start] = {}
     for index, name in told_starts(plant, rows):
-        starts.setdefault(index, {})[name] = (before.start(index) or {}).get(name, 0.0)
+        known = new[index] | (before.start(index) or {})
+        starts.setdefault(index, {})[name] = known[name]
     return Nuisances(before.timing, starts)
 
 

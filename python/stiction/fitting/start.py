@@ -14,6 +14,7 @@ from ..parameter import Parameter
 from ..plant import Effect, Plant
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
+from .rows import begun
 from .variables import records
 
 __all__ = ["complete", "free_paths"]
@@ -154,6 +155,9 @@ def _regression(plant: Plant, forms: Sequence[WeakForm]) -> tuple[float, float, 
         known = mass * form.acceleration + weight * np.sin(angle - zero)
         efforts.append((form.measured(plant) - known)[sliding])
     matrix, effort = np.vstack(blocks), np.concatenate(efforts)
+    if np.ptp(matrix[:, 1]) == 0.0:
+        # Moved in one direction alone: a constant would take half of the friction.
+        matrix[:, 3] = 0.0
     scales = np.maximum(np.sqrt(np.mean(matrix**2, axis=0)), 1e-300)
     solved = np.linalg.lstsq(matrix / scales, effort, rcond=None)[0] / scales
     level = float(np.sqrt(np.mean(effort**2)))
@@ -205,7 +209,7 @@ def _stiffness(
 
 def _likeliest(plants: Sequence[Plant], forms: Sequence[WeakForm]) -> list[Plant]:
     """Those that leave the least residual, the best first."""
-    powers = [sum(_power(form.efforts(p)) for form in forms) for p in plants]
+    powers = [sum(_power(form.efforts(p, begun(p, form))) for form in forms) for p in plants]
     return [plants[k] for k in np.argsort(powers, kind="stable")[:TRIED]]
 
 
