@@ -85,7 +85,7 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
     )
     if "initial_stiffness" in silent:
         return _stiffness(whole, forms, coulomb, silent)
-    if "slip_distance" in silent:
+    if plant.friction.law in REFERRED and "slip_distance" in silent:
         span = max(float(np.ptp(form.position)) for form in forms)
         path = "friction.slip_distance"
         return _likeliest([whole.with_values({path: share * span}) for share in REACHES], forms)

@@ -40,6 +40,8 @@ parameters! {
     }
 }
 
+/// A compliance up to this is none: its reciprocal would leave the range of floats.
+const RIGID: f64 = 1e-30;
 /// Share of a displacement by which it is varied for a slope.
 const NUDGE: f64 = 1e-5;
 
@@ -274,7 +276,7 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
     fn build(values: &[S], choices: &[usize]) -> Self {
         let ages = choices.first().is_none_or(|choice| *choice == 0);
         let parameters = RateAndStateParameters::from_values(values);
-        Self { parameters, ages, yields: parameters.compliance.re() > 0.0 }
+        Self { parameters, ages, yields: parameters.compliance.re() > RIGID }
     }
 
     fn check(_values: &[f64]) -> Result<()> {

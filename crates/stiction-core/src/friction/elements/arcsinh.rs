@@ -6,8 +6,8 @@ use crate::scalar::{Scalar, sign};
 
 /// Above this argument of [`arcsinh_of_exp`] the square root is its square to the last bit.
 const LARGE: f64 = 20.0;
-/// −q from which on no friction is left that a spring would notice.
-const LOOSE: f64 = 300.0;
+/// Logarithm of a way, a creep or a momentum from which on friction holds nothing back.
+const LOOSE: f64 = 100.0;
 /// Newton steps of [`Balance::solve`] at most; five to eight are usual.
 const MOST_STEPS: u32 = 60;
 
@@ -55,6 +55,10 @@ pub struct Balance<S> {
 impl<S: Scalar> Balance<S> {
     /// z and the velocity at the end of the step.
     pub fn solve(&self) -> (S, S) {
+        if (self.heavy * self.scale).re().ln() - self.exponent.re() > LOOSE {
+            // So little friction that the body does not feel it.
+            return (S::constant(0.0), self.wanted / self.heavy);
+        }
         let z = self.root();
         let (by_friction, mean) = self.shares(z);
         // The same number from the momentum, which keeps more digits of a fast motion.
@@ -149,7 +153,7 @@ impl<S: Scalar> Series<S> {
         } else {
             S::constant(0.0)
         };
-        if -self.exponent.re() > LOOSE {
+        if self.creep.re().ln() - self.exponent.re() > LOOSE || self.way.re().ln() > LOOSE {
             return (goal, S::constant(1.0));
         }
         let slow = (-self.exponent).exp() * self.creep;
@@ -225,6 +229,10 @@ mod tests {
         }
         let deep = Series { way: 3.0, creep: 1.0, exponent: 1e4 };
         assert!((deep.advance(-5e3).0 + 4997.0).abs() < 1e-9);
+        let loose = Balance { heavy: 2.0, wanted: 6.0, old: 0.0, scale: 1e-3, exponent: -5e3 };
+        assert_eq!(loose.solve(), (0.0, 3.0));
+        let stiff = Series { way: 1e200, creep: 1e190, exponent: 60.0 };
+        assert!((stiff.advance(3.0).0 - (60.0 + 10.0 * f64::ln(10.0))).abs() < 1e-9);
         assert!((deep.advance(1e4).0 - (1e4 + f64::ln(3.0))).abs() < 1.0);
     }
 
