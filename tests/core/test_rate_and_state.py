@@ -227,3 +227,26 @@ def test_motion_of_a_contact_along_readings_is_differentiated_exactly(compliance
         step = 1e-6 * value
         chord = (friction(**{short: value + step}) - friction(**{short: value - step})) / step / 2
         assert np.abs(column - chord).max() < 1e-5 * np.abs(chord).max(), name
+
+
+@BOTH
+def test_motion_of_a_body_on_a_rigid_contact_is_differentiated_exactly(evolution):
+    # Slides, a stop, creep and a reversal; the generic tests draw contacts that yield.
+    values = {"coulomb": 0.35, "direct_effect": 0.02, "slip_distance": 2e-5, "viscous": 0.03}
+    effort = np.repeat([0.6, 0.2, -0.5, 0.1, 0.45], 60)
+
+    def end(**changed):
+        model = st.FrictionModel("rate_and_state", evolution=evolution, **(values | changed))
+        return st.Motor(inertia=INERTIA, friction=model).simulate(effort, 5e-4).position[-1]
+
+    model = st.FrictionModel("rate_and_state", evolution=evolution, **values)
+    motor = st.Motor(inertia=INERTIA, friction=model)
+    paths = [f"friction.{name}" for name in values]
+    found = motor.sensitivity(effort, 5e-4, paths)[0]
+    for name, column in zip(values, found, strict=True):
+        # A difference of the fourth order: friction bends sharply about rest.
+        step = 1e-4 * values[name]
+        near = end(**{name: values[name] + step}) - end(**{name: values[name] - step})
+        far = end(**{name: values[name] + 2 * step}) - end(**{name: values[name] - 2 * step})
+        chord = (8.0 * near - far) / (12.0 * step)
+        assert column[-1] == pytest.approx(chord, rel=1e-5), name
