@@ -2,7 +2,6 @@
 
 use super::fast::Attempt;
 use super::machine::{Machine, Run};
-use crate::effects::Situation;
 use crate::friction::{FrictionLaw, Motion, Push};
 use crate::scalar::Scalar;
 
@@ -27,7 +26,7 @@ pub(super) fn attempt<S: Scalar, L: FrictionLaw<S>>(
     let mut push = Push { velocity, friction, effort, inertia, span };
     let mut next = *run;
     let mut crept = S::constant(0.0);
-    if machine.relaxation.is_some() {
+    if machine.relaxes() {
         (next.relaxed, crept) = machine.relax(run.relaxed, friction, span);
     }
     let motion = |displacement: S, velocity: S| Motion {
@@ -38,12 +37,7 @@ pub(super) fn attempt<S: Scalar, L: FrictionLaw<S>>(
     };
     let trial = law.advance(state, &motion(span * velocity, velocity), &channels);
     let first = law.arrive(&trial, &push, &channels);
-    let end = Situation {
-        position: run.position + first.displacement,
-        velocity: first.velocity,
-        time: run.time + span,
-        path: run.path + first.displacement.abs(),
-    };
+    let end = start.after(first.displacement, first.velocity, span);
     machine.swing(&start, &end, span, &mut next);
     next.ambient = machine.ambient(&end, next.second_position, next.second_velocity);
     let effort_then = machine.driven(input, &end) + load + next.ambient;
@@ -55,6 +49,7 @@ pub(super) fn attempt<S: Scalar, L: FrictionLaw<S>>(
     next.velocity = second.velocity;
     next.time = end.time;
     next.path = run.path + second.displacement.abs();
+    next.moved = run.moved + second.displacement;
     let motion = motion(second.displacement, second.velocity);
     let trial = law.advance(state, &motion, &channels);
     next.friction = law.outcome(&trial).force;
