@@ -146,6 +146,7 @@ def _units(evidence: Evidence, plant: Plant, span: float) -> dict[str, float]:
         "presliding": max(length, FEWEST_COUNTS * count, 1e-12),
         "loading": max(sliding, 1e-300),
         "input": max(1e-300, *(_largest(form, plant) for form in forms)),
+        "kernel": min(form.kernel.support for form in forms),
         "session": max(1e-3, *ends),
         "path": max(1e-9, *paths),
     }

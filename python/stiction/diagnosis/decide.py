@@ -167,10 +167,10 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             "that matter"
         )
     uneven = unevenness(base, model, contributed) if not reason or by_blocks else 0.0
-    beyond = _beyond_all_speeds(score.candidate, model) if not reason or by_blocks else ""
+    beyond = _out_of_its_range(score.candidate, model) if not reason or by_blocks else ""
     if beyond:
         by_blocks, uneven = False, 1.0
-        reason = f"imitates something else: its {beyond} went to the top of all speeds"
+        reason = f"imitates something else: its {beyond}"
     elif uneven > MOST_UNEVEN:
         by_blocks = False
         reason = (
@@ -181,18 +181,21 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     return Trial(score, model, gain, z, worth, strength, size, reason, by_blocks, uneven)
 
 
-def _beyond_all_speeds(candidate: Candidate, model: Model) -> str:
-    """The shape that a refit took to the top of the speeds, "" where there is none.
+def _out_of_its_range(candidate: Candidate, model: Model) -> str:
+    """The shape that a refit took out of where it means what it says, "" where there is none.
 
-    A change with speed that is not over where the speeds end is a curve of viscous friction.
+    A change with speed that is not over where the speeds end is a curve of viscous friction; what
+    is late by far less than the kernel is wide is the reading of the motion.
     """
     effect = next(each for each in model.plant.effects if each.name == candidate.name)
     for shape in candidate.record.shapes:
         stated = effect.parameters[candidate.own(shape.parameter)]
-        if shape.scale != "speed" or stated.max is None or stated.fixed:
+        if stated.fixed or stated.max is None or stated.min is None:
             continue
-        if stated.value >= AT_THE_EDGE * stated.max:
-            return shape.parameter
+        if shape.scale == "speed" and stated.value >= AT_THE_EDGE * stated.max:
+            return f"{shape.parameter} went to the top of all speeds"
+        if shape.scale == "kernel" and stated.value <= stated.min / AT_THE_EDGE:
+            return f"{shape.parameter} went below what a kernel shows"
     return ""
 
 

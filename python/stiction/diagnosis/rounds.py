@@ -55,6 +55,9 @@ MUCH: Final = 0.05
 MANY_TIMES: Final = 5.0
 """A score of this size, and so many times its threshold, is refitted whatever it does held out."""
 
+MIMIC: Final = 5.0
+"""What keeps less than one part in so many of its gain beside a later effect was its mimic."""
+
 _logger = logging.getLogger(__name__)
 
 
@@ -252,6 +255,9 @@ def _promises(score: Score) -> bool:
     """
     if not score.testable or score.score <= score.threshold:
         return False
+    if score.candidate.record.late:
+        # By more than a sample the slope at no delay tells that something is late, not by how much.
+        return True
     return score.heldout > 0.0 or score.score > max(MUCH, MANY_TIMES * score.threshold)
 
 
@@ -348,10 +354,13 @@ def _drop(evidence: Evidence, found: Search) -> set[str]:
     for choice in found.choices[:-1]:
         whole = found.models[-1]
         name = choice.winner.name
-        if whole.strength(choice.winner.candidate) >= LEAST_STRENGTH:
+        weak = whole.strength(choice.winner.candidate) < LEAST_STRENGTH
+        if not weak and choice.winner.gain <= MIMIC * LEAST_GAIN:
             continue
         less = _fitted(evidence, without_effect(whole.plant, name), whole.nuisances)
-        if heldout_gain(less, whole)[0] > LEAST_GAIN:
+        left = heldout_gain(less, whole)[0]
+        # Of what it was taken for, a mimic keeps next to nothing beside its cause.
+        if left > LEAST_GAIN or not (weak or left < choice.winner.gain / MIMIC):
             continue
         latest = found.choices[-1].winner.name
         _logger.info("%s is not needed beside %s", name, latest)

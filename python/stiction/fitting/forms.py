@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from ..loop_form import LoopForm
 from ..motion import noise_of
 from ..plant import Plant
 from ..recording import Recording
@@ -41,9 +42,14 @@ _Each = Callable[[Callable[[Recording], WeakForm], Sequence[Recording]], list[We
 
 
 def forms_of(
-    plant: Plant, recordings: Sequence[Recording], each: _Each, *, horizon: float | None = None
+    plant: Plant,
+    recordings: Sequence[Recording],
+    each: _Each,
+    *,
+    horizon: float | None = None,
+    loop: bool = False,
 ) -> list[WeakForm]:
-    """Recordings through kernels, or simulated over windows; their clocks are not set yet.
+    """Recordings through kernels, or simulated; their clocks are not set yet.
 
     Parameters
     ----------
@@ -53,9 +59,13 @@ def forms_of(
         What goes over them: ``lambda work, items: list(map(work, items))``.
     horizon : float, optional
         Length of the windows of a shooting residual, s; the weak form without it.
+    loop : bool
+        Simulate the loop of a servo over whole recordings.
     """
 
     def form(recording: Recording) -> WeakForm:
+        if loop:
+            return LoopForm(plant, recording)
         if horizon is None:
             return WeakForm(plant, recording, every=EVERY_S)
         return ShootingForm(plant, recording, horizon=horizon)

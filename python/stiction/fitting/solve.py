@@ -48,10 +48,19 @@ class _Seen:
     """Recordings through kernels, and their rows that are fitted and held out."""
 
     def __init__(
-        self, plant: Plant, recordings: Sequence[Recording], horizon: float | None = None
+        self,
+        plant: Plant,
+        recordings: Sequence[Recording],
+        horizon: float | None = None,
+        *,
+        loop: bool = False,
     ) -> None:
         self.forms = forms_of(
-            plant, recordings, lambda work, items: [work(item) for item in items], horizon=horizon
+            plant,
+            recordings,
+            lambda work, items: [work(item) for item in items],
+            horizon=horizon,
+            loop=loop,
         )
         set_clocks(self.forms, recordings)
         self.parts = _deal(recordings, max(form.kernel.support for form in self.forms))
@@ -75,7 +84,7 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     of friction at the first row of a recording and an offset of up to half a sample between input
     and position are fitted along as nuisances. Where the readings turn out too coarse to drive
     friction (see ``horizon_of``), the fit goes on from there with the plant simulated over short
-    windows instead.
+    windows instead; a servo is simulated over whole recordings (see ``LoopForm``).
 
     Parameters
     ----------
@@ -112,10 +121,13 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     horizon = None
     if not first.interrupted:
         horizon = horizon_of(first.plant, first.nuisances, train, seen.forms)
-    if horizon is not None:
-        seen = _Seen(plant, recordings, horizon)
+    servo = plant.servo and not first.interrupted
+    if horizon is not None or servo:
+        seen = _Seen(first.plant, recordings, horizon, loop=servo)
         train = seen.train
-        first = solution = launch([first.plant], paths, train, most=max_evaluations)
+        # Along the measured motion a servo that is not yet understood may lead anywhere.
+        begun = [first.plant, starts[0]] if servo else [first.plant]
+        first = solution = launch(begun, paths, train, most=max_evaluations)
         evaluations += first.evaluations
     if len(train) > 1 and not first.interrupted:
         reweighted(train, first.plant, first.nuisances)

@@ -50,7 +50,7 @@ impl<S: Scalar> Effect<S> for FrictionalLag<S> {
         gains: &["excess"],
         shapes: &[
             Shape { parameter: "velocity", scale: Scale::Speed, grid: &[0.1, 0.4, 0.7, 0.95], fitted: true },
-            Shape { parameter: "time", scale: Scale::One, grid: &[0.02, 0.1], fitted: true },
+            Shape { parameter: "time", scale: Scale::Kernel, grid: &[0.7, 3.0], fitted: true },
         ],
         second: &[],
         law_terms: &[],

@@ -52,6 +52,8 @@ pub enum Scale {
     Presliding,
     /// Friction of the contact per second.
     Loading,
+    /// Width of the kernel through which motion and effort are seen.
+    Kernel,
     /// Length of the session, pauses included.
     Session,
     /// Path travelled in the session.
@@ -68,6 +70,7 @@ impl Scale {
             Self::Order => "order",
             Self::Presliding => "presliding",
             Self::Loading => "loading",
+            Self::Kernel => "kernel",
             Self::Session => "session",
             Self::Path => "path",
         }

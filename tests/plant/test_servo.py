@@ -1,0 +1,171 @@
+"""Servos: a goal position makes the effort; compared with a simulation that shares nothing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tests.reference.servo_reference import Servo
+
+import stiction as st
+from stiction.residual import free_run
+
+DT = 5e-3
+PLANT = {
+    "drive": {
+        "kind": "servo",
+        "proportional": 1.2,
+        "supply_v": 7.4,
+        "resistance_ohm": 3.5,
+        "torque_constant": 0.4,
+    },
+    "body": {"inertia": 0.002, "payload_kg": 0.3, "payload_m": 0.1},
+    "friction": {"law": "coulomb", "coulomb": 0.02, "viscous": 0.004},
+}
+
+
+def plant(**drive):
+    return st.Plant.from_dict({**PLANT, "drive": {**PLANT["drive"], **drive}})
+
+
+def goal(rows=800, seed=0):
+    t = DT * np.arange(rows)
+    rng = np.random.default_rng(seed)
+    a, b = rng.uniform(0.6, 1.2, 2)
+    return a * np.sin(2.0 * b * t) + 0.4 * np.sign(np.sin(0.9 * t + b))
+
+
+def recorded(servo, seed, **more):
+    target = goal(seed=seed)
+    reached = servo.run(target, DT, substeps=100)
+    count = 2.0 * np.pi / 4096
+    position = np.round(np.concatenate([[0.0], reached[:-1]]) / count) * count
+    return st.Recording(DT * np.arange(len(target)), target, position, kind=f"{seed}", **more)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{}, {"proportional": 4.0}, {"duty_limit": 0.3}, {"current_limit": 0.35}],
+    ids=["usual", "stiff", "short of duty", "short of current"],
+)
+def test_a_loop_follows_the_independent_one(change):
+    keys = {"current_limit": "current_limit_a"}
+    machine = plant(**{keys.get(name, name): value for name, value in change.items()})
+    target = goal()
+    run = machine.simulate(target, DT).position
+    other = Servo(**change).run(target, DT)
+    assert np.max(np.abs(run - other)) < 2e-3 * np.ptp(other)
+
+
+def test_off_the_arm_swings_free_and_on_it_is_held():
+    enabled = np.arange(600) < 300
+    target = np.full(600, 1.2)
+    run = plant().simulate(target, DT, enabled=enabled).position
+    other = Servo().run(target, DT, enabled=enabled)
+    # Beside the held stretch the arm falls and swings: phases drift apart a little.
+    assert np.max(np.abs(run - other)[:300]) < 2e-3
+    assert np.max(np.abs(run - other)) < 0.02
+    assert run[299] > 0.6
+    assert np.min(run[300:]) < -0.3
+
+
+def test_an_integral_takes_away_what_the_arm_hangs_short():
+    target = np.full(2000, 0.5)
+    short = plant().simulate(target, DT).position[-1]
+    whole = plant(integral=3.0).simulate(target, DT).position[-1]
+    assert short < 0.45
+    assert abs(whole - 0.5) < 0.02
+
+
+def test_a_step_at_a_time_equals_the_run_to_the_bit():
+    target = goal(200)
+    machine = plant(integral=1.0, derivative=0.01)
+    run = machine.simulate(target, DT)
+    motor = machine.motor()
+    steps = [motor.step(float(u), DT)[0] for u in target]
+    assert np.array_equal(steps, run.position)
+    assert motor.copy() == motor
+
+
+def test_derivatives_of_the_loop_are_those_of_differences():
+    target = goal(150)
+    motor = plant().motor()
+    moved, _ = motor.sensitivity(target, DT, ["drive.torque_constant"])
+
+    def end(constant):
+        return plant(torque_constant=constant).simulate(target, DT).position
+
+    chord = (end(0.4 + 1e-6) - end(0.4 - 1e-6)) / 2e-6
+    assert np.max(np.abs(moved[0] - chord)) < 1e-4 * np.max(np.abs(chord))
+
+
+def test_settings_of_a_recording_change_gain_and_payload():
+    machine = plant()
+    settings = {"proportional": 4.0, "payload_kg": 0.5}
+    run = free_run(machine, recorded(Servo(proportional=4.0, mass=0.5), 1, settings=settings))
+    assert run.mean_absolute < 2e-3
+    assert free_run(machine, recorded(Servo(), 1)).mean_absolute < 2e-3
+
+
+def test_a_fit_finds_the_torque_constant_from_a_known_payload(tmp_path):
+    session = [
+        recorded(Servo(proportional=gain), seed, role=role, settings={"proportional": gain})
+        for seed, (gain, role) in enumerate([(0.6, "train"), (1.2, "train"), (2.4, "test")])
+    ]
+    begin = st.Plant.from_dict(
+        {
+            **PLANT,
+            "drive": {**PLANT["drive"], "torque_constant": {"value": 0.8, "fixed": False}},
+            "body": {**PLANT["body"], "inertia": 0.004},
+            "friction": {"law": "coulomb"},
+        }
+    )
+    result = st.fit(begin, session)
+    truth = {"drive.torque_constant": 0.4, "body.inertia": 0.002, "friction.coulomb": 0.02}
+    for path, value in truth.items():
+        assert result.parameters[path].value == pytest.approx(value, rel=0.05), path
+    assert free_run(result.plant, session[2]).mean_absolute < 2e-3
+    again = st.Plant.load(result.plant.save(tmp_path / "plant.toml"))
+    assert (
+        again.parameters["drive.torque_constant"]
+        == result.plant.parameters["drive.torque_constant"]
+    )
+
+
+def test_a_goal_that_arrives_late_is_named():
+    late = [
+        recorded(Servo(late=6), seed, role=role)
+        for seed, role in enumerate(["train", "train", "select", "select", "test", "test"])
+    ]
+    found = st.diagnose(plant(), late, surrogates=8)
+    assert found.effects[0].name in ("input_delay", "current_loop_lag")
+    assert found.baseline.replay is not None
+    assert found.extended.replay.heldout_rms < 0.5 * found.baseline.replay.heldout_rms
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        ({"drive": {"kind": "servo"}}, "proportional is missing"),
+        ({"drive": {**PLANT["drive"], "gain": 2.0}}, "'gain' is unknown"),
+        ({"drive": {**PLANT["drive"], "resistance_ohm": -1.0}}, "resistance"),
+        (
+            {
+                "drive": {**PLANT["drive"], "torque_constant": {"value": 0.4}},
+                "body": {"inertia": 0.01},
+            },
+            "scale with it",
+        ),
+        ({"body": {"inertia": 0.01, "payload_kg": -1.0}}, "payload_kg"),
+    ],
+)
+def test_a_servo_that_cannot_be_is_refused(table, told):
+    with pytest.raises(st.InputError, match=told):
+        st.Plant.from_dict({**PLANT, **table})
+
+
+def test_settings_that_are_none_are_refused():
+    rows = np.arange(300.0)
+    with pytest.raises(st.InputError, match="no setting 'kp'"):
+        st.Recording(rows, rows, rows, settings={"kp": 3.0})
+    with pytest.raises(st.InputError, match="only a servo has it"):
+        st.Plant.from_dict({"friction": {"law": "coulomb"}}).under({"proportional": 1.0})

@@ -1,0 +1,56 @@
+"""A servo that holds a pendulum, apart from the product: semi-implicit Euler at a tiny step.
+
+    J q'' = tau - m g l sin(q) - F,  tau = k clip((V d - k q') / R, +-I)
+    d = clip(P (goal - q), +-D)
+
+Dry friction stops the arm where it can within a step, and what is left of it accelerates. Off, the
+motor is open.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+GRAVITY = 9.80665
+
+
+@dataclass
+class Servo:
+    """A machine; SI units throughout."""
+
+    constant: float = 0.4
+    resistance: float = 3.5
+    supply: float = 7.4
+    proportional: float = 1.2
+    duty_limit: float = 1.0
+    current_limit: float = np.inf
+    inertia: float = 0.002
+    mass: float = 0.3
+    length: float = 0.1
+    coulomb: float = 0.02
+    viscous: float = 0.004
+    late: int = 0  # samples by which the goal arrives late
+
+    def run(self, goal, dt, start=0.0, enabled=None, substeps=400):
+        """Position at the end of each sample whose goal is held."""
+        total = self.inertia + self.mass * self.length**2
+        h = dt / substeps
+        q, w = start, 0.0
+        arrived = np.concatenate([np.zeros(self.late), goal])[: len(goal)]
+        reached = np.empty(len(goal))
+        for k, target in enumerate(arrived):
+            on = enabled is None or enabled[k]
+            for _ in range(substeps):
+                duty = max(-self.duty_limit, min(self.duty_limit, self.proportional * (target - q)))
+                current = (self.supply * duty - self.constant * w) / self.resistance
+                current = max(-self.current_limit, min(self.current_limit, current))
+                torque = self.constant * current if on else 0.0
+                torque -= self.mass * GRAVITY * self.length * np.sin(q) + self.viscous * w
+                free = w + h * torque / total
+                slowed = h * self.coulomb / total
+                w = 0.0 if abs(free) <= slowed else free - np.copysign(slowed, free)
+                q += h * w
+            reached[k] = q
+        return reached
