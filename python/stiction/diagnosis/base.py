@@ -2,17 +2,36 @@
 
 from __future__ import annotations
 
+import logging
+from dataclasses import replace
+
 import numpy as np
 
 from ..fitting.minimise import MOST_EVALUATIONS, launch
 from ..fitting.rows import primed
-from ..fitting.solve import reweighted
+from ..fitting.solve import fit, reweighted
 from ..fitting.start import complete, free_paths
 from ..plant import Plant
 from .evidence import Evidence
 from .model import Model, fitted
 
-__all__ = ["base_of"]
+__all__ = ["base_of", "calibrated"]
+
+_logger = logging.getLogger(__name__)
+
+
+def calibrated(evidence: Evidence, plant: Plant) -> Plant:
+    """A plant whose gain is to be fitted, with the gain that its closed loop has.
+
+    The gain scales what is measured here: fitted to an effort residual it would shrink until little
+    of that is left. A servo is simulated from its goal instead, over the recordings of train.
+    """
+    if not plant.servo or not any(path.startswith("drive.") for path in plant.parameters):
+        return plant
+    _logger.info("fitting the gain of the drive to its closed loop")
+    train = sorted({part.recording for part in evidence.split.train})
+    gauged = fit(plant, [evidence.recordings[index] for index in train]).plant
+    return replace(gauged, drive={**gauged.drive, "torque_constant": gauged.gain})
 
 
 def base_of(evidence: Evidence, plant: Plant) -> Model:

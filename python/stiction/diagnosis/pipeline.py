@@ -23,7 +23,7 @@ from ..recording.split import name_of
 from ..session import Session
 from ..trajectory import FloatArray
 from .advice import advise
-from .base import base_of
+from .base import base_of, calibrated
 from .candidates import left_out, scales_of
 from .ceiling import ceiling_of
 from .coordinates import Look, looks
@@ -213,6 +213,10 @@ def _testable(
     """The diagnosis of data that can be used."""
     _logger.info("looking through %d recordings", len(session))
     evidence = Evidence(found.plant, session.recordings, threads=threads)
+    gauged = calibrated(evidence, found.plant)
+    if gauged is not found.plant:
+        found = replace(found, plant=gauged)
+        evidence = Evidence(gauged, session.recordings, threads=threads)
     _logger.info("fitting the base")
     base = base_of(evidence, found.plant)
     horizon = horizon_of(base.plant, base.nuisances, evidence.train, evidence.forms)
