@@ -14,7 +14,7 @@ from ..trajectory import FloatArray
 from .candidates import Candidate
 from .homogeneity import unevenness
 from .influence import limited
-from .model import Model
+from .model import LEAST_GIVEN, Model
 from .screen import Score
 
 __all__ = ["Choice", "Trial", "choose", "heldout_gain", "judge", "log_gain", "strangers"]
@@ -41,6 +41,8 @@ THE_SAME: Final = 1e-5
 """Two fits and contributions that differ by less than this share are one: fits end that near."""
 MANY: Final = 99
 """More shapes than any effect has."""
+LEAST_INERTIA: Final = 0.2
+"""A machine that loses more of its inertia beside an effect has been explained away."""
 LEAST_STRENGTH: Final = 3.5
 """Gains over their standard errors (the root of Wald's statistic), from residuals correlated within
 blocks: one number that no number of rows makes large by itself."""
@@ -143,7 +145,11 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     reason = ""
     by_blocks = False
     strength = model.strength(score.candidate)
-    if explained <= 0.0:
+    if model.given <= LEAST_GIVEN:
+        reason = "takes away the effort itself, so that nothing is left to explain"
+    elif model.plant.inertia < LEAST_INERTIA * base.plant.inertia:
+        reason = "takes away the inertia, so that hardly any motion is left to explain"
+    elif explained <= 0.0:
         reason = "fits no better than without it"
     elif explained <= score.threshold:
         reason = (

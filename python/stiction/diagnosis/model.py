@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from ..catalogue import effects
 from ..fitting.minimise import Solution, minimise
 from ..fitting.rows import Nuisances, Rows, timing_bound
 from ..fitting.slopes import slopes
@@ -22,7 +23,7 @@ from .evidence import Evidence, Plan
 from .influence import limited
 from .regression import step
 
-__all__ = ["Model", "fitted", "power_of", "stepped", "with_effect", "without_effect"]
+__all__ = ["LEAST_GIVEN", "Model", "fitted", "power_of", "stepped", "with_effect", "without_effect"]
 
 REFIT_EVALUATIONS: Final = 30
 """A refit starts from the base and an estimate of the gain: it needs few steps."""
@@ -30,6 +31,11 @@ REFIT_CONVERGED: Final = 1e-5
 """Of the power: a fifth of a standard error of any parameter."""
 FLAT: Final = 1e-8
 """Directions of the base with less than this share of the strongest one are left alone."""
+MOST_TAKEN: Final = 0.5
+"""Effects that leave less than this share of the power that a drive gives are judged by what they
+leave: what shrinks measured and needed effort alike explains nothing."""
+LEAST_GIVEN: Final = 0.01
+"""And what leaves less than this share explains nothing at all."""
 INSIDE: Final = 0.98
 """A timing offset beyond this share of its bound is held by the bound."""
 
@@ -138,10 +144,32 @@ class Model:
         return step(self.columns, self.residual, plan)
 
     @cached_property
+    def given(self) -> float:
+        """Power of what the drive gives, over that without effects; 1 where most of it is left.
+
+        A dead band as wide as every input leaves no effort, and nothing to explain.
+        """
+        mapped = {record.name for record in effects() if "input map" in record.hooks}
+        if mapped.isdisjoint(effect.name for effect in self.plant.effects):
+            return 1.0
+        bare = replace(self.plant, effects=())
+
+        def power(plant: Plant) -> float:
+            def driven(rows: Rows) -> FloatArray:
+                start = self.nuisances.start(rows.index)
+                return rows.form.mean(rows.form.along(plant, start)[0])
+
+            return float(np.sum(np.nan_to_num(self.evidence.stack(driven)) ** 2))
+
+        powers = power(self.plant), power(bare)
+        left = powers[0] / powers[1] if powers[1] > 0.0 else 1.0
+        return max(left, LEAST_GIVEN) if left < MOST_TAKEN else 1.0
+
+    @cached_property
     def power(self) -> float:
-        """Weighted power of the residual over the fitted rows."""
+        """Weighted power of the residual over the fitted rows, per that of what the drive gives."""
         own = self.residual[self.evidence.fitted]
-        return float(own @ own)
+        return float(own @ own) / self.given
 
     @cached_property
     def blocks(self) -> tuple[FloatArray, FloatArray]:
@@ -153,7 +181,7 @@ class Model:
         train += np.bincount(block[fit], self.residual[fit] ** 2, number)
         for plan in self.evidence.plans:
             held += np.bincount(block[plan.held], self.held(plan) ** 2, number)
-        return train, held
+        return train / self.given, held / self.given
 
 
 def fitted(

@@ -74,6 +74,7 @@ def rest(
     views = [
         smoother(coordinate, evidence, seen, both, friction)
         for coordinate in COORDINATES
+        if evidence.plant.motion == "rotary" or not coordinate.name.startswith("angle")
         if any(np.any(np.isfinite(coordinate.values(look))) for look in seen)
     ]
     views += [

@@ -55,6 +55,8 @@ MUCH: Final = 0.05
 MANY_TIMES: Final = 5.0
 """A score of this size, and so many times its threshold, is refitted whatever it does held out."""
 
+AT_THE_DRIVE: Final = frozenset({"input map", "input delay", "input lag"})
+"""Hooks of effects that a machine without a drive cannot have."""
 MIMIC: Final = 5.0
 """What keeps less than one part in so many of its gain beside a later effect was its mimic."""
 
@@ -149,6 +151,8 @@ def _candidates(
             reason = _where(base.plant, record)
         elif record.rotary_only and base.plant.motion != "rotary":
             reason = "only a machine that turns can have it"
+        elif evidence.plant.prescribed_motion and not AT_THE_DRIVE.isdisjoint(record.hooks):
+            reason = "there is no drive where the motion is prescribed"
         elif missing:
             reason = f"not testable: no channel {missing[0]} was recorded"
             found.blind.append(record)

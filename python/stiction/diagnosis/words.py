@@ -82,7 +82,10 @@ def sentence(
     if verdict in ("data_fault", "not_testable"):
         return reason
     named = joined([_cause(cause) for cause in effects])
-    gained = f" Adding {'it' if len(effects) == 1 else 'them'} removes {gain_words(gain)}."
+    adding = f"Adding {'it' if len(effects) == 1 else 'them'}"
+    gained = f" {adding} removes {gain_words(gain)}."
+    if gain is not None and gain.value < 0.0:
+        gained = f" {adding} makes the rows worse that were held out."
     if verdict == "nothing_missing":
         return (
             "Nothing is missing: no effect of the catalogue explains more than noise, and what is "
@@ -105,8 +108,13 @@ def sentence(
 
 def _unconfirmed(effects: Sequence[Cause]) -> str:
     """What the rows that test do not bear out, "" where they bear out everything."""
-    names = [c.name for c in effects if c.gain is not None and c.gain.ci95[0] <= 0.0]
-    return f" The held-out rows do not confirm {joined(names)}." if names else ""
+    open_: list[str] = []
+    worse: list[str] = []
+    for cause in effects:
+        if cause.gain is not None and cause.gain.ci95[0] <= 0.0:
+            (worse if cause.gain.ci95[1] <= 0.0 else open_).append(cause.name)
+    told = f" The held-out rows do not confirm {joined(open_)}." if open_ else ""
+    return told + (f" The held-out rows speak against {joined(worse)}." if worse else "")
 
 
 def _cause(cause: Cause) -> str:

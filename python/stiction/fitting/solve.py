@@ -33,6 +33,8 @@ __all__ = ["evaluate", "fit", "reweighted"]
 
 AT_BOUND: Final = 1e-6
 """A value that has come this much of the way to its bound stands at it."""
+NEAR_BOUND: Final = 1e-3
+"""And no value is at a bound that is further off than this share of the box."""
 WEIGHT_FLOOR: Final = 0.1
 """A recording weighs at most this many times less residual than the worst one has."""
 
@@ -266,6 +268,8 @@ def _sides(
         # Near means near compared with where the fit came from and with what the data tell:
         # boxes can be 1e15 wide.
         near = AT_BOUND * max(abs(start), error if np.isfinite(error) else 0.0)
+        if np.isfinite(high - low):
+            near = min(near, NEAR_BOUND * (high - low))
         if np.isfinite(low) and value - low <= max(near, AT_BOUND * abs(low)):
             sides.append("lower")
         elif np.isfinite(high) and high - value <= near:

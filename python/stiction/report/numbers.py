@@ -64,6 +64,9 @@ def between(value: float, low: float, high: float) -> tuple[str, str]:
     plainly = _LEAST <= power < _GREATEST
     scale = 1.0 if plainly else 10.0**power
     decimals = 3 if half == 0.0 else min(max(1 - _power(half / scale), 0), 7)
+    if value != 0.0:
+        # However wide the interval is, the value stays what it is to two figures.
+        decimals = max(decimals, min(1 - _power(value / scale), 7))
     tail = "" if plainly else _times_ten(power)
     shown = [_fixed(number / scale, decimals) for number in (value, low, high)]
     if tail:
