@@ -19,7 +19,7 @@ from stiction.diagnosis.candidates import Scales, candidates, left_out, present,
 from stiction.diagnosis.decide import Choice, Trial, choose, strangers
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import Gain, HeldOut, gain_of
-from stiction.diagnosis.model import Model, fitted
+from stiction.diagnosis.model import LEAST_GIVEN, Model, fitted
 from stiction.diagnosis.noise import measure_noise
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.replay import centre, surrogate_residuals
@@ -407,3 +407,19 @@ def test_findings_hold_every_field_that_others_build_on() -> None:
     }  # fmt: skip
     if not found["effects"]:
         assert found["extended"] == found["baseline"]
+
+
+def test_a_drive_that_gives_nothing_leaves_nothing_to_explain() -> None:
+    evidence = Evidence(true_plant(), [recorded(1, role="train"), recorded(2, role="select")])
+
+    def given(deadband: float) -> float:
+        plant = replace(
+            true_plant(),
+            effects=(Effect("drive_deadband", {"deadband": Parameter(deadband)}),),
+        )
+        solution = SimpleNamespace(plant=plant, nuisances=Nuisances())
+        return Model(evidence, solution).given  # type: ignore[arg-type]
+
+    assert given(0.01) == 1.0
+    assert 0.0 < given(0.4) < 0.5
+    assert given(5.0) == LEAST_GIVEN

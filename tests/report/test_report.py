@@ -267,6 +267,8 @@ def test_report_opens_without_a_network(pages: dict[str, Path], verdict: Verdict
     for used in re.findall(r"url\(#([^)]*)\)", text):
         assert used in page.ids
     assert '<html lang="en">' in text
+    # A phone stacks the cells of a row: each says of what column it is.
+    assert len(re.findall(r"<td[ >]", text)) == len(re.findall(r'<td data-label="[^"]', text))
     assert 'name="viewport" content="width=device-width' in text
 
 

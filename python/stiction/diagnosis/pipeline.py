@@ -309,9 +309,12 @@ def _concluded(
     extended = _summary(evidence, final, results[id(final)], test, len(selection.choices), floor)
     better, own_law = better_law(rivals), base.plant.friction.law
     causes = []
+    taken = {choice.winner.name for choice in selection.choices}
     for k, choice in enumerate(selection.choices):
         record = choice.winner.candidate.record
-        close = {rival.name for rival in choice.rivals}
+        # A rival that became a cause of its own is told there.
+        rivals_left = [each.name for each in choice.rivals if each.name not in taken]
+        close = {each.name for each in choice.rivals}
         others = [name for name in relatives(selection, k) if name not in close]
         fitted_values = {
             path: p
@@ -323,7 +326,7 @@ def _concluded(
                 name=record.name,
                 family=record.family,
                 decided=choice.decided and not others and better is None,
-                look_alikes=(*(rival.name for rival in choice.rivals), *others),
+                look_alikes=(*rivals_left, *others),
                 parameters=fitted_values,
                 gain=None if test is None else gain_of(test, k, k + 1, found.seed),
                 what=what(record, fitted_values, _effect(final.plant, record.name)),

@@ -44,7 +44,30 @@ def render(diagnosis: Diagnosis, drawings: Drawings) -> str:
     page: str = environment.get_template("page.html").render(
         diagnosis=diagnosis, drawings=drawings, sections=sections
     )
-    return page
+    return labelled(page)
+
+
+def labelled(page: str) -> str:
+    """A page whose cells carry the words of their column, for a phone stacks them."""
+
+    def table(found: re.Match[str]) -> str:
+        text = found.group(0)
+        heads = [_TAG.sub("", head) for head in _HEAD.findall(text)][1:]
+
+        def row(match: re.Match[str]) -> str:
+            names = iter(heads)
+            return _CELL.sub(lambda _: f'<td data-label="{next(names, "")}"', match.group(0))
+
+        return _ROW.sub(row, text)
+
+    return _TABLE.sub(table, page)
+
+
+_TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
+_ROW = re.compile(r"<tr.*?</tr>", re.DOTALL)
+_HEAD = re.compile(r'<th scope="col">(.*?)</th>', re.DOTALL)
+_CELL = re.compile(r"<td(?=[ >])")
+_TAG = re.compile(r"<[^>]*>")
 
 
 def _breakable(path: str) -> Markup:
