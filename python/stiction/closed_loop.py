@@ -271,11 +271,17 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
     loads = [0.0] * len(time) if load is None else held(time, recording.time, load).tolist()
     warmth = recording.channels.get("temperature")
     warmths = [None] * len(time) if warmth is None else held(time, recording.time, warmth).tolist()
+    on = recording.channels.get("enabled")
+    switched = (
+        [True] * len(time) if on is None else (held(time, recording.time, on) != 0.0).tolist()
+    )
     motor = started(plant, begin["reading"], begin["velocity"], start)
     act = controller.acting(reference, dt, **begin, total=total)
     bounds = _bounds(reference, measured)
     try:
-        simulated, inputs = _simulated(motor, act, begin, dt, (loads, warmths), plant.count, bounds)
+        simulated, inputs = _simulated(
+            motor, act, begin, dt, (loads, warmths, switched), plant.count, bounds
+        )
     except InputError as error:
         raise InputError(f"{source}: the loop cannot be simulated: {error}") from None
     if len(simulated) < len(time):
@@ -307,7 +313,7 @@ def _simulated(
     act: Act,
     begin: dict[str, float],
     dt: float,
-    around: tuple[list[float], list[float | None]],
+    around: tuple[list[float], list[float | None], list[bool]],
     count: float,
     bounds: tuple[float, float],
 ) -> tuple[list[float], list[float]]:
@@ -315,11 +321,11 @@ def _simulated(
     low, high = bounds
     step, x, v = motor.step, begin["reading"], begin["velocity"]
     positions, inputs = [], []
-    for k, (load, warmth) in enumerate(zip(*around, strict=True)):
+    for k, (load, warmth, on) in enumerate(zip(*around, strict=True)):
         positions.append(x)
         u = act(k, round(x / count) * count if count else x, v)
         inputs.append(u)
-        x, v = step(u, dt, load=load, temperature=warmth)
+        x, v = step(u, dt, load=load, temperature=warmth, enabled=on)
         if not low < x < high:
             break
     return positions, inputs

@@ -230,7 +230,9 @@ class WeakForm:
         plant = self.own(plant)
         if not plant.servo:
             limit = float(plant.drive.get("limit", np.inf))
-            return plant.gain * np.clip(given, -limit, limit)
+            on = 1.0 if self.enabled is None else self.enabled[:-1] != 0.0
+            driven: FloatArray = plant.gain * np.clip(given, -limit, limit) * on
+            return driven
         motor = replace(plant, effects=()).follower()
         motor.reset(float(self.position[0]), 0.0)
         drive: FloatArray = motor.follow(self.position, given, self.dt, **self.around)[0]

@@ -8,6 +8,7 @@ from tests.reference.servo_reference import Servo
 
 import stiction as st
 from stiction.residual import free_run
+from stiction.weak_form import WeakForm
 
 DT = 5e-3
 PLANT = {
@@ -66,6 +67,22 @@ def test_off_the_arm_swings_free_and_on_it_is_held():
     assert np.max(np.abs(run - other)) < 0.02
     assert run[299] > 0.6
     assert np.min(run[300:]) < -0.3
+
+
+def test_a_direct_drive_that_is_off_gives_nothing():
+    rows = np.arange(400)
+    machine = st.Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm", "gain": 2.0},
+            "body": {"inertia": 0.01},
+            "friction": {"law": "coulomb", "coulomb": 0.02},
+        }
+    )
+    motion = 0.1 * np.sin(0.05 * rows)
+    off = st.Recording(DT * rows, np.ones(400), motion, enabled=(rows < 200).astype(float))
+    form = WeakForm(machine, off)
+    assert np.array_equal(form.measured(machine), form.efforts(machine)[0])
+    assert np.allclose(form.measured(machine)[form.time > 1.1], 0.0)
 
 
 def test_an_integral_takes_away_what_the_arm_hangs_short():
