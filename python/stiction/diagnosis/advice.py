@@ -114,7 +114,9 @@ def advise(
         if left.coordinate in BY_COORDINATE:
             reason = f"what is left depends on {left.coordinate}, and more of it shows how"
             add(*BY_COORDINATE[left.coordinate], reason)
-    for record in blind:
+    # A channel that nobody recorded, a load or a temperature, may well not be there: that is told
+    # among the candidates, and is nothing to ask of everybody.
+    for record in (each for each in blind if not each.channels):
         reason = f"these data cannot show {record.name}"
         add(record.plan, record.experiment, reason, (record.name,))
     remedies = []
