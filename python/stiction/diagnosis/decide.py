@@ -39,8 +39,6 @@ ALIKE: Final = 0.5
 """Cosine of two contributions above which they explain the same."""
 THE_SAME: Final = 1e-5
 """Two fits and contributions that differ by less than this share are one: fits end that near."""
-MANY: Final = 99
-"""More shapes than any effect has."""
 LEAST_INERTIA: Final = 0.2
 """A machine that loses more of its inertia beside an effect has been explained away."""
 LEAST_STRENGTH: Final = 3.5
@@ -309,8 +307,8 @@ def _head(winner: Trial, rivals: Sequence[Trial]) -> Trial:
     best = max(trial.worth for trial in group)
     near = [trial for trial in group if trial.worth >= (1.0 - NEAR) * best]
 
-    def simplicity(trial: Trial) -> tuple[int, int, float]:
-        shapes = len(trial.candidate.record.shapes) if _twins(trial, winner) else MANY
+    def simplicity(trial: Trial) -> tuple[int, float, float]:
+        shapes = len(trial.candidate.record.shapes) if _twins(trial, winner) else math.inf
         return trial.candidate.parameters, shapes, -trial.worth
 
     return min(near, key=simplicity)
