@@ -2,11 +2,11 @@
 
 use super::elements::stribeck::{fall, steepest};
 use super::{
-    Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
+    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome,
     Statistics,
 };
 use crate::error::{Error, Result};
-use crate::parameter::{OptionSpec, ParameterSpec};
+use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::{Scalar, sign};
 
@@ -112,7 +112,6 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
     const PARAMETERS: &'static [ParameterSpec] = CoulombParameters::<f64>::SPECS;
     const OPTIONAL: &'static [&'static str] =
         &["breakaway", "stribeck_velocity", "stribeck_exponent"];
-    const OPTIONS: &'static [OptionSpec] = &[];
     const SUMMARY: &'static str =
         "dead zone with true stick; viscous friction and a Stribeck fall as options";
     const SOURCE: &'static str =
@@ -269,30 +268,5 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
     fn switch(&self, state: &mut CoulombState<S>, _event: Event) {
         state.mode = 0.0;
         state.statistics.sticks += 1;
-    }
-
-    fn internal(&self, _state: &CoulombState<S>) -> [S; INTERNAL] {
-        [S::constant(0.0); INTERNAL]
-    }
-
-    fn rates(
-        &self,
-        state: &CoulombState<S>,
-        motion: &Motion<S>,
-        _internal: &[S; INTERNAL],
-        channels: &Channels<S>,
-    ) -> (S, [S; INTERNAL]) {
-        let trial = self.advance(state, motion, channels);
-        (trial.outcome.force, [S::constant(0.0); INTERNAL])
-    }
-
-    fn settle(
-        &self,
-        state: &CoulombState<S>,
-        motion: &Motion<S>,
-        _internal: &[S; INTERNAL],
-        channels: &Channels<S>,
-    ) -> CoulombTrial<S> {
-        self.advance(state, motion, channels)
     }
 }

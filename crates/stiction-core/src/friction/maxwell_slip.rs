@@ -3,11 +3,11 @@
 use super::elements::spring::{SpringState, Walk};
 use super::elements::yield_curve::YieldCurve;
 use super::{
-    Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
     Statistics,
 };
 use crate::error::Result;
-use crate::parameter::{OptionSpec, ParameterSpec};
+use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
 
@@ -129,7 +129,6 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
 
     const PARAMETERS: &'static [ParameterSpec] = MaxwellSlipParameters::<f64>::SPECS;
     const START: &'static [ParameterSpec] = MaxwellSlipStart::<f64>::SPECS;
-    const OPTIONS: &'static [OptionSpec] = &[];
     const SUMMARY: &'static str =
         "elasto-slide elements in parallel: hysteresis with memory that goes over into sliding";
     const SOURCE: &'static str =
@@ -141,10 +140,6 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
             [p.weight_1, p.weight_2, S::constant(1.0), p.weight_4, p.weight_5, p.weight_6];
         let curve = YieldCurve::new(p.coulomb, p.initial_stiffness, p.yield_shape, weights);
         Self { parameters: p, curve }
-    }
-
-    fn check(_values: &[f64]) -> Result<()> {
-        Ok(())
     }
 
     fn initial(&self) -> MaxwellSlipState<S> {
@@ -212,57 +207,5 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
     fn commit(&self, state: &mut MaxwellSlipState<S>, trial: &MaxwellSlipTrial<S>) {
         state.spring.accept(&trial.walk);
         state.spring.count(&trial.walk, &mut state.statistics);
-    }
-
-    #[inline]
-    fn pending(&self, _state: &MaxwellSlipState<S>, _velocity: S) -> Option<Event> {
-        None
-    }
-
-    #[inline]
-    fn event(
-        &self,
-        _state: &MaxwellSlipState<S>,
-        _trial: &MaxwellSlipTrial<S>,
-        _motion: &Motion<S>,
-    ) -> Option<Event> {
-        None
-    }
-
-    fn margin(
-        &self,
-        _state: &MaxwellSlipState<S>,
-        _trial: &MaxwellSlipTrial<S>,
-        _motion: &Motion<S>,
-        _event: Event,
-    ) -> S {
-        S::constant(1.0)
-    }
-
-    fn switch(&self, _state: &mut MaxwellSlipState<S>, _event: Event) {}
-
-    fn internal(&self, _state: &MaxwellSlipState<S>) -> [S; INTERNAL] {
-        [S::constant(0.0); INTERNAL]
-    }
-
-    fn rates(
-        &self,
-        state: &MaxwellSlipState<S>,
-        motion: &Motion<S>,
-        _internal: &[S; INTERNAL],
-        channels: &Channels<S>,
-    ) -> (S, [S; INTERNAL]) {
-        let trial = self.moved(state, motion, channels);
-        (trial.outcome.force, [S::constant(0.0); INTERNAL])
-    }
-
-    fn settle(
-        &self,
-        state: &MaxwellSlipState<S>,
-        motion: &Motion<S>,
-        _internal: &[S; INTERNAL],
-        channels: &Channels<S>,
-    ) -> MaxwellSlipTrial<S> {
-        self.moved(state, motion, channels)
     }
 }

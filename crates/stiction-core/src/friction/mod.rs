@@ -175,7 +175,7 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     /// [`FrictionLaw::primed`]'s values; at 0, the neutral value of each, it was never moved.
     const START: &'static [ParameterSpec] = &[];
     /// Options; the first choice of each is the default.
-    const OPTIONS: &'static [OptionSpec];
+    const OPTIONS: &'static [OptionSpec] = &[];
     /// One sentence: what the law is.
     const SUMMARY: &'static str;
     /// Where it comes from.
@@ -184,7 +184,9 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     /// The law with these values and these choices (indices into each option's choices).
     fn build(values: &[S], choices: &[usize]) -> Self;
     /// Refuses values that single bounds cannot exclude.
-    fn check(values: &[f64]) -> Result<()>;
+    fn check(_values: &[f64]) -> Result<()> {
+        Ok(())
+    }
     /// The state of a contact that was never moved.
     fn initial(&self) -> Self::State;
     /// The state of a contact that brings these values of [`FrictionLaw::START`] along.
@@ -233,38 +235,60 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         false
     }
     /// The event that is due before any motion at this velocity.
-    fn pending(&self, state: &Self::State, velocity: S) -> Option<Event>;
-    /// The event that a step with this velocity at its end runs past.
-    fn event(&self, state: &Self::State, trial: &Self::Trial, motion: &Motion<S>) -> Option<Event>;
+    #[inline]
+    fn pending(&self, _state: &Self::State, _velocity: S) -> Option<Event> {
+        None
+    }
+    /// The event that a step with this velocity at its end runs past. A law without contact modes
+    /// has none: every step is taken whole.
+    #[inline]
+    fn event(
+        &self,
+        _state: &Self::State,
+        _trial: &Self::Trial,
+        _motion: &Motion<S>,
+    ) -> Option<Event> {
+        None
+    }
     /// Positive before the event, zero at it, negative past it.
     fn margin(
         &self,
-        state: &Self::State,
-        trial: &Self::Trial,
-        motion: &Motion<S>,
-        event: Event,
-    ) -> S;
+        _state: &Self::State,
+        _trial: &Self::Trial,
+        _motion: &Motion<S>,
+        _event: Event,
+    ) -> S {
+        S::constant(1.0)
+    }
     /// Changes mode at an event.
-    fn switch(&self, state: &mut Self::State, event: Event);
+    fn switch(&self, _state: &mut Self::State, _event: Event) {}
 
-    /// Internal variables at the start of a step (reference integrator).
-    fn internal(&self, state: &Self::State) -> [S; INTERNAL];
+    /// Internal variables at the start of a step (reference integrator). A law whose force follows
+    /// from the displacement has none, and Runge-Kutta nothing of it to integrate.
+    fn internal(&self, _state: &Self::State) -> [S; INTERNAL] {
+        [S::constant(0.0); INTERNAL]
+    }
     /// Friction and the rates of the internal variables at a stage (reference integrator).
     fn rates(
         &self,
         state: &Self::State,
         motion: &Motion<S>,
-        internal: &[S; INTERNAL],
+        _internal: &[S; INTERNAL],
         channels: &Channels<S>,
-    ) -> (S, [S; INTERNAL]);
+    ) -> (S, [S; INTERNAL]) {
+        let trial = self.advance(state, motion, channels);
+        (self.outcome(&trial).force, [S::constant(0.0); INTERNAL])
+    }
     /// The step that ends with these internal variables (reference integrator).
     fn settle(
         &self,
         state: &Self::State,
         motion: &Motion<S>,
-        internal: &[S; INTERNAL],
+        _internal: &[S; INTERNAL],
         channels: &Channels<S>,
-    ) -> Self::Trial;
+    ) -> Self::Trial {
+        self.advance(state, motion, channels)
+    }
 }
 
 /// A law as the catalogue knows it.

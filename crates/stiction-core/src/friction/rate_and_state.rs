@@ -2,7 +2,7 @@
 
 use super::elements::arcsinh::{Balance, Series, arcsinh_of_exp};
 use super::{
-    Arrival, Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
+    Arrival, Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
     Push, Statistics,
 };
 use crate::error::Result;
@@ -418,55 +418,5 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
         let square = (root - balance.old) * (root - balance.old);
         let early = (span - changed / pace) * square / (square + 1.0);
         Arrival { velocity, displacement: displacement + early * changed * 0.5 }
-    }
-
-    // A smooth law: nothing is ever pending, and every step is taken whole.
-    fn pending(&self, _state: &RateAndStateState<S>, _velocity: S) -> Option<Event> {
-        None
-    }
-
-    fn event(
-        &self,
-        _: &RateAndStateState<S>,
-        _: &RateAndStateTrial<S>,
-        _: &Motion<S>,
-    ) -> Option<Event> {
-        None
-    }
-
-    fn margin(
-        &self,
-        _: &RateAndStateState<S>,
-        _: &RateAndStateTrial<S>,
-        _: &Motion<S>,
-        _: Event,
-    ) -> S {
-        S::constant(1.0)
-    }
-
-    fn switch(&self, _state: &mut RateAndStateState<S>, _event: Event) {}
-
-    fn internal(&self, _state: &RateAndStateState<S>) -> [S; INTERNAL] {
-        [S::constant(0.0); INTERNAL]
-    }
-
-    fn rates(
-        &self,
-        state: &RateAndStateState<S>,
-        motion: &Motion<S>,
-        _internal: &[S; INTERNAL],
-        channels: &Channels<S>,
-    ) -> (S, [S; INTERNAL]) {
-        (self.advance(state, motion, channels).outcome.force, [S::constant(0.0); INTERNAL])
-    }
-
-    fn settle(
-        &self,
-        state: &RateAndStateState<S>,
-        motion: &Motion<S>,
-        _internal: &[S; INTERNAL],
-        channels: &Channels<S>,
-    ) -> RateAndStateTrial<S> {
-        self.advance(state, motion, channels)
     }
 }
