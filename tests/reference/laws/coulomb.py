@@ -1,4 +1,4 @@
-"""Coulomb friction with a Stribeck fall, as a formula of speed (Armstrong-Hélouvry et al., 1994)."""
+"""Coulomb friction with a Stribeck fall: a formula of speed (Armstrong-Hélouvry et al. 1994)."""
 
 import numpy as np
 from tests.reference.coulomb_reference import CoulombParameters
