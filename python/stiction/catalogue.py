@@ -23,9 +23,9 @@ __all__ = [
 class ParameterRecord:
     """One parameter: name, meaning, units (rotary and linear), default, bounds.
 
-    ``default_rule`` says where the default follows another parameter; ``neutral`` is the value
-    at which the parameter does nothing, where there is one. A fit leaves an ``optional`` parameter
-    alone unless a plant states it.
+    ``follows`` is another parameter and a factor: where that one is stated and this one is not,
+    this one is the factor times it. ``neutral`` is the value at which the parameter does nothing,
+    where there is one. A fit leaves an ``optional`` parameter alone unless a plant states it.
     """
 
     name: str
@@ -33,11 +33,19 @@ class ParameterRecord:
     unit: str
     linear_unit: str
     default: float
-    default_rule: str | None
+    follows: tuple[str, float] | None
     neutral: float | None
     typical: float
     bounds: tuple[float, float]
     optional: bool
+
+    @property
+    def default_rule(self) -> str | None:
+        """Where the default follows another parameter, in words."""
+        if self.follows is None:
+            return None
+        other, factor = self.follows
+        return f"{factor:g}·{other} where {other} is stated"
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -271,6 +271,29 @@ class Plant:
         for effect in self.effects:
             paths |= {f"effects.{effect.name}.{n}": p for n, p in effect.parameters.items()}
         return MappingProxyType(paths)
+
+    def following(self, paths: Sequence[str]) -> list[tuple[str, int, float]]:
+        """What moves along with parameters of these paths because the plant leaves it open.
+
+        Parameters
+        ----------
+        paths : sequence of str
+
+        Returns
+        -------
+        list of (str, int, float)
+            Path of what follows, place of the path that it follows, and the factor between them.
+        """
+        stated = self.friction.parameters
+        found = []
+        for record in self.friction.record.parameters:
+            if record.follows is None or record.name in stated or record.follows[0] not in stated:
+                continue
+            other, factor = record.follows
+            if f"friction.{other}" in paths and np.isfinite(factor * stated[other].value):
+                place = list(paths).index(f"friction.{other}")
+                found.append((f"friction.{record.name}", place, factor))
+        return found
 
     def with_values(self, values: Mapping[str, float]) -> Plant:
         """A copy with other values at these paths (or bare names, where unique).

@@ -14,6 +14,7 @@ from tests.reference.coulomb_reference import simulate_coulomb
 
 from stiction import InputError, Plant, Recording, fit
 from stiction.cli import run
+from stiction.fitting.rows import Nuisances, Rows
 from stiction.weak_form import Start, WeakForm
 
 DT = 1e-3
@@ -152,6 +153,31 @@ def test_the_jacobian_is_that_of_the_residual(recording: Recording) -> None:
 
         chord = (residual(value + step) - residual(value - step)) / (2 * step)
         assert np.abs(exact[:, k] - chord).max() < 1e-5 * np.abs(chord).max(), path
+
+
+@pytest.mark.parametrize(
+    ("law", "stated"),
+    [
+        ("coulomb", {"coulomb": 0.3}),
+        ("coulomb", {"breakaway": 0.4, "stribeck_velocity": 3.0}),
+        ("hsieh_pan", {"initial_stiffness": 400.0, "creep_rate": 2.0, "breakaway": 0.4}),
+    ],
+)
+def test_what_a_plant_leaves_open_moves_with_the_parameter_it_follows(
+    recording: Recording, law: str, stated: dict[str, float]
+) -> None:
+    machine = plant(body={"inertia": 0.0076}, friction={"law": law, **stated})
+    assert machine.following([f"friction.{name}" for name in stated])
+    rows = Rows(machine, WeakForm(machine, recording, every=0.005), 0, np.ones(1, dtype=bool))
+    for name, value in stated.items():
+        path, step = f"friction.{name}", 1e-6 * value
+        exact = rows.jacobian(machine, [path], Nuisances())[:, 0]
+        ends = [
+            rows.residual(machine.with_values({path: value + way * step}), Nuisances())
+            for way in (1.0, -1.0)
+        ]
+        chord = (ends[0] - ends[1]) / (2 * step)
+        assert np.abs(exact - chord).max() < 1e-4 * np.abs(chord).max(), path
 
 
 def test_intervals_cover_the_truth_about_as_often_as_they_say() -> None:

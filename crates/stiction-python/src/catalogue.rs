@@ -18,14 +18,12 @@ fn parameters<'py>(
         dict.set_item("meaning", spec.meaning)?;
         dict.set_item("unit", spec.quantity.unit(MotionKind::Rotary))?;
         dict.set_item("linear_unit", spec.quantity.unit(MotionKind::Linear))?;
-        let (default, rule) = match spec.default {
+        let (default, follows) = match spec.default {
             Default::Value(value) => (value, None),
-            Default::Ratio { of, factor, otherwise } => {
-                (otherwise, Some(format!("{factor}·{of} where {of} is stated")))
-            }
+            Default::Ratio { of, factor, otherwise } => (otherwise, Some((of, factor))),
         };
         dict.set_item("default", default)?;
-        dict.set_item("default_rule", rule)?;
+        dict.set_item("follows", follows)?;
         dict.set_item("neutral", spec.neutral)?;
         dict.set_item("typical", spec.typical)?;
         dict.set_item("bounds", spec.bounds)?;

@@ -86,8 +86,17 @@ class Rows:
         return measured + nuisances.timing * self.late - model
 
     def jacobian(self, plant: Plant, paths: Sequence[str], nuisances: Nuisances) -> FloatArray:
-        """Derivatives of the residual by parameters and start quantities; shape (n, paths)."""
-        return self.form.jacobian(plant, paths, nuisances.start(self.index))
+        """Derivatives of the residual by parameters and start quantities; shape (n, paths).
+
+        What the plant leaves open and follows a parameter moves with it.
+        """
+        follows = plant.following(paths)
+        every = [*paths, *(path for path, _, _ in follows)]
+        found = self.form.jacobian(plant, every, nuisances.start(self.index))
+        columns = found[:, : len(paths)]
+        for column, (_, place, factor) in enumerate(follows, len(paths)):
+            columns[:, place] += factor * found[:, column]
+        return columns
 
 
 def warm(form: WeakForm, recording: Recording) -> Mask:
