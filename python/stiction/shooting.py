@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from .accompanied import accompanied
 from .errors import InputError
 from .motion import noise_of
 from .trajectory import FloatArray
@@ -24,11 +25,6 @@ ROWS_PER_HORIZON: Final = 4
 support apart, and rows closer than those tell little more."""
 RESPONSE_PARTS: Final = 16
 """Parts of a window whose efforts are told apart for screening: four to a knot of the kernel."""
-PULL_RATE: Final = 10.0
-"""Rate at which a run is drawn back to the measured motion, over the horizon: fast enough to stay
-within counts of it, slow enough that the counts do not shake it."""
-STEADY: Final = 0.3
-"""Most that this rate may be over one sample; a sampled spring gets unstable at 2."""
 READ_AGAIN: Final = 11
 """Seed of the noise with which a motion is read again: always the same."""
 MOVES_TIMES: Final = 2.0
@@ -107,7 +103,7 @@ class ShootingForm(WeakForm):
         cannot be simulated.
         """
         wanted = list(paths)
-        motor = self._follower(plant, self.position)
+        motor = self.begun(plant, self.position)
         try:
             moved = motor.shoot_sensitivity(
                 self.position,
@@ -138,7 +134,7 @@ class ShootingForm(WeakForm):
 
         Parameters and return value are those of ``WeakForm.signatures``.
         """
-        needed, driven, ahead = self._follower(plant, self.position).signatures(
+        needed, driven, ahead = self.begun(plant, self.position).signatures(
             self.position,
             self.input,
             self.dt,
@@ -148,7 +144,7 @@ class ShootingForm(WeakForm):
         )
         weights = self.kernel.second
         number = min(RESPONSE_PARTS, len(weights))
-        response = self._follower(plant, self.position).shoot_response(
+        response = self.begun(plant, self.position).shoot_response(
             self.position,
             self.input,
             self.dt,
@@ -169,33 +165,6 @@ class ShootingForm(WeakForm):
                 answer += response[part] * mean
             columns[:, k] = self.own(plant).inertia * (answer - self._bent(shift))
         return columns
-
-    def accompanied(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
-        """A motion near the measured one that the plant makes by itself, and what that took.
-
-        One simulation over the whole recording, drawn to the measured motion by a critically
-        damped spring.
-
-        Returns
-        -------
-        numpy.ndarray, shape (rows,)
-            What the sensor would read, without its rounding.
-        numpy.ndarray, shape (rows - 1,)
-            Load together with the effort of the pull: under it the plant makes this motion.
-        """
-        rate = min(PULL_RATE / self.kernel.support, STEADY / self.dt)
-        inertia = self.own(plant).inertia
-        motor = self._follower(plant, self.position)
-        readings, pull = motor.accompany(
-            self.position,
-            self.input,
-            self.dt,
-            inertia * rate**2,
-            2.0 * inertia * rate,
-            **self.around,
-            start=start,
-        )
-        return np.concatenate([self.position[:1], readings]), self.load[:-1] + pull
 
     def missed(
         self, plant: Plant, start: Start, readings: FloatArray, load: FloatArray
@@ -218,7 +187,7 @@ class ShootingForm(WeakForm):
 
     def from_readings_alone(self, plant: Plant, start: Start = None) -> FloatArray:
         """Residual that noise and rounding of the position leave a right plant; shape (n,)."""
-        motion, load = self.accompanied(plant, start)
+        motion, load = accompanied(self, plant, start)
         source = np.random.default_rng(READ_AGAIN)
         readings = motion + self.white * source.standard_normal(len(motion))
         if self.count > 0.0:
@@ -231,7 +200,7 @@ class ShootingForm(WeakForm):
 
     def _shot(self, plant: Plant, start: Start, motion: FloatArray, load: FloatArray) -> FloatArray:
         """Acceleration of the simulated motion of each window, through the kernel."""
-        motor = self._follower(plant, motion)
+        motor = self.begun(plant, motion)
         try:
             return motor.shoot(
                 motion,

@@ -162,7 +162,7 @@ class WeakForm:
         white = float(np.sqrt(max(noise**2 - self.count**2 / 12.0, 0.0)))
         flickers = white > FLICKER_SHARE * self.count
         self._backlash = max(self.count, BACKLASH_TIMES * white) if flickers else 0.0
-        self._springy = plant.friction.springy
+        self.springy = plant.friction.springy
         self._noise = max(noise, self.count / np.sqrt(12.0))
         noisy = noise > NOISY_STEP * float(np.sqrt(np.mean(np.diff(x) ** 2)))
         self._smoothing = max(self.dt, SMOOTHING_SHARE * self.kernel.support) if noisy else self.dt
@@ -207,7 +207,7 @@ class WeakForm:
     @property
     def adapts(self) -> bool:
         """Whether readings are smoothed as far as their motion allows, and not all alike."""
-        return self._springy and self._backlash == 0.0
+        return self.springy and self._backlash == 0.0
 
     @property
     def followed_late(self) -> bool:
@@ -218,12 +218,15 @@ class WeakForm:
         """Values at the ends of the samples (shape of ``position[1:]``) through the kernel."""
         return self._mean(values)
 
+    def given(self, drive: FloatArray, load: FloatArray) -> FloatArray:
+        """What drive and load gave, held over each sample, through the kernel; shape (n,)."""
+        return self._mean(_centred(drive) + _centred(load))
+
     def measured(self, plant: Plant) -> FloatArray:
         """Effort of the drive and load (prescribed motion: the measured one); shape (n,)."""
         if self.prescribed:
             return self._mean(self.effort[1:] + _centred(self.load[:-1]))
-        drive = self._driven(plant, self.input)
-        return self._mean(_centred(drive) + _centred(self.load[:-1]))
+        return self.given(self._driven(plant, self.input), self.load[:-1])
 
     def _driven(self, plant: Plant, given: FloatArray) -> FloatArray:
         """Effort of the drive for an input held over each sample, effects left out."""
@@ -261,21 +264,27 @@ class WeakForm:
         return self._mean(measured), inertial + self._mean(needed)
 
     def along(
-        self, plant: Plant, start: Start = None, *, position: FloatArray | None = None
+        self,
+        plant: Plant,
+        start: Start = None,
+        *,
+        position: FloatArray | None = None,
+        load: FloatArray | None = None,
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Efforts at the sample ends, and what of the motion the sensor does not show.
 
         Effort of the drive; friction less gravity and added efforts; how far the centre of mass is
         ahead of the reading. Shape of ``position[1:]`` each, before the kernel; ``position`` takes
-        the place of the measured motion.
+        the place of the measured motion, and ``load`` of what acted beside the input (rows - 1).
         """
+        around = self.around if load is None else {**self.around, "load": load}
         motion = self.position if position is None else position
-        motor = self._follower(plant, motion)
+        motor = self.begun(plant, motion)
         drive, ambient, friction, ahead = motor.follow(
             motion,
             self.input,
             self.dt,
-            **self.around,
+            **around,
             start=start,
         )
         return drive, friction - ambient, ahead
@@ -290,7 +299,7 @@ class WeakForm:
         0 where it does not anyway. A machine that is moved does not stop by itself: nothing is
         smeared by it but what the effort is averaged over, too.
         """
-        if self._springy or not self.prescribed or len(readings) < 3:
+        if self.springy or not self.prescribed or len(readings) < 3:
             return 0.0
 
         def steady(kernel: Kernel) -> bool:
@@ -303,7 +312,8 @@ class WeakForm:
             return 0.0
         return _narrowest(self.dt, steady).support
 
-    def _follower(self, plant: Plant, motion: FloatArray) -> Motor:
+    def begun(self, plant: Plant, motion: FloatArray) -> Motor:
+        """The plant as it is for this recording, where a motion starts."""
         motor = self.own(plant).follower()
         motor.reset(float(motion[0]), 0.0, time=self.clock, path=self.path)
         return motor
@@ -331,7 +341,7 @@ class WeakForm:
         Beside parameters of the plant the paths may name quantities of the start, such as
         ``start.force``.
         """
-        motor = self._follower(plant, self.position)
+        motor = self.begun(plant, self.position)
         found = motor.follow_columns(
             self.position,
             self.input,
@@ -366,7 +376,7 @@ class WeakForm:
         numpy.ndarray, shape (n, gains)
             In the order of the candidates and of the gains of each.
         """
-        motor = self._follower(plant, self.position)
+        motor = self.begun(plant, self.position)
         found = motor.signature_columns(
             self.position,
             self.input,

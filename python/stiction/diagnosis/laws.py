@@ -7,10 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
+import numpy as np
+
+from ..catalogue import effects
 from ..catalogue import laws as all_laws
 from ..errors import InputError
 from ..fitting.minimise import MOST_EVALUATIONS, launch
 from ..fitting.start import complete, free_paths
+from ..parameter import Parameter
 from ..plant import Friction
 from ..wording import did_you_mean, listed
 from .decide import DECIDED_Z, heldout_gain
@@ -26,6 +30,8 @@ THE_LAW: Final = "the friction law"
 YIELDING: Final = "maxwell_slip"
 """Law that is tried unasked beside names given to a plant whose law does not yield: a contact that
 does imitates many effects then."""
+WORTH_A_TERM: Final = 0.95
+"""Share of the power that an optional term of a law may leave at most to stay in a comparison."""
 WORTH_MORE: Final = 0.1
 """Share of what is left with all effects that another law alone must remove to be the likelier
 cause."""
@@ -126,21 +132,52 @@ def better_law(rivals: Sequence[Rival]) -> Rival | None:
 
 
 def _fitted(base: Model, law: str) -> Model | None:
-    """The plant with another law, fitted with the same weights; None where it cannot be."""
+    """The plant with another law, fitted with the same weights; None where it cannot be.
+
+    Terms of the law that a fit leaves alone and no effect would offer, such as the compliance of a
+    rig, are tried as well, and stay where they leave less.
+    """
     _logger.info("fitting law %s", law)
+    record = next(each for each in all_laws() if each.name == law)
+    offered = {term for effect in effects() for term in effect.law_terms}
+    more = {
+        each.name: Parameter(each.typical)
+        for each in record.parameters
+        if each.optional and each.name not in offered
+    }
+    plain = _launched(base, Friction(law))
+    if not more or plain is None or plain.solution.interrupted:
+        return plain
+    full = _launched(base, Friction(law, {**plain.plant.friction.parameters, **more}))
+    if full is None:
+        return plain
+    return full if _fitted_power(full) < WORTH_A_TERM * _fitted_power(plain) else plain
+
+
+def _launched(base: Model, friction: Friction) -> Model | None:
     evidence = base.evidence
-    bare = replace(base.plant, friction=Friction(law))
     try:
+        bare = replace(base.plant, friction=friction)
         starts = complete(bare, [rows.form for rows in evidence.train])
         paths = free_paths(starts[0])
         return Model(evidence, launch(starts, paths, evidence.train, most=MOST_EVALUATIONS))
     except InputError as error:
-        _logger.info("%s: %s", law, error)
+        _logger.info("%s: %s", friction.law, error)
         return None
 
 
+def _fitted_power(model: Model) -> float:
+    """Weighted power that is left in the rows that were fitted."""
+    return float(np.sum(model.residual[model.evidence.fitted] ** 2))
+
+
 def law_rows(
-    rivals: Sequence[Rival], first: int, test: HeldOut | None, seed: int
+    rivals: Sequence[Rival],
+    first: int,
+    test: HeldOut | None,
+    seed: int,
+    *,
+    beside: Model | None = None,
 ) -> tuple[LawRow, ...]:
     """Laws with what they gain over the plant's own, the best first.
 
@@ -151,6 +188,9 @@ def law_rows(
         Place of the first of them among the models that were tested.
     test : HeldOut or None
     seed : int
+    beside : Model, optional
+        The plant's own law, where what matters lies in rows that were fitted: then it is told what
+        each law leaves there.
     """
     rows = []
     index = first
@@ -171,5 +211,8 @@ def law_rows(
             reason = f"leaves {1.0 - gain.value:.3g} times the power that the plant's law leaves"
         else:
             reason = "explains about as much as the plant's law"
+        if beside is not None:
+            left = _fitted_power(rival.model) / max(_fitted_power(beside), 1e-300)
+            reason += f"; where it was fitted it leaves {left:.3g} times the power"
         rows.append(LawRow(rival.law, gain, reason))
     return tuple(sorted(rows, key=lambda r: -(r.gain.value if r.gain else -1e300)))

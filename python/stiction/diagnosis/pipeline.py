@@ -31,6 +31,7 @@ from .evidence import Evidence
 from .gain import HeldOut, gain_of, open_residuals
 from .laws import THE_LAW, Rival, better_law, law_names, law_rows, rivals_of
 from .listing import in_order
+from .lone import lone_event
 from .loop import replayed
 from .model import Model
 from .noise import Noise
@@ -343,6 +344,9 @@ def _concluded(
         unexplained = (Unexplained(THE_LAW, better.beside),)
     verdict = verdict_of(selection, unexplained, all(cause.decided for cause in causes))
     reason = "These data cannot be tested: the base imitates every effect, so none could be seen."
+    event = None if causes else lone_event(evidence, final, test, 0)
+    if event is not None and better is None:
+        verdict, reason, unexplained = "not_testable", event.words(), ()
     return replace(
         found,
         verdict=verdict,
@@ -352,12 +356,19 @@ def _concluded(
         effects=tuple(causes),
         gain=gain,
         candidates=in_order(selection.rows.values(), selection.choices),
-        laws=law_rows(rivals, len(selection.models), test, found.seed),
+        laws=law_rows(
+            rivals,
+            len(selection.models),
+            test,
+            found.seed,
+            beside=base if event is not None and event.fitted else None,
+        ),
         baseline=baseline,
         extended=extended,
         unexplained=unexplained,
         advice=(
             *([] if better is None else [better.advice()]),
+            *([] if event is None else [event.advice()]),
             *advise(causes, unexplained, selection.blind, checks),
         ),
         success=not selection.interrupted,

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from ..accompanied import accompanied
 from ..fitting.rows import Nuisances, Rows
 from ..motion import smooth
 from ..plant import Plant
@@ -76,6 +77,8 @@ def _replayed(
     start = nuisances.start(rows.index)
     if isinstance(form, ShootingForm):
         motion, residual = _shot(form, plant, start)
+    elif not (form.springy or form.prescribed or plant.servo):
+        motion, residual = _slid(form, plant, start)
     else:
         motion, residual = _followed(form, plant, start)
     columns = np.empty((int(rows.mask.sum()), number))
@@ -104,12 +107,30 @@ def _followed(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _
     return motion, residual
 
 
+def _slid(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
+    """A motion near the measured one that a plant with a rigid contact makes, and the residual.
+
+    Such a machine stops from one sample to the next. A smoothed motion never does, and what
+    readings make of stops would be no part of the noise.
+    """
+    motion, load = accompanied(form, plant, start, position=true_motion(form))
+
+    def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
+        position = form.driving(readings)
+        drive, needed, ahead = form.along(plant, start, position=position, load=load)
+        left: FloatArray = form.given(drive, load) + form.mean(0.5 * (added[:-1] + added[1:]))
+        left -= form.mean(needed) + form.inertial(plant, readings, ahead)
+        return left
+
+    return motion, residual
+
+
 def _shot(form: ShootingForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
     """A motion near the measured one that the plant makes by itself, and the residual around it.
 
     A motion that is smoothed from counts is none that a plant with this friction would make.
     """
-    motion, load = form.accompanied(plant, start)
+    motion, load = accompanied(form, plant, start)
 
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
         return form.missed(plant, start, readings, load + added[:-1])

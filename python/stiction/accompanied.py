@@ -1,0 +1,61 @@
+"""A motion near a measured one that a plant makes by itself."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from .trajectory import FloatArray
+
+if TYPE_CHECKING:
+    from .plant import Plant
+    from .weak_form import Start, WeakForm
+
+__all__ = ["accompanied"]
+
+PULL_RATE: Final = 10.0
+"""Rate at which a run is drawn back to the measured motion, over the support of the kernel: fast
+enough to stay within counts of it, slow enough that the counts do not shake it."""
+STEADY: Final = 0.3
+"""Most that this rate may be over one sample; a sampled spring gets unstable at 2."""
+
+
+def accompanied(
+    form: WeakForm, plant: Plant, start: Start = None, *, position: FloatArray | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """A motion near the measured one that the plant makes by itself, and what that took.
+
+    One simulation over the whole recording, drawn to the measured motion by a critically damped
+    spring.
+
+    Parameters
+    ----------
+    form : WeakForm
+    plant : Plant
+    start : dict, optional
+        Friction state at the first row.
+    position : numpy.ndarray, shape (rows,), optional
+        Takes the place of the motion that drives friction.
+
+    Returns
+    -------
+    numpy.ndarray, shape (rows,)
+        What the sensor would read, without its rounding.
+    numpy.ndarray, shape (rows - 1,)
+        Load together with the effort of the pull: under it the plant makes this motion.
+    """
+    target = form.position if position is None else position
+    rate = min(PULL_RATE / form.kernel.support, STEADY / form.dt)
+    inertia = form.own(plant).inertia
+    motor = form.begun(plant, target)
+    readings, pull = motor.accompany(
+        target,
+        form.input,
+        form.dt,
+        inertia * rate**2,
+        2.0 * inertia * rate,
+        **form.around,
+        start=start,
+    )
+    return np.concatenate([target[:1], readings]), form.load[:-1] + pull
