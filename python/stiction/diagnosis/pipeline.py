@@ -26,6 +26,7 @@ from .advice import advise
 from .base import base_of, calibrated
 from .candidates import left_out, scales_of
 from .ceiling import ceiling_of
+from .confirm import confirmed
 from .coordinates import Look, looks
 from .evidence import Evidence
 from .gain import HeldOut, gain_of, open_residuals
@@ -238,6 +239,13 @@ def _testable(
     data["noise"] = [_noise_entry(evidence, index, noise) for index, noise in noises.items()]
     _logger.info("screening the effects")
     selection = search(evidence, base, null, without=without)
+    rivals = [] if selection.interrupted else rivals_of(selection, others)
+    # Every decision is taken: now, and once, the rows that test.
+    _logger.info("opening the test rows")
+    models = [*selection.models, *(rival.model for rival in rivals if rival.model is not None)]
+    test = open_residuals(evidence, [(m.plant, m.nuisances) for m in models])
+    first_rival = len(selection.models)
+    selection = confirmed(selection, test, found.seed)
     final = selection.models[-1]
     clocks = session.starts
     scales = scales_of(evidence, base.plant)
@@ -260,11 +268,6 @@ def _testable(
         )
         for k, choice in enumerate(selection.choices)
     )
-    rivals = [] if selection.interrupted else rivals_of(selection, others)
-    # Every decision is taken: now, and once, the rows that test.
-    _logger.info("opening the test rows")
-    models = [*selection.models, *(rival.model for rival in rivals if rival.model is not None)]
-    test = open_residuals(evidence, [(m.plant, m.nuisances) for m in models])
     ends = (base.plant, base.nuisances), (final.plant, final.nuisances)
     ceiling = ceiling_of(evidence, session.replicates, ends)
     data["replicates"] = None if ceiling is None else ceiling.to_dict()
@@ -274,7 +277,7 @@ def _testable(
         selection,
         (before, left),
         causes,
-        rivals,
+        (first_rival, rivals),
         test,
         null,
         checks,
@@ -297,12 +300,17 @@ def _concluded(
     selection: Search,
     rests: tuple[Rest, Rest],
     own: tuple[tuple[View, View], ...],
-    rivals: Sequence[Rival],
+    compared: tuple[int, Sequence[Rival]],
     test: HeldOut | None,
     null: FloatArray,
     checks: Sequence[tuple[str, Check]],
 ) -> Diagnosis:
-    """Verdict and words, from everything that was measured."""
+    """Verdict and words, from everything that was measured.
+
+    ``compared`` holds the place of the first other law among the models that were tested, and the
+    laws.
+    """
+    first_rival, rivals = compared
     base, final = selection.models[0], selection.models[-1]
     floor = _floor(evidence, null)
     results = {id(m): _evaluated(evidence, m) for m in (base, final)}
@@ -358,7 +366,7 @@ def _concluded(
         candidates=in_order(selection.rows.values(), selection.choices),
         laws=law_rows(
             rivals,
-            len(selection.models),
+            first_rival,
             test,
             found.seed,
             beside=base if event is not None and event.fitted else None,

@@ -1,0 +1,99 @@
+"""What rows that test may take away: names they speak against, answers about what happens once."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.diagnosis.confirm import AGAINST, confirmed
+from stiction.diagnosis.evidence import Cells
+from stiction.diagnosis.gain import HeldOut
+from stiction.diagnosis.result import CandidateRow
+from stiction.diagnosis.rounds import Search
+
+BLOCKS, ROWS = 40, 50
+
+
+def opened(*sizes: float) -> HeldOut:
+    """Residuals of these sizes, one of each model, over rows that test."""
+    source = np.random.default_rng(0)
+    one = source.standard_normal(BLOCKS * ROWS)
+    block = np.repeat(np.arange(BLOCKS), ROWS)
+    cells = Cells(block, block * 0, block * 0, ("",))
+    return HeldOut(tuple(size * one for size in sizes), np.ones(len(one)), one, cells, ())
+
+
+def selected(*names: str) -> Search:
+    choices: list[Any] = [SimpleNamespace(winner=SimpleNamespace(name=name)) for name in names]
+    rows = {name: CandidateRow(name, 0.5, 0.1, 0.2, "accepted") for name in names}
+    models: list[Any] = ["base", *names]
+    return Search(models, choices, rows)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "kept"),
+    [
+        ((1.0, 0.7), 1),
+        ((1.0, 1.3), 0),
+        ((1.0, 0.7, 0.8), 1),
+        ((1.0, 1.2, 1.3), 0),
+        # What comes after it bears the first one out, or not: together they are no worse.
+        ((1.0, 1.2, 0.5), 2),
+    ],
+)
+def test_names_that_test_rows_speak_against_are_taken_away(
+    sizes: tuple[float, ...], kept: int
+) -> None:
+    names = ("first", "second")[: len(sizes) - 1]
+    found = confirmed(selected(*names), opened(*sizes), 0)
+    assert [choice.winner.name for choice in found.choices] == list(names[:kept])
+    assert found.models == ["base", *names[:kept]]
+    reasons = [found.rows[name].reason for name in names]
+    assert reasons == ["accepted"] * kept + [AGAINST] * (len(names) - kept)
+
+
+def test_without_rows_that_test_nothing_is_taken_away() -> None:
+    assert len(confirmed(selected("first"), None, 0).choices) == 1
+
+
+def moved(bumps: tuple[float, ...]) -> st.Recording:
+    """A contact moved to and fro for 60 s, with a bump of its force at these times."""
+    time = np.arange(6000) * 0.01
+    position = 0.02 * np.sin(0.9 * time)
+    velocity = 0.018 * np.cos(0.9 * time)
+    source = np.random.default_rng(5)
+    effort = 40.0 * np.sign(velocity) + 300.0 * velocity + 0.4 * source.standard_normal(len(time))
+    for at in bumps:
+        effort += 12.0 * np.exp(-(((time - at) / 0.3) ** 2))
+    return st.Recording(time, None, position, effort=effort)
+
+
+def plant() -> st.Plant:
+    return st.Plant.from_dict(
+        {
+            "motion": {"kind": "linear"},
+            "drive": {"kind": "prescribed_motion"},
+            "friction": {"law": "coulomb"},
+        }
+    )
+
+
+def test_what_happened_once_cannot_be_tested() -> None:
+    dealt = st.diagnose(plant(), moved(())).data["split"]
+    for role, words in (("train", "were fitted"), ("select", "decide"), ("test", "test")):
+        # The middle of a block: nothing of the event reaches into those of other roles.
+        begin, end = dealt[role][len(dealt[role]) // 2]["seconds"]
+        found = st.diagnose(plant(), moved((0.5 * (begin + end),)))
+        assert found.verdict == "not_testable", (role, found.sentence)
+        assert f"rows that {words}" in found.sentence
+        assert not found.effects
+        assert any(advice.experiment.startswith("repeat what happens") for advice in found.advice)
+
+
+def test_what_happened_in_rows_of_every_role_can_be_tested() -> None:
+    found = st.diagnose(plant(), moved(tuple(np.arange(2.0, 58.0, 3.1))))
+    assert found.verdict == "unexplained", found.sentence
