@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import logging
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
+from ..errors import NotEnoughData
 from ..fitting.minimise import MOST_EVALUATIONS, launch
 from ..fitting.rows import primed
 from ..fitting.solve import fit, reweighted
@@ -16,6 +18,12 @@ from .evidence import Evidence
 from .model import Model, fitted
 
 __all__ = ["base_of", "calibrated"]
+
+LOST: Final = 1e-3
+"""An inertia that shrinks to this share of what the plant states, or of what the motion told at
+first, is gone."""
+SHOWS: Final = 0.3
+"""Share of the residual that it would move, from which on it would have shown."""
 
 _logger = logging.getLogger(__name__)
 
@@ -45,4 +53,25 @@ def base_of(evidence: Evidence, plant: Plant) -> Model:
         evidence.train[0].weight = 1.0 / max(np.sqrt(np.mean(first.residual**2)), 1e-300)
     evidence.weigh()
     nuisances = primed(first.plant, evidence.train, first.nuisances)
-    return fitted(evidence, first.plant, nuisances, most=MOST_EVALUATIONS)
+    base = fitted(evidence, first.plant, nuisances, most=MOST_EVALUATIONS)
+    _refuse_what_does_not_move(evidence, starts[0], base)
+    return base
+
+
+def _refuse_what_does_not_move(evidence: Evidence, begin: Plant, base: Model) -> None:
+    """Refuses a base that lost its inertia although the motion would show it.
+
+    What is left then is no machine, and every effect that makes the input vanish helps.
+    """
+    if "body.inertia" not in base.solution.variables.paths:
+        return
+    known, found = begin.inertia, base.plant.inertia
+    accelerations = evidence.stack(lambda rows: rows.form.accelerations(rows.form.readings))
+    moved = known * float(np.sqrt(np.mean(accelerations**2)))
+    left = float(np.sqrt(np.mean(base.residual**2)))
+    if found < LOST * known and moved > SHOWS * left:
+        raise NotEnoughData(
+            f"of an inertia of {known:.3g} the fit leaves {found:.2g}, though the accelerations "
+            "would show it: input and motion do not belong together; check their columns, units, "
+            "signs and clocks, or state [body] inertia as fixed"
+        )

@@ -95,6 +95,8 @@ class Evidence:
         Of the stacked rows.
     plans : list of Plan
     cells : Cells
+    floor : float
+        Weighted power that noise alone leaves in the fitted rows; 0 until replays have told.
 
     Raises
     ------
@@ -132,6 +134,7 @@ class Evidence:
         self.plans = self._plans()
         self._weights = [1.0] * len(self.recordings)
         self.weights = np.ones(len(self.fitted))
+        self.floor = 0.0
 
     def each(self, work: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
         """Results of some work on each item, in their order, on as many threads as allowed."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from typing import Final
 
 import numpy as np
 
 from ..accompanied import accompanied
+from ..errors import InputError
 from ..fitting.rows import Nuisances, Rows
 from ..motion import smooth
 from ..plant import Plant
@@ -18,6 +20,8 @@ from .evidence import Evidence
 from .noise import Noise, measure_noise
 
 __all__ = ["centre", "surrogate_residuals"]
+
+_logger = logging.getLogger(__name__)
 
 SMOOTHING_SHARE: Final = 1.0 / 3.0
 """Support over which the measured motion is smoothed to stand for the true one, as a share of the
@@ -77,10 +81,8 @@ def _replayed(
     start = nuisances.start(rows.index)
     if isinstance(form, ShootingForm):
         motion, residual = _shot(form, plant, start)
-    elif not (form.springy or form.prescribed or plant.servo):
-        motion, residual = _slid(form, plant, start)
     else:
-        motion, residual = _followed(form, plant, start)
+        motion, residual = _slid(form, plant, start) or _followed(form, plant, start)
     columns = np.empty((int(rows.mask.sum()), number))
     for k in range(number):
         readings = motion + noise.position * source.standard_normal(len(motion))
@@ -107,13 +109,22 @@ def _followed(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _
     return motion, residual
 
 
-def _slid(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
+def _slid(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual] | None:
     """A motion near the measured one that a plant with a rigid contact makes, and the residual.
+
+    None where there is no such contact, or no such motion: nothing drives a machine that is moved,
+    and one with hardly any inertia cannot be simulated in samples.
 
     Such a machine stops from one sample to the next. A smoothed motion never does, and what
     readings make of stops would be no part of the noise.
     """
-    motion, load = accompanied(form, plant, start, position=true_motion(form))
+    if form.springy or form.prescribed or plant.servo:
+        return None
+    try:
+        motion, load = accompanied(form, plant, start, position=true_motion(form))
+    except InputError as error:
+        _logger.info("followed instead of simulated: %s", error)
+        return None
 
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
         position = form.driving(readings)

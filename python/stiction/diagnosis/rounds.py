@@ -57,6 +57,9 @@ MANY_TIMES: Final = 5.0
 
 AT_THE_DRIVE: Final = frozenset({"input map", "input delay", "input lag"})
 """Hooks of effects that a machine without a drive cannot have."""
+LEAST_OF_NOISE: Final = 0.01
+"""What leaves a smaller share of the power that noise alone leaves explains nothing: it makes what
+was measured vanish."""
 MIMIC: Final = 5.0
 """What keeps less than one part in so many of its gain beside a later effect was its mimic."""
 
@@ -113,6 +116,7 @@ def search(
             return found
         signatures = Signatures.of(evidence, base.plant, base.nuisances, tried)
         friction = friction_of(evidence, base)
+        evidence.floor = float(np.mean(np.sum(null[evidence.fitted] ** 2, axis=0)))
         dropped: set[str] = set()
         renewed = 0
         while len(found.choices) < MOST_EFFECTS:
@@ -298,7 +302,8 @@ def _trial(
     contributed = _contributed(signatures, score, model)
     size = float(np.sqrt(np.mean(contributed**2))) / max(friction, 1e-300)
     trial = judge(base, score, model, contributed, size)
-    return replace(trial, reason=trial.reason or _friction_is_late(evidence, model))
+    reason = trial.reason or _too_good(evidence, model) or _friction_is_late(evidence, model)
+    return replace(trial, reason=reason)
 
 
 def _sharpen(
@@ -463,6 +468,13 @@ def friction_of(evidence: Evidence, base: Model) -> float:
         )
     )
     return float(np.sqrt(np.mean(needed**2)))
+
+
+def _too_good(evidence: Evidence, model: Model) -> str:
+    """Why a model that leaves less than noise must is no machine, "" where it leaves that."""
+    if model.power * model.given >= LEAST_OF_NOISE * evidence.floor:
+        return ""
+    return "leaves far less than the noise of these data must: it takes away what was measured"
 
 
 def _friction_is_late(evidence: Evidence, model: Model) -> str:

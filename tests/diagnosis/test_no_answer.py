@@ -1,4 +1,4 @@
-"""What rows that test may take away: names they speak against, answers about what happens once."""
+"""Where there is no answer: what test rows speak against, what happens once, what is no machine."""
 
 from __future__ import annotations
 
@@ -97,3 +97,22 @@ def test_what_happened_once_cannot_be_tested() -> None:
 def test_what_happened_in_rows_of_every_role_can_be_tested() -> None:
     found = st.diagnose(plant(), moved(tuple(np.arange(2.0, 58.0, 3.1))))
     assert found.verdict == "unexplained", found.sentence
+
+
+def test_motion_that_the_input_does_not_make_cannot_be_tested() -> None:
+    source = np.random.default_rng(2)
+    time = np.arange(12_000) * 1e-3
+    position = 0.4 * np.sin(6.0 * time) + 0.2 * np.sin(11.0 * time)
+    acceleration = -14.4 * np.sin(6.0 * time) - 24.2 * np.sin(11.0 * time)
+    # A sensor the other way round.
+    effort = -0.06 * acceleration + 0.02 * source.standard_normal(len(time))
+    lone = st.Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm", "gain": 1.0},
+            "body": {"inertia": 0.06},
+            "friction": {"law": "coulomb"},
+        }
+    )
+    found = st.diagnose(lone, st.Recording(time, effort, position))
+    assert found.verdict == "not_testable", found.sentence
+    assert "do not belong together" in found.sentence
