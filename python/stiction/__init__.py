@@ -18,6 +18,7 @@ from .trajectory import Trajectory
 if TYPE_CHECKING:
     from .catalogue import effects, laws
     from .diagnosis import Diagnosis, diagnose
+    from .ensemble import Ensemble, EnsembleRun, simulate_ensemble
     from .fitting import FitResult, fit
     from .plant import Plant
     from .recording import Recording
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Diagnosis",
+    "Ensemble",
+    "EnsembleRun",
     "FitResult",
     "FrictionModel",
     "InputError",
@@ -39,11 +42,14 @@ __all__ = [
     "fit",
     "laws",
     "load",
+    "simulate_ensemble",
 ]
 
 # Imported on first use, so that `import stiction` costs little more than numpy.
 _LAZY = {
     "Diagnosis": "diagnosis",
+    "Ensemble": "ensemble",
+    "EnsembleRun": "ensemble",
     "FitResult": "fitting",
     "Plant": "plant",
     "Recording": "recording",
@@ -53,6 +59,7 @@ _LAZY = {
     "fit": "fitting",
     "laws": "catalogue",
     "load": "session",
+    "simulate_ensemble": "ensemble",
 }
 
 

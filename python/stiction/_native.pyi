@@ -1,14 +1,23 @@
 """What the compiled module holds; checked against the binary by stubtest."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any, Final, final
+from typing import Any, Final, Self, final
 
 import numpy as np
 import numpy.typing as npt
 
 _Floats = npt.NDArray[np.float64]
 
-__all__ = ["FrictionModel", "Motor", "Nothing", "RowKernel", "__version__", "effects", "laws"]
+__all__ = [
+    "Ensemble",
+    "FrictionModel",
+    "Motor",
+    "Nothing",
+    "RowKernel",
+    "__version__",
+    "effects",
+    "laws",
+]
 
 __version__: Final[str]
 
@@ -248,6 +257,27 @@ class Motor:
     def state(self, value: dict[str, Any]) -> None: ...
     @property
     def statistics(self) -> dict[str, int]: ...
+
+class Ensemble:
+    def __new__(
+        cls, motor: Motor, members: int, paths: list[str], values: npt.ArrayLike | None
+    ) -> Self: ...
+    def __len__(self) -> int: ...
+    def step_many(
+        self, current: npt.ArrayLike, dt: float, *, load: npt.ArrayLike | None = None
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+    def run(
+        self,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        *,
+        load: npt.ArrayLike | None,
+        outputs: list[str],
+        keep: str,
+        every: int,
+        target: npt.ArrayLike | None,
+        threads: int,
+    ) -> dict[str, npt.NDArray[np.float64]]: ...
 
 @final
 class RowKernel:

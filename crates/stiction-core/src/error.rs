@@ -114,6 +114,14 @@ pub enum Error {
          derivative, and a spacing of 1 or more"
     )]
     Kernel,
+    /// One of many machines that cannot be run.
+    #[error("member {member}: {problem}")]
+    Member {
+        /// Its number, from 0.
+        member: usize,
+        /// What the matter is, as a sentence.
+        problem: String,
+    },
     /// Array lengths that do not fit.
     #[error("{name} has {given} values where {wanted} are needed; give one value a sample")]
     Length {

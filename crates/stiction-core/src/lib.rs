@@ -11,6 +11,7 @@ pub mod friction;
 pub mod body;
 pub mod drive;
 pub mod effects;
+pub mod ensemble;
 pub mod error;
 pub mod follow;
 pub mod integrate;

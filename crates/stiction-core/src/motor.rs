@@ -212,6 +212,23 @@ impl Column {
             own => Self::Law(own - 4),
         })
     }
+
+    /// What it shows of a motor after a sample.
+    #[inline]
+    pub fn read(
+        self,
+        run: &Run<f64>,
+        machine: &Machine<f64>,
+        output: &dyn Fn(usize) -> f64,
+    ) -> f64 {
+        match self {
+            Self::Position => run.position,
+            Self::Velocity => run.velocity,
+            Self::Friction => run.friction,
+            Self::Measured => machine.sensor.read(machine.effects.sensor(run.position)),
+            Self::Law(index) => output(index),
+        }
+    }
 }
 
 /// What acts on a machine beside its input.
@@ -499,13 +516,7 @@ impl Motor {
         }
         self.running.simulate(inputs, around, dt, |k, run, machine, output| {
             for (column, values) in columns.iter_mut() {
-                values[k] = match column {
-                    Column::Position => run.position,
-                    Column::Velocity => run.velocity,
-                    Column::Friction => run.friction,
-                    Column::Measured => machine.sensor.read(machine.effects.sensor(run.position)),
-                    Column::Law(index) => output(*index),
-                };
+                values[k] = column.read(run, machine, output);
             }
         })
     }

@@ -3,6 +3,7 @@
 mod arguments;
 mod arrays;
 mod catalogue;
+mod ensemble;
 mod error;
 mod friction_model;
 mod kernel;
@@ -15,6 +16,8 @@ use pyo3::prelude::*;
 mod _native {
     #[pymodule_export]
     use super::catalogue::{effects, laws};
+    #[pymodule_export]
+    use super::ensemble::Ensemble;
     #[pymodule_export]
     use super::friction_model::FrictionModel;
     #[pymodule_export]

@@ -35,6 +35,11 @@ impl Motor {
         self.core.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// What it is a binding of.
+    pub fn core(&self) -> MutexGuard<'_, Core> {
+        self.lock()
+    }
+
     /// Start values of the law, where any are given.
     fn start(
         &self,

@@ -1,0 +1,343 @@
+//! Many machines side by side: the same motor with parameters, inputs and loads of their own.
+//!
+//! Members share nothing, so that what comes out is the same to the bit for any number of threads,
+//! and the same as one motor after the other.
+
+use std::sync::Mutex;
+
+use crate::error::{Error, Result};
+use crate::model::LawSpec;
+use crate::motor::{Column, EffectSpec, Motor, MotorSpec, PerSample, Running, Surroundings};
+
+/// What members of an ensemble differ in: rows of values, one for each path.
+#[derive(Debug, Clone, Copy)]
+pub struct Changes<'a> {
+    /// Paths of parameters, `friction.creep_rate`.
+    pub paths: &'a [String],
+    /// Values of each path for all members, one path after the other.
+    pub values: &'a [f64],
+}
+
+/// Numbers for each sample of each member.
+#[derive(Debug, Clone, Copy)]
+pub enum Rows<'a> {
+    /// The same for all.
+    Same(f64),
+    /// One for each sample, the same for all members.
+    Shared(&'a [f64]),
+    /// One for each sample of each member, one member after the other.
+    Each(&'a [f64]),
+}
+
+impl<'a> Rows<'a> {
+    /// Those of one member, `samples` of them.
+    pub fn of(&self, member: usize, samples: usize) -> PerSample<'a> {
+        match *self {
+            Self::Same(value) => PerSample::Same(value),
+            Self::Shared(values) => PerSample::Each(values),
+            Self::Each(values) => {
+                PerSample::Each(&values[member * samples..(member + 1) * samples])
+            }
+        }
+    }
+
+    fn check(&self, name: &str, members: usize, samples: usize) -> Result<()> {
+        let (given, wanted) = match self {
+            Self::Same(_) => return Ok(()),
+            Self::Shared(values) => (values.len(), samples),
+            Self::Each(values) => (values.len(), members * samples),
+        };
+        if given == wanted {
+            return Ok(());
+        }
+        Err(Error::Length { name: name.to_owned(), given, wanted })
+    }
+}
+
+/// Inputs for each sample.
+#[derive(Debug, Clone, Copy)]
+pub enum Inputs<'a> {
+    /// The same for all members.
+    Shared(&'a [f64]),
+    /// Those of one member after the other.
+    Each(&'a [f64]),
+}
+
+/// What is kept of each column.
+#[derive(Debug, Clone, Copy)]
+pub enum Keep<'a> {
+    /// Every so many samples one value: those at the ends of sample `every`, 2·`every` …
+    Every(usize),
+    /// The value at the end.
+    Last,
+    /// Root mean square of the distance from a target.
+    Rms(Rows<'a>),
+    /// Least and greatest value.
+    Extremes,
+}
+
+impl Keep<'_> {
+    /// Values that a column keeps of a member.
+    pub fn width(&self, samples: usize) -> usize {
+        match self {
+            Self::Every(every) => samples / every,
+            Self::Last | Self::Rms(_) => 1,
+            Self::Extremes => 2,
+        }
+    }
+}
+
+/// A run of all members.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan<'a> {
+    /// Samples.
+    pub samples: usize,
+    /// Inputs held over each.
+    pub inputs: Inputs<'a>,
+    /// External effort.
+    pub loads: Rows<'a>,
+    /// Duration of each sample.
+    pub dt: PerSample<'a>,
+    /// What is kept.
+    pub keep: Keep<'a>,
+    /// Threads that share the members.
+    pub threads: usize,
+}
+
+/// Machines of one kind, each with its state.
+#[derive(Debug, Clone)]
+pub struct Ensemble {
+    spec: MotorSpec,
+    members: Vec<Running<f64>>,
+}
+
+/// A member, its number, and where its columns go.
+type Work<'a> = (usize, &'a mut Running<f64>, Vec<&'a mut [f64]>);
+
+impl Ensemble {
+    /// So many copies of a motor in its present state, with the changes made.
+    pub fn new(motor: &Motor, members: usize, changes: Changes<'_>) -> Result<Self> {
+        let spec = motor.spec();
+        let known = spec.parameters();
+        let mut places = Vec::with_capacity(changes.paths.len());
+        for path in changes.paths {
+            let place = known.iter().position(|(name, _)| name == path);
+            places.push(place.ok_or_else(|| {
+                let names = known.iter().map(|(name, _)| name.as_str());
+                Error::unknown("parameter path", path, names)
+            })?);
+        }
+        if changes.values.len() != places.len() * members {
+            let wanted = places.len() * members;
+            let given = changes.values.len();
+            return Err(Error::Length { name: "parameters".to_owned(), given, wanted });
+        }
+        let plain: Vec<f64> = known.iter().map(|(_, value)| *value).collect();
+        let members = (0..members).map(|member| {
+            let mut values = plain.clone();
+            for (row, place) in places.iter().enumerate() {
+                values[*place] = changes.values[row * members + member];
+            }
+            spec.allows(&values)?;
+            let mut running = Running::new(spec, &values);
+            running.resume(motor.running());
+            Ok(running)
+        });
+        Ok(Self { spec: spec.clone(), members: members.collect::<Result<_>>()? })
+    }
+
+    /// The motor that all of them are copies of.
+    pub fn spec(&self) -> &MotorSpec {
+        &self.spec
+    }
+
+    /// Number of members.
+    pub fn len(&self) -> usize {
+        self.members.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.members.is_empty()
+    }
+
+    /// One sample of every member; fills position and velocity at its end.
+    pub fn step(
+        &mut self,
+        inputs: PerSample<'_>,
+        loads: PerSample<'_>,
+        dt: f64,
+        positions: &mut [f64],
+        velocities: &mut [f64],
+    ) -> Result<()> {
+        let members = self.members.len();
+        inputs.check("current", members)?;
+        loads.check("load", members)?;
+        for (name, given) in [("position", positions.len()), ("velocity", velocities.len())] {
+            if given != members {
+                return Err(Error::Length { name: name.to_owned(), given, wanted: members });
+            }
+        }
+        for (k, running) in self.members.iter_mut().enumerate() {
+            running.step(inputs.at(k), loads.at(k), dt)?;
+            positions[k] = running.run.position;
+            velocities[k] = running.run.velocity;
+        }
+        Ok(())
+    }
+
+    /// Runs all members on. Each of `columns` is filled one member after the other, with
+    /// [`Keep::width`] values of each.
+    pub fn run(&mut self, plan: &Plan<'_>, columns: &mut [(Column, &mut [f64])]) -> Result<()> {
+        let (members, samples) = (self.members.len(), plan.samples);
+        match plan.inputs {
+            Inputs::Shared(values) => Rows::Shared(values),
+            Inputs::Each(values) => Rows::Each(values),
+        }
+        .check("current", members, samples)?;
+        plan.loads.check("load", members, samples)?;
+        plan.dt.check("dt", samples)?;
+        if let Keep::Rms(target) = plan.keep {
+            target.check("target", members, samples)?;
+        }
+        let width = plan.keep.width(samples);
+        let kinds: Vec<Column> = columns.iter().map(|(kind, _)| *kind).collect();
+        for (_, values) in columns.iter() {
+            let (given, wanted) = (values.len(), members * width);
+            if given != wanted {
+                return Err(Error::Length { name: "out".to_owned(), given, wanted });
+            }
+        }
+        let mut parts: Vec<_> =
+            columns.iter_mut().map(|(_, values)| values.chunks_mut(width.max(1))).collect();
+        let work: Vec<Work<'_>> = self
+            .members
+            .iter_mut()
+            .enumerate()
+            .map(|(k, running)| {
+                let own = parts.iter_mut().map(|part| part.next().unwrap_or_default()).collect();
+                (k, running, own)
+            })
+            .collect();
+        let queue = Mutex::new(work.into_iter());
+        let failed: Mutex<Option<(usize, Error)>> = Mutex::new(None);
+        let labour = || {
+            loop {
+                let next = queue.lock().map_or(None, |mut queue| queue.next());
+                let Some((member, running, mut own)) = next else { break };
+                if let Err(error) = simulate(running, member, plan, &kinds, &mut own)
+                    && let Ok(mut failed) = failed.lock()
+                    // The first by number, whichever thread met its own first.
+                    && failed.as_ref().is_none_or(|(before, _)| member < *before)
+                {
+                    *failed = Some((member, error));
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..plan.threads.min(members) {
+                scope.spawn(labour);
+            }
+            labour();
+        });
+        match failed.into_inner() {
+            Ok(Some((member, error))) => Err(Error::Member { member, problem: error.to_string() }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Runs one member on and keeps what is wanted of it.
+fn simulate(
+    running: &mut Running<f64>,
+    member: usize,
+    plan: &Plan<'_>,
+    kinds: &[Column],
+    own: &mut [&mut [f64]],
+) -> Result<()> {
+    let samples = plan.samples;
+    let inputs = match plan.inputs {
+        Inputs::Shared(values) => values,
+        Inputs::Each(values) => &values[member * samples..(member + 1) * samples],
+    };
+    let around = Surroundings::from(plan.loads.of(member, samples));
+    match plan.keep {
+        Keep::Every(every) => {
+            let mut left = every;
+            let mut row = 0;
+            running.simulate(inputs, around, plan.dt, |_, run, machine, output| {
+                left -= 1;
+                if left == 0 {
+                    for (kind, values) in kinds.iter().zip(own.iter_mut()) {
+                        values[row] = kind.read(run, machine, output);
+                    }
+                    (left, row) = (every, row + 1);
+                }
+            })
+        }
+        Keep::Last => running.simulate(inputs, around, plan.dt, |k, run, machine, output| {
+            if k + 1 == samples {
+                for (kind, values) in kinds.iter().zip(own.iter_mut()) {
+                    values[0] = kind.read(run, machine, output);
+                }
+            }
+        }),
+        Keep::Rms(target) => {
+            let target = target.of(member, samples);
+            own.iter_mut().for_each(|values| values[0] = 0.0);
+            let done = running.simulate(inputs, around, plan.dt, |k, run, machine, output| {
+                for (kind, values) in kinds.iter().zip(own.iter_mut()) {
+                    let beside = kind.read(run, machine, output) - target.at(k);
+                    values[0] += beside * beside;
+                }
+            });
+            own.iter_mut().for_each(|values| values[0] = (values[0] / samples as f64).sqrt());
+            done
+        }
+        Keep::Extremes => {
+            own.iter_mut()
+                .for_each(|values| values.copy_from_slice(&[f64::INFINITY, f64::NEG_INFINITY]));
+            running.simulate(inputs, around, plan.dt, |_, run, machine, output| {
+                for (kind, values) in kinds.iter().zip(own.iter_mut()) {
+                    let seen = kind.read(run, machine, output);
+                    values[0] = values[0].min(seen);
+                    values[1] = values[1].max(seen);
+                }
+            })
+        }
+    }
+}
+
+impl MotorSpec {
+    /// Refuses values, in the order of [`MotorSpec::parameters`], that this motor cannot have.
+    pub fn allows(&self, values: &[f64]) -> Result<()> {
+        let (body, rest) = values.split_at(5);
+        let (friction, mut rest) = rest.split_at(self.friction.values.len());
+        let stated: Vec<(String, f64)> = self
+            .friction
+            .record
+            .parameters
+            .iter()
+            .zip(friction)
+            .map(|(spec, value)| (spec.name.to_owned(), *value))
+            .collect();
+        LawSpec::new(self.friction.record.name, &stated, &[])?;
+        for effect in &self.effects {
+            let (own, left) = rest.split_at(effect.values.len());
+            rest = left;
+            let named = effect.record.parameters.iter().zip(own);
+            let stated: Vec<(String, f64)> =
+                named.map(|(spec, value)| (spec.name.to_owned(), *value)).collect();
+            EffectSpec::new(effect.record.name, &stated)?;
+        }
+        Self {
+            inertia: body[0],
+            gain: body[1],
+            gravity_amplitude: body[2],
+            gravity_zero: body[3],
+            weight: body[4],
+            ..self.clone()
+        }
+        .check()
+    }
+}

@@ -1,0 +1,374 @@
+"""Many machines of one kind side by side."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from itertools import pairwise
+from types import MappingProxyType
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from ._native import Ensemble as _Ensemble
+from .errors import InputError
+from .motor import Motor
+from .trajectory import FloatArray
+from .wording import did_you_mean, listed
+
+__all__ = ["Ensemble", "EnsembleRun", "Reduce", "simulate_ensemble"]
+
+Reduce = Literal["last", "rms", "extremes"]
+"""What is kept instead of rows: the value at the end, the root mean square of the distance from a
+target, or the least and the greatest value."""
+_REDUCTIONS = ("last", "rms", "extremes")
+
+
+@dataclass(frozen=True, repr=False)
+class EnsembleRun:
+    """What a run of many machines kept; read the outputs as attributes or by name.
+
+    Attributes
+    ----------
+    columns : Mapping of str to numpy.ndarray
+        Shape (members, rows); reduced: (members,), and (members, 2) for "extremes".
+    time : numpy.ndarray, shape (rows,)
+        End of each sample that was kept, s since the run began; empty where rows were reduced.
+    reduce : str or None
+    """
+
+    columns: Mapping[str, FloatArray]
+    time: FloatArray
+    reduce: str | None = None
+
+    @property
+    def success(self) -> bool:
+        """Whether every value that was kept is finite."""
+        return all(bool(np.isfinite(values).all()) for values in self.columns.values())
+
+    @property
+    def message(self) -> str:
+        """What happened, in words."""
+        if self.success:
+            return f"{len(self)} machines ran to the end"
+        bad = {
+            int(k)
+            for values in self.columns.values()
+            for k in np.flatnonzero(~np.isfinite(values.reshape(len(values), -1)).all(axis=1))
+        }
+        first = ", ".join(str(k) for k in sorted(bad)[:5])
+        return f"{len(bad)} of {len(self)} machines ran away (first: {first}); check their values"
+
+    def __repr__(self) -> str:
+        shown = ", ".join(f"{name} {values.shape}" for name, values in self.columns.items())
+        kept = f", reduced to {self.reduce}" if self.reduce else ""
+        return f"<{len(self)} machines: {shown}{kept}>"
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values()))) if self.columns else 0
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.columns)
+
+    def __getitem__(self, name: str) -> FloatArray:
+        try:
+            return self.columns[name]
+        except KeyError:
+            have = ", ".join(self.columns)
+            raise KeyError(f"the run kept no '{name}'; it has {have}") from None
+
+    def __getattr__(self, name: str) -> FloatArray:
+        columns = self.__dict__.get("columns", {})
+        if name in columns:
+            found: FloatArray = columns[name]
+            return found
+        raise AttributeError(f"the run kept no '{name}'; it has {', '.join(columns)}")
+
+
+class Ensemble(_Ensemble):
+    """Copies of a motor, each with parameters and a state of its own.
+
+    Parameters
+    ----------
+    motor : Motor
+        All start from its present state.
+    members : int, optional
+        How many; as many as there are values without it.
+    parameters : Mapping of str to array_like of shape (members,), optional
+        Values by path (``friction.creep_rate``) or by the bare last word where that is unique.
+        Every other parameter is the motor's, also where its default would follow one of these.
+
+    Raises
+    ------
+    InputError
+        An unknown parameter, values that are not as many as the members or out of their bounds.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> motor = st.Motor(0.0076, friction=st.FrictionModel("coulomb", coulomb=0.1))
+    >>> fleet = st.Ensemble(motor, parameters={"coulomb": [0.05, 0.1, 0.3]})
+    >>> position, velocity = fleet.step_many([0.2, 0.2, 0.2], 1e-3)
+    >>> [bool(v > 0.0) for v in velocity]
+    [True, True, False]
+    """
+
+    def __new__(
+        cls,
+        motor: Motor,
+        members: int | None = None,
+        *,
+        parameters: Mapping[str, npt.ArrayLike] | None = None,
+    ) -> Ensemble:
+        """See the class."""
+        rows = {
+            _path(motor, name): _row(name, v, members) for name, v in (parameters or {}).items()
+        }
+        sizes = {len(row) for row in rows.values()}
+        if members is None and len(sizes) != 1:
+            raise InputError(
+                "members is missing; give how many there are, or parameters of one length each"
+                if not sizes
+                else f"parameters have {listed([str(n) for n in sorted(sizes)])} values; give all "
+                "of them one value a member"
+            )
+        count = int(members if members is not None else sizes.pop())
+        table = np.concatenate(list(rows.values())) if rows else None
+        return super().__new__(cls, motor, count, list(rows), table)
+
+    def simulate(
+        self,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        *,
+        load: npt.ArrayLike | None = None,
+        outputs: Sequence[str] = ("position",),
+        every: int = 1,
+        reduce: Reduce | None = None,
+        target: npt.ArrayLike | None = None,
+        threads: int | None = None,
+    ) -> EnsembleRun:
+        """Run all machines on from where they are.
+
+        Parameters
+        ----------
+        current : array_like, shape (n,) or (members, n)
+            Input held over each sample.
+        dt : float or array_like of shape (n,)
+            s.
+        load : float or array_like of shape (n,) or (members, n), optional
+            External effort, positive along +x.
+        outputs : sequence of str
+            Columns of a ``Trajectory``.
+        every : int
+            Keep every so many samples one row: the state after sample ``every``, 2·``every`` …
+        reduce : {"last", "rms", "extremes"}, optional
+            Keep no rows; see ``EnsembleRun``.
+        target : float or array_like of shape (n,) or (members, n), optional
+            What "rms" is the distance from; 0 without it.
+        threads : int, optional
+            As many as there are processors without it; results do not depend on it.
+
+        Returns
+        -------
+        EnsembleRun
+
+        Raises
+        ------
+        InputError
+            Shapes that do not fit, an unknown output, a step too long for one of the machines.
+        """
+        if reduce is not None and reduce not in _REDUCTIONS:
+            near = did_you_mean(str(reduce), _REDUCTIONS)
+            raise InputError(f"reduce = '{reduce}' is unknown{near}; known: {listed(_REDUCTIONS)}")
+        if isinstance(outputs, str):
+            raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
+        if isinstance(every, bool) or not isinstance(every, int) or every < 1:
+            raise InputError(f"every = {every!r} is out of bounds: give a whole number from 1")
+        if reduce is not None and every != 1:
+            raise InputError("every goes with rows, and reduce keeps none; give one of them")
+        if target is not None and reduce != "rms":
+            raise InputError('target goes with reduce="rms"; leave it out')
+        flat = self.run(
+            current,
+            dt,
+            load=load,
+            outputs=list(outputs),
+            keep=reduce or "every",
+            every=every,
+            target=target,
+            threads=threads or os.cpu_count() or 1,
+        )
+        members = len(self)
+        columns = {}
+        for name, values in flat.items():
+            rows = values.reshape(members, -1)
+            columns[name] = rows[:, 0] if reduce in ("last", "rms") else rows
+        time: FloatArray = np.empty(0)
+        if reduce is None:
+            steps = np.broadcast_to(np.asarray(dt, dtype=np.float64), np.shape(current)[-1:])
+            time = np.cumsum(steps)[every - 1 :: every]
+            if np.ndim(dt) == 0:
+                time = np.arange(1.0, len(time) + 1.0) * (float(np.asarray(dt)) * every)
+        return EnsembleRun(MappingProxyType(columns), time, reduce)
+
+
+def simulate_ensemble(
+    motor: Motor,
+    currents: npt.ArrayLike,
+    dt: npt.ArrayLike,
+    *,
+    parameters: Mapping[str, npt.ArrayLike] | None = None,
+    load: npt.ArrayLike | None = None,
+    outputs: Sequence[str] = ("position",),
+    every: int = 1,
+    reduce: Reduce | None = None,
+    target: npt.ArrayLike | None = None,
+    threads: int | None = None,
+    executor: Executor | None = None,
+    parts: int | None = None,
+) -> EnsembleRun:
+    """Simulate many machines at once, from the present state of a motor.
+
+    Parameters
+    ----------
+    motor : Motor
+        Left as it is.
+    currents : array_like, shape (members, n) or (n,)
+        Inputs of each machine, or the same for all.
+    dt : float or array_like of shape (n,)
+        s.
+    parameters : Mapping of str to array_like of shape (members,), optional
+        What the machines differ in; see ``Ensemble``.
+    load, outputs, every, reduce, target, threads
+        See ``Ensemble.simulate``.
+    executor : concurrent.futures.Executor, optional
+        Runs parts of the ensemble: a pool of processes, or a cluster's. The result is the same to
+        the bit.
+    parts : int, optional
+        Into how many parts it is cut then; four for each processor of this machine without it.
+
+    Returns
+    -------
+    EnsembleRun
+
+    Raises
+    ------
+    InputError
+        See ``Ensemble``.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> motor = st.Motor(0.0076, friction=st.FrictionModel("hsieh_pan"))
+    >>> rates = np.linspace(0.5, 4.0, 8)
+    >>> effort = np.full(2000, 0.2)
+    >>> run = st.simulate_ensemble(
+    ...     motor, effort, 1e-4, parameters={"creep_rate": rates}, reduce="last"
+    ... )
+    >>> run.position.shape
+    (8,)
+    """
+    inputs = np.asarray(currents, dtype=np.float64)
+    given = {
+        name: _row(name, values, len(inputs) if inputs.ndim == 2 else None)
+        for name, values in (parameters or {}).items()
+    }
+    sizes = {len(row) for row in given.values()} | ({len(inputs)} if inputs.ndim == 2 else set())
+    if len(sizes) > 1:
+        raise InputError(
+            f"parameters and currents are for {listed([str(n) for n in sorted(sizes)])} machines; "
+            "give all of them one row or value a machine"
+        )
+    members = sizes.pop() if sizes else 1
+    keywords: dict[str, Any] = {"outputs": tuple(outputs), "every": every, "reduce": reduce}
+    if isinstance(outputs, str):
+        keywords["outputs"] = outputs
+    if executor is None:
+        ensemble = Ensemble(motor, members, parameters=given)
+        return ensemble.simulate(inputs, dt, load=load, target=target, threads=threads, **keywords)
+    cuts = np.linspace(0, members, min(members, parts or 4 * (os.cpu_count() or 1)) + 1)
+    edges = [round(cut) for cut in cuts]
+    jobs = [
+        executor.submit(
+            _part,
+            motor,
+            high - low,
+            {name: row[low:high] for name, row in given.items()},
+            _rows(inputs, low, high),
+            dt,
+            {**keywords, "load": _rows(load, low, high), "target": _rows(target, low, high)},
+        )
+        for low, high in pairwise(edges)
+    ]
+    found = [job.result() for job in jobs]
+    columns = {
+        name: np.concatenate([run.columns[name] for run in found]) for name in found[0].columns
+    }
+    return EnsembleRun(MappingProxyType(columns), found[0].time, reduce)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """What a worker sends back."""
+
+    columns: dict[str, FloatArray]
+    time: FloatArray
+
+
+def _part(
+    motor: Motor,
+    members: int,
+    parameters: dict[str, FloatArray],
+    currents: FloatArray,
+    dt: npt.ArrayLike,
+    keywords: dict[str, Any],
+) -> _Part:
+    """Some of the machines, on one thread: an executor has its own idea of how many there are."""
+    run = Ensemble(motor, members, parameters=parameters).simulate(
+        currents, dt, threads=1, **keywords
+    )
+    return _Part(dict(run.columns), run.time)
+
+
+def _rows(given: npt.ArrayLike | None, low: int, high: int) -> Any:
+    """The rows of some machines where there is one for each, all of it otherwise."""
+    if given is None or np.ndim(given) < 2:
+        return given
+    return np.asarray(given)[low:high]
+
+
+def _path(motor: Motor, name: str) -> str:
+    """The whole path of a parameter."""
+    known = list(motor.parameters)
+    if name in known:
+        return name
+    fits = [path for path in known if path.rsplit(".", 1)[-1] == name]
+    if len(fits) == 1:
+        return fits[0]
+    if fits:
+        raise InputError(f"parameters: '{name}' may be {listed(fits)}; give the whole path")
+    words = [path.rsplit(".", 1)[-1] for path in known]
+    raise InputError(
+        f"parameters: '{name}' is unknown{did_you_mean(name, [*known, *words])}; known: "
+        f"{listed(known)}"
+    )
+
+
+def _row(name: str, values: npt.ArrayLike, members: int | None) -> FloatArray:
+    """Values of one parameter, one a machine."""
+    try:
+        row = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"parameters['{name}'] is not an array of numbers; give one a member"
+        ) from None
+    if row.ndim == 0 and members is not None:
+        row = np.full(members, float(row))
+    if row.ndim != 1 or (members is not None and len(row) != members):
+        wanted = "(members,)" if members is None else f"({members},)"
+        raise InputError(f"parameters['{name}'] has shape {row.shape}; give {wanted}")
+    return row
