@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from .plant import Plant
     from .recording import Recording
     from .session import Session, load
+    from .streaming import stream
 
 __all__ = [
     "Diagnosis",
@@ -43,6 +44,7 @@ __all__ = [
     "laws",
     "load",
     "simulate_ensemble",
+    "stream",
 ]
 
 # Imported on first use, so that `import stiction` costs little more than numpy.
@@ -60,6 +62,7 @@ _LAZY = {
     "laws": "catalogue",
     "load": "session",
     "simulate_ensemble": "ensemble",
+    "stream": "streaming",
 }
 
 

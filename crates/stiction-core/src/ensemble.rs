@@ -138,7 +138,8 @@ impl Ensemble {
             for (row, place) in places.iter().enumerate() {
                 values[*place] = changes.values[row * members + member];
             }
-            spec.allows(&values)?;
+            spec.allows(&values)
+                .map_err(|error| Error::Member { member, problem: error.to_string() })?;
             let mut running = Running::new(spec, &values);
             running.resume(motor.running());
             Ok(running)

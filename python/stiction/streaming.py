@@ -1,0 +1,171 @@
+"""Runs without end: chunks in, thinned rows out, a checkpoint on the way."""
+
+from __future__ import annotations
+
+import json
+import os
+import zipfile
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import InputError
+from .motor import Motor
+from .trajectory import FloatArray, Trajectory
+
+__all__ = ["stream"]
+
+SCHEMA: Final = 1
+PIECE: Final = 1 << 16
+"""Samples simulated at once: a longer chunk is cut, so that memory does not grow with it."""
+
+
+def stream(
+    motor: Motor,
+    currents: Iterable[npt.ArrayLike],
+    dt: float,
+    *,
+    outputs: tuple[str, ...] = ("position", "velocity"),
+    every: int = 1,
+    checkpoint: str | Path | None = None,
+    load: float = 0.0,
+) -> Iterator[Trajectory]:
+    """Simulate an input that comes in chunks, in constant memory.
+
+    Parameters
+    ----------
+    motor : Motor
+        Is moved on.
+    currents : iterable of array_like of shape (n,)
+        Chunks of any length, held over their samples; a generator may go on for ever.
+    dt : float
+        s.
+    outputs : tuple of str
+        Columns of a ``Trajectory``.
+    every : int
+        Keep every so many samples one row: the states after sample ``every``, 2·``every`` … of the
+        whole run, wherever chunks end.
+    checkpoint : path, optional
+        Where the state is kept from chunk to chunk. Where the file is there already, the run goes
+        on from it: chunks, given from the beginning again, are passed over until then. What follows
+        is the same to the bit as without the interruption.
+    load : float
+        External effort, positive along +x.
+
+    Yields
+    ------
+    Trajectory
+        Rows of each chunk, stamped from the start of the whole run. A chunk is in the checkpoint
+        only once the next one is asked for: what was not taken over is simulated again.
+
+    Raises
+    ------
+    InputError
+        A checkpoint of another motor, ``dt`` or ``every``; what ``Motor.simulate`` refuses.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> motor = st.Motor(0.0076, friction=st.FrictionModel("hsieh_pan"))
+    >>> chunks = (np.full(1000, 0.1) for _ in range(5))
+    >>> rows = [part.position for part in st.stream(motor, chunks, 1e-4, every=100)]
+    >>> len(np.concatenate(rows))
+    50
+    """
+    if isinstance(every, bool) or not isinstance(every, int) or every < 1:
+        raise InputError(f"every = {every!r} is out of bounds: give a whole number from 1")
+    if isinstance(outputs, str):
+        raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
+    return _streamed(motor, currents, dt, tuple(outputs), every, checkpoint, load)
+
+
+def _streamed(
+    motor: Motor,
+    currents: Iterable[npt.ArrayLike],
+    dt: float,
+    outputs: tuple[str, ...],
+    every: int,
+    checkpoint: str | Path | None,
+    load: float,
+) -> Iterator[Trajectory]:
+    path = None if checkpoint is None else Path(checkpoint)
+    identity = _identity(motor, dt, every, load)
+    start = float(motor.state["time"])
+    passed = 0
+    if path is not None and path.exists():
+        passed, start = _resume(motor, path, identity)
+    done = 0
+    for chunk in currents:
+        inputs = np.ascontiguousarray(chunk, dtype=np.float64)
+        length = inputs.size
+        if done + length <= passed:
+            done += length
+            continue
+        # A chunk that the checkpoint ends in is cut there.
+        inputs = inputs[max(0, passed - done) :]
+        done = max(done, passed)
+        rows: dict[str, list[FloatArray]] = {name: [] for name in outputs}
+        first = done // every
+        for piece in (inputs[k : k + PIECE] for k in range(0, len(inputs), PIECE)):
+            run = motor.simulate(piece, dt, load=load, outputs=outputs)
+            for name in outputs:
+                rows[name].append(run[name][(-done - 1) % every :: every].copy())
+            done += len(piece)
+        columns = {name: np.concatenate(parts) for name, parts in rows.items()}
+        yield Trajectory(
+            columns,
+            dt * every,
+            done // every - first,
+            start=start + first * every * dt,
+            statistics=motor.statistics,
+        )
+        if path is not None:
+            _keep(motor, path, identity, done, start)
+
+
+def _identity(motor: Motor, dt: float, every: int, load: float) -> str:
+    """What a checkpoint belongs to, in words."""
+    law, keywords = motor.friction_settings()
+    return json.dumps(
+        [SCHEMA, motor.settings(), law, keywords, float(dt), every, float(load)],
+        sort_keys=True,
+        default=str,
+    )
+
+
+def _keep(motor: Motor, path: Path, identity: str, done: int, start: float) -> None:
+    """Writes the state beside the file and moves it there: a kill leaves the old one or the new."""
+    state = {f"state.{name}": np.asarray(value) for name, value in motor.state.items()}
+    beside = path.with_name(f"{path.name}.part")
+    with beside.open("wb") as file:
+        np.savez(file, identity=identity, done=done, start=start, **state)  # type: ignore[arg-type]
+        file.flush()
+        os.fsync(file.fileno())
+    beside.replace(path)
+
+
+def _resume(motor: Motor, path: Path, identity: str) -> tuple[int, float]:
+    """Sets the state that was kept; samples done until then, and when the run began."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            kept = {name: file[name] for name in file.files}
+            belongs, done = str(kept["identity"]), int(kept["done"])
+            start = float(kept["start"])
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise InputError(
+            f"{path}: cannot be read as a checkpoint ({error}); delete it to start anew"
+        ) from None
+    if belongs != identity:
+        raise InputError(
+            f"{path}: is the checkpoint of another motor, load, dt or every; delete it, or name "
+            "another file"
+        )
+    state: dict[str, Any] = {}
+    for name, value in kept.items():
+        if name.startswith("state."):
+            state[name.removeprefix("state.")] = float(value) if value.ndim == 0 else value
+    motor.state = state
+    return done, start
