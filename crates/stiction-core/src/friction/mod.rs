@@ -458,6 +458,7 @@ macro_rules! laws {
 
 laws! {
     coulomb => Coulomb,
+    dahl => Dahl,
     hsieh_pan => HsiehPan,
     maxwell_slip => MaxwellSlip,
     rate_and_state => RateAndState,
