@@ -475,6 +475,7 @@ macro_rules! laws {
 laws! {
     coulomb => Coulomb,
     dahl => Dahl,
+    elasto_plastic => ElastoPlastic,
     hsieh_pan => HsiehPan,
     lugre => LuGre,
     maxwell_slip => MaxwellSlip,

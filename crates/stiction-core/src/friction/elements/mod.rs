@@ -1,5 +1,6 @@
 //! Building blocks that several laws share.
 
+pub mod approach;
 pub mod arcsinh;
 pub mod bristle;
 pub mod contact_age;
