@@ -142,6 +142,8 @@ def test_motors_on_every_law_stay_finite(definition, levels, inertia, dt, integr
     machine = st.Motor(inertia=inertia, friction=model, integrator=integrator)
     run = machine.simulate(np.repeat(levels, 10), dt, outputs=("position", "velocity", "friction"))
     assert run.success, run.message
+    if not model.passive:
+        return
     # Friction never pushes: the body has no more energy than the input brought.
     work = np.sum(np.repeat(levels, 10) * np.diff(run.position, prepend=0.0))
     kinetic = 0.5 * inertia * run.velocity[-1] ** 2

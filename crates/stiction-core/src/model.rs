@@ -96,6 +96,11 @@ impl LawSpec {
         Ok(Self { record, values, choices })
     }
 
+    /// Whether a contact of this law never gives back more than it took, at constant levels.
+    pub fn passive(&self) -> bool {
+        Law::passive(self.record.name, &self.values).unwrap_or(false)
+    }
+
     /// Start values of a contact in the order of the record; what is not stated is 0.
     pub fn start(&self, stated: &[(String, f64)]) -> Result<Vec<f64>> {
         resolve(&format!("the start of {}", self.record.name), self.record.start, stated)

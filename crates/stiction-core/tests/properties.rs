@@ -138,8 +138,8 @@ fn a_stuck_shaft_does_not_creep() {
 
 #[test]
 fn steps_do_not_depend_on_how_they_are_chunked() {
-    let mut stream = Stream::new(21);
     for record in all_laws() {
+        let mut stream = Stream::of(record, 21);
         let spec = drawn(record, &mut stream);
         let velocity: Vec<f64> = (0..2000).map(|_| stream.between(-0.3, 0.3)).collect();
         let whole = run(&mut FrictionModel::new(spec.clone()), &velocity, 1e-4);
@@ -409,11 +409,17 @@ fn a_jump_of_velocity_breaks_a_series_damper_away_once_and_gives_nothing_back() 
 fn drawn_laws_with_any_option_give_nothing_back() {
     // Steps far below the distances in which the force changes, so that the trapezoid is exact
     // enough to tell.
-    let mut stream = Stream::new(77);
     let mut slides = 0;
     for record in all_laws() {
+        let mut stream = Stream::of(record, 77);
+        let mut claimed = 0;
         for _ in 0..12 {
             let spec = drawn(record, &mut stream);
+            // Some laws are passive under a condition alone, and say whether it holds.
+            if !spec.passive() {
+                continue;
+            }
+            claimed += 1;
             let value = |name: &str| {
                 let at = record.parameters.iter().position(|p| p.name == name);
                 at.map(|k| spec.values[k])
@@ -438,6 +444,7 @@ fn drawn_laws_with_any_option_give_nothing_back() {
             let slack = 1e-3 * level * slip;
             assert!(least > -slack, "{least} of {work}, slack {slack}: {spec:?}");
         }
+        assert!(claimed > 0, "no drawn {} claims to be passive", record.name);
     }
     assert!(slides > 100, "only {slides} slides");
 }

@@ -251,6 +251,12 @@ impl FrictionModel {
         Ok(dict)
     }
 
+    /// Whether the contact never gives back more work than it took; some laws do under a condition.
+    #[getter]
+    fn passive(&self) -> bool {
+        self.lock().spec().passive()
+    }
+
     /// The state as a dict of floats and arrays; assign one to continue from it.
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

@@ -1,11 +1,11 @@
 //! Dry friction with true stick, viscous friction and, as an option, a Stribeck fall.
 
-use super::elements::stribeck::{fall, steepest};
+use super::elements::stribeck::{check_levels, fall, steepest};
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome,
     Statistics,
 };
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::{Scalar, sign};
@@ -127,16 +127,7 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
 
     fn check(values: &[f64]) -> Result<()> {
         let p = CoulombParameters::from_values(values);
-        if p.coulomb > p.breakaway {
-            return Err(Error::Order {
-                lesser: "coulomb".to_owned(),
-                lesser_value: p.coulomb,
-                relation: "not exceed",
-                greater: "breakaway".to_owned(),
-                greater_value: p.breakaway,
-            });
-        }
-        Ok(())
+        check_levels(p.coulomb, p.breakaway)
     }
 
     fn initial(&self) -> CoulombState<S> {

@@ -5,7 +5,7 @@ use super::elements::plastic::{Creep, Plastic};
 use super::elements::reachable::reachable;
 use super::elements::series;
 use super::elements::spring::{Curve, Loading, SpringState, VirginCurve, Walk};
-use super::elements::stribeck::{fall, steepest};
+use super::elements::stribeck::{check_levels, fall, steepest};
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
     Statistics,
@@ -420,28 +420,16 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
 
     fn check(values: &[f64]) -> Result<()> {
         let p = HsiehPanParameters::from_values(values);
-        let order = |lesser: &str, lesser_value, relation, greater: &str, greater_value| {
-            Err(Error::Order {
-                lesser: lesser.to_owned(),
-                lesser_value,
-                relation,
-                greater: greater.to_owned(),
-                greater_value,
-            })
-        };
         if p.final_stiffness >= p.initial_stiffness {
-            return order(
-                "final_stiffness",
-                p.final_stiffness,
-                "stay below",
-                "initial_stiffness",
-                p.initial_stiffness,
-            );
+            return Err(Error::Order {
+                lesser: "final_stiffness".to_owned(),
+                lesser_value: p.final_stiffness,
+                relation: "stay below",
+                greater: "initial_stiffness".to_owned(),
+                greater_value: p.initial_stiffness,
+            });
         }
-        if p.coulomb > p.breakaway {
-            return order("coulomb", p.coulomb, "not exceed", "breakaway", p.breakaway);
-        }
-        Ok(())
+        check_levels(p.coulomb, p.breakaway)
     }
 
     fn initial(&self) -> HsiehPanState<S> {

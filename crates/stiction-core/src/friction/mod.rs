@@ -187,6 +187,10 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn check(_values: &[f64]) -> Result<()> {
         Ok(())
     }
+    /// Whether a contact with these values never gives back more than it took, at constant levels.
+    fn passive(_values: &[f64]) -> bool {
+        true
+    }
     /// The state of a contact that was never moved.
     fn initial(&self) -> Self::State;
     /// The state of a contact that brings these values of [`FrictionLaw::START`] along.
@@ -368,6 +372,18 @@ macro_rules! laws {
             }
         }
 
+        impl Law<f64> {
+            /// Whether a contact with these values never gives back more than it took.
+            pub fn passive(name: &str, values: &[f64]) -> Result<bool> {
+                match name {
+                    $(stringify!($module) => {
+                        Ok(<$module::$law<f64> as FrictionLaw<f64>>::passive(values))
+                    })*
+                    _ => Err(unknown_law(name)),
+                }
+            }
+        }
+
         impl<S: Scalar> AnyState<S> {
             /// The same state over another number type, with no parameter dependence.
             pub fn lift<T: Scalar>(&self) -> AnyState<T> {
@@ -458,7 +474,10 @@ macro_rules! laws {
 
 laws! {
     coulomb => Coulomb,
+    dahl => Dahl,
+    elasto_plastic => ElastoPlastic,
     hsieh_pan => HsiehPan,
+    lugre => LuGre,
     maxwell_slip => MaxwellSlip,
     rate_and_state => RateAndState,
 }

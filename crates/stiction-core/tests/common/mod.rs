@@ -12,6 +12,11 @@ impl Stream {
     pub fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x1234_5678_9ABC_DEF1)
     }
+    /// One for each law, so that a new law leaves the draws of the others as they are.
+    pub fn of(law: &LawRecord, seed: u64) -> Self {
+        let letters = law.name.bytes().map(u64::from);
+        Self::new(letters.fold(seed, |sum, letter| sum.wrapping_mul(31).wrapping_add(letter)))
+    }
     pub fn next(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;

@@ -1,5 +1,6 @@
 //! The fall of friction with speed that several laws share.
 
+use crate::error::{Error, Result};
 use crate::scalar::Scalar;
 
 /// e^(−|v/v_s|^δ) and its slope by speed |v|; the slope is taken as 0 at v = 0, where it is not
@@ -19,4 +20,60 @@ pub fn fall<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> (S, S)
 /// About the steepest fall by speed of `excess` times that: sets how far a step may reach.
 pub fn steepest(excess: f64, stribeck_velocity: f64, exponent: f64) -> f64 {
     excess / stribeck_velocity * exponent.max(1.0)
+}
+
+/// Friction of steady sliding without its viscous part: g(v) = F_c + (F_s − F_c)·e^(−|v/v_s|^δ).
+#[derive(Debug, Clone, Copy)]
+pub struct SlidingLevel<S> {
+    /// F_c.
+    pub coulomb: S,
+    /// F_s − F_c.
+    excess: S,
+    velocity: S,
+    exponent: S,
+    falls: bool,
+}
+
+impl<S: Scalar> SlidingLevel<S> {
+    /// The level with these F_c, F_s, v_s and δ.
+    pub fn new(coulomb: S, breakaway: S, velocity: S, exponent: S) -> Self {
+        let excess = breakaway - coulomb;
+        // A gradient by F_s is asked for at F_s = F_c as well, hence the second condition.
+        let falls = excess.re() != 0.0 || excess.derivative_is_nonzero();
+        Self { coulomb, excess, velocity, exponent, falls }
+    }
+
+    /// g and its slope by speed |v|.
+    #[inline]
+    pub fn at(&self, velocity: S) -> (S, S) {
+        if !self.falls {
+            return (self.coulomb, S::constant(0.0));
+        }
+        let (left, steepness) = fall(velocity, self.velocity, self.exponent);
+        (self.coulomb + self.excess * left, self.excess * steepness)
+    }
+
+    /// F_s, the greatest.
+    pub fn greatest(&self) -> S {
+        self.coulomb + self.excess
+    }
+
+    /// About the steepest fall by speed.
+    pub fn steepest_fall(&self) -> f64 {
+        steepest(self.excess.re(), self.velocity.re(), self.exponent.re())
+    }
+}
+
+/// Refuses F_c above F_s.
+pub fn check_levels(coulomb: f64, breakaway: f64) -> Result<()> {
+    if coulomb > breakaway {
+        return Err(Error::Order {
+            lesser: "coulomb".to_owned(),
+            lesser_value: coulomb,
+            relation: "not exceed",
+            greater: "breakaway".to_owned(),
+            greater_value: breakaway,
+        });
+    }
+    Ok(())
 }

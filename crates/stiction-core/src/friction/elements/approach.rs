@@ -1,0 +1,53 @@
+//! What is left on the way to a steady force, where no formula solves the way.
+
+use crate::scalar::Scalar;
+
+/// Greatest change of ln r over a step at r = 1; the error of a step is of its fifth power.
+const STEP: f64 = 1.0 / 32.0;
+/// Nothing is left below this.
+const NOTHING: f64 = 1e-17;
+
+/// r after a way, where dr/dσ = −r·rate(r), 0 < r ≤ 1 and rate > 0 settles as r → 0.
+///
+/// Runge-Kutta of fourth order on q = −ln r, whose rate is smooth and, far out, constant: steps grow
+/// as r^(−1/4), so that however long the way is, some two hundred of them end it.
+#[inline]
+pub fn approach<S: Scalar>(r: S, way: S, rate: impl Fn(S) -> S) -> S {
+    let mut left = way;
+    let mut r = r;
+    while left.re() > 0.0 {
+        if r.re() < NOTHING {
+            return S::constant(0.0);
+        }
+        let k1 = rate(r);
+        let reach = STEP * r.re().powf(-0.25) / k1.re();
+        let last = left.re() <= reach;
+        let h = if last { left } else { S::constant(reach) };
+        let at = |k: S, share: f64| r * (-(k * h * share)).exp();
+        let k2 = rate(at(k1, 0.5));
+        let k3 = rate(at(k2, 0.5));
+        let k4 = rate(at(k3, 1.0));
+        r = at((k1 + (k2 + k3) * 2.0 + k4) / 6.0, 1.0);
+        if last {
+            break;
+        }
+        left -= h;
+    }
+    r
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_logistic_way_is_followed_for_any_length() {
+        // dr/dσ = −r·(1 + r): r/(1 + r) decays exponentially.
+        for way in [1e-9_f64, 1e-3, 0.1, 3.0, 30.0, 1e6] {
+            let share = 0.5 * (-way).exp();
+            let exact = share / (1.0 - share);
+            let found = approach(1.0, way, |r: f64| r + 1.0);
+            assert!((found - exact).abs() < 1e-8 * exact + 1e-16, "{way}: {found} {exact}");
+        }
+    }
+}
