@@ -233,9 +233,9 @@ fn end_state(spec: &MotorSpec, inputs: &[f64], dt: f64) -> (f64, Vec<Statistics>
 
 #[test]
 fn gradients_equal_central_differences_on_the_same_branches() {
-    let mut stream = Stream::new(11);
     let mut compared = 0;
     for law in LAWS {
+        let mut stream = Stream::named(12, law.name);
         for _ in 0..8 {
             let spec = MotorSpec {
                 effects: EFFECTS

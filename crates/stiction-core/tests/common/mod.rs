@@ -12,6 +12,11 @@ impl Stream {
     pub fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x1234_5678_9ABC_DEF1)
     }
+    /// A stream of this name's own: what others draw does not shift it.
+    pub fn named(seed: u64, name: &str) -> Self {
+        let mixed = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3);
+        Self::new(name.bytes().fold(seed ^ 0xCBF2_9CE4_8422_2325, mixed))
+    }
     pub fn next(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
