@@ -458,6 +458,7 @@ macro_rules! laws {
 
 laws! {
     coulomb => Coulomb,
+    elastic_perfectly_plastic => ElasticPerfectlyPlastic,
     hsieh_pan => HsiehPan,
     maxwell_slip => MaxwellSlip,
     rate_and_state => RateAndState,
@@ -505,6 +506,18 @@ impl<'a> EntryReader<'a> {
                 problem: format!("is {other}, not a finite number"),
             }),
         }
+    }
+
+    /// A finite number from 0 on.
+    pub fn at_least_zero(&mut self, name: &str) -> Result<f64> {
+        let x = self.number(name, false)?;
+        if x < 0.0 {
+            return Err(Error::State {
+                name: name.to_owned(),
+                problem: format!("is {x}, not a number from 0"),
+            });
+        }
+        Ok(x)
     }
 
     /// A count.

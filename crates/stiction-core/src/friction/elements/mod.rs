@@ -7,6 +7,7 @@ pub mod memory;
 pub mod plastic;
 pub mod reachable;
 pub mod series;
+pub mod slip_hardening;
 pub mod spring;
 pub mod stribeck;
 pub mod yield_curve;
