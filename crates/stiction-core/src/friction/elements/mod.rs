@@ -6,6 +6,7 @@ pub mod lag;
 pub mod memory;
 pub mod plastic;
 pub mod reachable;
+pub mod rigid;
 pub mod series;
 pub mod slip_hardening;
 pub mod spring;
