@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.reference.laws import elastic_perfectly_plastic
+from tests.reference.laws import elastic_perfectly_plastic, rigid_perfectly_plastic
 
 import stiction as st
 
@@ -106,3 +106,76 @@ def test_a_start_force_stands_in_the_spring():
     machine = st.Motor(inertia=0.0076, friction=elastic())
     held = machine.follow(np.zeros(11), np.zeros(10), 1e-3, start={"force": 0.2})[2]
     assert held == pytest.approx(np.full(10, 0.2))
+
+
+def rigid(**values):
+    return st.FrictionModel("rigid_perfectly_plastic", coulomb=F_C, **values)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_rigid_contact_follows_its_oracle(seed):
+    rng = np.random.default_rng(seed)
+    values = {
+        "coulomb": rng.uniform(0.1, 1.0),
+        "unhardened_share": rng.uniform(0.05, 0.95),
+        "hardening_distance": 10.0 ** rng.uniform(-3.0, -1.0),
+        "viscous": rng.uniform(0.0, 0.1),
+    }
+    velocity = 10.0 ** rng.uniform(-3.0, 0.0, 100) * rng.choice([-1.0, 0.0, 1.0], 100)
+    exact = rigid_perfectly_plastic.along(velocity, 1e-3, **values)
+    ours = st.FrictionModel("rigid_perfectly_plastic", **values).simulate(velocity, 1e-3)
+    assert np.abs(ours - exact).max() < ORACLE_SHARE * values["coulomb"]
+
+
+def test_a_rigid_contact_holds_up_to_its_present_level_and_not_beyond():
+    share, distance = 0.6, 1e-2
+    law = rigid(unhardened_share=share, hardening_distance=distance)
+    for way in (0.0, 0.003, 0.02, 1.0):
+        if way:
+            law.step(-way / 1e-3, 1e-3)
+        slid = law.state["hardening"]
+        level = F_C * (1.0 - (1.0 - share) * np.exp(-slid / distance))
+        assert law.step(0.0, 1e-3, effort=0.999 * level) == 0.999 * level
+        assert law.step(0.0, 1e-3, effort=-5.0) == pytest.approx(-level, rel=1e-12)
+
+
+def test_a_rigid_contact_without_hardening_is_coulomb_and_with_it_differs():
+    rng = np.random.default_rng(1)
+    current = np.repeat(rng.uniform(-0.6, 0.6, 40), 50)
+
+    def run(law):
+        return st.Motor(inertia=0.0076, friction=law).simulate(current, 1e-3).position
+
+    coulomb = run(st.FrictionModel("coulomb", coulomb=F_C, viscous=0.05))
+    assert np.array_equal(run(rigid(unhardened_share=1.0, viscous=0.05)), coulomb)
+    hardened = run(rigid(viscous=0.05))
+    assert np.abs(hardened - coulomb).max() > 0.01 * np.ptp(coulomb)
+
+
+def test_each_push_of_a_rigid_contact_goes_less_far_than_the_one_before():
+    machine = st.Motor(
+        inertia=0.0076, friction=rigid(unhardened_share=0.5, hardening_distance=0.02)
+    )
+    push = np.concatenate((np.full(200, 0.33), np.zeros(800)))
+    rests = [0.0] + [machine.simulate(push, 1e-4).position[-1] for _ in range(5)]
+    ways = np.diff(rests)
+    assert np.all(ways > 0.0)
+    assert np.all(np.diff(ways) < 0.0)
+    # It rests, to the bit.
+    run = machine.simulate(np.full(10_000, 0.1), 1e-3)
+    assert np.all(run.position == rests[-1])
+
+
+@pytest.mark.parametrize("integrator", ["fast", "reference"])
+def test_a_push_that_hardens_the_contact_stops_where_its_energy_is_spent(integrator):
+    # ∫F_y dκ over the way equals the kinetic energy at the start.
+    share, distance, inertia = 0.5, 0.02, 0.0076
+    machine = st.Motor(
+        inertia=inertia,
+        friction=rigid(unhardened_share=share, hardening_distance=distance),
+        integrator=integrator,
+    )
+    machine.reset(0.0, 2.0)
+    way = machine.simulate(np.zeros(3000), 1e-4).position[-1]
+    work = F_C * (way - (1.0 - share) * distance * (1.0 - np.exp(-way / distance)))
+    assert work == pytest.approx(0.5 * inertia * 4.0, rel=1e-4)

@@ -462,6 +462,7 @@ laws! {
     hsieh_pan => HsiehPan,
     maxwell_slip => MaxwellSlip,
     rate_and_state => RateAndState,
+    rigid_perfectly_plastic => RigidPerfectlyPlastic,
 }
 
 /// The record of the law called `name`.
