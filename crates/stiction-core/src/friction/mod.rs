@@ -459,8 +459,12 @@ macro_rules! laws {
 laws! {
     coulomb => Coulomb,
     elastic_perfectly_plastic => ElasticPerfectlyPlastic,
+    futami => Futami,
     hsieh_pan => HsiehPan,
     maxwell_slip => MaxwellSlip,
+    parallel_elements => ParallelElements,
+    prandtl_ishlinskii => PrandtlIshlinskii,
+    preisach => Preisach,
     rate_and_state => RateAndState,
     rigid_perfectly_plastic => RigidPerfectlyPlastic,
 }

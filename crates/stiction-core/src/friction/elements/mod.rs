@@ -10,5 +10,6 @@ pub mod rigid;
 pub mod series;
 pub mod slip_hardening;
 pub mod spring;
+pub mod stop;
 pub mod stribeck;
 pub mod yield_curve;
