@@ -66,6 +66,9 @@ impl<'py> Table<'py> {
     }
 }
 
+/// Two arrays: positions, velocities.
+type Reached<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
 impl Ensemble {
     fn lock(&self) -> MutexGuard<'_, Core> {
         self.core.lock().unwrap_or_else(PoisonError::into_inner)
@@ -106,7 +109,7 @@ impl Ensemble {
         current: &Bound<'py, PyAny>,
         dt: f64,
         load: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    ) -> PyResult<Reached<'py>> {
         let members = self.lock().len();
         let dt = duration(py, "dt", dt)?;
         let current = Each::read("current", Some(current), 0.0, &[members])?;

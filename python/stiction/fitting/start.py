@@ -33,6 +33,8 @@ ABOVE_COULOMB: Final = 1.1
 
 REFERRED: Final = ("rate_and_state",)
 """Laws whose Coulomb friction is that at a reference speed, which no data tell."""
+LENGTH: Final = "rad"
+"""Unit of what a law measures distances in, on a rotary machine."""
 HARDENED: Final = 1.0
 """Creep under a held Coulomb friction to start from, in reaches."""
 
@@ -85,10 +87,12 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
     )
     if "initial_stiffness" in silent:
         return _stiffness(whole, forms, coulomb, silent)
-    if plant.friction.law in REFERRED and "slip_distance" in silent:
+    lengths = [f"friction.{name}" for name in silent if core[name].unit == LENGTH]
+    if lengths:
+        # Lengths over which a law hardens or forgets: no bound but the range of motion is known.
         span = max(float(np.ptp(form.position)) for form in forms)
-        path = "friction.slip_distance"
-        return _likeliest([whole.with_values({path: share * span}) for share in REACHES], forms)
+        tried = [dict.fromkeys(lengths, share * span) for share in REACHES]
+        return _likeliest([whole.with_values(values) for values in tried], forms)
     return [whole]
 
 
@@ -185,13 +189,13 @@ def _stiffness(
 ) -> list[Plant]:
     """The plants with the pre-sliding reaches that leave the least residual."""
     span = max(float(np.ptp(form.position)) for form in forms)
+    recorded = {path.removeprefix("friction."): each for path, each in records(plant).items()}
 
     def tried(reach: float) -> Plant:
         values = {"initial_stiffness": coulomb / reach}
         if "final_stiffness" in silent:
             values["final_stiffness"] = 0.27 * values["initial_stiffness"]
-        if "decay_distance" in silent:
-            values["decay_distance"] = reach
+        values |= {name: reach for name in silent if recorded[name].unit == LENGTH}
         if "hardening_coefficient" in silent:
             values["hardening_coefficient"] = HARDENED * reach / coulomb**2
         if "damping" in silent:

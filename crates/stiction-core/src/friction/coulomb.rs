@@ -1,5 +1,6 @@
 //! Dry friction with true stick, viscous friction and, as an option, a Stribeck fall.
 
+use super::elements::rigid::{Rigid, held};
 use super::elements::stribeck::{check_levels, fall, steepest};
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome,
@@ -45,12 +46,7 @@ pub struct Coulomb<S> {
 
 /// Contact mode of [`Coulomb`].
 #[derive(Debug, Clone, Copy)]
-pub struct CoulombState<S> {
-    /// 0 sticks, ±1 slides in that direction.
-    mode: f64,
-    force: S,
-    statistics: Statistics,
-}
+pub struct CoulombState<S>(Rigid<S>);
 
 /// A step of [`Coulomb`].
 #[derive(Debug, Clone, Copy)]
@@ -62,7 +58,7 @@ pub struct CoulombTrial<S> {
 impl<S: Scalar> CoulombState<S> {
     /// The same state over another number type.
     pub fn map<T: Scalar>(&self, convert: impl Fn(S) -> T) -> CoulombState<T> {
-        CoulombState { mode: self.mode, force: convert(self.force), statistics: self.statistics }
+        CoulombState(self.0.map(convert))
     }
 }
 
@@ -70,20 +66,15 @@ impl<S: Scalar> LawState<S> for CoulombState<S> {
     const OUTPUTS: &'static [&'static str] = &["mode"];
 
     fn output(&self, _index: usize) -> S {
-        S::constant(self.mode)
+        S::constant(self.0.mode)
     }
 
     fn entries(&self) -> Vec<(&'static str, Entry)> {
-        vec![
-            ("mode", Entry::Number(self.mode)),
-            ("force", Entry::Number(self.force.re())),
-            ("breakaways", Entry::Number(self.statistics.breakaways as f64)),
-            ("sticks", Entry::Number(self.statistics.sticks as f64)),
-        ]
+        self.0.entries()
     }
 
     fn statistics(&self) -> Statistics {
-        self.statistics
+        self.0.statistics
     }
 }
 
@@ -131,20 +122,12 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
     }
 
     fn initial(&self) -> CoulombState<S> {
-        CoulombState { mode: 0.0, force: S::constant(0.0), statistics: Statistics::default() }
+        CoulombState(Rigid::at_rest())
     }
 
     fn restore(&self, entries: &[(String, Entry)]) -> Result<CoulombState<S>> {
         let mut read = EntryReader::new(entries);
-        let state = CoulombState {
-            mode: read.choice("mode", &[-1.0, 0.0, 1.0])?,
-            force: S::constant(read.number("force", false)?),
-            statistics: Statistics {
-                breakaways: read.count("breakaways")?,
-                sticks: read.count("sticks")?,
-                ..Statistics::default()
-            },
-        };
+        let state = CoulombState(Rigid::restore(&mut read)?);
         read.finish()?;
         Ok(state)
     }
@@ -169,10 +152,10 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
 
     #[inline]
     fn force(&self, state: &CoulombState<S>, velocity: S, channels: &Channels<S>) -> S {
-        if state.mode == 0.0 && velocity.re() == 0.0 {
-            return state.force;
+        let mode = state.0.mode_at(velocity);
+        if mode == 0.0 {
+            return state.0.force;
         }
-        let mode = if state.mode == 0.0 { sign(velocity.re()) } else { state.mode };
         self.sliding(mode, velocity, channels).0
     }
 
@@ -183,15 +166,9 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
         motion: &Motion<S>,
         channels: &Channels<S>,
     ) -> CoulombTrial<S> {
-        let moving = sign(motion.velocity.re());
-        let mode = if state.mode == 0.0 { moving } else { state.mode };
+        let mode = state.0.mode_at(motion.velocity);
         if mode == 0.0 {
-            let greatest = self.parameters.breakaway * channels.level;
-            let force = if channels.effort.re().abs() <= greatest.re() {
-                channels.effort
-            } else {
-                greatest * sign(channels.effort.re())
-            };
+            let force = held(channels.effort, self.parameters.breakaway * channels.level);
             // Set-valued at rest; the viscous slope is what a host's Newton step can use.
             let slope = self.parameters.viscous * channels.viscous_level;
             return CoulombTrial { mode, outcome: Outcome { force, slope, damping: slope } };
@@ -209,30 +186,17 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
 
     #[inline]
     fn commit(&self, state: &mut CoulombState<S>, trial: &CoulombTrial<S>) {
-        if state.mode == 0.0 && trial.mode != 0.0 {
-            state.statistics.breakaways += 1;
-        }
-        state.mode = trial.mode;
-        state.force = trial.outcome.force;
+        state.0.accept(trial.mode, trial.outcome.force);
     }
 
     #[inline]
     fn holds(&self, state: &mut CoulombState<S>, channels: &Channels<S>) -> bool {
-        if state.mode != 0.0 {
-            return false;
-        }
-        if channels.effort.re().abs() <= (self.parameters.breakaway * channels.level).re() {
-            state.force = channels.effort;
-            return true;
-        }
-        state.mode = sign(channels.effort.re());
-        state.statistics.breakaways += 1;
-        false
+        state.0.holds(channels.effort, self.parameters.breakaway * channels.level)
     }
 
     #[inline]
     fn pending(&self, state: &CoulombState<S>, velocity: S) -> Option<Event> {
-        (state.mode * velocity.re() < 0.0).then_some(Event::Reversal)
+        state.0.turned(velocity).then_some(Event::Reversal)
     }
 
     #[inline]
@@ -242,7 +206,7 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
         _trial: &CoulombTrial<S>,
         motion: &Motion<S>,
     ) -> Option<Event> {
-        (state.mode != 0.0 && state.mode * motion.velocity.re() <= 0.0).then_some(Event::Reversal)
+        state.0.stops_by(motion.velocity).then_some(Event::Reversal)
     }
 
     #[inline]
@@ -253,11 +217,10 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
         motion: &Motion<S>,
         _event: Event,
     ) -> S {
-        motion.velocity * state.mode
+        motion.velocity * state.0.mode
     }
 
     fn switch(&self, state: &mut CoulombState<S>, _event: Event) {
-        state.mode = 0.0;
-        state.statistics.sticks += 1;
+        state.0.stick();
     }
 }

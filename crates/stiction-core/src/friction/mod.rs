@@ -476,10 +476,16 @@ laws! {
     coulomb => Coulomb,
     dahl => Dahl,
     elasto_plastic => ElastoPlastic,
+    elastic_perfectly_plastic => ElasticPerfectlyPlastic,
+    futami => Futami,
     hsieh_pan => HsiehPan,
     lugre => LuGre,
     maxwell_slip => MaxwellSlip,
+    parallel_elements => ParallelElements,
+    prandtl_ishlinskii => PrandtlIshlinskii,
+    preisach => Preisach,
     rate_and_state => RateAndState,
+    rigid_perfectly_plastic => RigidPerfectlyPlastic,
 }
 
 /// The record of the law called `name`.
@@ -524,6 +530,18 @@ impl<'a> EntryReader<'a> {
                 problem: format!("is {other}, not a finite number"),
             }),
         }
+    }
+
+    /// A finite number from 0 on.
+    pub fn at_least_zero(&mut self, name: &str) -> Result<f64> {
+        let x = self.number(name, false)?;
+        if x < 0.0 {
+            return Err(Error::State {
+                name: name.to_owned(),
+                problem: format!("is {x}, not a number from 0"),
+            });
+        }
+        Ok(x)
     }
 
     /// A count.

@@ -25,6 +25,11 @@ pub trait Loading<S: Scalar> {
     fn initial_stiffness(&self) -> S;
     /// G and its slope at distance d ≥ 0 from a reverse point.
     fn branch(&self, d: S) -> Response<S>;
+    /// The same of a branch that depends on where its reverse point lies as well.
+    #[inline]
+    fn branch_from(&self, _anchor: S, _direction: f64, d: S) -> Response<S> {
+        self.branch(d)
+    }
     /// The curve before any reversal at elongation x.
     fn virgin(&self, x: S) -> Response<S>;
     /// Whether the first loop closes at the mirror of its reverse point.
@@ -84,27 +89,32 @@ impl<S: Scalar> Curve<S> {
         }
     }
 
-    /// The elongation at which the virgin curve has this force, from a guess nearby.
-    ///
-    /// The curve is concave and rising, so Newton's iteration cannot leave its domain once it
-    /// has passed below the root; the last pass carries the derivatives.
+    /// The elongation at which the virgin curve has this force.
     pub fn virgin_inverse(&self, force: S) -> S {
-        let target = force.re().abs();
-        let s = if force.re() < 0.0 { -1.0 } else { 1.0 };
-        let mut x = S::constant(target / self.initial_stiffness.re());
-        for _ in 0..60 {
-            let r = self.virgin(x);
-            let next = (x.re() + (target - r.force.re()) / r.slope.re()).max(0.0);
-            let moved = (next - x.re()).abs();
-            x = S::constant(next);
-            if moved <= 4.0 * f64::EPSILON * next {
-                break;
-            }
-        }
-        let r = self.virgin(x);
-        x += (force * s - r.force) / r.slope;
-        x * s
+        virgin_inverse(self, force)
     }
+}
+
+/// The elongation at which a virgin curve has this force.
+///
+/// The curve is concave and rising, so Newton's iteration cannot leave its domain once it has
+/// passed below the root; the last pass carries the derivatives.
+pub fn virgin_inverse<S: Scalar>(curve: &impl Loading<S>, force: S) -> S {
+    let target = force.re().abs();
+    let s = if force.re() < 0.0 { -1.0 } else { 1.0 };
+    let mut x = S::constant(target / curve.initial_stiffness().re());
+    for _ in 0..60 {
+        let r = curve.virgin(x);
+        let next = (x.re() + (target - r.force.re()) / r.slope.re()).max(0.0);
+        let moved = (next - x.re()).abs();
+        x = S::constant(next);
+        if moved <= 4.0 * f64::EPSILON * next {
+            break;
+        }
+    }
+    let r = curve.virgin(x);
+    x += (force * s - r.force) / r.slope;
+    x * s
 }
 
 impl<S: Scalar> Loading<S> for Curve<S> {
@@ -215,8 +225,12 @@ impl<S: Scalar> SpringState<S> {
     /// Read-only walk to another elongation.
     #[inline]
     pub fn walk(&self, curve: &impl Loading<S>, displacement: S) -> Walk<S> {
-        let position = self.position + displacement;
-        let moving = sign(displacement.re());
+        self.walk_to(curve, self.position + displacement, sign(displacement.re()))
+    }
+
+    /// Read-only walk to an elongation that lies in this direction.
+    #[inline]
+    pub fn walk_to(&self, curve: &impl Loading<S>, position: S, moving: f64) -> Walk<S> {
         let direction = if moving == 0.0 { self.direction } else { moving };
         let points = self.memory.points();
         let reversed = direction != self.direction && self.direction != 0.0;
@@ -237,7 +251,8 @@ impl<S: Scalar> SpringState<S> {
         let anchor = added.as_ref().or(points[..kept].last());
         let end = match anchor {
             Some(anchor) => {
-                let along = curve.branch((position - anchor.position) * direction);
+                let d = (position - anchor.position) * direction;
+                let along = curve.branch_from(anchor.position, direction, d);
                 Response { force: anchor.force + along.force * direction, slope: along.slope }
             }
             None => curve.virgin(position),
