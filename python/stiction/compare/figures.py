@@ -26,13 +26,13 @@ _WIDTH, _HEIGHT = 5.6, 2.25
 _COLOURS: Final = 48
 _FLAT: Final = 0.03
 """Friction that varies by less than this share is drawn from 0: it is flat and shall look so."""
-_TURNS: Final = (1.2, -0.9, 0.6, -0.4, 0.6, 1.2)
+_TURNS: Final = (2.4, -2.0, 1.0, -0.7, 1.0, 2.4)
 """Where the motion turns round, in pre-sliding distances: a loop, and one within it."""
 _LEG: Final = 300
 _LEG_S: Final = 0.1  # s; too short for most creep
 _SPEEDS: Final = (0.0, 0.3)
 """Range of the cycles of speed, rad/s or m/s."""
-_CYCLES: Final = ((3000.0, MEASURED, "slow"), (30.0, ACCENT, "fast"))
+_CYCLES: Final = ((10_000.0, MEASURED, "slow"), (60.0, ACCENT, "fast"))
 """Travel of a cycle in pre-sliding distances."""
 
 

@@ -24,7 +24,7 @@ class Host:
     """A contact with a damper beside it and no inertia, so that any law can be driven by force.
 
     c·v + F = u is solved for the velocity of every sample. The damper is so weak that a spring of
-    the contact follows a force within a millisecond, and what the contact does before it slides
+    the contact follows a force within microseconds, and what the contact does before it slides
     does not show it; it only keeps a contact that slides from running away.
 
     Parameters

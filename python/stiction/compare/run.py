@@ -96,7 +96,7 @@ def _shared(failed: Sequence[Subject], drawn: Sequence[Subject]) -> str:
     """What all draws that failed have chosen, and not all draws have."""
     words = [
         f"{name} = {word}"
-        for name, word in (failed[0].keywords.items() if failed else ())
+        for name, word in (failed[0].keywords.items() if len(failed) > 1 else ())
         if isinstance(word, str)
         and all(subject.keywords[name] == word for subject in failed)
         and any(subject.keywords[name] != word for subject in drawn)

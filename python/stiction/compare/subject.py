@@ -22,11 +22,12 @@ _SPEED: Final = 1e-3
 """Speed of the slow ramp, rad/s or m/s: far below where friction of sliding usually falls."""
 _SHORTEST, _LONGEST, _PER_DECADE = 1e-10, 1.0, 40
 """Displacements of the slow ramp, rad or m, each a share longer than the last."""
-_LOADED: Final = 0.95
+_FIRST: Final = 0.1
+"""Share of the level at which the first stiffness is read."""
 _LEVELS_OFF: Final = 0.05
 """A force that rises by less than this share over the last factor of 10 has levelled off."""
-_SETTLES: Final = 1e-3
-"""Time in which the host's damper lets a contact follow a force, s."""
+_SETTLES: Final = 1e-5
+"""Time in which the host's damper lets a contact at its first stiffness follow a force, s."""
 RIGID_SPAN: Final = 1e-4
 """Length in place of the pre-sliding distance where there is none, rad or m."""
 _FINEST: Final = 1e-9
@@ -45,8 +46,8 @@ class Scale:
     peak : float
         Greatest force on the way.
     span : float
-        Displacement at which the force first reaches 95 % of ``level``, rad or m; 0 where a
-        contact is rigid up to there.
+        Pre-sliding distance: that in which the contact would reach ``level`` at its first
+        stiffness, rad or m; 0 where it is rigid.
     slides : bool
         Whether the force levelled off.
     """
@@ -133,8 +134,8 @@ def _scale(law: FrictionModel) -> Scale:
     slides = bool(last - force[-1 - _PER_DECADE] <= _LEVELS_OFF * abs(last))
     level = last if slides else _bent(at, force)
     peak = float(np.max(force)) if slides else level
-    reached = int(np.argmax(force >= _LOADED * level))
-    span = float(at[reached])
+    early = int(np.argmax(force >= _FIRST * level))
+    span = float(at[early] * level / force[early])
     return Scale(level, peak, span if span > _FINEST else 0.0, slides)
 
 

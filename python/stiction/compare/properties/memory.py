@@ -14,7 +14,7 @@ __all__ = ["BRANCHES", "LINEAR", "RECOVERED", "WIPED"]
 
 _RAMP: Final = 0.5  # s a leg
 _SAMPLES: Final = 200
-_SETTLED: Final = 0.03  # s, thirty times what the damper needs
+_SETTLED: Final = 0.03  # s, many times what the damper needs
 _TOP: Final = 0.7
 _CONGRUENT: Final = 0.01
 _RECOVERED: Final = 1e-3

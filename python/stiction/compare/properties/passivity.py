@@ -57,7 +57,7 @@ def _motion(rng: np.random.Generator, length: float, *, cyclic: bool) -> tuple[l
     moves: list[float] = []
     speeds: list[float] = []
     slowest = length * 10.0 ** rng.uniform(-2.0, 5.0)
-    reach = length * 10.0 ** rng.uniform(-1.5, 1.0)
+    reach = length * 10.0 ** rng.uniform(-1.5, 1.5)
     legs = int(rng.integers(2, 7)) if cyclic else _EPISODE
     while len(moves) < _EPISODE and legs > 0:
         legs -= 1

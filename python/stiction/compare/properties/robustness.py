@@ -17,7 +17,7 @@ _A_CYCLE: Final = 40  # samples
 _CYCLES, _FIRST = 300, 50
 _RATCHETS: Final = 0.1
 _NOISE: Final = 0.4  # counts
-_COUNTS: Final = 75.0
+_COUNTS: Final = 30.0
 _SAMPLES: Final = 100
 _DT: Final = 1e-3  # s
 _LOADING, _STEPS = 0.1, 2000  # s for one pre-sliding distance, and steps
@@ -81,6 +81,6 @@ NOISE: Final = Property(
     "Does it keep its force when it is driven by a measured position that flickers?",
     f"Keeps {_KEPT:.0%} of the force that it keeps at rest, after {_SAMPLES} readings with noise "
     f"of ±{_NOISE:g} counts, {_COUNTS:g} counts to the pre-sliding distance (0.8 arc-seconds at "
-    "290 µrad).",
+    "117 µrad).",
     noise,
 )
