@@ -20,7 +20,15 @@ from .dynamic import (
     experiment_2,
     experiment_3,
 )
+from .local import LocalVariation, local_variation
 from .loops import LoopAreas, loop_areas
+from .mechanisms import (
+    LoopStudy,
+    ball_screw,
+    bearing_loops,
+    metal_contact,
+    nanometre_loops,
+)
 from .result import MotionResult, Number, Result
 from .rig import (
     ARC_SECOND,
@@ -54,7 +62,9 @@ __all__ = [
     "STATIC_CASES",
     "DahlTest",
     "HardeningCycles",
+    "LocalVariation",
     "LoopAreas",
+    "LoopStudy",
     "MotionResult",
     "NestedLoops",
     "Number",
@@ -66,6 +76,8 @@ __all__ = [
     "StaticCase",
     "StaticTest",
     "StickSlip",
+    "ball_screw",
+    "bearing_loops",
     "dahl_on_static_1",
     "experiment_1",
     "experiment_2",
@@ -73,7 +85,10 @@ __all__ = [
     "hardening_cycles",
     "illustrative_friction",
     "illustrative_motor",
+    "local_variation",
     "loop_areas",
+    "metal_contact",
+    "nanometre_loops",
     "nested_loops",
     "static_test",
     "stick_slip",
