@@ -160,9 +160,10 @@ def test_lugre_ratchets_by_what_its_equation_gives():
     subject = Subject("lugre", "own", keywords)
     drift = robustness.ratchet(subject).numbers["drift in 60 s, spans"] * subject.length
     # Slow limit of z' = v − σ_0·|v|·z/g: dF/dx = σ_0·(1 − F/F_s) up, σ_0·(1 + F/F_s) down, with
-    # F from 20 to 80 % of the level.
+    # F from 20 to 80 % of F_c.
     p = subject.model().parameters
-    low, high = (share * subject.scale.level / p["breakaway"] for share in (0.2, 0.8))
+    assert subject.coulomb == pytest.approx(p["coulomb"], rel=1e-3)
+    low, high = (share * p["coulomb"] / p["breakaway"] for share in (0.2, 0.8))
     cycle = math.log((1.0 - low) / (1.0 - high)) - math.log((1.0 + high) / (1.0 + low))
     expected = 300.0 * cycle * p["breakaway"] / p["initial_stiffness"]
     assert drift == pytest.approx(expected, rel=0.1)

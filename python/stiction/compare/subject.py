@@ -16,7 +16,7 @@ from ..errors import InputError
 from ..trajectory import FloatArray
 from .host import Host
 
-__all__ = ["RIGID_SPAN", "Scale", "Subject", "variants"]
+__all__ = ["RIGID_SPAN", "SPEEDS", "Scale", "Subject", "variants"]
 
 _SPEED: Final = 1e-3
 """Speed of the slow ramp, rad/s or m/s: far below where friction of sliding usually falls."""
@@ -28,6 +28,10 @@ _LEVELS_OFF: Final = 0.05
 """A force that rises by less than this share over the last factor of 10 has levelled off."""
 _SETTLES: Final = 1e-5
 """Time in which the host's damper lets a contact at its first stiffness follow a force, s."""
+SPEEDS: Final[tuple[float, ...]] = tuple(np.geomspace(1e-5, 3.0, 23).tolist())
+"""At which friction of steady sliding is measured, rad/s or m/s."""
+_STEADY: Final = 300.0
+"""Way before a slide counts as steady, in lengths."""
 RIGID_SPAN: Final = 1e-4
 """Length in place of the pre-sliding distance where there is none, rad or m."""
 _FINEST: Final = 1e-9
@@ -84,6 +88,16 @@ class Subject:
         """Level, peak and span, by experiment."""
         return _scale(self.model())
 
+    @cached_property
+    def steady(self) -> tuple[float, ...]:
+        """Friction of steady sliding at each of :data:`SPEEDS`."""
+        return tuple(self._steady(speed) for speed in SPEEDS)
+
+    @property
+    def coulomb(self) -> float:
+        """F_c, the least friction of steady sliding; the level where nothing slides."""
+        return min(self.steady) if self.scale.slides else self.scale.level
+
     @property
     def rigid(self) -> bool:
         """Whether nothing yields before it slides."""
@@ -98,6 +112,11 @@ class Subject:
     def stiffness(self) -> float:
         """Level over length."""
         return self.scale.level / self.length
+
+    def _steady(self, speed: float) -> float:
+        travel, samples = _STEADY * self.length, 600
+        velocity = np.full(samples, speed)
+        return float(self.model().simulate(velocity, travel / samples / speed)[-1])
 
     def host(self) -> Host:
         """A fresh contact to be driven by force."""

@@ -25,8 +25,8 @@ _KEPT: Final = 0.9
 
 
 def ratchet(subject: Subject) -> Measured:
-    """Load of 50 % of the level and a ripple of 30 % at 5 Hz for 60 s."""
-    level = subject.scale.level
+    """Load of 50 % of F_c and a ripple of 30 % at 5 Hz for 60 s."""
+    level = subject.coulomb
     host = subject.host()
     host.ramp(0.0, _LOAD * level, 0.2, 100)
     start = host.position
@@ -69,8 +69,8 @@ def noise(subject: Subject) -> Measured:
 RATCHET: Final = Property(
     "no_ratcheting",
     "no ratcheting",
-    f"Does it stay where it is under a load of {_LOAD:.0%} of its level and a ripple of "
-    f"{_RIPPLE:.0%}?",
+    f"Does it stay where it is under a load of {_LOAD:.0%} and a ripple of {_RIPPLE:.0%} of F_c, "
+    "its least friction of steady sliding?",
     f"Drifts by less than {_RATCHETS:g} of the pre-sliding distance in the last 50 of 60 s at "
     "5 Hz: creep that stops has stopped by then; a law that ratchets drifts by tens or hundreds.",
     ratchet,

@@ -19,8 +19,6 @@ _SOFT: Final = 0.02
 _PULL: Final = 800  # samples
 _SETTLES: Final = 1e-5  # s, as the host of other experiments
 _FALLS: Final = 0.01
-_SPEEDS: Final = tuple(np.geomspace(1e-5, 3.0, 23))
-"""rad/s or m/s."""
 _FALL: Final = 0.02
 _LAG: Final = 0.002
 _SWING: Final = 0.8
@@ -57,19 +55,11 @@ def _peak(subject: Subject, rate: float) -> float:
     return peak
 
 
-def _steady(subject: Subject, speed: float) -> float:
-    """Friction after a slide of 300 lengths at this speed."""
-    law = subject.model()
-    travel = 300.0 * subject.length
-    samples = 600
-    return float(law.simulate(np.full(samples, speed), travel / samples / speed)[-1])
-
-
 def stribeck(subject: Subject) -> Measured:
     """Friction of steady sliding over five decades of speed."""
     if not subject.scale.slides:
         return Measured(None, {}, "never slides")
-    force = np.array([_steady(subject, speed) for speed in _SPEEDS])
+    force = np.array(subject.steady)
     highest = np.maximum.accumulate(force)
     fall = float(np.max((highest - force) / highest))
     return Measured(
