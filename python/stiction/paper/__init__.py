@@ -20,6 +20,7 @@ from .dynamic import (
     experiment_2,
     experiment_3,
 )
+from .estimate import Estimate, Estimated, Recorded, estimate
 from .local import LocalVariation, local_variation
 from .loops import LoopAreas, loop_areas
 from .mechanisms import (
@@ -61,6 +62,8 @@ __all__ = [
     "SLIDING",
     "STATIC_CASES",
     "DahlTest",
+    "Estimate",
+    "Estimated",
     "HardeningCycles",
     "LocalVariation",
     "LoopAreas",
@@ -71,6 +74,7 @@ __all__ = [
     "PulseTrains",
     "RampAndCut",
     "RampAndHold",
+    "Recorded",
     "Result",
     "RigLike",
     "StaticCase",
@@ -79,6 +83,7 @@ __all__ = [
     "ball_screw",
     "bearing_loops",
     "dahl_on_static_1",
+    "estimate",
     "experiment_1",
     "experiment_2",
     "experiment_3",

@@ -26,6 +26,8 @@ from ..plot import (
 )
 from ..trajectory import FloatArray
 from .dynamic import PulseTrains, RampAndCut, RampAndHold
+from .estimate import Estimate
+from .graphical import branch_curve
 from .local import LocalVariation
 from .loops import LoopAreas
 from .mechanisms import LoopStudy
@@ -287,6 +289,31 @@ def _local_variation(run: LocalVariation) -> Figure:
     places.set_ylim(bottom=0.0)
     places.set_xlabel("place (degrees)")
     places.set_ylabel(f"break-away, {run.breakaway.shape[1]} ramps at each (N·m)")
+    return drawn
+
+
+@draw.register
+def _estimate(found: Estimate) -> Figure:
+    drawn, (curve, known) = figure(1, 2, height=3.7, title=found.title)
+    distance = found.distance / ARC_SECOND
+    curve.fill_between(
+        distance, found.branch_low, found.branch_high, color=SIMULATED, alpha=0.25, linewidth=0.0
+    )
+    curve.plot(distance, found.branch, color=SIMULATED, linewidth=1.3, label="joint fit")
+    if found.steps.branch is not None:
+        read = branch_curve(found.distance, *found.steps.branch)
+        curve.plot(distance, read, color=ACCENT, linewidth=1.0, linestyle="--", label="read off")
+    curve.set_xlabel("distance from the reverse point (arc-seconds)")
+    curve.set_ylabel("change of torque G (N·m)")
+    legend(curve, loc="upper left")
+    fine = {name: each for name, each in found.parameters.items() if each.determined}
+    for index, each in enumerate(fine.values()):
+        low, high = (100.0 * (end / each.value - 1.0) for end in each.ci95)
+        known.plot([low, high], [index, index], color=SIMULATED, linewidth=3.0)
+        known.plot(0.0, index, "o", color=INK, ms=4)
+    known.set_yticks(range(len(fine)), [name.replace("_", " ") for name in fine])
+    known.invert_yaxis()
+    known.set_xlabel("interval of 95 % (% of the value)")
     return drawn
 
 
