@@ -109,6 +109,16 @@ def _walk(subject: Subject) -> tuple[FloatArray, FloatArray]:
 
 
 def _cycles(panel: Axes, subject: Subject) -> None:
+    panel.set_title(f"speed up and down, {subject.label}", fontsize=SMALL, loc="left")
+    panel.set_xlabel("speed (rad/s or m/s)", fontsize=SMALL)
+    if not subject.scale.slides:
+        panel.text(
+            0.5, 0.5, "it never slides:\nno friction of speed", transform=panel.transAxes,
+            ha="center", va="center", fontsize=SMALL, color=MEASURED,
+        )  # fmt: skip
+        panel.set_xlim(*_SPEEDS)
+        panel.set_yticks([])
+        return
     low, high = _SPEEDS
     samples = 4000
     # In the middle of the samples: the speed is never exactly 0.
@@ -121,8 +131,6 @@ def _cycles(panel: Axes, subject: Subject) -> None:
         force = law.simulate(speed, dt)
         panel.plot(speed, force, color=colour, linewidth=1.1, label=name)
     _room(panel)
-    panel.set_xlabel("speed (rad/s or m/s)", fontsize=SMALL)
-    panel.set_title(f"speed up and down, {subject.label}", fontsize=SMALL, loc="left")
     legend(panel, loc="upper right", ncols=2, fontsize=SMALL)
 
 

@@ -159,14 +159,14 @@ def nanometre_loops() -> LoopStudy:
     >>> abs(nanometre_loops().numbers["gap at h, where d is met again"].value) < 1e-6
     True
     """
-    spring = {"initial_stiffness": 20e6, "decay_distance": 2.0 * MICROMETRE}
+    spring = {"initial_stiffness": 20e6, "decay_distance": 2.8 * MICROMETRE}
     levels = (24.0, -12.0, 14.0, -4.0, 8.0, -4.0, 14.0, -12.0, 24.0, 30.0)
     letters = tuple("bcdefghijk")
     law = FrictionModel(
         "hsieh_pan", final_stiffness=1e6, hardening_coefficient=0.0, damping=0.0, **spring
     )
     curves = [_driven("hsieh_pan (spring)", law, levels)[0]]
-    named = _known("futami", coulomb=40.0, initial_stiffness=20e6)
+    named = _known("futami", coulomb=33.0, initial_stiffness=20e6)
     if named is not None:
         curves.append(_driven("futami", named, levels)[0])
     at = dict(zip(letters, curves[0].settled, strict=True))
