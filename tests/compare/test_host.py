@@ -63,6 +63,11 @@ def test_scales_are_those_of_the_closed_form():
     assert rigid.scale.level == pytest.approx(0.4)
 
 
+def test_friction_without_chance_does_not_scatter():
+    for law in ("coulomb", "maxwell_slip", "rate_and_state"):
+        assert Subject(law, "own", {}).scatter < 1e-6
+
+
 def test_a_law_that_never_slides_has_its_level_where_it_has_softened_halfway():
     scale = Subject("hsieh_pan", "own", {"hardening_coefficient": 0.0, "damping": 0.0}).scale
     assert not scale.slides

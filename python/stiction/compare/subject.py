@@ -98,6 +98,20 @@ class Subject:
         """F_c, the least friction of steady sliding; the level where nothing slides."""
         return min(self.steady) if self.scale.slides else self.scale.level
 
+    @cached_property
+    def scatter(self) -> float:
+        """How far friction wanders in a slow even slide, as a share of the level: 0 but for chance.
+
+        What one slide of a law with random contacts shows may be this far off.
+        """
+        if not self.scale.slides:
+            return 0.0
+        samples, travel = 1200, 2.0 * _STEADY * self.length
+        velocity = np.full(samples, _SPEED)
+        force = self.model().simulate(velocity, travel / samples / _SPEED)[samples // 2 :]
+        line = np.polynomial.Polynomial.fit(np.arange(len(force)), force, 1)
+        return float(np.std(force - line(np.arange(len(force)))) / self.scale.level)
+
     @property
     def rigid(self) -> bool:
         """Whether nothing yields before it slides."""

@@ -19,6 +19,8 @@ _STOPS: Final = 0.05
 _INFINITE: Final = 1.2
 _HARDENED: Final = 0.05
 _OTHER: Final = 0.2
+_CHANCE: Final = 0.01
+"""Share of the level by which friction may wander by chance and a yield still tell something."""
 _STILL: Final = 1e-6
 
 
@@ -70,6 +72,8 @@ def hardening(subject: Subject) -> Measured:
     """First loading of a fresh contact and of one that was cycled; half cycles of either sign."""
     if subject.rigid:
         return Measured(None, {}, "rigid before it slides")
+    if subject.scatter > _CHANCE:
+        return Measured(None, {}, "friction wanders by chance")
     top = 0.7 * subject.scale.level
     host = subject.host()
     _leg(host, 0.0, top, subject)
