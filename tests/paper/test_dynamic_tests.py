@@ -129,7 +129,9 @@ def test_overrides_reach_the_rig(experiment_2):
     assert all(number.prototype is None for number in still.numbers.values())
 
 
-@pytest.mark.parametrize("module", ["dynamic", "loops", "rig", "static", "stick_slip"])
+@pytest.mark.parametrize(
+    "module", ["dynamic", "local", "loops", "mechanisms", "rig", "static", "stick_slip"]
+)
 def test_examples_in_docstrings_hold(module):
     tried = doctest.testmod(importlib.import_module(f"stiction.paper.{module}"))
     assert tried.attempted > 0

@@ -34,7 +34,7 @@ def drawn(tmp_path_factory):
 
 def test_command_draws_every_experiment_twice_and_writes_the_numbers(drawn):
     out, sections = drawn
-    assert len(sections) == 12
+    assert len(sections) == 17
     for section in sections:
         svg, png = section.figures
         assert svg.suffix == ".svg"

@@ -6,6 +6,7 @@ import cyclopts
 
 from .. import __version__
 from .catalogue import effects, laws
+from .compare import compare
 from .demo import demo
 from .diagnose import diagnose
 from .fit import fit
@@ -25,6 +26,6 @@ def build() -> cyclopts.App:
         version=f"stiction {__version__}",
         help_format="plaintext",
     )
-    for verb in (init, demo, simulate, fit, diagnose, plan, laws, effects, paper):
+    for verb in (init, demo, simulate, fit, diagnose, plan, laws, effects, compare, paper):
         app.command(verb)
     return app

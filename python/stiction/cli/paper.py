@@ -14,12 +14,17 @@ from ..paper import (
     ILLUSTRATIVE_RIG,
     Result,
     StickSlip,
+    ball_screw,
+    bearing_loops,
     dahl_on_static_1,
     experiment_1,
     experiment_2,
     experiment_3,
     hardening_cycles,
+    local_variation,
     loop_areas,
+    metal_contact,
+    nanometre_loops,
     nested_loops,
     static_test,
     stick_slip,
@@ -131,9 +136,14 @@ def paper_command(out: Path) -> list[Section]:
     comparison = static_comparison([forced, ramped, stepped])
     add("static-test-1-steps", stepped, comparison)
     add("dahl-on-static-test-1", dahl_on_static_1())
-    add("nested-loops", nested_loops())
+    add("metal-contact", metal_contact())
     add("hardening-cycles", hardening_cycles())
+    add("nested-loops", nested_loops())
+    add("nanometre-loops", nanometre_loops())
+    add("bearing-loops", bearing_loops())
+    add("ball-screw", ball_screw())
     add("loop-areas", loop_areas())
+    add("local-variation", local_variation())
     add("stick-slip", stick_slip())
     _write_numbers(out, sections)
     return sections

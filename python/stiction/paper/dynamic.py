@@ -206,6 +206,9 @@ def experiment_1(
     run = RampAndCut(
         title=f"Experiment 1: ramp of torque, cut at {target / ARC_SECOND:g} arc-seconds",
         source="Wear 242 (2000), Figs. 2 and 15a",
+        shows="Cut loose, the rotor rings like a mass on a spring, and does not come back to "
+        "where it was: a nonlinear spring and a permanent displacement that grows with "
+        "every ramp.",
         target=target,
         cut_time=np.array(cut_time),
         cut_torque=np.array(cut_torque),
@@ -317,6 +320,7 @@ def experiment_2(
     return RampAndHold(
         title=f"Experiment 2: ramp of torque, held at {target / ARC_SECOND:g} arc-seconds",
         source="Wear 242 (2000), Figs. 3 and 15b",
+        shows="Under a held torque the rotor creeps, ever more slowly, and stops: work hardening.",
         numbers=numbers,
         target=target,
         hold_time=hold_time,
@@ -393,6 +397,8 @@ def experiment_3(
     return PulseTrains(
         title="Experiment 3: pulses of torque at 10 Hz",
         source="Wear 242 (2000), Figs. 4 and 15c",
+        shows="Creep and hardening go on under pulses; smaller ones then move nothing for "
+        "good, and neither do those of the other sign.",
         numbers=numbers,
         sizes=sizes,
         pulses=pulses,

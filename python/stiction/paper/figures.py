@@ -26,7 +26,11 @@ from ..plot import (
 )
 from ..trajectory import FloatArray
 from .dynamic import PulseTrains, RampAndCut, RampAndHold
+from .estimate import Estimate
+from .graphical import branch_curve
+from .local import LocalVariation
 from .loops import LoopAreas
+from .mechanisms import LoopStudy
 from .result import Result
 from .rig import ARC_SECOND
 from .static import DahlTest, HardeningCycles, NestedLoops, StaticTest
@@ -256,6 +260,64 @@ def _dahl_test(test: DahlTest) -> Figure:
 
 
 @draw.register
+def _loop_study(study: LoopStudy) -> Figure:
+    number = len(study.curves)
+    drawn, panels = figure(1, number, height=4.2, width=6.4 + 0.8 * (number > 1), title=study.title)
+    for panel, curve in zip(panels, study.curves, strict=True):
+        _path(panel, curve.effort, curve.position, study.unit)
+        _points(panel, study.letters, study.level, curve.settled / study.unit)
+        panel.set_xlabel(study.labels[0])
+        panel.set_ylabel(study.labels[1] if panel is panels[0] else "")
+        if number > 1:
+            panel.set_title(curve.label, fontsize=SMALL, loc="left")
+    return drawn
+
+
+@draw.register
+def _local_variation(run: LocalVariation) -> Figure:
+    drawn, (ramps, places) = figure(1, 2, height=3.7, title=run.title)
+    half = len(run.torque) // 2
+    for index in range(max(half, 1)):
+        colour = CYCLE[index % len(CYCLE)]
+        path = run.path[index] / ARC_SECOND
+        ramps.plot(path, run.torque[index], color=colour, linewidth=1.1)
+        ramps.plot(path[-1:], run.torque[index][-1:], "x", color=colour, ms=5)
+    ramps.set_xlabel("displacement (arc-seconds)")
+    ramps.set_ylabel(_TORQUE)
+    for column in run.breakaway.T:
+        places.plot(np.degrees(run.place), column, "o", color=ACCENT, ms=4, fillstyle="none")
+    places.set_ylim(bottom=0.0)
+    places.set_xlabel("place (degrees)")
+    places.set_ylabel(f"break-away, {run.breakaway.shape[1]} ramps at each (N·m)")
+    return drawn
+
+
+@draw.register
+def _estimate(found: Estimate) -> Figure:
+    drawn, (curve, known) = figure(1, 2, height=3.7, title=found.title)
+    distance = found.distance / ARC_SECOND
+    curve.fill_between(
+        distance, found.branch_low, found.branch_high, color=SIMULATED, alpha=0.25, linewidth=0.0
+    )
+    curve.plot(distance, found.branch, color=SIMULATED, linewidth=1.3, label="joint fit")
+    if found.steps.branch is not None:
+        read = branch_curve(found.distance, *found.steps.branch)
+        curve.plot(distance, read, color=ACCENT, linewidth=1.0, linestyle="--", label="read off")
+    curve.set_xlabel("distance from the reverse point (arc-seconds)")
+    curve.set_ylabel("change of torque G (N·m)")
+    legend(curve, loc="upper left")
+    fine = {name: each for name, each in found.parameters.items() if each.determined}
+    for index, each in enumerate(fine.values()):
+        low, high = (100.0 * (end / each.value - 1.0) for end in each.ci95)
+        known.plot([low, high], [index, index], color=SIMULATED, linewidth=3.0)
+        known.plot(0.0, index, "o", color=INK, ms=4)
+    known.set_yticks(range(len(fine)), [name.replace("_", " ") for name in fine])
+    known.invert_yaxis()
+    known.set_xlabel("interval of 95 % (% of the value)")
+    return drawn
+
+
+@draw.register
 def _loop_areas(run: LoopAreas) -> Figure:
     drawn, (loops, areas) = figure(1, 2, height=3.7, title=run.title)
     for (x, force), distance, colour in zip(run.loops, run.distance, CYCLE * 9, strict=False):
@@ -314,13 +376,13 @@ def _target(panel: Axes, target: float) -> None:
     )
 
 
-def _path(panel: Axes, effort: FloatArray, position: FloatArray) -> None:
+def _path(panel: Axes, effort: FloatArray, position: FloatArray, unit: float = ARC_SECOND) -> None:
     """Torque over position, with every turning point kept."""
     turns = np.flatnonzero(np.diff(np.sign(np.diff(effort))) != 0) + 1
     even = np.linspace(0, len(effort) - 1, min(_PATH_POINTS, len(effort))).astype(np.int64)
     kept = np.unique(np.concatenate([even, turns]))
     panel.plot(
-        np.concatenate([[0.0], position[kept]]) / ARC_SECOND,
+        np.concatenate([[0.0], position[kept]]) / unit,
         np.concatenate([[0.0], effort[kept]]),
         color=SIMULATED,
         linewidth=1.2,

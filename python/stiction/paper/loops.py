@@ -94,6 +94,8 @@ def loop_areas(
     return LoopAreas(
         title="Work lost in closed loops of the spring",
         source="from property (i) of Wear 242 (2000), §2.2.4",
+        shows="All branches are one curve, turned and shifted: the work lost depends on the "
+        "distance of the reverse points alone.",
         numbers=numbers,
         distance=distance,
         area=area,

@@ -47,10 +47,13 @@ class Result:
         Where the paper shows it.
     numbers : Mapping of str to Number
         What the experimenter reads off, with unit and the prototype's figure.
+    shows : str
+        One sentence: which property of friction it shows.
     """
 
     title: str
     source: str
+    shows: str
     numbers: Mapping[str, Number] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -67,6 +70,7 @@ class Result:
         return {
             "title": self.title,
             "source": self.source,
+            "shows": self.shows,
             "numbers": {
                 name: {
                     "value": number.value,
@@ -92,7 +96,7 @@ class Result:
     def __repr__(self) -> str:
         rows = [_HEADINGS, *self._rows()] if self.numbers else []
         widths = [max(len(row[column]) for row in rows) for column in range(4)] if rows else []
-        lines = [f"{self.title} ({self.source})"]
+        lines = [f"{self.title} ({self.source})", f"  {self.shows}"]
         for name, value, unit, known in rows:
             line = (
                 f"  {name:<{widths[0]}}  {value:>{widths[1]}}  {unit:<{widths[2]}}  "
@@ -108,7 +112,7 @@ class Result:
             for row in self._rows()
         )
         return (
-            f"<p><b>{escape(self.title)}</b> ({escape(self.source)})</p>"
+            f"<p><b>{escape(self.title)}</b> ({escape(self.source)})</p><p>{escape(self.shows)}</p>"
             f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
         )
 

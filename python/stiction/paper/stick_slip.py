@@ -117,6 +117,8 @@ def stick_slip(
     return StickSlip(
         title=f"Rotor pulled through a spring at {speed:g} rad/s",
         source="beyond the paper: its hook, our law of sliding",
+        shows="Where friction falls as speed rises, slow pulling sticks and slips; fast "
+        "pulling slides.",
         numbers=numbers,
         speed=speed,
         pull=pull,

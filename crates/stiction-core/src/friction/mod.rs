@@ -475,8 +475,8 @@ macro_rules! laws {
 laws! {
     coulomb => Coulomb,
     dahl => Dahl,
-    elasto_plastic => ElastoPlastic,
     elastic_perfectly_plastic => ElasticPerfectlyPlastic,
+    elasto_plastic => ElastoPlastic,
     futami => Futami,
     hsieh_pan => HsiehPan,
     lugre => LuGre,

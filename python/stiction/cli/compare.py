@@ -1,0 +1,56 @@
+"""``stiction compare``: friction laws side by side, by experiment."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from ..compare import compare as run
+from ..compare.draws import DRAWS
+from ..compare.properties.passivity import PASSIVE_STEPS
+from .answer import answer, folder, json_of
+
+__all__ = ["compare"]
+
+
+def compare(
+    *laws: str,
+    steps: int = PASSIVE_STEPS,
+    draws: int = DRAWS,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Compare friction laws by experiment: fifteen properties of each, computed.
+
+    Parameters
+    ----------
+    laws
+        Laws to compare; all of them without any.
+    steps
+        Random steps of each case in the test of passivity.
+    draws
+        Sets of parameters drawn about the defaults in that test.
+    out
+        Folder for compare.html, compare.md and compare.json.
+    json
+        Print JSON.
+    """
+    made = run(laws, steps=steps, draws=draws, progress=_told if sys.stderr.isatty() else None)
+    text = repr(made)
+    if out is not None:
+        from ..compare.page import page
+        from ..compare.text import as_markdown
+
+        where = folder(out)
+        (where / "compare.html").write_text(page(made), encoding="utf-8")
+        (where / "compare.md").write_text(as_markdown(made) + "\n", encoding="utf-8")
+        (where / "compare.json").write_text(json_of(made.to_dict()) + "\n", encoding="utf-8")
+        text += f"\n\nWith figures and all numbers: {where / 'compare.html'}"
+    answer(text, made.to_dict(), as_json=json)
+
+
+def _told(law: str) -> None:
+    print(f"\r{law:<30}", end="", file=sys.stderr)

@@ -1,0 +1,28 @@
+"""Friction laws compared by experiment.
+
+>>> from stiction.compare import compare
+>>> table = compare(["coulomb"], steps=2000, draws=2)
+>>> table["coulomb"].cells["holds_still"].verdict
+'yes'
+"""
+
+from __future__ import annotations
+
+from .measured import Measured, Property
+from .properties import PROPERTIES
+from .result import CONDITIONAL, NO, UNDEFINED, YES, Cell, Comparison, Row
+from .run import compare
+
+__all__ = [
+    "CONDITIONAL",
+    "NO",
+    "PROPERTIES",
+    "UNDEFINED",
+    "YES",
+    "Cell",
+    "Comparison",
+    "Measured",
+    "Property",
+    "Row",
+    "compare",
+]
