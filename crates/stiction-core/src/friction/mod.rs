@@ -473,6 +473,7 @@ macro_rules! laws {
 }
 
 laws! {
+    bouc_wen => BoucWen,
     coulomb => Coulomb,
     dahl => Dahl,
     elasto_plastic => ElastoPlastic,
