@@ -476,6 +476,7 @@ laws! {
     bouc_wen => BoucWen,
     coulomb => Coulomb,
     dahl => Dahl,
+    dahl_with_memory => DahlWithMemory,
     elasto_plastic => ElastoPlastic,
     hsieh_pan => HsiehPan,
     lugre => LuGre,
