@@ -147,9 +147,9 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
     }
 
     fn greatest_stiffness(&self) -> f64 {
-        // Bent by F_s against the motion, at a level of F_c.
-        let level = &self.0.level;
-        self.0.stiffness.re() * (1.0 + level.greatest().re() / level.coulomb.re())
+        // Right after a reversal of steady sliding. Bent by F_s at a level of F_c they are steeper
+        // still, but over a distance that shortens as much, which the exponential passes over.
+        2.0 * self.0.stiffness.re()
     }
 
     fn greatest_damping(&self) -> f64 {

@@ -473,9 +473,11 @@ macro_rules! laws {
 }
 
 laws! {
+    bouc_wen => BoucWen,
     coulomb => Coulomb,
     dahl => Dahl,
     elastic_perfectly_plastic => ElasticPerfectlyPlastic,
+    dahl_with_memory => DahlWithMemory,
     elasto_plastic => ElastoPlastic,
     futami => Futami,
     hsieh_pan => HsiehPan,
