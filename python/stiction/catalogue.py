@@ -62,7 +62,7 @@ class LawRecord:
     """A friction law.
 
     ``start`` holds what a contact may bring along from before a recording, see ``Motor.follow``; at
-    0 it was never moved.
+    0 it was never moved. A law that ``remembers`` knows where it turned round: small loops close.
     """
 
     name: str
@@ -70,6 +70,7 @@ class LawRecord:
     source: str
     parameters: tuple[ParameterRecord, ...]
     start: tuple[ParameterRecord, ...]
+    remembers: bool
     options: tuple[OptionRecord, ...]
     outputs: tuple[str, ...]
 
@@ -99,7 +100,8 @@ class EffectRecord:
 
     ``second`` names the parameters of a second wave, in the order of gains and shapes: what repeats
     with position is seldom a sine. ``law_terms`` are parameters of laws (``body.`` before them: of
-    the body) that are this effect: where a plant states one of them, it has the effect already.
+    the body; ``law.remembers``: that the law remembers reverse points) that are this effect: where
+    a plant states one of them, it has the effect already.
     ``rotary_only`` effects need a machine that turns.
     """
 
@@ -147,6 +149,7 @@ def _laws() -> Iterator[LawRecord]:
             source=entry["source"],
             parameters=_parameters(entry["parameters"]),
             start=_parameters(entry["start"]),
+            remembers=entry["remembers"],
             options=options,
             outputs=tuple(entry["outputs"]),
         )

@@ -14,8 +14,8 @@ use stiction_core::motor::{Column, EffectSpec, Motor, MotorSpec, PerSample, Runn
 use stiction_core::scalar::{Dual, Scalar};
 use stiction_core::sensitivity::sensitivity;
 
-/// Parameters of the body that an effect may be part of.
-const BODY: [&str; 1] = ["body.gravity_amplitude"];
+/// What beside the parameters of a law an effect may be part of.
+const BESIDE: [&str; 2] = ["body.gravity_amplitude", "law.remembers"];
 
 fn files(folder: &str) -> BTreeSet<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(folder);
@@ -80,7 +80,7 @@ fn parameters_are_documented_and_their_defaults_are_allowed() {
         }
         for term in effect.facts.law_terms {
             let law = LAWS.iter().any(|law| law.parameters.iter().any(|p| p.name == *term));
-            assert!(law || BODY.contains(term), "{}: nothing has {term}", effect.name);
+            assert!(law || BESIDE.contains(term), "{}: nothing has {term}", effect.name);
         }
         assert!(!effect.facts.means.is_empty() && !effect.facts.remedy.is_empty());
     }

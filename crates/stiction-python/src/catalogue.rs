@@ -44,6 +44,7 @@ pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         dict.set_item("source", law.source)?;
         dict.set_item("parameters", parameters(py, law.parameters, law.optional)?)?;
         dict.set_item("start", parameters(py, law.start, &[])?)?;
+        dict.set_item("remembers", law.remembers)?;
         let options = PyList::empty(py);
         for option in law.options {
             let entry = PyDict::new(py);

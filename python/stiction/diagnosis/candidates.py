@@ -188,6 +188,8 @@ def present(plant: Plant, record: EffectRecord) -> bool:
     if any(effect.name == record.name for effect in plant.effects):
         return True
     stated = {*plant.friction.parameters, *(f"body.{name}" for name in plant.body)}
+    if plant.friction.record.remembers:
+        stated.add("law.remembers")
     return not stated.isdisjoint(record.law_terms)
 
 

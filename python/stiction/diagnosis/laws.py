@@ -143,7 +143,7 @@ def _fitted(base: Model, law: str) -> Model | None:
     more = {
         each.name: Parameter(each.typical)
         for each in record.parameters
-        if each.optional and each.name not in offered
+        if each.optional and each.neutral == 0.0 and each.name not in offered
     }
     plain = _launched(base, Friction(law))
     if not more or plain is None or plain.solution.interrupted:

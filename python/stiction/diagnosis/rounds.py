@@ -171,8 +171,8 @@ def _where(plant: Plant, record: EffectRecord) -> str:
     """Where a plant holds an effect already."""
     if any(effect.name == record.name for effect in plant.effects):
         return "part of the plant"
-    law = any(term in plant.friction.parameters for term in record.law_terms)
-    return "part of the law" if law else "part of the body"
+    body = any(term.startswith("body.") for term in record.law_terms)
+    return "part of the body" if body else "part of the law"
 
 
 def _round(

@@ -62,7 +62,7 @@ impl<S: Scalar> Effect<S> for ReversePointMemory<S> {
             Shape { parameter: "distance", scale: Scale::Presliding, grid: &[1.0, 4.0, 16.0], fitted: true },
         ],
         second: &[],
-        law_terms: &["initial_stiffness"],
+        law_terms: &["law.remembers"],
         rotary_only: false,
     };
 

@@ -48,6 +48,7 @@ impl<S: Scalar> FrictionLaw<S> for DahlWithMemory<S> {
 
     const PARAMETERS: &'static [ParameterSpec] = DahlWithMemoryParameters::<f64>::SPECS;
     const START: &'static [ParameterSpec] = DahlWithMemoryStart::<f64>::SPECS;
+    const REMEMBERS: bool = true;
     const SUMMARY: &'static str = "Dahl's loop with a memory of reverse points: loops close";
     const SOURCE: &'static str =
         "a reconstruction of Osborne, Rittenhouse (1974) from Hsieh, Pan, Wear 242 (2000), §2.3";

@@ -107,6 +107,7 @@ impl<S: Scalar> FrictionLaw<S> for ElasticPerfectlyPlastic<S> {
     const PARAMETERS: &'static [ParameterSpec] = ElasticPerfectlyPlasticParameters::<f64>::SPECS;
     const OPTIONAL: &'static [&'static str] = &["unhardened_share", "hardening_distance"];
     const START: &'static [ParameterSpec] = ElasticPerfectlyPlasticStart::<f64>::SPECS;
+    const REMEMBERS: bool = true;
     const SUMMARY: &'static str =
         "a linear spring behind a slider, whose level may harden with the way slid";
     const SOURCE: &'static str = "Fredriksson (1976); Curnier (1984); from memory";

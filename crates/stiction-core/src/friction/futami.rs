@@ -202,6 +202,7 @@ impl<S: Scalar> FrictionLaw<S> for Futami<S> {
 
     const PARAMETERS: &'static [ParameterSpec] = FutamiParameters::<f64>::SPECS;
     const START: &'static [ParameterSpec] = FutamiStart::<f64>::SPECS;
+    const REMEMBERS: bool = true;
     const SUMMARY: &'static str =
         "a spring that is linear at first, gives way with hysteresis and rolls at last";
     const SOURCE: &'static str = "Futami, Furutani, Yoshida (1990); the nonlinear curve is ours";

@@ -396,6 +396,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
     ];
     const START: &'static [ParameterSpec] = HsiehPanStart::<f64>::SPECS;
     const OPTIONS: &'static [OptionSpec] = OPTIONS;
+    const REMEMBERS: bool = true;
     const SUMMARY: &'static str =
         "pre-sliding with creep, work hardening and reverse-point memory; breaks away and slides";
     const SOURCE: &'static str = "Hsieh, Pan, Wear 242 (2000) 1-17; partly reconstructed";

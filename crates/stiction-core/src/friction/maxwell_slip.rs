@@ -129,6 +129,7 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
 
     const PARAMETERS: &'static [ParameterSpec] = MaxwellSlipParameters::<f64>::SPECS;
     const START: &'static [ParameterSpec] = MaxwellSlipStart::<f64>::SPECS;
+    const REMEMBERS: bool = true;
     const SUMMARY: &'static str =
         "elasto-slide elements in parallel: hysteresis with memory that goes over into sliding";
     const SOURCE: &'static str =

@@ -174,6 +174,8 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     /// What a contact may bring along from before a recording, in the order of
     /// [`FrictionLaw::primed`]'s values; at 0, the neutral value of each, it was never moved.
     const START: &'static [ParameterSpec] = &[];
+    /// Whether it remembers where it turned round, so that small loops close.
+    const REMEMBERS: bool = false;
     /// Options; the first choice of each is the default.
     const OPTIONS: &'static [OptionSpec] = &[];
     /// One sentence: what the law is.
@@ -310,6 +312,8 @@ pub struct LawRecord {
     pub optional: &'static [&'static str],
     /// What a contact may bring along from before a recording.
     pub start: &'static [ParameterSpec],
+    /// Whether it remembers where it turned round.
+    pub remembers: bool,
     /// Options.
     pub options: &'static [OptionSpec],
     /// States that a trajectory can show.
@@ -346,6 +350,7 @@ macro_rules! laws {
             parameters: <$module::$law<f64> as FrictionLaw<f64>>::PARAMETERS,
             optional: <$module::$law<f64> as FrictionLaw<f64>>::OPTIONAL,
             start: <$module::$law<f64> as FrictionLaw<f64>>::START,
+            remembers: <$module::$law<f64> as FrictionLaw<f64>>::REMEMBERS,
             options: <$module::$law<f64> as FrictionLaw<f64>>::OPTIONS,
             outputs: <<$module::$law<f64> as FrictionLaw<f64>>::State as LawState<f64>>::OUTPUTS,
         },)*];

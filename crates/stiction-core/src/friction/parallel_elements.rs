@@ -211,6 +211,7 @@ impl<S: Scalar> FrictionLaw<S> for ParallelElements<S> {
             ("independent", "it stays where it is"),
         ],
     }];
+    const REMEMBERS: bool = true;
     const SUMMARY: &'static str =
         "four elastic elements in parallel that harden linearly beyond their yield points";
     const SOURCE: &'static str = "Prager (1955); Hodge (1957); Iwan (1966); from memory";

@@ -114,6 +114,7 @@ impl<S: Scalar> FrictionLaw<S> for PrandtlIshlinskii<S> {
     type Trial = PrandtlIshlinskiiTrial<S>;
 
     const PARAMETERS: &'static [ParameterSpec] = PrandtlIshlinskiiParameters::<f64>::SPECS;
+    const REMEMBERS: bool = true;
     const SUMMARY: &'static str = "ten stops in parallel, weighted by a density of their thresholds";
     const SOURCE: &'static str =
         "Krasnosel'skii, Pokrovskii (1989); Al Janaideh, Rakheja, Su (2009); from memory";

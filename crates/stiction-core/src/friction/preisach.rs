@@ -203,6 +203,7 @@ impl<S: Scalar> FrictionLaw<S> for Preisach<S> {
 
     const PARAMETERS: &'static [ParameterSpec] = PreisachParameters::<f64>::SPECS;
     const START: &'static [ParameterSpec] = PreisachStart::<f64>::SPECS;
+    const REMEMBERS: bool = true;
     const SUMMARY: &'static str =
         "relays on a Preisach plane: hysteresis whose small loops depend on where they lie";
     const SOURCE: &'static str = "Mayergoyz (1991), from memory; bounded plane and density ours";
