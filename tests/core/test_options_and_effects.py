@@ -346,3 +346,28 @@ def test_inertia_alone_decides_nothing_about_a_stuck_contact_at_rest():
         machine.simulate(np.full(2000, 0.2), 1e-3, outputs=())
         rest.append(machine.state["position"])
     assert np.ptp(rest) < 1e-3 * rest[0]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_damper_on_the_spring_gives_no_more_than_both_can_at_any_step(seed):
+    rng = np.random.default_rng(seed)
+    scale = dict(zip("kdhcrv", 10.0 ** rng.uniform(-1.0, 1.0, 6), strict=True))
+    model = st.FrictionModel(
+        "hsieh_pan",
+        damper="spring",
+        initial_stiffness=3000.0 * scale["k"],
+        final_stiffness=100.0,
+        decay_distance=3e-4 * scale["d"],
+        hardening_coefficient=1.6e-3 * scale["h"],
+        hardening_exponent=rng.uniform(1.1, 4.0),
+        creep_rate=2.0 * scale["r"],
+        damping=0.45 * scale["c"],
+    )
+    # Slow after fast: creep that a great force began must not go on past the force 0.
+    dt = 10.0 ** rng.uniform(-5.0, -1.0)
+    velocity = 10.0 ** rng.uniform(-6.0, 0.0, 300) * rng.choice([1.0, 0.0, -1.0], 300)
+    force = model.simulate(velocity, dt)
+    way = np.ptp(np.cumsum(velocity * dt))
+    parameters = model.parameters
+    most = parameters["initial_stiffness"] * way + parameters["damping"] * np.abs(velocity).max()
+    assert np.abs(force).max() < 2.0 * most

@@ -26,6 +26,8 @@ pub struct SeriesStep<S> {
 ///
 /// The force T = S(x_s) + C·(x' − x_p') goes from its root at the start of the step to that at
 /// its end; between them f(|T|) is taken as linear, for which the hardening has a closed form.
+/// Where a great force at the start would let it creep past the force 0, which no creep does, f is
+/// that of the end all along.
 pub fn step<S: Scalar>(
     spring: &SpringState<S>,
     curve: &impl Loading<S>,
@@ -40,9 +42,18 @@ pub fn step<S: Scalar>(
     let uncrept = uncrept_walk.end.force + damper * motion.velocity;
     let s = sign(uncrept.re());
     let z = plastic.rate * motion.duration;
+    let past_zero = {
+        let at_rest = follow(hardening, plastic.limit(from), plastic.limit(zero), z);
+        let gain = at_rest.value - hardening;
+        let walk = spring.walk(curve, motion.displacement - gain * s);
+        gain.re() > 0.0 && (walk.end.force + damper * motion.velocity).re() * s < 0.0
+    };
     let reaching = |force: S| {
-        let followed = follow(hardening, plastic.limit(from), plastic.limit(force), z);
-        (followed.value - hardening, followed.end_share)
+        let limit = plastic.limit(force);
+        let followed =
+            follow(hardening, if past_zero { limit } else { plastic.limit(from) }, limit, z);
+        let share = if past_zero { -(followed.remainder - 1.0) } else { followed.end_share };
+        (followed.value - hardening, share)
     };
     // Hardening gained, and its slope by the force at the end.
     let gained = |force: S| {
@@ -93,7 +104,7 @@ pub fn step<S: Scalar>(
         damper
     };
     let followed = follow(hardening, plastic.limit(from), plastic.limit(force), z);
-    let by_start = if gain.re() > 0.0 {
+    let by_start = if gain.re() > 0.0 && !past_zero {
         -(followed.end_share + followed.remainder - 1.0)
             * from_slope
             * started
