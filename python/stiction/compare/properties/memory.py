@@ -16,7 +16,7 @@ _RAMP: Final = 0.5  # s a leg
 _SAMPLES: Final = 200
 _SETTLED: Final = 0.03  # s, many times what the damper needs
 _TOP: Final = 0.7
-_CONGRUENT: Final = 0.01
+_CONGRUENT: Final = 1e-3
 _RECOVERED: Final = 1e-3
 _WIPED: Final = 1e-3
 _LINEAR: Final = 0.05
@@ -132,8 +132,9 @@ BRANCHES: Final = Property(
     "congruent_branches",
     "branches congruent (i)",
     "Is every branch the same curve, turned and shifted, wherever it was reversed?",
-    f"The travel for a change of force by 30 % of the level is the same to {_CONGRUENT:.0%} behind "
-    "five reverse points between −60 and 70 % of it; Dahl's curve differs by tens of per cent.",
+    f"The travel for a change of force by 30 % of the level is the same to {_CONGRUENT:.1%} behind "
+    "five reverse points between −60 and 70 % of it; one curve gives it to rounding, Dahl's law "
+    "differs by tens of per cent, relays of uneven density by one.",
     branches,
 )
 RECOVERED: Final = Property(
