@@ -26,6 +26,7 @@ pub struct SeriesStep<S> {
 ///
 /// The force T = S(x_s) + C·(x' − x_p') goes from its root at the start of the step to that at
 /// its end; between them f(|T|) is taken as linear, for which the hardening has a closed form.
+#[inline(never)] // springs without a damper beside them are not to carry it through their loop
 pub fn step<S: Scalar>(
     spring: &SpringState<S>,
     curve: &impl Loading<S>,
@@ -106,7 +107,12 @@ pub fn step<S: Scalar>(
     let held = walk.end.slope * motion.duration + damper - by_start * (walk.end.slope - recovered);
     SeriesStep {
         walk,
-        creep: Creep { hardening: gain, displacement: gain * s, share: zero },
+        creep: Creep {
+            hardening: gain,
+            displacement: gain * s,
+            left: motion.displacement - gain * s,
+            share: zero,
+        },
         force,
         damping,
         slope: held / softened,
