@@ -23,6 +23,11 @@ impl<S: Scalar> Body<S> {
         Self { inertia, gravity_amplitude, gravity_zero, weight, gravity }
     }
 
+    /// Whether gravity is the same everywhere.
+    pub fn is_level(&self) -> bool {
+        !self.gravity
+    }
+
     /// Effort of gravity, positive along +x.
     #[inline]
     pub fn gravity(&self, position: S) -> S {

@@ -23,9 +23,15 @@ impl<S: Scalar> Drive<S> {
     #[inline]
     pub fn effort(&self, command: S, velocity: S) -> S {
         match &self.servo {
-            None => self.gain * within(command, self.limit),
+            None => self.direct(command),
             Some(servo) => self.gain * servo.current(self.gain, command, velocity),
         }
+    }
+
+    /// Effort for an input that no servo stands before.
+    #[inline]
+    pub fn direct(&self, input: S) -> S {
+        self.gain * within(input, self.limit)
     }
 
     /// Effort per unit of the command.

@@ -5,8 +5,8 @@ use crate::drive::{Drive, Way};
 use crate::effects::{AnyEffect, EffectRecord, Effects, effect_record};
 use crate::error::{Error, Result};
 use crate::follow::arriving;
-use crate::friction::{AnyState, Entry, Law, LawState, Statistics};
-use crate::integrate::{Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Run, parts, sample};
+use crate::friction::{AnyState, Entry, FrictionLaw, Law, LawState, Statistics};
+use crate::integrate::{Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Run, Seen, parts, sample};
 use crate::model::{CHUNK, LawSpec};
 use crate::parameter::resolve;
 use crate::scalar::Scalar;
@@ -252,6 +252,12 @@ impl Surroundings<'_> {
         self.enabled.is_none_or(|each| each.at(k) != 0.0)
     }
 
+    /// Whether the drive is always on and the temperature always the same.
+    fn is_steady(&self) -> bool {
+        let changes = matches!(self.temperature, Some(PerSample::Each(_)));
+        self.enabled.is_none() && !changes
+    }
+
     /// The temperature at a sample.
     #[inline]
     pub fn temperature_at(&self, k: usize) -> Option<f64> {
@@ -309,6 +315,18 @@ impl PerSample<'_> {
                 Err(Error::Length { name: name.to_owned(), given: values.len(), wanted })
             }
             Self::Same(_) | Self::Each(_) => Ok(()),
+        }
+    }
+
+    /// The sample from which on the number is another one, at most `end`.
+    fn same_until(&self, from: usize, end: usize) -> usize {
+        match self {
+            Self::Same(_) => end,
+            Self::Each(values) => {
+                let now = values[from];
+                let other = values[from..end].iter().position(|value| *value != now);
+                other.map_or(end, |after| from + after)
+            }
         }
     }
 
@@ -379,7 +397,9 @@ impl<S: Scalar> Running<S> {
             state.make_room(parts as usize + CHUNK / 4);
             let before = self.run;
             let arrived = arriving(&mut self.way.as_mut(), input, dt);
-            sample(
+            let whole =
+                if self.machine.is_bare() { sample::<_, _, true> } else { sample::<_, _, false> };
+            whole(
                 &self.machine,
                 law,
                 state,
@@ -387,7 +407,7 @@ impl<S: Scalar> Running<S> {
                 arrived,
                 S::constant(load),
                 dt,
-                parts,
+                0..parts,
                 self.integrator,
             );
             self.machine.wind(&mut self.run, arrived, dt);
@@ -414,52 +434,214 @@ impl<S: Scalar> Running<S> {
         around: Surroundings<'_>,
         added: impl Fn(usize) -> S,
         dt: PerSample<'_>,
-        mut row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
+        row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
+    ) -> Result<()> {
+        self.simulate_rows(inputs, around, added, dt, Told(row))
+    }
+
+    /// As [`Self::simulate_under`], for one who sees the samples in the loop itself.
+    fn simulate_rows(
+        &mut self,
+        inputs: &[f64],
+        around: Surroundings<'_>,
+        added: impl Fn(usize) -> S,
+        dt: PerSample<'_>,
+        rows: impl Rows<S>,
+    ) -> Result<()> {
+        if self.machine.is_bare() {
+            self.simulate_kind::<true>(inputs, around, added, dt, rows)
+        } else {
+            self.simulate_kind::<false>(inputs, around, added, dt, rows)
+        }
+    }
+
+    fn simulate_kind<const BARE: bool>(
+        &mut self,
+        inputs: &[f64],
+        around: Surroundings<'_>,
+        added: impl Fn(usize) -> S,
+        dt: PerSample<'_>,
+        mut rows: impl Rows<S>,
     ) -> Result<()> {
         let mut way = self.way.as_mut();
+        let plain = BARE && self.integrator == Integrator::Fast && around.is_steady();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
+            let glides = plain && glides(law);
             let mut known = f64::NAN;
             let mut divided = 1;
-            for (chunk, inputs) in inputs.chunks(CHUNK).enumerate() {
-                let mut room = 0;
-                for (k, input) in inputs.iter().enumerate() {
-                    let index = chunk * CHUNK + k;
-                    let dt = dt.at(index);
-                    if dt != known {
-                        divided =
-                            whole_parts(parts(&self.machine, law, dt, self.longest_phase), dt)?;
-                        known = dt;
-                    }
-                    if room < divided as usize {
-                        // Once a chunk where samples are not divided, never inside a step.
-                        room = CHUNK.max(divided as usize);
-                        state.make_room(room + CHUNK / 4);
-                    }
-                    room -= divided as usize;
-                    self.run.temperature = around.temperature_at(index);
-                    self.run.enabled = around.enabled_at(index);
-                    let before = self.run;
-                    let arrived = arriving(&mut way, *input, dt);
-                    sample(
-                        &self.machine,
-                        law,
-                        state,
-                        &mut self.run,
-                        arrived,
-                        added(index) + around.load.at(index),
-                        dt,
-                        divided,
-                        self.integrator,
-                    );
-                    self.machine.wind(&mut self.run, arrived, dt);
-                    self.machine.remember(&before, &mut self.run);
-                    let seen = &*state;
-                    row(index, &self.run, &self.machine, &|column| seen.output(column));
+            let mut room = 0;
+            let mut index = 0;
+            while index < inputs.len() {
+                let dt_now = dt.at(index);
+                if dt_now != known {
+                    divided =
+                        whole_parts(parts(&self.machine, law, dt_now, self.longest_phase), dt_now)?;
+                    known = dt_now;
                 }
+                self.run.temperature = around.temperature_at(index);
+                self.run.enabled = around.enabled_at(index);
+                let mut passed = 0;
+                if glides && self.machine.glides(&self.run) {
+                    let span = S::constant(dt_now / f64::from(divided));
+                    let applied = |k: usize| (S::constant(inputs[k]), added(k) + around.load.at(k));
+                    let machine = &self.machine;
+                    let seen = Showing { machine, rows: &mut rows };
+                    // Not to the end, which would be looked for anew after every event.
+                    let end = inputs.len().min(index + 8 * CHUNK);
+                    let samples = index..dt.same_until(index, end);
+                    let mut glide =
+                        machine.glide(self.run, applied, seen, samples, (span, divided));
+                    law.glide(state, &mut glide);
+                    (index, passed) = (glide.samples.start, glide.part);
+                    let more = index < glide.samples.end;
+                    self.run = glide.run;
+                    if !more {
+                        continue;
+                    }
+                }
+                let left = divided - passed;
+                if room < left {
+                    // Once a chunk where samples are not divided, never inside a step.
+                    room = (CHUNK as u32).max(left);
+                    state.make_room(room as usize + CHUNK / 4);
+                }
+                room -= left;
+                let before = self.run;
+                let arrived = arriving(&mut way, inputs[index], dt_now);
+                sample::<_, _, BARE>(
+                    &self.machine,
+                    law,
+                    state,
+                    &mut self.run,
+                    arrived,
+                    added(index) + around.load.at(index),
+                    dt_now,
+                    passed..divided,
+                    self.integrator,
+                );
+                self.machine.wind(&mut self.run, arrived, dt_now);
+                self.machine.remember(&before, &mut self.run);
+                let seen = &*state;
+                rows.see(index, &self.run, &self.machine, |column| seen.output(column));
+                index += 1;
             }
         });
         Ok(())
     }
+}
+
+/// Who sees body, machine and states of the law after each sample.
+trait Rows<S: Scalar> {
+    fn see(
+        &mut self,
+        sample: usize,
+        run: &Run<S>,
+        machine: &Machine<S>,
+        output: impl Fn(usize) -> S,
+    );
+}
+
+/// A function that is told.
+struct Told<F>(F);
+
+impl<S: Scalar, F> Rows<S> for Told<F>
+where
+    F: FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
+{
+    #[inline(always)]
+    fn see(
+        &mut self,
+        sample: usize,
+        run: &Run<S>,
+        machine: &Machine<S>,
+        output: impl Fn(usize) -> S,
+    ) {
+        (self.0)(sample, run, machine, &output);
+    }
+}
+
+/// The columns that a trajectory shows; empty where one is not wanted.
+struct Columns<'a, 'b> {
+    position: &'a mut [f64],
+    velocity: &'a mut [f64],
+    friction: &'a mut [f64],
+    others: &'a mut [(Column, &'b mut [f64])],
+}
+
+impl<'a, 'b> Columns<'a, 'b> {
+    /// These columns, those of the body first, so that they need no looking up.
+    fn new(columns: &'a mut [(Column, &'b mut [f64])]) -> Self {
+        let rank = |column: Column| match column {
+            Column::Position => 0,
+            Column::Velocity => 1,
+            Column::Friction => 2,
+            Column::Measured | Column::Law(_) => 3,
+        };
+        columns.sort_unstable_by_key(|(column, _)| rank(*column));
+        let (position, columns) = taken(columns, Column::Position);
+        let (velocity, columns) = taken(columns, Column::Velocity);
+        let (friction, others) = taken(columns, Column::Friction);
+        Self { position, velocity, friction, others }
+    }
+}
+
+/// The first column where it is this one, else nothing, and the rest.
+fn taken<'a, 'b>(
+    columns: &'a mut [(Column, &'b mut [f64])],
+    wanted: Column,
+) -> (&'a mut [f64], &'a mut [(Column, &'b mut [f64])]) {
+    if columns.first().is_none_or(|(column, _)| *column != wanted) {
+        return (&mut [], columns);
+    }
+    let (first, rest) = columns.split_at_mut(1);
+    (&mut *first[0].1, rest)
+}
+
+impl Rows<f64> for Columns<'_, '_> {
+    #[inline(always)] // where it is called, the motion is in registers
+    fn see(
+        &mut self,
+        sample: usize,
+        run: &Run<f64>,
+        machine: &Machine<f64>,
+        output: impl Fn(usize) -> f64,
+    ) {
+        if let Some(place) = self.position.get_mut(sample) {
+            *place = run.position;
+        }
+        if let Some(place) = self.velocity.get_mut(sample) {
+            *place = run.velocity;
+        }
+        if let Some(place) = self.friction.get_mut(sample) {
+            *place = run.friction;
+        }
+        for (column, values) in self.others.iter_mut() {
+            values[sample] = match column {
+                Column::Position => run.position,
+                Column::Velocity => run.velocity,
+                Column::Friction => run.friction,
+                Column::Measured => machine.sensor.read(machine.effects.sensor(run.position)),
+                Column::Law(index) => output(*index),
+            };
+        }
+    }
+}
+
+/// Shows the samples of a glide.
+struct Showing<'a, S: Scalar, R> {
+    machine: &'a Machine<S>,
+    rows: &'a mut R,
+}
+
+impl<S: Scalar, T: LawState<S>, R: Rows<S>> Seen<S, T> for Showing<'_, S, R> {
+    #[inline(always)]
+    fn see(&mut self, sample: usize, run: &Run<S>, contact: &T) {
+        self.rows.see(sample, run, self.machine, |column| contact.output(column));
+    }
+}
+
+fn glides<S: Scalar, L: FrictionLaw<S>>(_law: &L) -> bool {
+    L::GLIDES
 }
 
 /// A motor in plain numbers: what `Motor` is in Python.
@@ -514,11 +696,7 @@ impl Motor {
                 });
             }
         }
-        self.running.simulate(inputs, around, dt, |k, run, machine, output| {
-            for (column, values) in columns.iter_mut() {
-                values[k] = column.read(run, machine, output);
-            }
-        })
+        self.running.simulate_rows(inputs, around, |_| 0.0, dt, Columns::new(columns))
     }
 
     /// Efforts along given positions, one more than there are samples: of the drive, of gravity and

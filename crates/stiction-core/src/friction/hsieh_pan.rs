@@ -11,6 +11,7 @@ use super::{
     Statistics,
 };
 use crate::error::{Error, Result};
+use crate::integrate::{Glide, Seen};
 use crate::parameter::{OptionSpec, ParameterSpec};
 use crate::parameters;
 use crate::scalar::{Scalar, sign};
@@ -146,6 +147,8 @@ pub struct HsiehPanState<S> {
 #[derive(Debug, Clone, Copy)]
 pub struct HsiehPanTrial<S> {
     outcome: Outcome<S>,
+    /// Force without the part that the velocity at the end damps.
+    undamped: S,
     series: S,
     filtered: S,
     breakaway: S,
@@ -223,6 +226,13 @@ impl<S: Scalar> LawState<S> for HsiehPanState<S> {
     }
 }
 
+/// The slope right after a reversal: rare, and a function so that nobody waits for the choice.
+#[cold]
+#[inline(never)]
+fn after_reversal<S: Scalar>(curve: &Curve<S>) -> S {
+    curve.initial_stiffness()
+}
+
 impl<S: Scalar> HsiehPan<S> {
     /// Sliding level T at this speed and its slope by speed, at level 1.
     #[inline]
@@ -261,7 +271,7 @@ impl<S: Scalar> HsiehPan<S> {
     }
 
     /// A step of a sticking hook.
-    #[inline]
+    #[inline(always)]
     fn stick(
         &self,
         state: &HsiehPanState<S>,
@@ -282,7 +292,8 @@ impl<S: Scalar> HsiehPan<S> {
                 slope: step.slope * channels.level,
                 damping: step.damping * channels.level,
             };
-            return self.stuck(state, motion, step.walk, step.force, step.creep, outcome);
+            let undamped = outcome.force - outcome.damping * motion.velocity;
+            return self.stuck(state, motion, step.walk, step.force, step.creep, outcome, undamped);
         }
         let creep = self.plastic.creep(
             state.hardening,
@@ -291,16 +302,19 @@ impl<S: Scalar> HsiehPan<S> {
             motion.displacement,
             motion.duration,
         );
-        let walk = state.spring.walk(&self.curve, motion.displacement - creep.displacement);
+        let walk = state.spring.walk(&self.curve, creep.left);
         let damping = self.parameters.damping;
-        let force = walk.end.force * channels.level + damping * motion.velocity;
+        let undamped = walk.end.force * channels.level;
+        let force = undamped + damping * motion.velocity;
         let slope = walk.end.slope * channels.level * motion.duration
             * (-(creep.share - 1.0))
             + damping;
-        self.stuck(state, motion, walk, walk.end.force, creep, Outcome { force, slope, damping })
+        let outcome = Outcome { force, slope, damping };
+        self.stuck(state, motion, walk, walk.end.force, creep, outcome, undamped)
     }
 
-    #[inline]
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)] // what a step has found, apart and not in a struct
     fn stuck(
         &self,
         state: &HsiehPanState<S>,
@@ -309,11 +323,13 @@ impl<S: Scalar> HsiehPan<S> {
         series: S,
         creep: Creep<S>,
         outcome: Outcome<S>,
+        undamped: S,
     ) -> HsiehPanTrial<S> {
         let (filtered, breakaway) =
             self.breakaway_after(state.filtered, state.series, series, motion.duration);
         HsiehPanTrial {
             outcome,
+            undamped,
             series,
             filtered,
             breakaway,
@@ -322,6 +338,48 @@ impl<S: Scalar> HsiehPan<S> {
                 plastic: state.plastic + creep.displacement,
                 hardening: state.hardening + creep.hardening,
             },
+        }
+    }
+
+    /// Plain steps of a sticking hook whose damper sits beside the spring.
+    #[inline]
+    fn glide_sticking<const SQUARE: bool, E: Fn(usize) -> S, V: Seen<S, HsiehPanState<S>>>(
+        &self,
+        state: &mut HsiehPanState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) {
+        let damping = self.parameters.damping;
+        let greatest = self.parameters.breakaway.re();
+        let span = glide.verlet.span();
+        let branch = state.spring.present(&self.curve);
+        let mut here = state.spring.here();
+        let (mut plastic, mut hardening) = (state.plastic, state.hardening);
+        let mut velocity = glide.run.velocity;
+        while let Some(effort) = glide.next() {
+            let net = effort - (here.force + damping * velocity);
+            let (displacement, predicted) = glide.verlet.depart(velocity, net);
+            let towards = |direction| {
+                if direction == here.direction { here.slope } else { after_reversal(&self.curve) }
+            };
+            let creep =
+                self.plastic.plain_creep::<SQUARE>(hardening, here.force, towards, displacement, span);
+            let Some(creep) = creep else { return };
+            let (unbraked, braking) = glide.verlet.unbraked(velocity, net + effort, damping);
+            let Some(there) = here.onward(&self.curve, &branch, creep.left) else { return };
+            let arrived = unbraked - braking * there.force;
+            if there.force.re().abs() >= greatest && arrived.re() * there.force.re() > 0.0 {
+                return;
+            }
+            here = there;
+            velocity = arrived;
+            plastic += creep.displacement;
+            hardening += creep.hardening;
+            state.spring.slide(&here);
+            state.series = here.force;
+            state.plastic = plastic;
+            state.hardening = hardening;
+            let friction = here.force + damping * predicted + damping * (velocity - predicted);
+            glide.accept(displacement, velocity, friction, state);
         }
     }
 
@@ -338,26 +396,48 @@ impl<S: Scalar> HsiehPan<S> {
         if to.re() <= limit.force.re() { (to, None) } else { (limit.force, Some(limit.slope)) }
     }
 
-    /// A step of a sliding hook: the force follows the sliding level over the distance ℓ.
+    /// A step of a sliding hook.
+    #[inline(never)]
     fn slip(
         &self,
         state: &HsiehPanState<S>,
         motion: &Motion<S>,
         channels: &Channels<S>,
     ) -> HsiehPanTrial<S> {
-        let s = state.mode;
-        let (to, steepness) = self.sliding_level(state.latched, motion.velocity, channels);
+        let slide = self.slide(state.mode, state.latched, state.series, motion, channels);
+        let (filtered, breakaway) =
+            self.breakaway_after(state.filtered, state.series, slide.series, motion.duration);
+        HsiehPanTrial {
+            outcome: slide.outcome,
+            undamped: slide.outcome.force - slide.outcome.damping * motion.velocity,
+            series: slide.series,
+            filtered,
+            breakaway,
+            mode: Mode::Slip { pull: slide.pull },
+        }
+    }
+
+    /// What a slide in direction `s` does: the force follows the sliding level over the distance ℓ.
+    #[inline(always)]
+    fn slide(
+        &self,
+        s: f64,
+        latched: S,
+        series: S,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> Slide<S> {
+        let (to, steepness) = self.sliding_level(latched, motion.velocity, channels);
         let (from, from_steepness) = if motion.start_velocity.re() == motion.velocity.re() {
             (to, steepness)
         } else {
-            self.sliding_level(state.latched, motion.start_velocity, channels)
+            self.sliding_level(latched, motion.start_velocity, channels)
         };
         let distance = motion.displacement.abs();
-        let z = distance / self.parameters.slip_distance;
-        let followed = follow(state.series * s, from, to, z);
-        let (sigma, held_back) = self.no_faster_than_the_spring(state.series * s, followed.value, distance);
-        let (filtered, breakaway) =
-            self.breakaway_after(state.filtered, state.series, sigma * s, motion.duration);
+        let per_distance = S::constant(1.0) / self.parameters.slip_distance;
+        let followed = follow(series * s, from, to, distance * per_distance);
+        let (sigma, held_back) =
+            self.no_faster_than_the_spring(series * s, followed.value, distance);
         let turning = sign(motion.velocity.re());
         let damping = steepness * followed.end_share * channels.level * (s * turning);
         let damping =
@@ -365,21 +445,63 @@ impl<S: Scalar> HsiehPan<S> {
         // Held velocity: start and end level move together, and the distance with them.
         let held = steepness * followed.end_share
             + from_steepness * (-(followed.end_share - 1.0) - followed.remainder);
-        let catching_up = (to - state.series * s) * followed.remainder * motion.duration
-            / self.parameters.slip_distance;
+        let catching_up =
+            (to - series * s) * followed.remainder * motion.duration * per_distance;
         let slope = match held_back {
             None => (held + catching_up) * (s * turning),
             Some(stiffness) => stiffness * motion.duration,
         };
         let slope = slope * channels.level;
-        HsiehPanTrial {
-            outcome: Outcome { force: sigma * channels.level * s, slope, damping },
-            series: sigma * s,
-            filtered,
-            breakaway,
-            mode: Mode::Slip { pull: to - sigma },
+        let outcome = Outcome { force: sigma * channels.level * s, slope, damping };
+        Slide { outcome, series: sigma * s, pull: to - sigma }
+    }
+
+    /// Plain steps of a sliding hook.
+    #[inline]
+    fn glide_sliding<E: Fn(usize) -> S, V: Seen<S, HsiehPanState<S>>>(
+        &self,
+        state: &mut HsiehPanState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) {
+        let (mode, latched) = (state.mode, state.latched);
+        let least = self.parameters.slip_distance * self.parameters.final_stiffness;
+        let greatest = self.parameters.breakaway.re();
+        let (mut series, mut velocity) = (state.series, glide.run.velocity);
+        while let Some(effort) = glide.next() {
+            if mode * velocity.re() < 0.0 {
+                return;
+            }
+            let net = effort - series;
+            let (displacement, predicted) = glide.verlet.depart(velocity, net);
+            let duration = glide.verlet.span();
+            let motion =
+                Motion { displacement, duration, start_velocity: velocity, velocity: predicted };
+            let slide = self.slide(mode, latched, series, &motion, &Channels::default());
+            let Outcome { force, damping, .. } = slide.outcome;
+            let undamped = force - damping * predicted;
+            let arrived = glide.verlet.arrive(velocity, net + effort, damping, undamped);
+            // As `margin` says; what it has to solve for is not plain.
+            let held = (least - slide.pull).re() > 0.0 || greatest - force.re().abs() <= 0.0;
+            if !held || mode * arrived.re() <= 0.0 {
+                return;
+            }
+            series = slide.series;
+            velocity = arrived;
+            state.series = series;
+            state.spring.force = series;
+            let friction = force + damping * (velocity - predicted);
+            glide.accept(displacement, velocity, friction, state);
         }
     }
+}
+
+/// A step of a slide.
+#[derive(Debug, Clone, Copy)]
+struct Slide<S> {
+    outcome: Outcome<S>,
+    series: S,
+    /// T − s·σ: how far the force lags behind its sliding level.
+    pull: S,
 }
 
 impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
@@ -529,7 +651,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         state.series * channels.level
     }
 
-    #[inline]
+    #[inline(always)]
     fn advance(
         &self,
         state: &HsiehPanState<S>,
@@ -549,6 +671,11 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
     }
 
     #[inline]
+    fn undamped(&self, trial: &HsiehPanTrial<S>, _velocity: S) -> S {
+        trial.undamped
+    }
+
+    #[inline(always)]
     fn commit(&self, state: &mut HsiehPanState<S>, trial: &HsiehPanTrial<S>) {
         state.series = trial.series;
         state.filtered = trial.filtered;
@@ -561,6 +688,28 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
                 state.spring.count(walk, &mut state.statistics);
             }
             Mode::Slip { .. } => state.spring.force = trial.series,
+        }
+    }
+
+    const GLIDES: bool = true;
+
+    #[inline]
+    fn glide<E: Fn(usize) -> S, V: Seen<S, HsiehPanState<S>>>(
+        &self,
+        state: &mut HsiehPanState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) {
+        if self.damper_on_spring || self.rated {
+            return;
+        }
+        if state.mode == 0.0 {
+            if self.plastic.is_square() {
+                self.glide_sticking::<true, _, _>(state, glide);
+            } else {
+                self.glide_sticking::<false, _, _>(state, glide);
+            }
+        } else {
+            self.glide_sliding(state, glide);
         }
     }
 
@@ -697,6 +846,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         let slope = walk.end.slope * channels.level * motion.duration + damping;
         HsiehPanTrial {
             outcome: Outcome { force, slope, damping },
+            undamped: force - damping * motion.velocity,
             series,
             filtered,
             breakaway,

@@ -6,6 +6,7 @@
 pub mod elements;
 
 use crate::error::{Error, Result};
+use crate::integrate::{Glide, Seen};
 use crate::parameter::{OptionSpec, ParameterSpec};
 use crate::scalar::Scalar;
 
@@ -227,6 +228,25 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     ) -> Self::Trial;
     /// Friction, slope and damping of a step.
     fn outcome(&self, trial: &Self::Trial) -> Outcome<S>;
+    /// Friction of a step less its damping times the velocity at the end: what does not change with
+    /// the velocity that an integrator solves for.
+    #[inline]
+    fn undamped(&self, trial: &Self::Trial, velocity: S) -> S {
+        let outcome = self.outcome(trial);
+        outcome.force - outcome.damping * velocity
+    }
+    /// Whether the law has [`FrictionLaw::glide`].
+    const GLIDES: bool = false;
+    /// Goes on through plain steps of a bare body for as long as there are any: steps in which
+    /// nothing turns round and no mode changes, at level 1. The same to the bit as `advance` and
+    /// `commit` step by step, in a loop that the law keeps short.
+    #[inline]
+    fn glide<E: Fn(usize) -> S, V: Seen<S, Self::State>>(
+        &self,
+        _state: &mut Self::State,
+        _glide: &mut Glide<S, E, V>,
+    ) {
+    }
     /// Accepts a step.
     fn commit(&self, state: &mut Self::State, trial: &Self::Trial);
 

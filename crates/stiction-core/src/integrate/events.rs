@@ -25,20 +25,46 @@ pub trait Stepper<S: Scalar, L: FrictionLaw<S>> {
     fn hold(&mut self, law: &L, state: &mut L::State, span: S) -> bool;
 }
 
-/// Takes one step, locating and passing every mode change inside it. Returns how many there were.
-#[inline]
+/// Takes one step, locating and passing every mode change inside it.
+#[inline(always)]
 pub fn through_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
     stepper: &mut P,
     law: &L,
     state: &mut L::State,
     span: S,
-) -> u32 {
+) {
+    let velocity = stepper.velocity();
+    if velocity.re() == 0.0 && stepper.hold(law, state, span) {
+        return;
+    }
+    if law.pending(state, velocity).is_none() {
+        let attempt = stepper.attempt(law, state, span);
+        let (trial, motion) = stepper.contact(&attempt);
+        if law.event(state, trial, motion).is_none() {
+            stepper.accept(law, state, &attempt, false);
+            return;
+        }
+    }
+    pass_events(stepper, law, state, span);
+}
+
+/// The same for a step in which an event is due; whether the contact holds was asked already.
+#[cold]
+#[inline(never)]
+fn pass_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
+    stepper: &mut P,
+    law: &L,
+    state: &mut L::State,
+    span: S,
+) {
     let mut left = span;
     let mut passed = 0;
+    let mut asked = true;
     loop {
-        if stepper.velocity().re() == 0.0 && stepper.hold(law, state, left) {
-            return passed;
+        if !asked && stepper.velocity().re() == 0.0 && stepper.hold(law, state, left) {
+            return;
         }
+        asked = false;
         if passed < MOST_EVENTS
             && let Some(event) = law.pending(state, stepper.velocity())
         {
@@ -46,17 +72,17 @@ pub fn through_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
             passed += 1;
             continue;
         }
-        let attempt = stepper.attempt(law, state, left);
+        let attempt = apart(stepper, law, state, left);
         let (trial, motion) = stepper.contact(&attempt);
         let event = if passed < MOST_EVENTS { law.event(state, trial, motion) } else { None };
         let Some(event) = event else {
             stepper.accept(law, state, &attempt, false);
-            return passed;
+            return;
         };
         passed += 1;
         let (event, at) = earliest(stepper, law, state, event, left);
         // Also where the event is due at once: a velocity that jumped has changed the force.
-        let shortened = stepper.attempt(law, state, at);
+        let shortened = apart(stepper, law, state, at);
         stepper.accept(law, state, &shortened, event == Event::Reversal && at.re() > 0.0);
         left -= at;
         // What is left below round-off of the step still asks for the force after the event.
@@ -65,6 +91,18 @@ pub fn through_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
         }
         law.switch(state, event);
     }
+}
+
+/// An attempt where one more call is no matter: the usual one alone is part of its loop.
+#[cold]
+#[inline(never)]
+fn apart<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
+    stepper: &P,
+    law: &L,
+    state: &L::State,
+    span: S,
+) -> P::Attempt {
+    stepper.attempt(law, state, span)
 }
 
 /// The step as a whole where no mode changes in it, evaluated and not accepted.
@@ -94,14 +132,14 @@ fn earliest<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
     // Each pass ends earlier than the one before; three kinds of event bound their number.
     for _ in 0..4 {
         let at = locate(span, |h| {
-            let attempt = stepper.attempt(law, state, h);
+            let attempt = apart(stepper, law, state, h);
             let (trial, motion) = stepper.contact(&attempt);
             law.margin(state, trial, motion, event)
         });
         if at.re() <= 0.0 {
             return (event, at);
         }
-        let attempt = stepper.attempt(law, state, at);
+        let attempt = apart(stepper, law, state, at);
         let (trial, motion) = stepper.contact(&attempt);
         match law.event(state, trial, motion) {
             Some(other) if other != event => {

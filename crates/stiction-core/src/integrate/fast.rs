@@ -1,17 +1,33 @@
 //! Velocity Verlet with trapezoidal damping: one evaluation of friction a step.
 
 use super::events::Stepper;
+use super::glide::Verlet;
 use super::machine::{Machine, Run, hold};
 use super::steep;
-use crate::friction::{FrictionLaw, Motion};
+use crate::effects::Situation;
+use crate::friction::{Channels, FrictionLaw, Motion};
 use crate::scalar::Scalar;
 
 /// The fast integrator over one sample.
-pub(super) struct Fast<'a, S: Scalar> {
+///
+/// `BARE` promises [`Machine::is_bare`]; it changes no bit.
+pub(super) struct Fast<'a, S: Scalar, const BARE: bool> {
     pub machine: &'a Machine<S>,
     pub run: &'a mut Run<S>,
     pub input: S,
     pub load: S,
+}
+
+impl<S: Scalar, const BARE: bool> Fast<'_, S, BARE> {
+    /// What reaches the contact.
+    #[inline]
+    fn channels(&self, at: &Situation<S>, effort: S) -> Channels<S> {
+        if BARE {
+            self.machine.plain_channels(at, effort, self.load)
+        } else {
+            self.machine.channels(at, effort, self.load)
+        }
+    }
 }
 
 /// A step: the run after it, the law's trial and the motion at the contact.
@@ -22,52 +38,57 @@ pub(super) struct Attempt<S, T> {
     pub motion: Motion<S>,
 }
 
-impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Fast<'_, S> {
+impl<S: Scalar, L: FrictionLaw<S>, const BARE: bool> Stepper<S, L> for Fast<'_, S, BARE> {
     type Attempt = Attempt<S, L::Trial>;
 
     // x₁ = x₀ + h·v₀ + h²/2·a₀,  v₁ = v₀ + h/2·(a₀ + a₁); the part of friction that depends on
     // the velocity at the end is linearised about v₀ + h·a₀, which leaves an error of third order.
-    #[inline]
+    #[inline(always)]
     fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt {
         let (machine, run) = (self.machine, &*self.run);
         if L::STEEP {
             return steep::attempt(machine, run, (self.input, self.load), law, state, span);
         }
-        let half = span * 0.5;
+        let verlet = Verlet::new(span, machine.inertia, machine.lightness);
         let start = run.situation();
-        let effort = machine.driven(self.input, &start) + self.load + run.ambient;
-        let channels = machine.channels(&start, effort, self.load);
-        let friction = law.force(state, run.velocity, &channels);
-        let acceleration = (effort - friction) / machine.inertia;
-        let displacement = span * (run.velocity + half * acceleration);
-        let predicted = run.velocity + span * acceleration;
+        let effort = if BARE {
+            machine.bare_drive(self.input, run.enabled) + self.load + run.ambient
+        } else {
+            machine.driven(self.input, &start) + self.load + run.ambient
+        };
+        let friction = law.force(state, run.velocity, &self.channels(&start, effort));
+        let net = effort - friction;
+        let (displacement, predicted) = verlet.depart(run.velocity, net);
         let end = start.after(displacement, predicted, span);
         let mut next = *run;
         next.position = end.position;
         next.time = end.time;
         next.path = end.path;
         next.moved = end.moved;
-        machine.swing(&start, &end, span, &mut next);
-        next.ambient = machine.ambient(&end, next.second_position, next.second_velocity);
         let mut at_contact = displacement;
-        if machine.relaxes() {
-            let (hardened, crept) = machine.relax(run.relaxed, friction, span);
-            next.relaxed = hardened;
-            at_contact -= crept;
-        }
-        let effort_then = machine.driven(self.input, &end) + self.load + next.ambient;
+        let effort_then = if BARE {
+            next.ambient = machine.weight();
+            machine.bare_drive(self.input, run.enabled) + self.load + next.ambient
+        } else {
+            machine.swing(&start, &end, span, &mut next);
+            next.ambient = machine.ambient(&end, next.second_position, next.second_velocity);
+            if machine.relaxes() {
+                let (hardened, crept) = machine.relax(run.relaxed, friction, span);
+                next.relaxed = hardened;
+                at_contact -= crept;
+            }
+            machine.driven(self.input, &end) + self.load + next.ambient
+        };
         let mut motion = Motion {
             displacement: at_contact,
             duration: span,
             start_velocity: run.velocity,
             velocity: predicted,
         };
-        let trial = law.advance(state, &motion, &machine.channels(&end, effort_then, self.load));
+        let trial = law.advance(state, &motion, &self.channels(&end, effort_then));
         let outcome = law.outcome(&trial);
-        let gathered =
-            effort - friction + effort_then - outcome.force + outcome.damping * predicted;
-        next.velocity = (machine.inertia * run.velocity + half * gathered)
-            / (machine.inertia + half * outcome.damping);
+        let undamped = law.undamped(&trial, predicted);
+        next.velocity = verlet.arrive(run.velocity, net + effort_then, outcome.damping, undamped);
         next.friction = outcome.force + outcome.damping * (next.velocity - predicted);
         motion.velocity = next.velocity;
         Attempt { run: next, trial, motion }

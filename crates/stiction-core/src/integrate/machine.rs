@@ -1,5 +1,6 @@
 //! Everything of a plant but its friction law, and the running state of its body.
 
+use super::glide::{Glide, Verlet};
 use super::shaft::Shaft;
 use crate::body::Body;
 use crate::drive::Drive;
@@ -27,6 +28,8 @@ pub struct Machine<S: Scalar> {
     sliding: S,
     /// Inertia on the motor's side of the shaft.
     pub(super) inertia: S,
+    /// Its reciprocal.
+    pub(super) lightness: S,
 }
 
 /// Creep that no hardening stops: its speed at a force is `coefficient`·|F|^n.
@@ -104,7 +107,26 @@ impl<S: Scalar> Machine<S> {
         let masses = effects.second_masses().iter();
         let shaft = masses.filter_map(|m| Shaft::new(m, body.inertia)).next_back();
         let inertia = shaft.map_or(body.inertia, |shaft| body.inertia - shaft.inertia);
-        Self { drive, body, effects, sensor, relaxation, steady_creep, shaft, sliding, inertia }
+        let lightness = S::constant(1.0) / inertia;
+        Self {
+            drive,
+            body,
+            effects,
+            sensor,
+            relaxation,
+            steady_creep,
+            shaft,
+            sliding,
+            inertia,
+            lightness,
+        }
+    }
+
+    /// Whether nothing but drive, inertia, weight and friction is there: such a machine has efforts
+    /// that no motion changes, and levels of 1.
+    pub fn is_bare(&self) -> bool {
+        let alone = self.shaft.is_none() && !self.relaxes() && self.body.is_level();
+        alone && self.effects.nothing() && self.drive.servo.is_none()
     }
 
     /// A body at this position and velocity.
@@ -207,6 +229,42 @@ impl<S: Scalar> Machine<S> {
         goal - if self.effects.misreads() { self.effects.sensor(at.position) } else { at.position }
     }
 
+    /// Gravity and added efforts of a bare machine.
+    #[inline]
+    pub(super) fn weight(&self) -> S {
+        self.body.gravity(S::constant(0.0)) + 0.0
+    }
+
+    /// Whether a run is as a step of this bare machine leaves it.
+    pub fn glides(&self, run: &Run<S>) -> bool {
+        run.ambient.re().to_bits() == self.weight().re().to_bits()
+    }
+
+    /// A row of plain steps of this bare machine from where a run is; `applied` says input and load
+    /// of a sample, `parts` in how many steps of `span` it is divided.
+    pub fn glide<E: Fn(usize) -> (S, S), V>(
+        &self,
+        run: Run<S>,
+        applied: E,
+        seen: V,
+        samples: std::ops::Range<usize>,
+        (span, parts): (S, u32),
+    ) -> Glide<S, impl Fn(usize) -> S, V> {
+        let weight = self.weight();
+        let efforts = move |k| {
+            let (input, load) = applied(k);
+            self.drive.direct(input) + load + weight
+        };
+        let verlet = Verlet::new(span, self.inertia, self.lightness);
+        Glide { verlet, run, efforts, seen, samples, part: 0, parts }
+    }
+
+    /// Effort of the drive of a bare machine.
+    #[inline]
+    pub(super) fn bare_drive(&self, input: S, enabled: bool) -> S {
+        if enabled { self.drive.direct(input) } else { S::constant(0.0) }
+    }
+
     /// Effort of the drive.
     #[inline]
     pub(super) fn driven(&self, input: S, at: &Situation<S>) -> S {
@@ -239,6 +297,12 @@ impl<S: Scalar> Machine<S> {
     #[inline]
     pub fn at_contact(&self, at: &Situation<S>, load: S) -> Situation<S> {
         Situation { load: load + self.body.gravity(at.position), sliding: self.sliding, ..*at }
+    }
+
+    /// What reaches the contact of a bare machine.
+    #[inline]
+    pub(super) fn plain_channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
+        Channels { effort, load, temperature: at.temperature, ..Channels::default() }
     }
 
     /// What reaches the contact.

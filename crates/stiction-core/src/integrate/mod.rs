@@ -8,6 +8,7 @@
 mod contact;
 mod events;
 mod fast;
+mod glide;
 mod machine;
 mod reference;
 mod shaft;
@@ -15,8 +16,11 @@ mod steep;
 
 pub use contact::{Along, Held};
 pub use events::{Stepper, quiet, through_events};
+pub use glide::{Glide, Seen, Verlet};
 pub use machine::{Machine, Run};
 pub use shaft::Beyond;
+
+use std::ops::Range;
 
 use crate::friction::FrictionLaw;
 use crate::scalar::Scalar;
@@ -59,10 +63,12 @@ pub fn parts<S: Scalar, L: FrictionLaw<S>>(
     phase.max(calming).max(falling.min(MOST_PARTS_FOR_A_FALL)).ceil().max(1.0)
 }
 
-/// Advances body and friction by one sample whose input and load are held.
+/// Advances body and friction by these of the equal steps of a sample whose input and load are held
+/// (the reference integrator by all of it, in steps of its own). `BARE` promises
+/// [`Machine::is_bare`]: the same to the bit, without asking at every step for what is not there.
 #[inline]
 #[allow(clippy::too_many_arguments)] // the parts of a motor, borrowed apart
-pub fn sample<S: Scalar, L: FrictionLaw<S>>(
+pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
     machine: &Machine<S>,
     law: &L,
     state: &mut L::State,
@@ -70,14 +76,15 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>>(
     input: S,
     load: S,
     dt: f64,
-    parts: u32,
+    steps: Range<u32>,
     integrator: Integrator,
 ) {
+    let parts = steps.end;
     match integrator {
         Integrator::Fast => {
             let span = S::constant(dt / f64::from(parts));
-            let mut stepper = fast::Fast { machine, run, input, load };
-            for _ in 0..parts {
+            let mut stepper = fast::Fast::<S, BARE> { machine, run, input, load };
+            for _ in steps {
                 through_events(&mut stepper, law, state, span);
             }
         }
@@ -132,7 +139,17 @@ mod tests {
         let parts = parts(machine, law, dt, LONGEST_PHASE) as u32;
         (0..5000)
             .map(|_| {
-                sample(machine, law, &mut state, &mut run, input, 0.0, dt, parts, integrator);
+                sample::<_, _, false>(
+                    machine,
+                    law,
+                    &mut state,
+                    &mut run,
+                    input,
+                    0.0,
+                    dt,
+                    0..parts,
+                    integrator,
+                );
                 run
             })
             .collect()
@@ -145,6 +162,7 @@ mod tests {
         let inertia = INERTIA * share;
         machine.shaft = Some(super::shaft::Shaft { inertia, stiffness, damping: 0.0, play: None });
         machine.inertia = INERTIA * (1.0 - share);
+        machine.lightness = 1.0 / machine.inertia;
         let omega = (stiffness / (INERTIA * share * (1.0 - share))).sqrt();
         for integrator in [Integrator::Fast, Integrator::Reference] {
             for (k, run) in run(&machine, &coulomb(0.0), input, integrator).iter().enumerate() {

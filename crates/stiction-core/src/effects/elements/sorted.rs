@@ -103,6 +103,12 @@ impl<S: Scalar> Effects<S> {
         self.unit = (friction, viscous);
     }
 
+    /// Whether there is no effect, nor a level seeded.
+    pub fn nothing(&self) -> bool {
+        let seeded = self.unit.0.derivative_is_nonzero() || self.unit.1.derivative_is_nonzero();
+        self.kept.is_empty() && !seeded
+    }
+
     /// Whether any effect remembers what happened before.
     #[inline]
     pub fn remembers(&self) -> bool {

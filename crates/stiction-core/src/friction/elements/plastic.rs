@@ -4,7 +4,7 @@
 //! (Hsieh & Pan, Wear 242 (2000), §2.2.3 and §3.1: the behaviour is stated, the form of f is a
 //! reconstruction.)
 
-use crate::scalar::{COLUMNS, Scalar, logarithmic_mean, sign};
+use crate::scalar::{COLUMNS, SHORT, Scalar, logarithmic_mean, second_share, sign};
 
 /// Parameters of the plastic module.
 #[derive(Debug, Clone, Copy)]
@@ -24,6 +24,8 @@ pub struct Creep<S> {
     pub hardening: S,
     /// Δx_p = sgn(σ)·Δh.
     pub displacement: S,
+    /// What is left to the spring, Δx − Δx_p.
+    pub left: S,
     /// ∂Δx_p/∂Δx at fixed duration.
     pub share: S,
 }
@@ -41,7 +43,23 @@ impl<S: Scalar> Plastic<S> {
         if force.re() == 0.0 {
             return S::constant(0.0);
         }
-        self.exponent * self.limit(force) / (force * sign(force.re()))
+        let size = force * sign(force.re());
+        if self.exponent.re() == 2.0 {
+            // The same value whether or not the exponent is seeded.
+            let slope = self.coefficient * 2.0 * size;
+            if self.is_square() {
+                return slope;
+            }
+            let by_exponent = self.coefficient * size * (size.re().ln() * 2.0 + 1.0);
+            return slope + (self.exponent - 2.0) * by_exponent;
+        }
+        self.exponent * self.limit(force) / size
+    }
+
+    /// Whether f is a plain square, which costs no power.
+    #[inline]
+    pub fn is_square(&self) -> bool {
+        self.exponent.re() == 2.0 && !self.exponent.derivative_is_nonzero()
     }
 
     /// Creep while the ends of the series are displaced by `displacement` over `duration`.
@@ -51,61 +69,156 @@ impl<S: Scalar> Plastic<S> {
     /// y' = f'·k·s·x' − λ·y, λ = α·(1 + f'·k): the creep unloads the spring. That is solved
     /// exactly, so the result is stable for any duration:
     /// Δh = α·T·(y₀·φ₁(λT) + f'·k·s·x'·T·φ₂(λT)).
-    #[inline]
+    #[inline(always)]
     pub fn creep(
         &self,
         hardening: S,
         force: S,
-        stiffness: impl FnOnce(f64) -> S,
+        stiffness: impl Fn(f64) -> S,
+        displacement: S,
+        duration: S,
+    ) -> Creep<S> {
+        let plain = self.plain_creep::<false>(hardening, force, &stiffness, displacement, duration);
+        match plain {
+            Some(creep) => creep,
+            None => self.any_creep(hardening, force, stiffness, displacement, duration),
+        }
+    }
+
+    /// The same where creep goes on through a short step or has none: nearly every one. `SQUARE`
+    /// promises [`Self::is_square`].
+    #[inline(always)]
+    pub fn plain_creep<const SQUARE: bool>(
+        &self,
+        hardening: S,
+        force: S,
+        stiffness: impl Fn(f64) -> S,
+        displacement: S,
+        duration: S,
+    ) -> Option<Creep<S>> {
+        let zero = S::constant(0.0);
+        let none = Creep { hardening: zero, displacement: zero, left: displacement, share: zero };
+        let off = self.coefficient.re() == 0.0 && !self.coefficient.derivative_is_nonzero();
+        if force.re() == 0.0 || off || duration.re() <= 0.0 {
+            return Some(none);
+        }
+        let s = 1.0_f64.copysign(force.re());
+        let limit = if SQUARE { self.coefficient * (force * force) } else { self.limit(force) };
+        let margin = limit - hardening;
+        let starts = self.sign_of(margin) > 0.0;
+        let progress = self.rate * duration;
+        // What would be gained under a held force, to first order.
+        let held = if starts { progress * margin } else { zero };
+        // Creep that outruns the displacement takes the spring back, onto its steepest branch.
+        let net = displacement.re() - s * held.re();
+        let stiffness = stiffness(if net == 0.0 { -s } else { sign(net) });
+        // f'·k: the limit that a unit of spring elongation adds.
+        let limit_slope =
+            if SQUARE { self.coefficient * 2.0 * force.abs() } else { self.limit_slope(force) };
+        let gain = limit_slope * stiffness;
+        // By how much the displacement raises the limit.
+        let risen = gain * (displacement * s);
+        if !starts {
+            // The limit overtakes the hardening inside the step or not at all.
+            let overtakes = risen.re() > 0.0 && (margin + risen).re() > 0.0;
+            return if overtakes { None } else { Some(none) };
+        }
+        let z = progress + progress * gain;
+        if z.re() >= SHORT {
+            return None;
+        }
+        let second = second_share(z);
+        if risen.re() < 0.0 {
+            let mean = 1.0 - z.re() * second.re();
+            if margin.re() * (1.0 - z.re() * mean) + risen.re() * mean < 0.0 {
+                return None;
+            }
+        }
+        // Written so that what waits longest, φ₂, comes in last.
+        let lagged = held * z - progress * risen;
+        let gained = held - second * lagged;
+        let left = (displacement - held * s) + second * (lagged * s);
+        let share = gain * progress * second;
+        Some(Creep { hardening: gained, displacement: gained * s, left, share })
+    }
+
+    /// Any creep but none.
+    #[inline(never)]
+    fn any_creep(
+        &self,
+        hardening: S,
+        force: S,
+        stiffness: impl Fn(f64) -> S,
         displacement: S,
         duration: S,
     ) -> Creep<S> {
         let zero = S::constant(0.0);
-        let none = Creep { hardening: zero, displacement: zero, share: zero };
         let s = sign(force.re());
-        let off = self.coefficient.re() == 0.0 && !self.coefficient.derivative_is_nonzero();
-        if s == 0.0 || off || duration.re() <= 0.0 {
-            return none;
-        }
-        let limit = self.limit(force);
-        let margin = limit - hardening;
+        let margin = self.limit(force) - hardening;
         let starts = self.sign_of(margin) > 0.0;
-        // Creep that outruns the displacement takes the spring back, onto its steepest branch.
-        let creeping = if starts { self.rate * margin } else { zero };
-        let net = displacement.re() / duration.re() - s * creeping.re();
+        let progress = self.rate * duration;
+        let held = if starts { progress * margin } else { zero };
+        let net = displacement.re() - s * held.re();
         let stiffness = stiffness(if net == 0.0 { -s } else { sign(net) });
-        // f'·k: the limit that a unit of spring elongation adds.
         let gain = self.limit_slope(force) * stiffness;
-        let rate = self.rate * (gain + 1.0);
-        let rise = gain * displacement * s / duration;
-        let (start, left) = if starts {
-            (margin, duration)
-        } else {
-            // The limit overtakes the hardening inside the step or not at all.
-            if rise.re() <= 0.0 || (margin + rise * duration).re() <= 0.0 {
-                return none;
-            }
-            (zero, duration + margin / rise)
-        };
-        let mut left = left;
-        let mut means = exponential_means(rate * left);
-        let at_end = start * (-(rate * left * means.0 - 1.0)) + rise * left * means.0;
-        if starts && rise.re() < 0.0 && at_end.re() < 0.0 {
-            // Unloading takes the limit below the hardening inside the step: creep ends there.
-            left = -(start / rise) * logarithmic_mean(rate * start / rise);
-            means = exponential_means(rate * left);
+        let z = progress + progress * gain;
+        if !starts {
+            return self.overtaken(margin, z, gain, displacement, duration, s);
         }
-        let (mean, second) = means;
+        let risen = gain * (displacement * s);
+        let (mean, second) = exponential_means(z);
+        let at_end = margin.re() * (1.0 - z.re() * mean.re()) + risen.re() * mean.re();
+        if risen.re() < 0.0 && at_end < 0.0 {
+            return self.outrun(margin, z, gain, displacement, duration, s);
+        }
+        let gained = held * mean + progress * risen * second;
+        let displaced = gained * s;
+        let share = gain * progress * second;
+        Creep { hardening: gained, displacement: displaced, left: displacement - displaced, share }
+    }
+
+    /// Creep that begins inside the step, where the limit overtakes the hardening.
+    fn overtaken(
+        &self,
+        margin: S,
+        z: S,
+        gain: S,
+        displacement: S,
+        duration: S,
+        s: f64,
+    ) -> Creep<S> {
+        let rise = gain * displacement * s / duration;
+        let left = duration + margin / rise;
+        let (mean, second) = exponential_means(z / duration * left);
         let lagged = left * left * second;
-        let gained = (start * left * mean + rise * lagged) * self.rate;
-        let by_rise = if starts {
-            lagged
-        } else {
-            // The later the onset, the shorter the creep: ∂left/∂rise = −margin/rise².
-            lagged - left * mean * margin / rise
-        };
+        // The later the onset, the shorter the creep: ∂left/∂rise = −margin/rise².
+        let by_rise = lagged - left * mean * margin / rise;
+        self.partly(rise * lagged, by_rise, gain, displacement, duration, s)
+    }
+
+    /// Creep that ends inside the step, where unloading takes the limit below the hardening.
+    fn outrun(&self, margin: S, z: S, gain: S, displacement: S, duration: S, s: f64) -> Creep<S> {
+        let rise = gain * displacement * s / duration;
+        let rate = z / duration;
+        let left = -(margin / rise) * logarithmic_mean(rate * margin / rise);
+        let (mean, second) = exponential_means(rate * left);
+        let lagged = left * left * second;
+        self.partly(margin * left * mean + rise * lagged, lagged, gain, displacement, duration, s)
+    }
+
+    fn partly(
+        &self,
+        gained: S,
+        by_rise: S,
+        gain: S,
+        displacement: S,
+        duration: S,
+        s: f64,
+    ) -> Creep<S> {
+        let hardening = gained * self.rate;
+        let displaced = hardening * s;
         let share = by_rise * gain * self.rate / duration;
-        Creep { hardening: gained, displacement: gained * s, share }
+        Creep { hardening, displacement: displaced, left: displacement - displaced, share }
     }
 
     /// Sign of a quantity that vanishes with the coefficient: where that is 0, the sign it takes
@@ -130,13 +243,8 @@ impl<S: Scalar> Plastic<S> {
 /// φ₁(z) = (1 − e^(−z))/z and φ₂(z) = (1 − φ₁)/z.
 #[inline]
 fn exponential_means<S: Scalar>(z: S) -> (S, S) {
-    if z.re() < 0.02 {
-        // Series: the next terms are below 1e-17.
-        // 1/2 − z/6 + z²/24 − z³/120 + z⁴/720 − z⁵/5040 + z⁶/40320
-        let mut second = S::constant(1.0 / 40320.0);
-        for term in [-1.0 / 5040.0, 1.0 / 720.0, -1.0 / 120.0, 1.0 / 24.0, -1.0 / 6.0, 0.5] {
-            second = second * z + term;
-        }
+    if z.re() < SHORT {
+        let second = second_share(z);
         return (-(z * second - 1.0), second);
     }
     let mean = -((-z).exp_m1()) / z;

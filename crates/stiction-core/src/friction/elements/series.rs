@@ -28,6 +28,7 @@ pub struct SeriesStep<S> {
 /// its end; between them f(|T|) is taken as linear, for which the hardening has a closed form.
 /// Where a great force at the start would let it creep past the force 0, which no creep does, f is
 /// that of the end all along.
+#[inline(never)] // springs without a damper beside them are not to carry it through their loop
 pub fn step<S: Scalar>(
     spring: &SpringState<S>,
     curve: &impl Loading<S>,
@@ -117,7 +118,12 @@ pub fn step<S: Scalar>(
     let held = walk.end.slope * motion.duration + damper - by_start * (walk.end.slope - recovered);
     SeriesStep {
         walk,
-        creep: Creep { hardening: gain, displacement: gain * s, share: zero },
+        creep: Creep {
+            hardening: gain,
+            displacement: gain * s,
+            left: motion.displacement - gain * s,
+            share: zero,
+        },
         force,
         damping,
         slope: held / softened,

@@ -9,7 +9,7 @@ use crate::scalar::Scalar;
 /// Source: Bo, Pavelescu, Wear 82 (1982).
 #[inline]
 pub fn fall<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> (S, S) {
-    let power = (velocity / stribeck_velocity).power_of_magnitude(exponent);
+    let power = (velocity * (S::constant(1.0) / stribeck_velocity)).power_of_magnitude(exponent);
     let left = (-power).exp();
     if velocity.re() == 0.0 {
         return (left, S::constant(0.0));

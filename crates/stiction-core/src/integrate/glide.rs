@@ -1,0 +1,114 @@
+//! Plain steps in a row: a bare body whose contact neither turns round nor changes its mode.
+//!
+//! [`super::through_events`] takes any step of any machine. Nearly every step of nearly every motor
+//! needs little of that: a law that has [`FrictionLaw::glide`](crate::friction::FrictionLaw::glide)
+//! goes through those in one loop that keeps what runs from step to step in registers, and leaves
+//! the first step that is not plain to the others. The equations are the same, to the bit.
+
+use super::machine::Run;
+use crate::scalar::Scalar;
+
+/// The body's share of a step: velocity Verlet with trapezoidal damping.
+#[derive(Debug, Clone, Copy)]
+pub struct Verlet<S> {
+    span: S,
+    half: S,
+    inertia: S,
+    /// Velocity and displacement per effort.
+    pace: S,
+    lever: S,
+}
+
+impl<S: Scalar> Verlet<S> {
+    /// Steps of this duration.
+    #[inline]
+    pub fn new(span: S, inertia: S, lightness: S) -> Self {
+        let half = span * 0.5;
+        let pace = span * lightness;
+        Self { span, half, inertia, pace, lever: pace * half }
+    }
+
+    /// Displacement over the step and the velocity predicted for its end.
+    #[inline]
+    pub fn depart(&self, velocity: S, net: S) -> (S, S) {
+        (self.span * velocity + self.lever * net, velocity + self.pace * net)
+    }
+
+    /// Velocity at the end: `both` efforts, less friction at the start alone, and that at the end
+    /// as what its damping leaves and that.
+    ///
+    /// (J·v₀ + h/2·(E₀ − F₀ + E₁ − F* + D·v*))/(J + h/2·D), F* last: the rest waits for nothing.
+    #[inline]
+    pub fn arrive(&self, velocity: S, both: S, damping: S, undamped: S) -> S {
+        let (unbraked, braking) = self.unbraked(velocity, both, damping);
+        unbraked - braking * undamped
+    }
+
+    /// The velocity at the end without undamped friction there, and what that takes off for its unit.
+    #[inline]
+    pub fn unbraked(&self, velocity: S, both: S, damping: S) -> (S, S) {
+        let share = S::constant(1.0) / (self.inertia + self.half * damping);
+        ((self.inertia * velocity + self.half * both) * share, self.half * share)
+    }
+
+    /// Duration of a step.
+    #[inline]
+    pub fn span(&self) -> S {
+        self.span
+    }
+}
+
+/// Who sees the body and the contact after each sample. A trait, for a closure cannot ask to be part
+/// of the loop.
+pub trait Seen<S: Scalar, T> {
+    /// Sees a sample.
+    fn see(&mut self, sample: usize, run: &Run<S>, contact: &T);
+}
+
+/// A row of plain steps.
+#[derive(Debug)]
+pub struct Glide<S, E, V> {
+    /// The body's share of a step.
+    pub verlet: Verlet<S>,
+    /// The body.
+    pub run: Run<S>,
+    /// All effort but friction in a sample.
+    pub efforts: E,
+    /// Sees the body and the contact after each sample.
+    pub seen: V,
+    /// The present sample, and the first beyond.
+    pub samples: std::ops::Range<usize>,
+    /// The present step of it, of so many.
+    pub part: u32,
+    /// Steps of a sample.
+    pub parts: u32,
+}
+
+impl<S: Scalar, E: Fn(usize) -> S, V> Glide<S, E, V> {
+    /// All effort but friction during the next step, where there is one.
+    #[inline(always)]
+    pub fn next(&self) -> Option<S> {
+        (self.samples.start < self.samples.end).then(|| (self.efforts)(self.samples.start))
+    }
+
+    /// Accepts a step.
+    #[inline(always)] // the body would leave its registers for a call
+    pub fn accept<T>(&mut self, displacement: S, velocity: S, friction: S, contact: &T)
+    where
+        V: Seen<S, T>,
+    {
+        let run = &mut self.run;
+        run.position += displacement;
+        run.path += displacement.abs();
+        run.moved += displacement;
+        run.time += self.verlet.span;
+        run.velocity = velocity;
+        run.friction = friction;
+        self.part += 1;
+        if self.part == self.parts {
+            self.part = 0;
+            self.seen.see(self.samples.start, run, contact);
+            self.samples.start += 1;
+        }
+    }
+}

@@ -1,0 +1,86 @@
+"""The loop in C that the benches compare with does the same work: it breaks away and agrees."""
+
+import ctypes
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stiction as st
+
+SOURCES = Path(__file__).parents[2] / "benches" / "c"
+DT = 1e-4
+# Two orders of summation over 20 000 steps and three slides, as a share of the motion.
+ROUND_OFF = 1e-12
+
+
+def efforts(samples):
+    """Efforts that ring, creep and now and then break away, as in benches/lib.rs."""
+    t = np.arange(samples) * DT
+    return 0.45 * np.sin(6.0 * t) + np.where(np.mod(t, 0.3) < 0.02, 0.3, 0.0)
+
+
+@pytest.fixture(scope="module", params=["hsieh_pan", "hsieh_pan_direct"])
+def reference(request, tmp_path_factory):
+    """The loop in C as a function of efforts: positions, velocities and counts."""
+    compiler = shutil.which("cc")
+    if compiler is None:
+        pytest.skip("no C compiler")
+    library = tmp_path_factory.mktemp("c") / f"{request.param}.so"
+    direct = ["-DHSIEH_PAN_DIRECT"] if request.param.endswith("direct") else []
+    flags = ["-O3", "-std=c11", "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC"]
+    source = SOURCES / "hsieh_pan.c"
+    subprocess.run([compiler, *flags, *direct, source, "-o", library, "-lm"], check=True)
+    loop = getattr(ctypes.CDLL(str(library)), request.param)
+
+    def run(effort):
+        x, v = np.empty_like(effort), np.empty_like(effort)
+        counted = (ctypes.c_long * 2)()
+        pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (effort, x, v)]
+        loop(pointers[0], ctypes.c_size_t(len(effort)), pointers[1], pointers[2], counted)
+        return x, v, tuple(counted)
+
+    return run
+
+
+def test_the_loop_in_c_agrees_with_the_core_and_breaks_away(reference):
+    """Round-off apart, with as many slides: what is timed is the same work."""
+    effort = efforts(20_000)
+    x, v, counted = reference(effort)
+    motor = st.Motor(0.0076, friction=st.FrictionModel("hsieh_pan", breakaway=0.5))
+    own = motor.simulate(effort, DT)
+    assert np.abs(own.position - x).max() <= ROUND_OFF * np.abs(x).max()
+    assert np.abs(own.velocity - v).max() <= ROUND_OFF * np.abs(v).max()
+    counts = motor.statistics
+    assert counted == (counts["breakaways"], counts["sticks"])
+    assert min(counted) > 1
+
+
+def test_the_short_way_along_a_branch_keeps_to_its_bound(reference):
+    """The loop that evaluates every exponential says what the short way loses: below 1e-12."""
+    effort = 0.12 * np.sin(6.0 * np.arange(20_000) * DT)
+    x, _, counted = reference(effort)
+    motor = st.Motor(0.0076, friction=st.FrictionModel("hsieh_pan", breakaway=0.5))
+    own = motor.simulate(effort, DT, outputs=["position"])
+    assert counted == (0, 0)
+    assert np.abs(own["position"] - x).max() <= 1e-12 * np.abs(x).max()
+
+
+def test_one_call_and_single_steps_are_the_same_to_the_bit():
+    """Steps in a row keep what runs in registers; single steps do not. No bit may show it."""
+    effort = efforts(20_000)
+    effort[15_000:] += 0.05 * np.random.default_rng(7).standard_normal(5_000)
+    for options in ({}, {"hardening_exponent": 1.7, "viscous": 0.05}, {"loading_rate": 5.0}):
+        for dt in (DT, 4e-4):
+            law = st.FrictionModel("hsieh_pan", breakaway=0.5, **options)
+            whole = st.Motor(0.0076, friction=law)
+            single = st.Motor(0.0076, friction=law)
+            rows = np.array([single.step(u, dt) for u in effort.tolist()])
+            run = whole.simulate(effort, dt)
+            assert np.array_equal(run.position, rows[:, 0])
+            assert np.array_equal(run.velocity, rows[:, 1])
+            assert str(whole.state) == str(single.state)
+            assert whole.statistics == single.statistics
+            assert whole.statistics["breakaways"] > 1
