@@ -488,6 +488,7 @@ laws! {
     prandtl_ishlinskii => PrandtlIshlinskii,
     preisach => Preisach,
     rate_and_state => RateAndState,
+    reset_integrator => ResetIntegrator,
     rigid_perfectly_plastic => RigidPerfectlyPlastic,
 }
 
