@@ -490,6 +490,7 @@ laws! {
     rate_and_state => RateAndState,
     reset_integrator => ResetIntegrator,
     rigid_perfectly_plastic => RigidPerfectlyPlastic,
+    ro_hubbel => RoHubbel,
 }
 
 /// The record of the law called `name`.
