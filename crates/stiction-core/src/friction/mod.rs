@@ -37,7 +37,7 @@ impl<S: Scalar> Motion<S> {
 pub struct Channels<S> {
     /// All other effort on the body, positive along +x: what a stuck contact has to hold.
     pub effort: S,
-    /// Load on the contact; 0 is neutral.
+    /// Load on the contact, gravity with it, positive along +x; 0 is neutral.
     pub load: S,
     /// Multiplier of the friction level; 1 is neutral.
     pub level: S,
@@ -506,13 +506,16 @@ laws! {
     elasto_plastic => ElastoPlastic,
     futami => Futami,
     hsieh_pan => HsiehPan,
+    load_dependent => LoadDependent,
     lugre => LuGre,
     maxwell_slip => MaxwellSlip,
     parallel_elements => ParallelElements,
     prandtl_ishlinskii => PrandtlIshlinskii,
     preisach => Preisach,
     rate_and_state => RateAndState,
+    reset_integrator => ResetIntegrator,
     rigid_perfectly_plastic => RigidPerfectlyPlastic,
+    ro_hubbel => RoHubbel,
 }
 
 /// The record of the law called `name`.

@@ -308,11 +308,13 @@ impl<S: Scalar> Machine<S> {
     /// What reaches the contact.
     #[inline]
     pub fn channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
+        let at_contact = self.at_contact(at, load);
         let (level, viscous_level) = if self.effects.changes_levels() {
-            self.effects.levels(&self.at_contact(at, load))
+            self.effects.levels(&at_contact)
         } else {
             self.effects.levels(at)
         };
+        let load = at_contact.load;
         Channels { effort, load, level, viscous_level, temperature: at.temperature }
     }
 
