@@ -293,7 +293,7 @@ impl<S: Scalar> HsiehPan<S> {
                 damping: step.damping * channels.level,
             };
             let undamped = outcome.force - outcome.damping * motion.velocity;
-            return self.stuck(state, motion, step.walk, step.force, step.creep, outcome, undamped);
+            return self.stuck(state, motion, step.walk, step.force, step.creep, (outcome, undamped));
         }
         let creep = self.plastic.creep(
             state.hardening,
@@ -310,7 +310,7 @@ impl<S: Scalar> HsiehPan<S> {
             * (-(creep.share - 1.0))
             + damping;
         let outcome = Outcome { force, slope, damping };
-        self.stuck(state, motion, walk, walk.end.force, creep, outcome, undamped)
+        self.stuck(state, motion, walk, walk.end.force, creep, (outcome, undamped))
     }
 
     #[inline(always)]
@@ -322,8 +322,7 @@ impl<S: Scalar> HsiehPan<S> {
         walk: Walk<S>,
         series: S,
         creep: Creep<S>,
-        outcome: Outcome<S>,
-        undamped: S,
+        (outcome, undamped): (Outcome<S>, S),
     ) -> HsiehPanTrial<S> {
         let (filtered, breakaway) =
             self.breakaway_after(state.filtered, state.series, series, motion.duration);
