@@ -485,6 +485,7 @@ laws! {
     elastic_perfectly_plastic => ElasticPerfectlyPlastic,
     elasto_plastic => ElastoPlastic,
     futami => Futami,
+    gms => Gms,
     hsieh_pan => HsiehPan,
     lugre => LuGre,
     maxwell_slip => MaxwellSlip,
