@@ -487,6 +487,7 @@ laws! {
     futami => Futami,
     gms => Gms,
     hsieh_pan => HsiehPan,
+    leuven => Leuven,
     lugre => LuGre,
     maxwell_slip => MaxwellSlip,
     parallel_elements => ParallelElements,
