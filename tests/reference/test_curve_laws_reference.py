@@ -1,8 +1,16 @@
-"""Oracles of Dahl, LuGre and their relatives against published numbers and closed forms."""
+"""Oracles of Dahl, LuGre, the generalized Maxwell slip and their relatives against closed forms."""
 
 import numpy as np
 import pytest
-from tests.reference.laws import bouc_wen, dahl, dahl_with_memory, elasto_plastic, lugre
+from tests.reference.laws import (
+    bouc_wen,
+    dahl,
+    dahl_with_memory,
+    elasto_plastic,
+    gms,
+    leuven,
+    lugre,
+)
 
 ARC_SECOND = np.pi / (180.0 * 3600.0)
 DT = 1e-3
@@ -67,3 +75,31 @@ def test_the_ladder_of_dahls_loop_goes_back_along_it_and_closes_its_loops():
     y = 3000.0 * step * np.arange(1, 21) / 0.35
     assert force[2000:2020] == pytest.approx(0.35 * (2.0 / (1.0 + 2.0 * y) - 1.0), abs=2e-4)
     assert force[-1] == pytest.approx(force[1999], abs=1e-12)
+
+
+def test_gms_elements_slide_at_the_published_level_and_near_it_at_the_rate_of_attraction():
+    values = lugre.PUBLISHED | {"yield_shape": 0.5, "attraction": 5.0, "viscous": 0.0}
+    values.pop("damping")
+    path = np.concatenate((np.full(50, 5e-4), np.full(50, 2e-3)))
+    force = gms.along(path, 0.02, **values)
+    slow, fast = (1.0 + 0.5 * np.exp(-((v / 1e-3) ** 2)) for v in (5e-4, 2e-3))
+    assert force[49] == pytest.approx(slow, rel=1e-10)
+    left = np.exp(-5.0 * 0.02 * np.arange(1, 51) / fast)
+    assert force[50:] == pytest.approx(fast + (slow - fast) * left, rel=1e-9)
+
+
+def test_gms_elements_of_even_yield_points_have_them_at_odd_sixteenths():
+    assert gms.shares(0.5) == pytest.approx((2.0 * np.arange(8) + 1.0) / 64.0, rel=1e-12)
+
+
+def test_leuven_of_exponent_1_loads_along_a_logistic_curve_up_to_the_level():
+    values = {"coulomb": 0.5, "breakaway": 0.5, "stribeck_velocity": 0.1, "stribeck_exponent": 2.0}
+    values |= {"initial_stiffness": 3000.0, "saturation": 1.5, "damping": 0.0}
+    force = leuven.along(np.full(30, 0.02), DT, **values)
+    way = 0.02 * DT * 3000.0 * np.arange(1, 31)
+    u = 0.5 / 0.75 * np.exp(-way * (1.0 / 0.5 - 1.0 / 0.75))
+    assert force == pytest.approx((0.5 - 0.75 * u) / (1.0 - u), rel=1e-8)
+
+
+def test_leuven_forgets_inner_turns_that_a_later_excursion_passed():
+    assert leuven.dominant([0.0, 3.0, -1.0, 2.0, 0.5, 2.5, -0.5]) == [3.0, -1.0, 2.5, -0.5]

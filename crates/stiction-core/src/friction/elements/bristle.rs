@@ -126,8 +126,14 @@ impl<S: Scalar> Bristle<S> {
     /// Friction at an instant.
     #[inline]
     pub fn force(&self, deflection: S, slip: &Slip<S>, velocity: S, channels: &Channels<S>) -> S {
+        self.friction(self.stiffness * deflection, slip, velocity, channels)
+    }
+
+    /// Friction of bristles that bear this force.
+    #[inline]
+    pub fn friction(&self, borne: S, slip: &Slip<S>, velocity: S, channels: &Channels<S>) -> S {
         let pace = velocity * -(slip.share - 1.0);
-        let bristles = self.stiffness * deflection + self.damper(velocity).0 * pace;
+        let bristles = borne + self.damper(velocity).0 * pace;
         bristles * channels.level + self.viscous * channels.viscous_level * velocity
     }
 
@@ -141,6 +147,22 @@ impl<S: Scalar> Bristle<S> {
         velocity: S,
         channels: &Channels<S>,
     ) -> BristleTrial<S> {
+        let outcome = self.outcome(bent, slip, velocity, channels);
+        let coulomb = self.level.coulomb.re();
+        let slides = state.slides.after(velocity.re(), bent.force.re(), coulomb);
+        let after = BristleState { deflection: bent.force / self.stiffness, slides };
+        BristleTrial { after, outcome }
+    }
+
+    /// Friction of a step that ends so.
+    #[inline]
+    pub fn outcome(
+        &self,
+        bent: &Bent<S>,
+        slip: &Slip<S>,
+        velocity: S,
+        channels: &Channels<S>,
+    ) -> Outcome<S> {
         let s = sign(velocity.re());
         let (damper, fading) = self.damper(velocity);
         let viscous = self.viscous * channels.viscous_level;
@@ -153,32 +175,33 @@ impl<S: Scalar> Bristle<S> {
                 + viscous
         };
         let implicit = slope(bent.by_end);
-        let outcome = Outcome {
+        Outcome {
             force: (bent.force + damper * pace) * channels.level + viscous * velocity,
             slope: slope(bent.by_velocity),
             // A falling flank is left explicit: implicit, it could outweigh the inertia.
             damping: if implicit.re() > 0.0 { implicit } else { S::constant(0.0) },
-        };
-        let coulomb = self.level.coulomb.re();
-        let slides = state.slides.after(velocity.re(), bent.force.re(), coulomb);
-        let after = BristleState { deflection: bent.force / self.stiffness, slides };
-        BristleTrial { after, outcome }
+        }
     }
 }
 
 /// Whether bristles that slip no sooner than LuGre's give back no more than they took.
-///
-/// With the storage σ₀·z²/2 that is |v|·(σ₁(v)·(a − 1) − σ₂) ≤ g(v)·a² for every a = σ₀·|z|/g(v).
-/// Without a fall of σ₁ it holds at all speeds if and only if σ₂ ≥ σ₁·(F_s − F_c)/F_c (Barabanov,
-/// Ortega, IEEE Trans. Autom. Control 45 (2000)). With one it also holds where
-/// σ₁·v_d/√(2e)·(a − 1)/a² ≤ F_c, v_d/√(2e) being the greatest of v·e^(−(v/v_d)²).
 pub fn passive(p: &Bristle<f64>) -> bool {
+    passive_with(p, 1.0)
+}
+
+/// The same of bristles that slip by aⁿ, a = (their force)/g(v), and lose no energy otherwise.
+///
+/// With what they store as the storage that is |v|·(σ₁(v)·(aⁿ − 1) − σ₂) ≤ g(v)·a^(n+1) for every a.
+/// Without a fall of σ₁ it holds at all speeds if and only if σ₂ ≥ σ₁·((F_s/F_c)ⁿ − 1) (n = 1:
+/// Barabanov, Ortega, IEEE Trans. Autom. Control 45 (2000)). With one it also holds where
+/// σ₁·v_d/√(2e)·(aⁿ − 1)/a^(n+1) ≤ F_c, v_d/√(2e) being the greatest of v·e^(−(v/v_d)²).
+pub fn passive_with(p: &Bristle<f64>, exponent: f64) -> bool {
     let most = p.level.greatest() / p.level.coulomb;
-    if p.viscous >= p.damping * (most - 1.0) {
+    if p.viscous >= p.damping * (most.powf(exponent) - 1.0) {
         return true;
     }
-    // (a − 1)/a² is greatest at a = 2.
-    let a = most.min(2.0);
+    // (aⁿ − 1)/a^(n+1) is greatest at aⁿ = n + 1.
+    let a = most.min((exponent + 1.0).powf(1.0 / exponent));
     let fastest = p.damping_velocity / (2.0 * std::f64::consts::E).sqrt();
-    p.damping * fastest * (a - 1.0) / (a * a) <= p.level.coulomb
+    p.damping * fastest * (a.powf(exponent) - 1.0) / a.powf(exponent + 1.0) <= p.level.coulomb
 }
