@@ -111,6 +111,18 @@ class Motor:
         outputs: Sequence[str] | None = None,
         out: dict[str, _Floats] | None = None,
     ) -> dict[str, _Floats]: ...
+    def run_segments(
+        self,
+        durations: npt.ArrayLike,
+        current: npt.ArrayLike,
+        *,
+        tolerance: float,
+        times: npt.ArrayLike | None = None,
+        load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
+        outputs: Sequence[str] | None = None,
+    ) -> tuple[_Floats, dict[str, _Floats], dict[str, int]]: ...
     def follow(
         self,
         position: npt.ArrayLike,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Any, Final, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,9 @@ from .errors import InputError
 from .trajectory import FloatArray, Trajectory
 
 __all__ = ["Motor"]
+
+TENTH_OF_AN_ARC_SECOND: Final = 0.1 * np.pi / 648000
+"""rad."""
 
 
 class Motor(_native.Motor):
@@ -100,6 +103,70 @@ class Motor(_native.Motor):
         steps: float | FloatArray
         steps = float(np.asarray(dt)) if np.ndim(dt) == 0 else np.array(dt, dtype=np.float64)
         return Trajectory(columns, steps, length, start=start, statistics=self.statistics)
+
+    def simulate_segments(
+        self,
+        durations: npt.ArrayLike,
+        current: npt.ArrayLike,
+        *,
+        tolerance: float = TENTH_OF_AN_ARC_SECOND,
+        times: npt.ArrayLike | None = None,
+        load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
+        outputs: Sequence[str] | None = None,
+    ) -> Trajectory:
+        """Simulate inputs that are held long, at a cost of events and not of time.
+
+        Steps are as long as the tolerance allows; once a ring has died out, a rest of any length is
+        one evaluation.
+
+        Parameters
+        ----------
+        durations : array_like, shape (n,)
+            How long each input is held, s.
+        current : array_like, shape (n,)
+            Input of each segment.
+        tolerance : float
+            Error of the position that is aimed at, rad (m); a tenth of an arc-second without it.
+        times : array_like, shape (m,), optional
+            Times from the start at which rows are wanted beside the ends of the segments, rising.
+        load, temperature, enabled : float or array_like, shape (n,), optional
+            As in ``simulate``, for each segment.
+        outputs : sequence of str, optional
+            Which columns to compute; all of ``output_names`` without it.
+
+        Returns
+        -------
+        Trajectory
+            A row at each time asked for and at the end of each segment. Its ``statistics`` count
+            ``evaluations`` of the law, ``steps``, ``refused`` steps and ``rests`` of this run too.
+
+        Raises
+        ------
+        InputError
+            Wrong shapes, durations or a tolerance that are not positive, times that do not rise or
+            lie outside the run, unknown outputs.
+
+        Examples
+        --------
+        >>> import stiction as st
+        >>> motor = st.Motor(0.0076, friction=st.FrictionModel("hsieh_pan"))
+        >>> run = motor.simulate_segments([0.02, 86400.0], [0.2, 0.0])
+        >>> len(run), run.statistics["evaluations"] < 500
+        (2, True)
+        """
+        if isinstance(outputs, str):
+            raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
+        names = None if outputs is None else list(outputs)
+        start = float(self.state["time"])
+        rows, columns, cost = self.run_segments(
+            durations, current, tolerance=tolerance, times=times, load=load,
+            temperature=temperature, enabled=enabled, outputs=names,
+        )  # fmt: skip
+        steps = np.diff(rows, prepend=0.0)
+        statistics = {**self.statistics, **cost}
+        return Trajectory(columns, steps, len(rows), start=start, statistics=statistics)
 
     @property
     def friction(self) -> FrictionModel:

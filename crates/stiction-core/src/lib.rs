@@ -20,6 +20,7 @@ pub mod model;
 pub mod motor;
 pub mod parameter;
 pub mod scalar;
+pub mod segments;
 pub mod sensitivity;
 pub mod sensor;
 pub mod servo;

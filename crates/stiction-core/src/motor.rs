@@ -670,6 +670,10 @@ impl Motor {
         &self.running
     }
 
+    pub(crate) fn running_mut(&mut self) -> &mut Running<f64> {
+        &mut self.running
+    }
+
     /// One sample; position and velocity at its end.
     #[inline]
     pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<(f64, f64)> {

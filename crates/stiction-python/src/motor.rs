@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stiction_core::integrate::Integrator;
 use stiction_core::motor::{Column, Motor as Core, MotorSpec};
+use stiction_core::segments::Segments;
 use stiction_core::sensitivity::{
     EffortSensitivity, MeasuredMotion, Start, follow_columns, follow_sensitivity, sensitivity,
     signature_columns, signatures,
@@ -70,6 +71,9 @@ type Followed<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
 );
+
+/// Times of the rows, arrays by name, what it cost.
+type Held<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyDict>, Bound<'py, PyDict>);
 
 /// Two arrays: readings, efforts of the pull.
 type Accompanied<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
@@ -213,6 +217,60 @@ impl Motor {
         }
         py.detach(|| self.lock().simulate(current, around, dt, &mut columns)).or_input_error(py)?;
         Ok(result)
+    }
+
+    /// Inputs held for durations (shape (n,) each): times of the rows, the arrays asked for, by name,
+    /// and what it cost.
+    #[pyo3(signature = (
+        durations, current, *, tolerance, times=None, load=None, temperature=None, enabled=None, outputs=None
+    ))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn run_segments<'py>(
+        &self,
+        py: Python<'py>,
+        durations: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        tolerance: f64,
+        times: Option<&Bound<'py, PyAny>>,
+        load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
+        outputs: Option<Vec<String>>,
+    ) -> PyResult<Held<'py>> {
+        let durations = one_row("durations", durations)?;
+        let current = one_row("current", current)?;
+        let around = Around::read([load, temperature, enabled], durations.shape())?;
+        let times = times.map(|times| one_row("times", times)).transpose()?;
+        let segments = Segments {
+            durations: durations.as_slice()?,
+            inputs: current.as_slice()?,
+            around: around.surroundings()?,
+            tolerance,
+            times: times.as_ref().map_or(Ok(&[][..]), |times| times.as_slice())?,
+        };
+        segments.check().or_input_error(py)?;
+        let rows = segments.rows();
+        let law = self.lock().spec().friction.clone();
+        let all = || Column::names(&law).iter().map(|name| (*name).to_owned()).collect();
+        let names: Vec<String> = outputs.unwrap_or_else(all);
+        let kinds = names.iter().map(|name| Column::named(&law, name).or_input_error(py));
+        let kinds = kinds.collect::<PyResult<Vec<Column>>>()?;
+        let mut arrays = vec![vec![0.0; rows.len()]; kinds.len()];
+        let mut columns: Vec<(Column, &mut [f64])> =
+            kinds.into_iter().zip(arrays.iter_mut().map(Vec::as_mut_slice)).collect();
+        let account = py
+            .detach(|| self.lock().simulate_segments(&segments, &mut columns))
+            .or_input_error(py)?;
+        let result = PyDict::new(py);
+        for (name, values) in names.iter().zip(arrays) {
+            result.set_item(name, PyArray1::from_vec(py, values))?;
+        }
+        let cost = PyDict::new(py);
+        cost.set_item("evaluations", account.evaluations)?;
+        cost.set_item("steps", account.steps)?;
+        cost.set_item("refused", account.refused)?;
+        cost.set_item("rests", account.rests)?;
+        Ok((PyArray1::from_vec(py, rows), result, cost))
     }
 
     /// Efforts along given positions (shape (n + 1,)): of the drive for held inputs (shape (n,)), of

@@ -2,7 +2,7 @@
 
 use super::elements::approach::approach;
 use super::elements::reachable::reachable;
-use super::{Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Statistics};
+use super::{Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics};
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -285,6 +285,11 @@ impl<S: Scalar> FrictionLaw<S> for BoucWen<S> {
     #[inline]
     fn outcome(&self, trial: &BoucWenTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &BoucWenState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, BoucWenTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

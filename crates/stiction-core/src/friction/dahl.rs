@@ -2,7 +2,7 @@
 
 use super::elements::reachable::reachable;
 use super::{
-    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Statistics,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
@@ -197,6 +197,11 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
     #[inline]
     fn outcome(&self, trial: &DahlTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &DahlState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, DahlTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

@@ -1,7 +1,7 @@
 //! Dahl's curve on the reverse-point memory of the spring: loops that close.
 
 use super::maxwell_slip::{MaxwellSlip, MaxwellSlipState, MaxwellSlipTrial};
-use super::{Channels, Entry, FrictionLaw, Motion, Outcome};
+use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -103,6 +103,11 @@ impl<S: Scalar> FrictionLaw<S> for DahlWithMemory<S> {
     #[inline]
     fn outcome(&self, trial: &MaxwellSlipTrial<S>) -> Outcome<S> {
         self.0.outcome(trial)
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &MaxwellSlipState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, MaxwellSlipTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

@@ -4,7 +4,7 @@ use super::elements::reachable::reachable;
 use super::elements::slip_hardening::SlipHardening;
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome,
-    Statistics,
+    Rest, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
@@ -204,6 +204,11 @@ impl<S: Scalar> FrictionLaw<S> for ElasticPerfectlyPlastic<S> {
     #[inline]
     fn outcome(&self, trial: &ElasticPerfectlyPlasticTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &ElasticPerfectlyPlasticState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, ElasticPerfectlyPlasticTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

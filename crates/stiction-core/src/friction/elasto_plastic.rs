@@ -3,7 +3,7 @@
 use super::elements::approach::approach;
 use super::elements::bristle::{self, Bent, Bristle, BristleState, BristleTrial, Slip};
 use super::elements::stribeck::{SlidingLevel, check_levels};
-use super::{Channels, Entry, FrictionLaw, Motion, Outcome};
+use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -231,6 +231,11 @@ impl<S: Scalar> FrictionLaw<S> for ElastoPlastic<S> {
     #[inline]
     fn outcome(&self, trial: &BristleTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &BristleState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, BristleTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

@@ -4,7 +4,7 @@ use super::elements::reachable::reachable;
 use super::elements::spring::{Loading, Response, SpringState, Walk, masing};
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
-    Statistics,
+    Rest, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
@@ -271,6 +271,11 @@ impl<S: Scalar> FrictionLaw<S> for Futami<S> {
     #[inline]
     fn outcome(&self, trial: &FutamiTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &FutamiState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, FutamiTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

@@ -5,7 +5,7 @@ use super::elements::reachable::reachable;
 use super::elements::slides::Slides;
 use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::{
-    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest,
     Statistics,
 };
 use crate::error::{Error, Result};
@@ -379,6 +379,11 @@ impl<S: Scalar> FrictionLaw<S> for Gms<S> {
     #[inline]
     fn outcome(&self, trial: &GmsTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &GmsState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, GmsTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

@@ -8,7 +8,7 @@ use super::elements::spring::{Curve, Loading, SpringState, VirginCurve, Walk};
 use super::elements::stribeck::{check_levels, fall, steepest};
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome,
-    Statistics,
+    Rest, Statistics,
 };
 use crate::error::{Error, Result};
 use crate::integrate::{Glide, Seen};
@@ -688,6 +688,44 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
             }
             Mode::Slip { .. } => state.spring.force = trial.series,
         }
+    }
+
+    // At a held force h → f at the rate α, and the spring stays as it is.
+    fn rest(
+        &self,
+        state: &HsiehPanState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, HsiehPanTrial<S>>> {
+        let force = state.spring.force;
+        let (filtered, breakaway) = self.breakaway_after(state.filtered, force, force, duration);
+        // The loading rate only falls: a level that is out of reach now stays so.
+        let (_, now) = self.breakaway_after(state.filtered, force, force, S::constant(0.0));
+        if state.mode != 0.0 || force.re().abs() >= now.re() {
+            return None;
+        }
+        let side = sign(force.re());
+        let creep = self.plastic.creep(
+            state.hardening,
+            force,
+            |_| S::constant(0.0),
+            S::constant(0.0),
+            duration,
+        );
+        let hardening = state.hardening + creep.hardening;
+        let velocity = self.plastic.hardening_rate(hardening, force) * side;
+        let damping = self.parameters.damping;
+        let walk = state.spring.walk(&self.curve, S::constant(0.0));
+        let dragged = if self.damper_on_spring { S::constant(0.0) } else { damping * velocity };
+        let trial = HsiehPanTrial {
+            outcome: Outcome { force: force * channels.level + dragged, slope: damping, damping },
+            undamped: force * channels.level,
+            series: force,
+            filtered,
+            breakaway,
+            mode: Mode::Stick { walk, plastic: state.plastic + creep.displacement, hardening },
+        };
+        Some(Rest { trial, displacement: creep.displacement, velocity })
     }
 
     const GLIDES: bool = true;

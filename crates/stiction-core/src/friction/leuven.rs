@@ -8,7 +8,7 @@ use super::elements::spring::{SpringState, Walk};
 use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::elements::yield_curve::{GROUPS, YieldCurve};
 use super::{
-    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest,
     Statistics,
 };
 use crate::error::Result;
@@ -406,6 +406,11 @@ impl<S: Scalar> FrictionLaw<S> for Leuven<S> {
     #[inline]
     fn outcome(&self, trial: &LeuvenTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &LeuvenState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, LeuvenTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

@@ -4,7 +4,7 @@ use super::elements::spring::{SpringState, Walk};
 use super::elements::yield_curve::YieldCurve;
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
-    Statistics,
+    Rest, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
@@ -202,6 +202,11 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
     #[inline]
     fn outcome(&self, trial: &MaxwellSlipTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &MaxwellSlipState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, MaxwellSlipTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

@@ -90,6 +90,32 @@ pub struct Arrival<S> {
     pub displacement: S,
 }
 
+/// What a contact does while its body rests under a held effort.
+#[derive(Debug, Clone, Copy)]
+pub struct Rest<S, T> {
+    /// The whole of it, to be committed as a step.
+    pub trial: T,
+    /// How far the body creeps.
+    pub displacement: S,
+    /// Its velocity at the end.
+    pub velocity: S,
+}
+
+impl<S: Scalar, T> Rest<S, T> {
+    /// Nothing moves: the rest of a contact whose force stays where the body does.
+    #[inline]
+    pub fn still<L: FrictionLaw<S, Trial = T>>(
+        law: &L,
+        state: &L::State,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Self {
+        let zero = S::constant(0.0);
+        let trial = law.advance(state, &Motion::held(zero, duration), channels);
+        Self { trial, displacement: zero, velocity: zero }
+    }
+}
+
 /// A change of contact mode inside a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Event {
@@ -256,6 +282,18 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         Arrival { velocity: push.velocity, displacement: push.velocity * push.span }
     }
 
+    /// What a contact does over any duration, exactly, while friction balances an effort that is
+    /// held: long runs pass a rest in one evaluation of it. A duration of 0 asks for the velocity.
+    /// `None` where the law cannot tell, or is about to slide: then it is stepped as ever.
+    #[inline]
+    fn rest(
+        &self,
+        _state: &Self::State,
+        _channels: &Channels<S>,
+        _duration: S,
+    ) -> Option<Rest<S, Self::Trial>> {
+        None
+    }
     /// Whether a contact at velocity 0 holds this effort rigidly. May start a slide instead.
     fn holds(&self, _state: &mut Self::State, _channels: &Channels<S>) -> bool {
         false

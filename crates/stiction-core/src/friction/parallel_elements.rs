@@ -2,7 +2,7 @@
 
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome,
-    Statistics,
+    Rest, Statistics,
 };
 use crate::error::{Error, Result};
 use crate::parameter::{OptionSpec, ParameterSpec};
@@ -312,6 +312,11 @@ impl<S: Scalar> FrictionLaw<S> for ParallelElements<S> {
     #[inline]
     fn outcome(&self, trial: &ParallelElementsTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &ParallelElementsState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, ParallelElementsTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

@@ -3,7 +3,7 @@
 use super::elements::stop::Stop;
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome,
-    Statistics,
+    Rest, Statistics,
 };
 use crate::error::{Error, Result};
 use crate::parameter::ParameterSpec;
@@ -217,6 +217,11 @@ impl<S: Scalar> FrictionLaw<S> for PrandtlIshlinskii<S> {
     #[inline]
     fn outcome(&self, trial: &PrandtlIshlinskiiTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &PrandtlIshlinskiiState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, PrandtlIshlinskiiTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

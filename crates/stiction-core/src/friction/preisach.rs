@@ -4,7 +4,7 @@ use super::elements::reachable::reachable;
 use super::elements::spring::{Loading, Response, SpringState, Walk, virgin_inverse};
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
-    Statistics,
+    Rest, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
@@ -274,6 +274,11 @@ impl<S: Scalar> FrictionLaw<S> for Preisach<S> {
     #[inline]
     fn outcome(&self, trial: &PreisachTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    // Where the body stays, so does the force.
+    fn rest(&self, state: &PreisachState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, PreisachTrial<S>>> {
+        Some(Rest::still(self, state, channels, duration))
     }
 
     #[inline]

@@ -121,7 +121,7 @@ pub fn quiet<S: Scalar, L: FrictionLaw<S>>(
 
 /// The first event within `span`, and when.
 #[cold]
-fn earliest<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
+pub(super) fn earliest<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
     stepper: &P,
     law: &L,
     state: &L::State,

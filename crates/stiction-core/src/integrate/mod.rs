@@ -5,15 +5,18 @@
 //! attempted in the new mode. Held velocities, the fast integrator and the reference integrator
 //! all go through the same loop.
 
+mod adaptive;
 mod contact;
 mod events;
 mod fast;
 mod glide;
 mod machine;
 mod reference;
+mod response;
 mod shaft;
 mod steep;
 
+pub use adaptive::{Account, Adaptive};
 pub use contact::{Along, Held};
 pub use events::{Stepper, quiet, through_events};
 pub use glide::{Glide, Seen, Verlet};

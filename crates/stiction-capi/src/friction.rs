@@ -1,0 +1,257 @@
+//! Friction models.
+
+use std::ffi::c_char;
+
+use stiction_core::friction::Channels;
+use stiction_core::model::{FrictionModel, LawSpec};
+
+use crate::boundary::{Problem, Status, bounded, duration, guarded, held, put, slice, word};
+use crate::state;
+
+/// A friction law with its parameters and state.
+pub struct Friction(pub(crate) FrictionModel);
+
+/// Greatest speed that a contact is moved at.
+const FASTEST: f64 = 1e6;
+
+/// Makes a contact that was never moved: `names` and `values` of `count` parameters, `options` and
+/// `words` of `choices` options; what is not stated takes its default.
+///
+/// # Safety
+/// All words end in a zero byte, all arrays are as long as stated (NULL where that is 0), and
+/// `friction` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_new(
+    law: *const c_char,
+    names: *const *const c_char,
+    values: *const f64,
+    count: usize,
+    options: *const *const c_char,
+    words: *const *const c_char,
+    choices: usize,
+    friction: *mut *mut Friction,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let law = unsafe { word(law, "law") }?;
+        // SAFETY: as promised by the caller.
+        let (names, values) =
+            unsafe { (slice(names, count, "names")?, slice(values, count, "values")?) };
+        let mut stated = Vec::with_capacity(count);
+        for (name, value) in names.iter().zip(values) {
+            // SAFETY: as promised by the caller.
+            stated.push((unsafe { word(*name, "name") }?.to_owned(), *value));
+        }
+        // SAFETY: as promised by the caller.
+        let (options, words) =
+            unsafe { (slice(options, choices, "options")?, slice(words, choices, "words")?) };
+        let mut chosen = Vec::with_capacity(choices);
+        for (option, choice) in options.iter().zip(words) {
+            // SAFETY: as promised by the caller.
+            let (option, choice) = unsafe { (word(*option, "option")?, word(*choice, "word")?) };
+            chosen.push((option.to_owned(), choice.to_owned()));
+        }
+        if friction.is_null() {
+            return Err(Problem::Null("friction"));
+        }
+        let model = FrictionModel::new(LawSpec::new(law, &stated, &chosen)?);
+        // SAFETY: as promised by the caller.
+        unsafe { put(friction, Box::into_raw(Box::new(Friction(model))), "friction") }
+    })
+}
+
+fn channels(effort: f64, load: f64) -> Result<Channels<f64>, Problem> {
+    let effort = bounded("effort", effort, f64::MAX)?;
+    Ok(Channels { effort, load: bounded("load", load, f64::MAX)?, ..Channels::default() })
+}
+
+/// One sample at a held velocity; `force` is friction at its end, positive when it resists positive
+/// motion. `effort` is all other effort on the body, which a contact with true stick holds at rest;
+/// `load` is the external part of it. Allocates nothing.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses; `force` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_step(
+    friction: *mut Friction,
+    velocity: f64,
+    dt: f64,
+    effort: f64,
+    load: f64,
+    force: *mut f64,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let model = unsafe { held(friction, "friction") }?;
+        if force.is_null() {
+            return Err(Problem::Null("force"));
+        }
+        let (velocity, dt) = (bounded("velocity", velocity, FASTEST)?, duration(dt)?);
+        let result = model.0.step(velocity, dt, &channels(effort, load)?);
+        // SAFETY: as promised by the caller.
+        unsafe { put(force, result, "force") }
+    })
+}
+
+/// As `stiction_friction_step`, leaving the state as it is; `slope` is the derivative of the force by
+/// the velocity at fixed dt. Allocates where the contact mode changes within the sample.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses; `force` and `slope` may be
+/// written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_trial(
+    friction: *mut Friction,
+    velocity: f64,
+    dt: f64,
+    effort: f64,
+    load: f64,
+    force: *mut f64,
+    slope: *mut f64,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let model = unsafe { held(friction, "friction") }?;
+        if force.is_null() || slope.is_null() {
+            return Err(Problem::Null("force or slope"));
+        }
+        let (velocity, dt) = (bounded("velocity", velocity, FASTEST)?, duration(dt)?);
+        let (result, steepness) = model.0.trial(velocity, dt, &channels(effort, load)?);
+        // SAFETY: as promised by the caller.
+        unsafe { put(force, result, "force").and_then(|()| put(slope, steepness, "slope")) }
+    })
+}
+
+/// Accepts the last trial.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_commit(friction: *mut Friction) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let model = unsafe { held(friction, "friction") }?;
+        if model.0.commit() {
+            return Ok(());
+        }
+        Err(Problem::Refused("there is no trial to commit; call trial first".to_owned()))
+    })
+}
+
+/// Back to a contact that was never moved.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_reset(friction: *mut Friction) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        unsafe { held(friction, "friction") }?.0.reset();
+        Ok(())
+    })
+}
+
+/// How many doubles the state takes at present.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses; `length` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_state_length(
+    friction: *mut Friction,
+    length: *mut usize,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let friction = unsafe { held(friction, "friction") }?;
+        // SAFETY: as promised by the caller.
+        unsafe { put(length, state::length(&friction.0.entries()), "length") }
+    })
+}
+
+/// Copies the state into an array with room for `room` doubles.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses; `values` has that room.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_get_state(
+    friction: *mut Friction,
+    values: *mut f64,
+    room: usize,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let friction = unsafe { held(friction, "friction") }?;
+        let entries = friction.0.entries();
+        let needed = state::length(&entries);
+        if values.is_null() {
+            return Err(Problem::Null("values"));
+        }
+        if room < needed {
+            let problem = format!("room = {room} is less than the {needed} doubles of the state");
+            return Err(Problem::Refused(problem));
+        }
+        let mut at = values;
+        state::write(&entries, |value| {
+            // SAFETY: `needed` doubles are written, and there is room for as many.
+            unsafe {
+                at.write(value);
+                at = at.add(1);
+            }
+        });
+        Ok(())
+    })
+}
+
+/// Goes on from a state that `stiction_friction_get_state` copied, of the same law and parameters.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses; `values` holds `count` doubles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_set_state(
+    friction: *mut Friction,
+    values: *const f64,
+    count: usize,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let (friction, values) =
+            unsafe { (held(friction, "friction")?, slice(values, count, "values")?) };
+        let entries = state::read(&friction.0.entries(), values)?;
+        Ok(friction.0.restore(&entries)?)
+    })
+}
+
+/// One number of the state by its name, as `law.state` and `motor.state` have it in Python.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses; `name` ends in a zero byte;
+/// `value` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_get_number(
+    friction: *mut Friction,
+    name: *const c_char,
+    value: *mut f64,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let (friction, name) = unsafe { (held(friction, "friction")?, word(name, "name")?) };
+        let number = state::number(&friction.0.entries(), name)?;
+        // SAFETY: as promised by the caller.
+        unsafe { put(value, number, "value") }
+    })
+}
+
+/// Frees a handle; NULL is allowed.
+///
+/// # Safety
+/// `friction` is NULL or a live handle of this library, which nobody uses from now on.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_free(friction: *mut Friction) {
+    if !friction.is_null() {
+        // SAFETY: it was made by `Box::into_raw` and is freed once, by the contract above.
+        guarded(|| {
+            drop(unsafe { Box::from_raw(friction) });
+            Ok(())
+        });
+    }
+}

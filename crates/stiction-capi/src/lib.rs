@@ -1,0 +1,171 @@
+//! C interface of stiction-core: friction models and motors behind opaque handles.
+//!
+//! The only crate with unsafe code: it reads pointers that a C caller gives. Every function checks
+//! them for NULL, returns a status and lets no panic through. A handle belongs to one thread at a
+//! time; handles are independent of each other, and messages are kept for each thread.
+
+mod boundary;
+mod friction;
+mod machine;
+mod state;
+
+pub use boundary::Status;
+pub use friction::Friction;
+pub use machine::Machine;
+
+use std::ffi::{CStr, c_char};
+
+const VERSION: &CStr =
+    match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
+        Ok(version) => version,
+        Err(_) => c"",
+    };
+
+/// Version of the library. The text is static.
+#[unsafe(no_mangle)]
+pub extern "C" fn stiction_version() -> *const c_char {
+    VERSION.as_ptr()
+}
+
+/// What the last refused call of this thread was about, in one sentence; empty before any. The text
+/// is valid until the next refused call of this thread.
+#[unsafe(no_mangle)]
+pub extern "C" fn stiction_message() -> *const c_char {
+    boundary::message()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ptr::{null, null_mut};
+
+    use super::friction::*;
+    use super::machine::*;
+    use super::*;
+
+    fn said() -> String {
+        // SAFETY: the message ends in a zero byte and lives until the next refused call.
+        unsafe { CStr::from_ptr(stiction_message()) }.to_str().unwrap().to_owned()
+    }
+
+    fn contact() -> *mut Friction {
+        let (mut friction, law) = (null_mut(), c"hsieh_pan".as_ptr());
+        let (names, values) = ([c"breakaway".as_ptr()], [0.5]);
+        let (options, words) = ([c"virgin_curve".as_ptr()], [c"same".as_ptr()]);
+        // SAFETY: all arrays have one element, all words end in a zero byte.
+        let made = unsafe {
+            stiction_friction_new(
+                law,
+                names.as_ptr(),
+                values.as_ptr(),
+                1,
+                options.as_ptr(),
+                words.as_ptr(),
+                1,
+                &raw mut friction,
+            )
+        };
+        assert_eq!(made, Status::Ok);
+        friction
+    }
+
+    #[test]
+    fn a_state_that_is_copied_goes_on_to_the_bit() {
+        let (friction, mut motor, mut other) = (contact(), null_mut(), null_mut());
+        let (mut x, mut v, mut length) = (0.0, 0.0, 0);
+        // SAFETY: handles are live until they are freed, all targets are locals of this test.
+        unsafe {
+            assert_eq!(stiction_motor_new(0.0076, 1.0, friction, &raw mut motor), Status::Ok);
+            assert_eq!(stiction_motor_new(0.0076, 1.0, friction, &raw mut other), Status::Ok);
+            for k in 0..500 {
+                let input = 0.3 * (f64::from(k) * 0.05).sin();
+                stiction_motor_step(motor, input, 0.0, 1e-3, &raw mut x, &raw mut v);
+            }
+            assert_eq!(stiction_motor_state_length(motor, &raw mut length), Status::Ok);
+            let mut state = vec![0.0; length];
+            let short = stiction_motor_get_state(motor, state.as_mut_ptr(), length - 1);
+            assert_eq!(short, Status::Refused);
+            assert!(said().contains("room = "), "{}", said());
+            let copied = stiction_motor_get_state(motor, state.as_mut_ptr(), length);
+            assert_eq!(copied, Status::Ok);
+            assert_eq!(stiction_motor_set_state(other, state.as_ptr(), length), Status::Ok);
+            assert_eq!(stiction_motor_set_state(other, state.as_ptr(), 3), Status::Refused);
+            let (mut y, mut w) = (0.0, 0.0);
+            stiction_motor_step(motor, 0.1, 0.0, 1e-3, &raw mut x, &raw mut v);
+            stiction_motor_step(other, 0.1, 0.0, 1e-3, &raw mut y, &raw mut w);
+            assert_eq!((x, v), (y, w));
+            let mut position = 0.0;
+            let name = c"position".as_ptr();
+            assert_eq!(stiction_motor_get_number(motor, name, &raw mut position), Status::Ok);
+            assert_eq!(position, x);
+            stiction_motor_reset(motor, 0.5, 0.0);
+            stiction_motor_get_number(motor, name, &raw mut position);
+            assert_eq!(position, 0.5);
+            stiction_motor_free(motor);
+            stiction_motor_free(other);
+            stiction_friction_free(friction);
+        }
+    }
+
+    #[test]
+    fn a_trial_changes_nothing_until_it_is_committed() {
+        let friction = contact();
+        let (mut tried, mut slope, mut force) = (0.0, 0.0, 0.0);
+        // SAFETY: the handle is live until it is freed, all targets are locals of this test.
+        unsafe {
+            assert_eq!(stiction_friction_commit(friction), Status::Refused);
+            let (t, s) = (&raw mut tried, &raw mut slope);
+            assert_eq!(stiction_friction_trial(friction, 1e-3, 1e-2, 0.0, 0.0, t, s), Status::Ok);
+            stiction_friction_step(friction, 1e-3, 1e-2, 0.0, 0.0, &raw mut force);
+            assert_eq!(tried, force);
+            assert!(slope > 0.0);
+            stiction_friction_reset(friction);
+            stiction_friction_trial(friction, 1e-3, 1e-2, 0.0, 0.0, t, s);
+            assert_eq!(stiction_friction_commit(friction), Status::Ok);
+            let name = c"spring_force".as_ptr();
+            stiction_friction_get_number(friction, name, &raw mut force);
+            assert!(force > 0.0);
+            stiction_friction_free(friction);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_done_is_refused_with_a_sentence() {
+        let (friction, mut force) = (contact(), f64::NAN);
+        let target = &raw mut force;
+        // SAFETY: the handle is live until it is freed; NULL is checked for.
+        unsafe {
+            let step = |velocity, dt, target| {
+                stiction_friction_step(friction, velocity, dt, 0.0, 0.0, target)
+            };
+            assert_eq!(step(f64::NAN, 1e-3, target), Status::Refused);
+            assert!(said().starts_with("velocity = NaN"), "{}", said());
+            assert_eq!(step(0.1, 0.0, target), Status::Refused);
+            assert_eq!(step(1e7, 1e-3, target), Status::Refused);
+            assert_eq!(step(0.1, 1e-3, null_mut()), Status::Null);
+            assert!(said().starts_with("force is NULL"), "{}", said());
+            assert!(force.is_nan());
+            assert_eq!(
+                stiction_friction_step(null_mut(), 0.1, 1e-3, 0.0, 0.0, target),
+                Status::Null
+            );
+            let unknown = stiction_friction_get_number(friction, c"colour".as_ptr(), target);
+            assert_eq!(unknown, Status::Refused);
+            assert!(said().contains("hardening"), "{}", said());
+            let mut none = null_mut();
+            let no_law =
+                |law, none| stiction_friction_new(law, null(), null(), 0, null(), null(), 0, none);
+            assert_eq!(no_law(c"glue".as_ptr(), &raw mut none), Status::Refused);
+            assert_eq!(no_law(null(), &raw mut none), Status::Null);
+            assert_eq!(no_law(c"\xff".as_ptr(), &raw mut none), Status::Refused);
+            assert!(none.is_null());
+            stiction_friction_free(friction);
+            stiction_friction_free(null_mut());
+        }
+    }
+
+    #[test]
+    fn no_panic_gets_beyond_the_boundary() {
+        assert_eq!(boundary::guarded(|| panic!("as if")), Status::Internal);
+        assert!(said().contains("report"), "{}", said());
+    }
+}

@@ -1,0 +1,187 @@
+//! Motors.
+
+use std::ffi::c_char;
+
+use stiction_core::motor::{Motor, MotorSpec};
+
+use crate::boundary::{Problem, Status, bounded, duration, guarded, held, put, slice, word};
+use crate::friction::Friction;
+use crate::state;
+
+/// A body with inertia, driven by an input and resisted by friction.
+pub struct Machine(pub(crate) Motor);
+
+/// Makes a motor at rest at 0: J·x'' = gain·input + load − F. It takes a copy of the friction model,
+/// state included.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses; `motor` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_motor_new(
+    inertia: f64,
+    gain: f64,
+    friction: *mut Friction,
+    motor: *mut *mut Machine,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let model = &unsafe { held(friction, "friction") }?.0;
+        if motor.is_null() {
+            return Err(Problem::Null("motor"));
+        }
+        let mut machine = Motor::new(MotorSpec::new(inertia, gain, model.spec().clone()))?;
+        machine.set_friction_state(model.state().clone());
+        // SAFETY: as promised by the caller.
+        unsafe { put(motor, Box::into_raw(Box::new(Machine(machine))), "motor") }
+    })
+}
+
+/// One sample with input and load held; position and velocity at its end. Allocates nothing.
+///
+/// # Safety
+/// `motor` is a live handle of this library that no other thread uses; `position` and `velocity` may
+/// be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_motor_step(
+    motor: *mut Machine,
+    input: f64,
+    load: f64,
+    dt: f64,
+    position: *mut f64,
+    velocity: *mut f64,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let machine = unsafe { held(motor, "motor") }?;
+        if position.is_null() || velocity.is_null() {
+            return Err(Problem::Null("position or velocity"));
+        }
+        let (input, load) = (bounded("input", input, f64::MAX)?, bounded("load", load, f64::MAX)?);
+        let (x, v) = machine.0.step(input, load, duration(dt)?)?;
+        // SAFETY: as promised by the caller.
+        unsafe { put(position, x, "position").and_then(|()| put(velocity, v, "velocity")) }
+    })
+}
+
+/// Back to this position and velocity, with friction never moved.
+///
+/// # Safety
+/// `motor` is a live handle of this library that no other thread uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_motor_reset(
+    motor: *mut Machine,
+    position: f64,
+    velocity: f64,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let machine = unsafe { held(motor, "motor") }?;
+        let position = bounded("position", position, f64::MAX)?;
+        machine.0.reset(position, bounded("velocity", velocity, 1e6)?);
+        Ok(())
+    })
+}
+
+/// How many doubles the state takes at present.
+///
+/// # Safety
+/// `motor` is a live handle of this library that no other thread uses; `length` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_motor_state_length(
+    motor: *mut Machine,
+    length: *mut usize,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let motor = unsafe { held(motor, "motor") }?;
+        // SAFETY: as promised by the caller.
+        unsafe { put(length, state::length(&motor.0.entries()), "length") }
+    })
+}
+
+/// Copies the state into an array with room for `room` doubles.
+///
+/// # Safety
+/// `motor` is a live handle of this library that no other thread uses; `values` has that room.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_motor_get_state(
+    motor: *mut Machine,
+    values: *mut f64,
+    room: usize,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let motor = unsafe { held(motor, "motor") }?;
+        let entries = motor.0.entries();
+        let needed = state::length(&entries);
+        if values.is_null() {
+            return Err(Problem::Null("values"));
+        }
+        if room < needed {
+            let problem = format!("room = {room} is less than the {needed} doubles of the state");
+            return Err(Problem::Refused(problem));
+        }
+        let mut at = values;
+        state::write(&entries, |value| {
+            // SAFETY: `needed` doubles are written, and there is room for as many.
+            unsafe {
+                at.write(value);
+                at = at.add(1);
+            }
+        });
+        Ok(())
+    })
+}
+
+/// Goes on from a state that `stiction_motor_get_state` copied, of the same law and parameters.
+///
+/// # Safety
+/// `motor` is a live handle of this library that no other thread uses; `values` holds `count` doubles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_motor_set_state(
+    motor: *mut Machine,
+    values: *const f64,
+    count: usize,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let (motor, values) = unsafe { (held(motor, "motor")?, slice(values, count, "values")?) };
+        let entries = state::read(&motor.0.entries(), values)?;
+        Ok(motor.0.restore(&entries)?)
+    })
+}
+
+/// One number of the state by its name, as `law.state` and `motor.state` have it in Python.
+///
+/// # Safety
+/// `motor` is a live handle of this library that no other thread uses; `name` ends in a zero byte;
+/// `value` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_motor_get_number(
+    motor: *mut Machine,
+    name: *const c_char,
+    value: *mut f64,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let (motor, name) = unsafe { (held(motor, "motor")?, word(name, "name")?) };
+        let number = state::number(&motor.0.entries(), name)?;
+        // SAFETY: as promised by the caller.
+        unsafe { put(value, number, "value") }
+    })
+}
+
+/// Frees a handle; NULL is allowed.
+///
+/// # Safety
+/// `motor` is NULL or a live handle of this library, which nobody uses from now on.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_motor_free(motor: *mut Machine) {
+    if !motor.is_null() {
+        // SAFETY: it was made by `Box::into_raw` and is freed once, by the contract above.
+        guarded(|| {
+            drop(unsafe { Box::from_raw(motor) });
+            Ok(())
+        });
+    }
+}

@@ -1,0 +1,686 @@
+//! Steps as long as an error allows, for inputs that are held long; rests in one evaluation.
+//!
+//! The body on its contact is taken as a damped oscillator, which is solved exactly, and a
+//! remainder, which is fitted by a parabola through the start, the middle and the end of a step.
+//! The longer a ring lasts, the smaller the remainder, and the longer the steps.
+
+use std::cell::Cell;
+
+use super::events::{Stepper, earliest};
+use super::machine::{Machine, Run, hold};
+use super::response::{halves, usable};
+use super::{fast, steep};
+use crate::effects::Situation;
+use crate::friction::{Channels, FrictionLaw, LawState, Motion};
+use crate::scalar::sign;
+
+/// Share of the tolerance that a step may add to the error, by an estimate of one order less.
+const LOCAL: f64 = 0.05;
+/// Share of the tolerance below which what is left of a ring is dropped.
+const SILENT: f64 = 0.1;
+/// Share of that by which a resting body may miss its balance.
+const BALANCED: f64 = 1e-2;
+/// Share of the tolerance by which a turn of the motion may be passed over.
+const PASSED: f64 = 0.01;
+/// Steps aim this much short of a turn, so that it is the last point of its branch.
+const SHORT_OF_A_TURN: f64 = 0.997;
+/// Nothing brings a slide back: its errors add up.
+const SLIDING: f64 = 5.0;
+/// Swings that a ring without damping is thought to last.
+const MOST_SWINGS: f64 = 100.0;
+/// How long a slide is thought to carry an error of the velocity on, at most, s.
+const LONGEST_SLIDE: f64 = 1.0;
+/// Steps grow by no more than this.
+const GROWTH: f64 = 4.0;
+/// The error is not asked below this share of a step of the fast integrator.
+const FINEST: f64 = 1.0 / 64.0;
+/// Events without any progress after which a step is taken as it is.
+const MOST_EVENTS: u32 = 16;
+
+/// What a long run cost.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Account {
+    /// Evaluations of the friction law.
+    pub evaluations: u64,
+    /// Steps accepted.
+    pub steps: u64,
+    /// Steps refused.
+    pub refused: u64,
+    /// Rests passed in one evaluation, or held rigidly.
+    pub rests: u64,
+}
+
+/// The adaptive integrator: what it carries from step to step, none of it state of the machine.
+#[derive(Debug, Clone, Copy)]
+pub struct Adaptive {
+    /// Error of a position that is allowed.
+    tolerance: f64,
+    /// Duration of a step of the fast integrator.
+    natural: f64,
+    /// The next step, as far as errors go.
+    next: f64,
+    /// Slopes of friction by position and velocity about which a step is solved.
+    stiffness: f64,
+    damping: f64,
+    /// How many times its size what is left of a ring would still move the body.
+    over: f64,
+    /// What it cost.
+    pub account: Account,
+}
+
+impl Adaptive {
+    /// With this error allowed; a step of the fast integrator lasts `natural`.
+    pub fn new(tolerance: f64, natural: f64) -> Self {
+        Self {
+            tolerance,
+            natural,
+            next: natural,
+            stiffness: f64::NAN,
+            damping: 0.0,
+            over: 1.0,
+            account: Account::default(),
+        }
+    }
+}
+
+/// A step of the oscillator.
+struct Swing<'a> {
+    machine: &'a Machine<f64>,
+    run: &'a mut Run<f64>,
+    input: f64,
+    load: f64,
+    stiffness: f64,
+    damping: f64,
+    evaluations: Cell<u64>,
+}
+
+/// Where a step leads.
+#[derive(Debug, Clone, Copy)]
+struct Landing<T> {
+    run: Run<f64>,
+    trial: T,
+    motion: Motion<f64>,
+    /// The contact half way, to see what comes and goes within the step.
+    middle: Option<(T, Motion<f64>)>,
+    /// Estimate of the error of the position.
+    error: f64,
+}
+
+impl Swing<'_> {
+    fn count(&self, evaluations: u64) {
+        self.evaluations.set(self.evaluations.get() + evaluations);
+    }
+
+    /// Effort and channels somewhere else.
+    fn around(&self, at: &Situation<f64>) -> (f64, Channels<f64>) {
+        let run = &*self.run;
+        let ambient = self.machine.ambient(at, run.second_position, run.second_velocity);
+        let effort = self.machine.driven(self.input, at) + self.load + ambient;
+        (effort, self.machine.channels(at, effort, self.load))
+    }
+
+    /// Effort and channels at the present.
+    fn here(&self) -> (f64, Channels<f64>) {
+        let at = self.run.situation();
+        let effort = self.machine.driven(self.input, &at) + self.load + self.run.ambient;
+        (effort, self.machine.channels(&at, effort, self.load))
+    }
+
+    fn net<L: FrictionLaw<f64>>(&self, law: &L, state: &L::State) -> f64 {
+        let (effort, channels) = self.here();
+        effort - law.force(state, self.run.velocity, &channels)
+    }
+
+    fn after(&self, at: &Situation<f64>, friction: f64) -> Run<f64> {
+        let mut next = *self.run;
+        next.position = at.position;
+        next.velocity = at.velocity;
+        next.time = at.time;
+        next.path = at.path;
+        next.moved = at.moved;
+        next.friction = friction;
+        self.machine.refresh(&mut next);
+        next
+    }
+
+    /// As one step and as two halves of it.
+    fn doubled<L: FrictionLaw<f64>>(
+        &self,
+        law: &L,
+        state: &L::State,
+        span: f64,
+    ) -> Landing<L::Trial> {
+        let efforts = (self.input, self.load);
+        self.count(9);
+        let whole = steep::attempt(self.machine, self.run, efforts, law, state, span);
+        let half = 0.5 * span;
+        let first = steep::attempt(self.machine, self.run, efforts, law, state, half);
+        let mut between = state.clone();
+        law.commit(&mut between, &first.trial);
+        let fast::Attempt { run, trial, mut motion } =
+            steep::attempt(self.machine, &first.run, efforts, law, &between, half);
+        motion.displacement += first.motion.displacement;
+        motion.duration = span;
+        motion.start_velocity = self.run.velocity;
+        let error = (run.position - whole.run.position).abs()
+            + (run.velocity - whole.run.velocity).abs() * span;
+        Landing { run, trial, motion, middle: None, error: SLIDING * error }
+    }
+}
+
+impl<L: FrictionLaw<f64>> Stepper<f64, L> for Swing<'_> {
+    type Attempt = Landing<L::Trial>;
+
+    // J·d'' + C·d' + k·d = r(t) with r = E − F + k·d + C·d', d the displacement from the start. A
+    // parabola through r at 0, h/2 and h; the position at the end needs the first two alone: the
+    // third has no share in it up to h⁴.
+    fn attempt(&self, law: &L, state: &L::State, span: f64) -> Landing<L::Trial> {
+        if L::STEEP {
+            return self.doubled(law, state, span);
+        }
+        let (machine, run) = (self.machine, &*self.run);
+        let start = run.situation();
+        let (inertia, before) = (machine.inertia, run.velocity);
+        if span <= 0.0 {
+            let (_, channels) = self.here();
+            let motion = Motion::held(before, 0.0);
+            let trial = law.advance(state, &motion, &channels);
+            self.count(1);
+            let run = self.after(&start, law.outcome(&trial).force);
+            return Landing { run, trial, motion, middle: None, error: 0.0 };
+        }
+        let square = usable(self.stiffness / inertia, span);
+        let (stiffness, damping) = (square * inertia, self.damping);
+        let (half, whole) = halves(square, 0.5 * damping / inertia, span);
+        let evaluate = |displacement: f64, velocity: f64, duration: f64| {
+            let at = start.after(displacement, velocity, duration);
+            let (effort, channels) = self.around(&at);
+            let motion = Motion { displacement, duration, start_velocity: before, velocity };
+            let trial = law.advance(state, &motion, &channels);
+            self.count(1);
+            let force = law.outcome(&trial).force;
+            (trial, motion, effort - force + stiffness * displacement + damping * velocity)
+        };
+        let first = self.net(law, state) + damping * before;
+        let accelerated = first / inertia;
+        let (trial, motion, second) = evaluate(
+            before * half.impulse + accelerated * half.first,
+            before * half.slope + accelerated * half.impulse,
+            0.5 * span,
+        );
+        let middle = Some((trial, motion));
+        let rise = 2.0 * (second - first) / span / inertia;
+        let displacement = before * whole.impulse + accelerated * whole.first + rise * whole.second;
+        let predicted = before * whole.slope + accelerated * whole.impulse + rise * whole.first;
+        let (trial, mut motion, third) = evaluate(displacement, predicted, span);
+        let bend = 2.0 * (first - 2.0 * second + third) / (span * span) / inertia;
+        let rise = (4.0 * second - third - 3.0 * first) / span / inertia;
+        let velocity = before * whole.slope
+            + accelerated * whole.impulse
+            + rise * whole.first
+            + 2.0 * bend * whole.second;
+        let outcome = law.outcome(&trial);
+        motion.velocity = velocity;
+        let friction = outcome.force + outcome.damping * (velocity - predicted);
+        let run = self.after(&start.after(displacement, velocity, span), friction);
+        // A ring turns an error of the velocity round; a slide carries it on until it stops.
+        let stops = (before.abs() + velocity.abs()) / (accelerated.abs() + f64::MIN_POSITIVE);
+        let slides = stops.clamp(span, LONGEST_SLIDE.max(span));
+        let reach = if square > 0.0 { slides.min(1.0 / square.sqrt()) } else { slides };
+        // What the guess half way, under r(0) alone, has missed there; friction goes by the position
+        // where it is a spring, by the velocity where it slides.
+        let change = ((second - first).abs() + (third - second).abs()) / inertia;
+        let guess = middle.as_ref().map_or(motion, |(_, motion)| *motion);
+        let (astray, way) = if square > 0.0 {
+            let better = before * half.impulse
+                + accelerated * half.first
+                + rise * half.second
+                + 2.0 * bend * half.third;
+            let way = guess.displacement.abs() + (displacement - guess.displacement).abs();
+            ((better - guess.displacement).abs(), way)
+        } else {
+            let better = before * half.slope
+                + accelerated * half.impulse
+                + rise * half.first
+                + 2.0 * bend * half.second;
+            let way = (guess.velocity - before).abs() + (predicted - guess.velocity).abs();
+            ((better - guess.velocity).abs(), way)
+        };
+        let misled = change * astray / (way + f64::MIN_POSITIVE) * span * (2.0 / 3.0);
+        let mut missed = (velocity - predicted).abs() + misled;
+        if square == 0.0 {
+            missed *= SLIDING;
+        }
+        let error = missed * reach;
+        Landing { run, trial, motion, middle, error }
+    }
+
+    fn contact<'a>(&self, attempt: &'a Self::Attempt) -> (&'a L::Trial, &'a Motion<f64>) {
+        (&attempt.trial, &attempt.motion)
+    }
+
+    fn accept(&mut self, law: &L, state: &mut L::State, attempt: &Self::Attempt, stopped: bool) {
+        law.commit(state, &attempt.trial);
+        *self.run = attempt.run;
+        if stopped {
+            self.run.velocity = 0.0;
+        }
+    }
+
+    fn velocity(&self) -> f64 {
+        self.run.velocity
+    }
+
+    fn hold(&mut self, law: &L, state: &mut L::State, span: f64) -> bool {
+        hold(self.machine, self.run, (self.input, self.load), law, state, span)
+    }
+}
+
+impl Adaptive {
+    /// Runs on for `span` with input and load held.
+    pub fn run<L: FrictionLaw<f64>>(
+        &mut self,
+        machine: &Machine<f64>,
+        law: &L,
+        state: &mut L::State,
+        run: &mut Run<f64>,
+        (input, load): (f64, f64),
+        span: f64,
+    ) {
+        if self.stiffness.is_nan() {
+            self.stiffness = law.greatest_stiffness();
+        }
+        let evaluations = Cell::new(0);
+        let (stiffness, damping) = (self.stiffness, self.damping);
+        let mut swing = Swing { machine, run, input, load, stiffness, damping, evaluations };
+        // A new input: what the last steps were like says nothing of the next.
+        self.next = self.next.min(16.0 * self.natural);
+        self.over = 1.0;
+        let (mut left, mut stalled, mut mayrest) = (span, 0, true);
+        while left > 0.0 {
+            state.make_room(64);
+            if swing.run.velocity == 0.0
+                && let Some(held) = self.hold(&mut swing, law, state, left)
+            {
+                left = lesser(left, held, span);
+                self.account.rests += 1;
+                continue;
+            }
+            if stalled < MOST_EVENTS
+                && let Some(event) = law.pending(state, swing.run.velocity)
+            {
+                law.switch(state, event);
+                stalled += 1;
+                continue;
+            }
+            if mayrest {
+                match self.rest(&mut swing, law, state, left) {
+                    Resting::Passed(rested) => {
+                        left = lesser(left, rested, span);
+                        self.account.rests += 1;
+                        continue;
+                    }
+                    Resting::Never => mayrest = false,
+                    Resting::NotYet => (),
+                }
+            }
+            let passed = self.step(&mut swing, law, state, left, &mut stalled);
+            left = lesser(left, passed, span);
+        }
+        self.account.evaluations += swing.evaluations.get();
+    }
+
+    /// One step, or one up to an event; its duration.
+    fn step<L: FrictionLaw<f64>>(
+        &mut self,
+        swing: &mut Swing<'_>,
+        law: &L,
+        state: &mut L::State,
+        left: f64,
+        stalled: &mut u32,
+    ) -> f64 {
+        let (aim, way) = self.turn(swing, law, state);
+        let mut span = self.next.min(aim);
+        if span > 0.9 * left {
+            span = left;
+        } else if span > 0.5 * left {
+            span = 0.5 * left;
+        }
+        let finest = FINEST * self.natural;
+        let (mut attempt, mut relative);
+        loop {
+            (swing.stiffness, swing.damping) = (self.stiffness, self.damping);
+            attempt = swing.attempt(law, state, span);
+            relative = attempt.error / (LOCAL * self.tolerance);
+            // A state that is not finite cannot be mended by a shorter step.
+            if relative > 1.0 && span > finest {
+                self.account.refused += 1;
+                span = (span * (0.9 * relative.powf(-0.25)).clamp(0.1, 0.7)).max(finest);
+                self.next = span;
+                continue;
+            }
+            if let Some(earlier) = self.overshot(swing, &attempt, way, span)
+                && earlier > finest
+            {
+                self.account.refused += 1;
+                span = earlier;
+                continue;
+            }
+            break;
+        }
+        self.account.steps += 1;
+        if *stalled < MOST_EVENTS
+            && let Some(at) = located(swing, law, state, &attempt, span)
+        {
+            *stalled = if at > 0.0 { 0 } else { *stalled + 1 };
+            self.next = self.natural;
+            return at;
+        }
+        *stalled = 0;
+        self.learn(swing, law, &attempt, span);
+        Stepper::<f64, L>::accept(swing, law, state, &attempt, false);
+        let grown = span * (0.9 * relative.max(1e-12).powf(-0.25)).clamp(0.3, GROWTH);
+        self.next = if span < 0.9 * self.next { self.next.max(grown) } else { grown };
+        span
+    }
+
+    /// Takes the slopes of friction from a step.
+    fn learn<L: FrictionLaw<f64>>(
+        &mut self,
+        swing: &Swing<'_>,
+        law: &L,
+        attempt: &Landing<L::Trial>,
+        span: f64,
+    ) {
+        if L::STEEP {
+            return;
+        }
+        let outcome = law.outcome(&attempt.trial);
+        let Motion { displacement, velocity, start_velocity, .. } = attempt.motion;
+        let dry = attempt.run.friction
+            - swing.run.friction
+            - outcome.damping * (velocity - start_velocity);
+        self.damping = outcome.damping;
+        let secant = dry / displacement;
+        // Of a step that came back to where it began a secant tells nothing.
+        let went = displacement.abs() > 0.1 * velocity.abs().max(start_velocity.abs()) * span;
+        if went && secant.is_finite() {
+            let greatest = law.greatest_stiffness();
+            self.stiffness = secant.clamp(0.0, 2.0 * greatest);
+        }
+    }
+
+    /// When the motion turns round if friction goes on as it does, and which way it goes until then.
+    fn turn<L: FrictionLaw<f64>>(
+        &self,
+        swing: &Swing<'_>,
+        law: &L,
+        state: &L::State,
+    ) -> (f64, f64) {
+        const FREE: (f64, f64) = (f64::INFINITY, 0.0);
+        if L::STEEP {
+            return FREE;
+        }
+        let inertia = swing.machine.inertia;
+        let (square, decay) = (self.stiffness / inertia, 0.5 * self.damping / inertia);
+        let velocity = swing.run.velocity;
+        let surplus = square - decay * decay;
+        let (net, over) = (swing.net(law, state), self.over);
+        if square > 0.0 && self.swings(over * net / self.stiffness, over * velocity, square) {
+            return FREE;
+        }
+        if surplus <= 0.0 {
+            return (f64::INFINITY, sign(velocity));
+        }
+        let pace = (net + self.damping * velocity) / inertia;
+        let omega = surplus.sqrt();
+        let way = if velocity == 0.0 { sign(pace) } else { sign(velocity) };
+        let until = (velocity.abs() * omega).atan2(way * (decay * velocity - pace)) / omega;
+        let over = 0.5 * velocity * velocity / pace.abs();
+        if velocity == 0.0 || (velocity * pace < 0.0 && over < PASSED * self.tolerance) {
+            let again = until + std::f64::consts::PI / omega;
+            let again = if velocity == 0.0 { std::f64::consts::PI / omega } else { again };
+            return (SHORT_OF_A_TURN * again, sign(pace));
+        }
+        (SHORT_OF_A_TURN * until, way)
+    }
+
+    /// Whether a ring is so small that its turns are of no account.
+    fn swings(&self, displaced: f64, velocity: f64, square: f64) -> bool {
+        displaced * displaced + velocity * velocity / square
+            < (SILENT * self.tolerance) * (SILENT * self.tolerance)
+    }
+
+    /// How far a step should have gone that ran past a turn of the motion.
+    fn overshot<T>(
+        &self,
+        swing: &Swing<'_>,
+        attempt: &Landing<T>,
+        way: f64,
+        span: f64,
+    ) -> Option<f64> {
+        let velocity = attempt.run.velocity;
+        if way == 0.0 || velocity * way >= 0.0 {
+            return None;
+        }
+        let pace = (self.net_after(swing, attempt)) / swing.machine.inertia;
+        let over = 0.5 * velocity * velocity / pace.abs();
+        if over <= PASSED * self.tolerance || pace * way >= 0.0 {
+            return None;
+        }
+        let earlier = span - velocity.abs() / pace.abs();
+        Some(earlier.clamp(0.3 * span, 0.98 * span))
+    }
+
+    fn net_after<T>(&self, swing: &Swing<'_>, attempt: &Landing<T>) -> f64 {
+        let at = attempt.run.situation();
+        swing.around(&at).0 - attempt.run.friction
+    }
+
+    /// Holds a body at rest; for how long.
+    fn hold<L: FrictionLaw<f64>>(
+        &self,
+        swing: &mut Swing<'_>,
+        law: &L,
+        state: &mut L::State,
+        left: f64,
+    ) -> Option<f64> {
+        let mut held = left;
+        if swing.machine.effects.changes_levels() {
+            // A level may fall below the effort meanwhile.
+            let at = swing.run.situation();
+            let (effort, _) = swing.here();
+            let holds = |span: f64| {
+                let then = at.after(0.0, 0.0, span);
+                let channels = swing.machine.channels(&then, effort, swing.load);
+                law.holds(&mut state.clone(), &channels)
+            };
+            if !holds(0.0) {
+                return None;
+            }
+            if !holds(left) {
+                let (mut low, mut high) = (0.0, left);
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    if holds(middle) { low = middle } else { high = middle }
+                }
+                held = high;
+            }
+        }
+        swing.count(1);
+        Stepper::<f64, L>::hold(swing, law, state, held).then_some(held)
+    }
+
+    /// Passes a rest where the ring has died out.
+    fn rest<L: FrictionLaw<f64>>(
+        &mut self,
+        swing: &mut Swing<'_>,
+        law: &L,
+        state: &mut L::State,
+        left: f64,
+    ) -> Resting {
+        let silent = SILENT * self.tolerance;
+        let (effort, channels) = swing.here();
+        let stiffness = self.stiffness;
+        if stiffness <= 0.0 || (effort - swing.run.friction).abs() > 2.0 * silent * stiffness {
+            return Resting::NotYet;
+        }
+        swing.count(1);
+        let Some(now) = law.rest(state, &channels, 0.0) else { return Resting::Never };
+        let creeping = now.velocity;
+        let friction = law.force(state, creeping, &channels);
+        let missing = effort - friction;
+        let faster = swing.run.velocity - creeping;
+        if !self.swings(missing / stiffness, faster, stiffness / swing.machine.inertia) {
+            return Resting::NotYet;
+        }
+        // A rest that goes on, after a row was written, has nothing left to die out.
+        let square = stiffness / swing.machine.inertia;
+        let over = 1.0 / BALANCED;
+        if !self.swings(over * missing / stiffness, over * faster, square) {
+            self.over = self.left_over(swing, law, state, silent);
+            let over = self.over;
+            if over > 1.0 && !self.swings(over * missing / stiffness, over * faster, square) {
+                return Resting::NotYet;
+            }
+        }
+        if missing.abs() > BALANCED * silent * stiffness
+            && !self.balance(swing, law, state, creeping, missing)
+        {
+            return Resting::NotYet;
+        }
+        let (effort, channels) = swing.here();
+        let at = swing.run.situation();
+        let mut span = left;
+        loop {
+            swing.count(1);
+            let Some(rest) = law.rest(state, &channels, span) else { return Resting::NotYet };
+            let then = at.after(rest.displacement, rest.velocity, span);
+            let (effort_then, channels_then) = swing.around(&then);
+            let changed = (effort_then - effort).abs()
+                + (channels_then.level / channels.level - 1.0).abs() * swing.run.friction.abs();
+            if changed <= BALANCED * 10.0 * silent * stiffness {
+                law.commit(state, &rest.trial);
+                *swing.run = swing.after(&then, law.outcome(&rest.trial).force);
+                return Resting::Passed(span);
+            }
+            span *= 0.25;
+            if span < 4.0 * self.natural {
+                return Resting::NotYet;
+            }
+        }
+    }
+
+    /// How many times its size a small ring would still move the body on: where friction rises more
+    /// steeply one way than the other, and where loops do not close and so drift with every swing.
+    fn left_over<L: FrictionLaw<f64>>(
+        &self,
+        swing: &Swing<'_>,
+        law: &L,
+        state: &L::State,
+        silent: f64,
+    ) -> f64 {
+        let (_, channels) = swing.here();
+        let mut swung = state.clone();
+        swung.make_room(8);
+        let way = if self.stiffness > 0.0 { sign(swing.run.friction) } else { 1.0 };
+        let mut go = |displacement: f64| {
+            let motion = Motion { displacement, ..Motion::held(0.0, 0.0) };
+            swing.count(1);
+            let trial = law.advance(&swung, &motion, &channels);
+            law.commit(&mut swung, &trial);
+            law.outcome(&trial).force
+        };
+        let before = go(0.0);
+        let there = go(way * silent);
+        go(-2.0 * way * silent);
+        let again = go(2.0 * way * silent);
+        let softest = ((there - before).abs() / silent).max(f64::MIN_POSITIVE);
+        let drift = (again - there).abs() / self.stiffness;
+        let omega = (self.stiffness / swing.machine.inertia).sqrt();
+        let decay = 0.5 * self.damping / swing.machine.inertia;
+        let swings = (omega / (2.0 * std::f64::consts::PI * decay)).min(MOST_SWINGS);
+        (self.stiffness / softest).max(1.0) + drift / silent * swings
+    }
+
+    /// Moves a body that hardly swings any more to where friction balances the effort.
+    fn balance<L: FrictionLaw<f64>>(
+        &self,
+        swing: &mut Swing<'_>,
+        law: &L,
+        state: &mut L::State,
+        creeping: f64,
+        missing: f64,
+    ) -> bool {
+        let silent = SILENT * self.tolerance;
+        let (mut stiffness, mut displacement) = (self.stiffness, missing / self.stiffness);
+        let start = swing.run.situation();
+        for _ in 0..8 {
+            if displacement.abs() > 4.0 * silent {
+                return false;
+            }
+            let at = start.after(displacement, creeping, 0.0);
+            let (effort, channels) = swing.around(&at);
+            let motion = Motion {
+                displacement,
+                duration: 0.0,
+                start_velocity: creeping,
+                velocity: creeping,
+            };
+            swing.count(1);
+            let trial = law.advance(state, &motion, &channels);
+            let force = law.outcome(&trial).force;
+            let still = effort - force;
+            if still.abs() <= BALANCED * silent * self.stiffness {
+                law.commit(state, &trial);
+                *swing.run = swing.after(&at, force);
+                return true;
+            }
+            let secant = (missing - still) / displacement;
+            if secant > 0.0 {
+                stiffness = secant;
+            }
+            displacement += still / stiffness;
+        }
+        false
+    }
+}
+
+/// What became of a rest.
+enum Resting {
+    /// It was passed, for so long.
+    Passed(f64),
+    /// The ring is still alive, or the law about to slide.
+    NotYet,
+    /// This law cannot tell.
+    Never,
+}
+
+/// What is left of a span, round-off apart.
+fn lesser(left: f64, passed: f64, span: f64) -> f64 {
+    let left = left - passed;
+    if left <= f64::EPSILON * span { 0.0 } else { left }
+}
+
+/// Steps up to the event that an attempt ran past, if it did, and passes it; when that was.
+fn located<L: FrictionLaw<f64>>(
+    swing: &mut Swing<'_>,
+    law: &L,
+    state: &mut L::State,
+    attempt: &Landing<L::Trial>,
+    span: f64,
+) -> Option<f64> {
+    let early = attempt
+        .middle
+        .as_ref()
+        .and_then(|(trial, motion)| law.event(state, trial, motion))
+        .map(|event| (event, 0.5 * span));
+    let late = || law.event(state, &attempt.trial, &attempt.motion).map(|event| (event, span));
+    let (event, within) = early.or_else(late)?;
+    let (event, at) = earliest(swing, law, state, event, within);
+    let shortened = swing.attempt(law, state, at);
+    let stopped = event == crate::friction::Event::Reversal && at > 0.0;
+    Stepper::<f64, L>::accept(swing, law, state, &shortened, stopped);
+    law.switch(state, event);
+    Some(at)
+}
