@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.confirm import AGAINST, confirmed
+from stiction.diagnosis.confirm import AGAINST, NOT_KNOWN, confirmed
 from stiction.diagnosis.evidence import Cells
 from stiction.diagnosis.gain import HeldOut
 from stiction.diagnosis.result import CandidateRow
@@ -49,7 +49,7 @@ def test_names_that_test_rows_speak_against_are_taken_away(
     sizes: tuple[float, ...], kept: int
 ) -> None:
     names = ("first", "second")[: len(sizes) - 1]
-    found = confirmed(selected(*names), opened(*sizes), 0)
+    found = confirmed(selected(*names), opened(*sizes), 0, lambda *_: True)
     assert [choice.winner.name for choice in found.choices] == list(names[:kept])
     assert found.models == ["base", *names[:kept]]
     reasons = [found.rows[name].reason for name in names]
@@ -57,7 +57,25 @@ def test_names_that_test_rows_speak_against_are_taken_away(
 
 
 def test_without_rows_that_test_nothing_is_taken_away() -> None:
-    assert len(confirmed(selected("first"), None, 0).choices) == 1
+    assert len(confirmed(selected("first"), None, 0, lambda *_: False).choices) == 1
+
+
+@pytest.mark.parametrize(
+    ("size", "known", "kept"), [(1.0, False, 0), (1.0, True, 1), (0.9, False, 1)]
+)
+def test_a_name_needs_a_strength_or_a_gain_that_is_not_nothing(
+    size: float, known: bool, kept: int
+) -> None:
+    asked: list[tuple[Any, str]] = []
+
+    def told(model: Any, trial: Any) -> bool:
+        asked.append((model, trial.name))
+        return known
+
+    found = confirmed(selected("first"), opened(1.0, size), 0, told)
+    assert len(found.choices) == kept
+    assert asked == ([("first", "first")] if size == 1.0 else [])
+    assert found.rows["first"].reason == ("accepted" if kept else NOT_KNOWN)
 
 
 def moved(bumps: tuple[float, ...]) -> st.Recording:

@@ -28,6 +28,7 @@ from .candidates import left_out, scales_of
 from .ceiling import ceiling_of
 from .confirm import confirmed
 from .coordinates import Look, looks
+from .decide import Trial
 from .evidence import Evidence
 from .gain import HeldOut, gain_of, open_residuals
 from .laws import THE_LAW, Rival, better_law, law_names, law_rows, rivals_of
@@ -245,7 +246,9 @@ def _testable(
     models = [*selection.models, *(rival.model for rival in rivals if rival.model is not None)]
     test = open_residuals(evidence, [(m.plant, m.nuisances) for m in models])
     first_rival = len(selection.models)
-    selection = confirmed(selection, test, found.seed)
+    selection = confirmed(
+        selection, test, found.seed, lambda model, trial: _strength_is_known(evidence, model, trial)
+    )
     final = selection.models[-1]
     clocks = session.starts
     scales = scales_of(evidence, base.plant)
@@ -415,6 +418,14 @@ def _own_views(
 def _effect(plant: Plant, name: str) -> Effect:
     """The effect of a plant by its name."""
     return next(effect for effect in plant.effects if effect.name == name)
+
+
+def _strength_is_known(evidence: Evidence, model: Model, trial: Trial) -> bool:
+    """Whether the interval of one of its strengths leaves 0 out."""
+    values = _evaluated(evidence, model).parameters
+    own = (trial.candidate.own(gain) for gain in trial.candidate.record.gains)
+    strengths = (values[f"effects.{trial.name}.{name}"].ci95 for name in own)
+    return any(low > 0.0 or high < 0.0 for low, high in strengths)
 
 
 def _evaluated(evidence: Evidence, model: Model) -> FitResult:
