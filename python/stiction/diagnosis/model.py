@@ -247,14 +247,21 @@ def without_effect(plant: Plant, name: str) -> Plant:
 
 
 def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> Plant:
-    """The plant with one more effect, or a second wave of one, which starts from these gains."""
+    """The plant with one more effect, or a second wave of one, which starts from these gains.
+
+    What lies beyond the bounds of the catalogue starts at its bound: a multiple of an estimated
+    gain, or an estimate for a second wave, which may be less large than a first one.
+    """
+    bounds = {p.name: p.bounds for p in candidate.record.parameters}
     parameters = {
-        name: Parameter(float(value)) for name, value in zip(candidate.gains, gains, strict=True)
+        name: Parameter(float(np.clip(np.nan_to_num(value), *bounds[name])))
+        for name, value in zip(candidate.gains, gains, strict=True)
     }
     for name, value in candidate.shape.items():
         low, high = candidate.limits.get(name, (None, None))
         fixed = name not in candidate.free
-        parameters[candidate.own(name)] = Parameter(value, low, high, fixed=fixed)
+        own = candidate.own(name)
+        parameters[own] = Parameter(float(np.clip(value, *bounds[own])), low, high, fixed=fixed)
     kept = []
     for effect in plant.effects:
         if candidate.second and effect.name == candidate.name:
