@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -44,7 +45,9 @@ def value_words(name: str, parameter: FitParameter) -> str:
     """A parameter with its interval: ``"bias 3.1 N (2.6 to 3.6)"``."""
     low, high = parameter.ci95
     unit = "" if parameter.unit == "1" else f" {parameter.unit}"
-    return f"{name} {parameter.value:.4g}{unit} ({low:.3g} to {high:.3g})"
+    known = math.isfinite(low) and math.isfinite(high)
+    interval = f"{low:.3g} to {high:.3g}" if known else "not determined"
+    return f"{name} {parameter.value:.4g}{unit} ({interval})"
 
 
 def gain_words(gain: Gain | None) -> str:
