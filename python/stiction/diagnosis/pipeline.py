@@ -12,18 +12,17 @@ import numpy as np
 
 from .. import __version__
 from ..errors import InputError, NotEnoughData
-from ..fitting.forms import horizon_of
 from ..fitting.forms import told as residual_told
 from ..fitting.result import FitResult
 from ..fitting.solve import evaluate
 from ..plant import Effect, Plant
 from ..recording import Check, Recording
-from ..recording.checks import check
 from ..recording.split import name_of
+from ..recording.usable import checks_of, usable
 from ..session import Session
 from ..trajectory import FloatArray
 from .advice import advise
-from .base import base_of, calibrated
+from .base import based, calibrated
 from .candidates import left_out, scales_of
 from .ceiling import ceiling_of
 from .confirm import confirmed
@@ -51,6 +50,12 @@ __all__ = ["SURROGATES", "diagnose"]
 
 SURROGATES: Final = 24
 """Replays of the base with noise; more make thresholds smoother and cost in proportion."""
+
+TRAIN_IS_FITTED: Final = (
+    "Parameters are fitted to the rows of train alone; stiction fit takes those of select as well "
+    "and may end at values a little different."
+)
+"""Where a fit of the same session and the base differ; everything else they do alike."""
 
 _logger = logging.getLogger(__name__)
 
@@ -106,7 +111,7 @@ def diagnose(
     _check_numbers(surrogates, seed, threads)
     unwanted = left_out(without)
     others = law_names(laws, machine.friction.law)
-    checks = [(name_of(r, k), c) for k, r in enumerate(whole) for c in check(r)]
+    checks = checks_of(whole.recordings)
     data: dict[str, Any] = {
         "checks": [
             *({"recording": name, **c.to_dict()} for name, c in _repairs(whole)),
@@ -174,33 +179,16 @@ def _repairs(session: Session) -> list[tuple[str, Check]]:
 
 def _usable(checks: Sequence[tuple[str, Check]], session: Session) -> tuple[Session | None, str]:
     """The recordings without a fault, None where too few are left, and in words what is wrong."""
-    names = [name_of(recording, index) for index, recording in enumerate(session)]
-    # What could not be mended on reading is a whole sentence, which names file and remedy itself.
-    told = {
-        name: sentence
-        for name, recording in zip(names, session, strict=True)
-        for sentence in recording.faults
-    }
-    for name, c in checks:
-        if c.verdict == "fault":
-            told.setdefault(name, f"{name}: {c.what}; {c.try_}")
-    if not told:
-        return session, ""
-    kept = [r for name, r in zip(names, session, strict=True) if name not in told]
-    first = next(iter(told.values())).rstrip(".")
-    more = f" ({len(told) - 1} more stand among the data checks)" if len(told) > 1 else ""
-    roles = {recording.role for recording in session}
-    lost = {role for role in roles if role and role not in {r.role for r in kept}}
-    if 2 * len(kept) < len(names) or "train" in lost:
-        return None, f"The data cannot be used: {first}.{more}"
-    left_out = "1 recording is" if len(told) == 1 else f"{len(told)} recordings are"
-    places = {k: j for j, k in enumerate(k for k, name in enumerate(names) if name not in told)}
+    kept, told = usable(session.recordings, checks)
+    if kept is None or len(kept) == len(session):
+        return None if kept is None else session, told
+    places = {k: j for j, k in enumerate(kept)}
     repeats = {
         places[k]: places[of]
         for k, of in session.replicates.items()
         if k in places and of in places
     }
-    return Session(kept, session.plant, repeats), f"{left_out} left out: {first}.{more}"
+    return Session([session.recordings[k] for k in kept], session.plant, repeats), told
 
 
 def _testable(
@@ -214,22 +202,16 @@ def _testable(
 ) -> Diagnosis:
     """The diagnosis of data that can be used."""
     _logger.info("looking through %d recordings", len(session))
-    evidence = Evidence(found.plant, session.recordings, threads=threads)
-    gauged = calibrated(evidence, found.plant)
-    if gauged is not found.plant:
-        found = replace(found, plant=gauged)
-        evidence = Evidence(gauged, session.recordings, threads=threads)
+    found = replace(found, plant=calibrated(found.plant, session.recordings))
     _logger.info("fitting the base")
-    base = base_of(evidence, found.plant)
-    horizon = horizon_of(base.plant, base.nuisances, evidence.train, evidence.forms)
-    if horizon is not None:
-        _logger.info("fitting it again, simulated over %.0f ms", 1e3 * horizon)
-        evidence = Evidence(found.plant, session.recordings, threads=threads, horizon=horizon)
-        base = base_of(evidence, base.plant)
-    found = replace(found, split=evidence.split.describe())
+    evidence, base = based(found.plant, session.recordings, threads=threads)
+    dealt = evidence.split.to_dict()
+    told = [TRAIN_IS_FITTED] if evidence.split.select else []
+    dealt["rules"] = [*dealt["rules"], *told]
+    found = replace(found, split="\n".join([evidence.split.describe(), *told]))
     data = {
         **found.data,
-        "split": evidence.split.to_dict(),
+        "split": dealt,
         "residual": residual_told([rows.form for rows in evidence.shown]),
     }
     _logger.info("replaying it with noise, %d times", surrogates)
