@@ -74,7 +74,9 @@ def based(
         horizon = horizon_of(first.plant, first.nuisances, evidence.train, evidence.forms)
     if horizon is not None:
         _logger.info("fitting it again, simulated over %.0f ms", 1e3 * horizon)
-        simulated = Evidence(plant, recordings, threads=threads, horizon=horizon)
+        simulated = Evidence(
+            plant, recordings, threads=threads, horizon=horizon, watch=evidence.watch
+        )
         again = launch([first.plant], paths, simulated.train, most=MOST_EVALUATIONS)
         if shows_its_ring(again.plant, simulated.forms):
             evidence, first = simulated, again

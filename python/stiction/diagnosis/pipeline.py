@@ -13,6 +13,7 @@ import numpy as np
 from .. import __version__
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import told as residual_told
+from ..fitting.pushes import told as pushes_told
 from ..fitting.result import FitResult
 from ..fitting.solve import evaluate
 from ..plant import Effect, Plant
@@ -51,6 +52,8 @@ __all__ = ["SURROGATES", "diagnose"]
 SURROGATES: Final = 24
 """Replays of the base with noise; more make thresholds smoother and cost in proportion."""
 
+MOST_TOLD: Final = 3
+"""Pushes that the sentence names."""
 TRAIN_IS_FITTED: Final = (
     "Parameters are fitted to the rows of train alone; stiction fit takes those of select as well "
     "and may end at values a little different."
@@ -264,7 +267,28 @@ def _testable(
         null,
         checks,
     )
+    found = _with_pushes(found, evidence)
     return replayed(replace(found, ceiling=ceiling), evidence, base, final)
+
+
+def _with_pushes(found: Diagnosis, evidence: Evidence) -> Diagnosis:
+    """What was left out because something pushed the machine, in the sentence and the checks."""
+    checks = pushes_told(evidence.pushes, evidence.names)
+    if not checks:
+        return found
+    words = " ".join(
+        f"{c.what[0].upper()}{c.what[1:]} in {name}; {c.means}." for name, c in checks[:MOST_TOLD]
+    )
+    if len(checks) > MOST_TOLD:
+        words += f" {len(checks) - MOST_TOLD} more stand among the data checks."
+    data = {
+        **found.data,
+        "checks": [
+            *found.data["checks"],
+            *({"recording": name, **c.to_dict()} for name, c in checks),
+        ],
+    }
+    return replace(found, sentence=f"{found.sentence} {words}", data=data)
 
 
 def _noise_entry(evidence: Evidence, index: int, noise: Noise) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from .forms import forms_of, horizon_of, set_clocks, shows_its_ring
 from .minimise import MOST_EVALUATIONS, Solution, launch, minimise
+from .pushes import Watch, told
 from .result import FitParameter, FitResult
 from .rows import Nuisances, Rows, primed, rows_of
 from .slopes import slopes
@@ -62,6 +63,7 @@ class _Seen:
         horizon: float | None = None,
         *,
         loop: bool = False,
+        watch: Watch | None = None,
     ) -> None:
         self.forms = forms_of(
             plant,
@@ -73,11 +75,16 @@ class _Seen:
         self.parts = _deal(recordings, max(form.kernel.support for form in self.forms))
         fitted = {part.recording for part in self.parts.train}
         set_clocks(self.forms, recordings, set(range(len(self.forms))) - fitted)
+        self.watch = watch or Watch(plant, self.forms, recordings, self.parts.train)
+        self.pushes = sorted(
+            (*self.watch.look(self.parts.train), *self.watch.look(self.parts.test)),
+            key=lambda push: (push.recording, push.start),
+        )
         self.train: list[Rows] = []
         self.held: list[Rows] = []
         for index, (form, recording) in enumerate(zip(self.forms, recordings, strict=True)):
             for chosen, own in ((self.train, self.parts.train), (self.held, self.parts.test)):
-                mask = rows_of(form, recording, index, own)
+                mask = rows_of(form, recording, index, own, self.pushes)
                 if mask.any():
                     chosen.append(Rows(plant, form, index, mask))
         if not self.train:
@@ -133,7 +140,7 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         horizon = horizon_of(first.plant, first.nuisances, train, seen.forms)
     servo = plant.servo and not first.interrupted
     if horizon is not None or servo:
-        simulated = _Seen(first.plant, recordings, horizon, loop=servo)
+        simulated = _Seen(first.plant, recordings, horizon, loop=servo, watch=seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
         begun = [first.plant, starts[0]] if servo else [first.plant]
         again = launch(begun, paths, simulated.train, most=max_evaluations)
@@ -143,14 +150,16 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     solution = settled(first, train, most=max_evaluations)
     if solution is not first:
         evaluations += solution.evaluations
+    names = [name_of(recording, k) for k, recording in enumerate(recordings)]
+    pushed = [f"{name}: {c.what}; {c.means}." for name, c in told(seen.pushes, names)]
     return evaluate(
         solution,
         train,
         seen.held,
         begin=begin,
-        described="\n".join([*faults, seen.parts.described]),
+        described="\n".join([*faults, *pushed, seen.parts.described]),
         evaluations=evaluations,
-        names=[name_of(recording, k) for k, recording in enumerate(recordings)],
+        names=names,
     )
 
 
@@ -159,10 +168,10 @@ def _without_faults(recordings: list[Recording]) -> tuple[list[Recording], list[
 
     Where too few are left, all of them: a fit says how well it does, whatever it is given.
     """
-    kept, told = usable(recordings, checks_of(recordings))
+    kept, fault = usable(recordings, checks_of(recordings))
     if kept is None:
-        return recordings, [told.replace("cannot be used", "are fitted, though they have a fault")]
-    return [recordings[k] for k in kept], [told] if told else []
+        return recordings, [fault.replace("cannot be used", "are fitted, though they have a fault")]
+    return [recordings[k] for k in kept], [fault] if fault else []
 
 
 def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
@@ -200,13 +209,15 @@ def _deal(recordings: Sequence[Recording], support: float) -> _Parts:
     only = recordings[0]
     if len(recordings) == 1 and only.duration < FEWEST_BLOCKS * BLOCK_S * (1.0 - SHORT_SHARE):
         whole = Part(0, 0, len(only))
-        told = f"The recording lasts {only.duration:.3g} s: all of it is fitted, none held out."
-        return _Parts((whole,), (), told)
+        described = (
+            f"The recording lasts {only.duration:.3g} s: all of it is fitted, none held out."
+        )
+        return _Parts((whole,), (), described)
     dealt = split(recordings, edge_s=min(support, 0.25 * BLOCK_S))
-    told = dealt.describe()
+    described = dealt.describe()
     if dealt.select:
-        told += f"\n{SELECT_IS_FITTED}"
-    return _Parts((*dealt.train, *dealt.select), dealt.test, told)
+        described += f"\n{SELECT_IS_FITTED}"
+    return _Parts((*dealt.train, *dealt.select), dealt.test, described)
 
 
 def evaluate(
