@@ -29,7 +29,8 @@ def recorded(seed: int, pushes: Times = (), *, law: float = 0.0, **labels: objec
     hands = np.zeros_like(time)
     for start, end, size in pushes:
         inside = (time >= start) & (time < end)
-        hands[inside] = size * np.sin(np.pi * (time[inside] - start) / (end - start)) ** 0.5
+        # Thrown and caught again.
+        hands[inside] = size * np.sin(2.0 * np.pi * (time[inside] - start) / (end - start))
     run = simulate_coulomb(
         (effort + hands)[:-1],
         DT,
@@ -46,10 +47,10 @@ def recorded(seed: int, pushes: Times = (), *, law: float = 0.0, **labels: objec
 @pytest.fixture(scope="module")
 def pushed() -> list[st.Recording]:
     return [
-        recorded(1, ((4.2, 4.9, 0.7),), role="train"),
+        recorded(1, ((4.2, 4.9, 1.8),), role="train"),
         recorded(2, role="train"),
-        recorded(3, ((7.0, 7.8, -0.6),), role="select"),
-        recorded(4, ((2.5, 3.1, 0.8),), role="test"),
+        recorded(3, ((7.0, 7.8, -1.6),), role="select"),
+        recorded(4, ((2.5, 3.1, 2.0),), role="test"),
     ]
 
 
@@ -89,5 +90,5 @@ def test_nobody_pushes_where_the_machine_itself_lacks_something() -> None:
 
 
 def test_what_comes_all_the_time_is_no_push() -> None:
-    often = tuple((0.7 * k + 0.3, 0.7 * k + 0.6, 0.6) for k in range(13))
+    often = tuple((0.7 * k + 0.3, 0.7 * k + 0.6, 1.8) for k in range(13))
     assert "pushed" not in st.fit(PLANT, [recorded(5, often)]).split

@@ -24,7 +24,7 @@ from ..session import Session
 from ..trajectory import FloatArray
 from .advice import advise
 from .base import based, calibrated
-from .candidates import left_out, scales_of
+from .candidates import Scales, left_out, scales_of
 from .ceiling import ceiling_of
 from .confirm import confirmed
 from .coordinates import Look, looks
@@ -37,9 +37,11 @@ from .loop import replayed
 from .model import Model
 from .noise import Noise
 from .omnibus import Rest, rest
+from .orders import open_orders
 from .own import own_view
 from .pictures import Pictures, Stretch
 from .regression import refitted
+from .remedies import meant
 from .replay import centre, surrogate_residuals
 from .result import Cause, Diagnosis, ModelSummary, Unexplained
 from .rounds import Search, friction_of, search
@@ -137,7 +139,7 @@ def diagnose(
     usable, fault = _usable(checks, whole)
     if usable is None:
         found = replace(
-            found, verdict="data_fault", sentence=fault, advice=advise((), (), (), checks)
+            found, verdict="data_fault", sentence=fault, advice=advise((), (), (), checks, machine)
         )
     else:
         try:
@@ -319,7 +321,8 @@ def _concluded(
     first_rival, rivals = compared
     base, final = selection.models[0], selection.models[-1]
     floor = _floor(evidence, null)
-    results = {id(m): _evaluated(evidence, m) for m in (base, final)}
+    scales = scales_of(evidence, base.plant)
+    results = {id(m): _evaluated(evidence, m, scales) for m in (base, final)}
     baseline = _summary(evidence, base, results[id(base)], test, 0, floor)
     extended = _summary(evidence, final, results[id(final)], test, len(selection.choices), floor)
     better, own_law = better_law(rivals), base.plant.friction.law
@@ -336,6 +339,7 @@ def _concluded(
             for path, p in results[id(final)].parameters.items()
             if path.startswith(f"effects.{record.name}.")
         }
+        means, remedy = meant(record, final.plant)
         causes.append(
             Cause(
                 name=record.name,
@@ -345,8 +349,8 @@ def _concluded(
                 parameters=fitted_values,
                 gain=None if test is None else gain_of(test, k, k + 1, found.seed),
                 what=what(record, fitted_values, _effect(final.plant, record.name)),
-                means=record.means,
-                try_=record.remedy,
+                means=means,
+                try_=remedy,
                 coordinate=record.coordinate,
             )
         )
@@ -383,7 +387,7 @@ def _concluded(
         advice=(
             *([] if better is None else [better.advice()]),
             *([] if event is None else [event.advice()]),
-            *advise(causes, unexplained, selection.blind, checks),
+            *advise(causes, unexplained, selection.blind, checks, final.plant),
         ),
         success=not selection.interrupted,
         message=(
@@ -423,8 +427,8 @@ def _effect(plant: Plant, name: str) -> Effect:
     return next(effect for effect in plant.effects if effect.name == name)
 
 
-def _evaluated(evidence: Evidence, model: Model) -> FitResult:
-    return evaluate(
+def _evaluated(evidence: Evidence, model: Model, scales: Scales) -> FitResult:
+    result = evaluate(
         model.solution,
         evidence.train,
         [],
@@ -433,6 +437,7 @@ def _evaluated(evidence: Evidence, model: Model) -> FitResult:
         evaluations=model.solution.evaluations,
         names=evidence.names,
     )
+    return replace(result, parameters=open_orders(result.parameters, scales))
 
 
 def _summary(

@@ -12,6 +12,7 @@ from ..fitting.result import FitParameter
 from ..plant import Effect
 from ..report.scale import loop_scale_of
 from ..wording import counted
+from .orders import order_words
 
 if TYPE_CHECKING:
     from .gain import Gain
@@ -63,7 +64,10 @@ def gain_words(gain: Gain | None) -> str:
 
 def what(record: EffectRecord, parameters: Mapping[str, FitParameter], effect: Effect) -> str:
     """What was found of an effect, with its fitted values, and orders that were chosen."""
-    values = [value_words(path.rsplit(".", 1)[-1], p) for path, p in parameters.items()]
+    values = [
+        order_words(path, p) or value_words(path.rsplit(".", 1)[-1], p)
+        for path, p in parameters.items()
+    ]
     chosen = [shape.parameter for shape in record.shapes if shape.scale == "order"]
     chosen += [name for name in record.second if name not in record.gains and "order" in name]
     values += [

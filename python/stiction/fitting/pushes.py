@@ -19,10 +19,10 @@ WINDOW_S: Final = 0.1
 """Length of the windows whose power is compared: what is shorter is a spike, no push."""
 TIMES: Final = 6.0
 """A window stands out where the effort that it lacks is so many times that of the usual one..."""
-LEAST_SHARE: Final = 1.2
+LEAST_SHARE: Final = 2.5
 LEAST_OF_EFFORT: Final = 0.1
-"""... and these shares of the dry friction, which takes up any push at rest, and of the usual
-effort."""
+"""... and these shares of the dry friction, which itself changes by twice its level behind a
+reversal, and of the usual effort."""
 TURNS_WITHIN: Final = 0.05
 """Share of the usual speed within which dry friction turns round, here."""
 LEVEL: Final = 0.75
