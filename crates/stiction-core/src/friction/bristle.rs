@@ -217,18 +217,18 @@ impl<S: Scalar> Bristle<S> {
     fn effort(&self, bristle: usize, (bond, breaks): (Bond, f64), side: f64, ends: (S, S)) -> S {
         let (start, end) = ends;
         let mut sum = (end - start) * (end + start) * 0.5;
-        let scatter = self.parameters.scatter * side;
-        let mut held = bond;
-        for _ in 0..breaks.min(MOST_SITES) as u32 {
-            let next = self.bond(bristle, held.site + side);
-            let uneven = scatter * (next.off - held.off);
-            // (1 − (1 − g)²)/2 of the gap g.
-            sum += -(uneven * uneven - 1.0) * 0.5;
-            held = next;
-        }
-        if breaks > MOST_SITES {
+        if breaks > 0.0 {
+            let (mut held, mut uneven) = (bond, 0.0);
+            for _ in 0..breaks.min(MOST_SITES) as u32 {
+                let next = self.bond(bristle, held.site + side);
+                uneven += (next.off - held.off).powi(2);
+                held = next;
+            }
             // Two sites differ by s·(u − u'), whose square has the mean s²/6.
-            sum += -(scatter * scatter / 6.0 - 1.0) * (0.5 * (breaks - MOST_SITES));
+            uneven += (breaks - MOST_SITES).max(0.0) / 6.0;
+            let scatter = self.parameters.scatter;
+            // (1 − (1 − g)²)/2 of every gap g.
+            sum += -(scatter * scatter * uneven - breaks) * 0.5;
         }
         sum
     }
