@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.confirm import AGAINST, confirmed
+from stiction.diagnosis.confirm import AGAINST, NOT_KNOWN, confirmed
 from stiction.diagnosis.evidence import Cells
 from stiction.diagnosis.gain import HeldOut
 from stiction.diagnosis.result import CandidateRow
@@ -27,10 +27,12 @@ def opened(*sizes: float) -> HeldOut:
     return HeldOut(tuple(size * one for size in sizes), np.ones(len(one)), one, cells, ())
 
 
-def selected(*names: str) -> Search:
-    choices: list[Any] = [SimpleNamespace(winner=SimpleNamespace(name=name)) for name in names]
+def selected(*names: str, known: bool = True) -> Search:
+    winners = [SimpleNamespace(name=name, candidate=name) for name in names]
+    choices: list[Any] = [SimpleNamespace(winner=winner) for winner in winners]
     rows = {name: CandidateRow(name, 0.5, 0.1, 0.2, "accepted") for name in names}
-    models: list[Any] = ["base", *names]
+    fitted = [SimpleNamespace(knows=lambda _: known) for _ in names]
+    models: list[Any] = [SimpleNamespace(), *fitted]
     return Search(models, choices, rows)
 
 
@@ -49,15 +51,27 @@ def test_names_that_test_rows_speak_against_are_taken_away(
     sizes: tuple[float, ...], kept: int
 ) -> None:
     names = ("first", "second")[: len(sizes) - 1]
-    found = confirmed(selected(*names), opened(*sizes), 0)
+    selection = selected(*names)
+    found = confirmed(selection, opened(*sizes), 0)
     assert [choice.winner.name for choice in found.choices] == list(names[:kept])
-    assert found.models == ["base", *names[:kept]]
+    assert found.models == selection.models[: kept + 1]
     reasons = [found.rows[name].reason for name in names]
     assert reasons == ["accepted"] * kept + [AGAINST] * (len(names) - kept)
 
 
 def test_without_rows_that_test_nothing_is_taken_away() -> None:
     assert len(confirmed(selected("first"), None, 0).choices) == 1
+
+
+@pytest.mark.parametrize(
+    ("size", "known", "kept"), [(1.0, False, 0), (1.0, True, 1), (0.9, False, 1)]
+)
+def test_a_name_needs_a_strength_or_a_gain_that_is_not_nothing(
+    size: float, known: bool, kept: int
+) -> None:
+    found = confirmed(selected("first", known=known), opened(1.0, size), 0)
+    assert len(found.choices) == kept
+    assert found.rows["first"].reason == ("accepted" if kept else NOT_KNOWN)
 
 
 def moved(bumps: tuple[float, ...]) -> st.Recording:

@@ -1,0 +1,103 @@
+//! Steps of a sliding hook.
+
+use super::super::elements::lag::follow;
+use super::super::elements::spring::Loading;
+use super::super::elements::stribeck::fall;
+use super::super::{Channels, Motion, Outcome};
+use super::HsiehPan;
+use super::state::{HsiehPanState, HsiehPanTrial, Mode};
+use crate::scalar::{Scalar, sign};
+
+/// A step of a slide.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slide<S> {
+    pub(super) outcome: Outcome<S>,
+    pub(super) series: S,
+    /// T − s·σ: how far the force lags behind its sliding level.
+    pub(super) pull: S,
+}
+
+impl<S: Scalar> HsiehPan<S> {
+    /// Sliding level T at this speed and its slope by speed, at level 1.
+    #[inline]
+    pub(super) fn sliding_level(&self, latched: S, velocity: S, channels: &Channels<S>) -> (S, S) {
+        let p = &self.parameters;
+        let (left, steepness) = fall(velocity, p.stribeck_velocity, p.stribeck_exponent);
+        let excess = latched - p.coulomb;
+        let viscous = p.viscous * channels.viscous_level / channels.level;
+        (p.coulomb + excess * left + viscous * velocity.abs(), excess * steepness + viscous)
+    }
+
+    /// A force rising from `from` to `to` while the body moves by `distance`, limited to what the
+    /// spring gains when the hook stands still: a hook dragged backwards would give back work
+    /// that nobody did. Returns the stiffness where the limit holds.
+    #[inline]
+    pub(super) fn no_faster_than_the_spring(&self, from: S, to: S, distance: S) -> (S, Option<S>) {
+        let least = from + self.parameters.final_stiffness * distance;
+        if to.re() <= least.re() {
+            return (to, None);
+        }
+        let limit = self.curve.virgin(self.curve.virgin_inverse(from) + distance);
+        if to.re() <= limit.force.re() { (to, None) } else { (limit.force, Some(limit.slope)) }
+    }
+
+    /// A step of a sliding hook.
+    #[inline(never)]
+    pub(super) fn slip(
+        &self,
+        state: &HsiehPanState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> HsiehPanTrial<S> {
+        let slide = self.slide(state.mode, state.latched, state.series, motion, channels);
+        let (filtered, breakaway) =
+            self.breakaway_after(state.filtered, state.series, slide.series, motion.duration);
+        HsiehPanTrial {
+            outcome: slide.outcome,
+            undamped: slide.outcome.force - slide.outcome.damping * motion.velocity,
+            series: slide.series,
+            filtered,
+            breakaway,
+            mode: Mode::Slip { pull: slide.pull },
+        }
+    }
+
+    /// What a slide in direction `s` does: the force follows the sliding level over the distance ℓ.
+    #[inline(always)]
+    pub(super) fn slide(
+        &self,
+        s: f64,
+        latched: S,
+        series: S,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> Slide<S> {
+        let (to, steepness) = self.sliding_level(latched, motion.velocity, channels);
+        let (from, from_steepness) = if motion.start_velocity.re() == motion.velocity.re() {
+            (to, steepness)
+        } else {
+            self.sliding_level(latched, motion.start_velocity, channels)
+        };
+        let distance = motion.displacement.abs();
+        let per_distance = S::constant(1.0) / self.parameters.slip_distance;
+        let followed = follow(series * s, from, to, distance * per_distance);
+        let (sigma, held_back) =
+            self.no_faster_than_the_spring(series * s, followed.value, distance);
+        let turning = sign(motion.velocity.re());
+        let damping = steepness * followed.end_share * channels.level * (s * turning);
+        let damping =
+            if damping.re() > 0.0 && held_back.is_none() { damping } else { S::constant(0.0) };
+        // Held velocity: start and end level move together, and the distance with them.
+        let held = steepness * followed.end_share
+            + from_steepness * (-(followed.end_share - 1.0) - followed.remainder);
+        let catching_up =
+            (to - series * s) * followed.remainder * motion.duration * per_distance;
+        let slope = match held_back {
+            None => (held + catching_up) * (s * turning),
+            Some(stiffness) => stiffness * motion.duration,
+        };
+        let slope = slope * channels.level;
+        let outcome = Outcome { force: sigma * channels.level * s, slope, damping };
+        Slide { outcome, series: sigma * s, pull: to - sigma }
+    }
+}

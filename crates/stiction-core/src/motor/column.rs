@@ -1,0 +1,172 @@
+//! What a trajectory shows.
+
+use crate::error::{Error, Result};
+use crate::friction::LawState;
+use crate::integrate::{Machine, Run, Seen};
+use crate::model::LawSpec;
+use crate::scalar::Scalar;
+
+/// What a trajectory can show beside the law's own states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Column {
+    /// Position.
+    Position,
+    /// Velocity.
+    Velocity,
+    /// Friction.
+    Friction,
+    /// What the sensor reads.
+    Measured,
+    /// A state of the law, by its index.
+    Law(usize),
+}
+
+impl Column {
+    /// Names of the columns of a motor with this law, in the order of a trajectory.
+    pub fn names(law: &LawSpec) -> Vec<&'static str> {
+        let mut names = vec!["position", "velocity", "friction", "measured"];
+        names.extend(law.record.outputs);
+        names
+    }
+
+    /// The column called `name`.
+    pub fn named(law: &LawSpec, name: &str) -> Result<Self> {
+        let names = Self::names(law);
+        let index = names.iter().position(|known| *known == name);
+        let index = index.ok_or_else(|| Error::unknown("output", name, names))?;
+        Ok(match index {
+            0 => Self::Position,
+            1 => Self::Velocity,
+            2 => Self::Friction,
+            3 => Self::Measured,
+            own => Self::Law(own - 4),
+        })
+    }
+
+    /// What it shows of a motor after a sample.
+    #[inline]
+    pub fn read(
+        self,
+        run: &Run<f64>,
+        machine: &Machine<f64>,
+        output: &dyn Fn(usize) -> f64,
+    ) -> f64 {
+        match self {
+            Self::Position => run.position,
+            Self::Velocity => run.velocity,
+            Self::Friction => run.friction,
+            Self::Measured => machine.sensor.read(machine.effects.sensor(run.position)),
+            Self::Law(index) => output(index),
+        }
+    }
+}
+
+/// Who sees body, machine and states of the law after each sample.
+pub(super) trait Rows<S: Scalar> {
+    fn see(
+        &mut self,
+        sample: usize,
+        run: &Run<S>,
+        machine: &Machine<S>,
+        output: impl Fn(usize) -> S,
+    );
+}
+
+/// A function that is told.
+pub(super) struct Told<F>(pub(super) F);
+
+impl<S: Scalar, F> Rows<S> for Told<F>
+where
+    F: FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
+{
+    #[inline(always)]
+    fn see(
+        &mut self,
+        sample: usize,
+        run: &Run<S>,
+        machine: &Machine<S>,
+        output: impl Fn(usize) -> S,
+    ) {
+        (self.0)(sample, run, machine, &output);
+    }
+}
+
+/// The columns that a trajectory shows; empty where one is not wanted.
+pub(super) struct Columns<'a, 'b> {
+    position: &'a mut [f64],
+    velocity: &'a mut [f64],
+    friction: &'a mut [f64],
+    others: &'a mut [(Column, &'b mut [f64])],
+}
+
+impl<'a, 'b> Columns<'a, 'b> {
+    /// These columns, those of the body first, so that they need no looking up.
+    pub(super) fn new(columns: &'a mut [(Column, &'b mut [f64])]) -> Self {
+        let rank = |column: Column| match column {
+            Column::Position => 0,
+            Column::Velocity => 1,
+            Column::Friction => 2,
+            Column::Measured | Column::Law(_) => 3,
+        };
+        columns.sort_unstable_by_key(|(column, _)| rank(*column));
+        let (position, columns) = taken(columns, Column::Position);
+        let (velocity, columns) = taken(columns, Column::Velocity);
+        let (friction, others) = taken(columns, Column::Friction);
+        Self { position, velocity, friction, others }
+    }
+}
+
+/// The first column where it is this one, else nothing, and the rest.
+fn taken<'a, 'b>(
+    columns: &'a mut [(Column, &'b mut [f64])],
+    wanted: Column,
+) -> (&'a mut [f64], &'a mut [(Column, &'b mut [f64])]) {
+    if columns.first().is_none_or(|(column, _)| *column != wanted) {
+        return (&mut [], columns);
+    }
+    let (first, rest) = columns.split_at_mut(1);
+    (&mut *first[0].1, rest)
+}
+
+impl Rows<f64> for Columns<'_, '_> {
+    #[inline(always)] // where it is called, the motion is in registers
+    fn see(
+        &mut self,
+        sample: usize,
+        run: &Run<f64>,
+        machine: &Machine<f64>,
+        output: impl Fn(usize) -> f64,
+    ) {
+        if let Some(place) = self.position.get_mut(sample) {
+            *place = run.position;
+        }
+        if let Some(place) = self.velocity.get_mut(sample) {
+            *place = run.velocity;
+        }
+        if let Some(place) = self.friction.get_mut(sample) {
+            *place = run.friction;
+        }
+        for (column, values) in self.others.iter_mut() {
+            values[sample] = match column {
+                Column::Position => run.position,
+                Column::Velocity => run.velocity,
+                Column::Friction => run.friction,
+                Column::Measured => machine.sensor.read(machine.effects.sensor(run.position)),
+                Column::Law(index) => output(*index),
+            };
+        }
+    }
+}
+
+/// Shows the samples of a glide.
+pub(super) struct Showing<'a, S: Scalar, R> {
+    pub(super) machine: &'a Machine<S>,
+    pub(super) rows: &'a mut R,
+}
+
+impl<S: Scalar, T: LawState<S>, R: Rows<S>> Seen<S, T> for Showing<'_, S, R> {
+    #[inline(always)]
+    fn see(&mut self, sample: usize, run: &Run<S>, contact: &T) {
+        self.rows.see(sample, run, self.machine, |column| contact.output(column));
+    }
+}

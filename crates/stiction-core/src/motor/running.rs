@@ -1,0 +1,206 @@
+//! A motor over some number type, on its way.
+
+use super::column::{Rows, Showing, Told};
+use super::{MotorSpec, PerSample, Surroundings};
+use crate::drive::Way;
+use crate::error::{Error, Result};
+use crate::follow::arriving;
+use crate::friction::{AnyState, FrictionLaw, Law, LawState};
+use crate::integrate::{Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Run, parts, sample};
+use crate::model::CHUNK;
+use crate::scalar::Scalar;
+
+fn whole_parts(parts: f64, dt: f64) -> Result<u32> {
+    if parts <= MOST_PARTS {
+        return Ok(parts as u32);
+    }
+    Err(Error::TooLong { given: dt, longest: dt * MOST_PARTS / parts })
+}
+
+/// A motor over some number type, with its running state.
+#[derive(Debug, Clone)]
+pub struct Running<S: Scalar> {
+    /// Everything but friction.
+    pub machine: Machine<S>,
+    /// Friction law.
+    pub law: Law<S>,
+    /// Friction state.
+    pub state: AnyState<S>,
+    /// Body.
+    pub run: Run<S>,
+    /// Inputs on their way to the drive, where an effect delays them or lets them lag.
+    pub way: Option<Way<S>>,
+    /// Integrator.
+    pub integrator: Integrator,
+    /// ω·h above which it divides a sample.
+    pub longest_phase: f64,
+}
+
+impl<S: Scalar> Running<S> {
+    /// At rest at 0, never moved.
+    pub fn new(spec: &MotorSpec, values: &[S]) -> Self {
+        let (machine, law) = spec.build(values);
+        let state = law.initial();
+        let zero = S::constant(0.0);
+        let run = machine.start(zero, zero);
+        let (delay, lag) = (machine.effects.delay(), machine.effects.lag());
+        let way = (delay.is_some() || lag.is_some()).then(|| Way::new(delay, lag));
+        let integrator = spec.integrator;
+        Self { machine, law, state, run, way, integrator, longest_phase: LONGEST_PHASE }
+    }
+
+    /// Goes on from where another motor is; its state depends on no parameter of this one.
+    pub fn resume(&mut self, from: &Running<f64>) {
+        self.state = from.state.lift();
+        self.run = from.run.lift();
+        self.machine.effects.resume(&from.machine.effects);
+        self.machine.refresh(&mut self.run);
+        if let (Some(way), Some(from)) = (&mut self.way, &from.way) {
+            way.resume(from);
+        }
+    }
+
+    /// One sample, at the temperature of the run.
+    #[inline]
+    pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<()> {
+        with_law_and_state!(&self.law, &mut self.state, |law, state| {
+            let parts = whole_parts(parts(&self.machine, law, dt, self.longest_phase), dt)?;
+            state.make_room(parts as usize + CHUNK / 4);
+            let before = self.run;
+            let arrived = arriving(&mut self.way.as_mut(), input, dt);
+            let whole =
+                if self.machine.is_bare() { sample::<_, _, true> } else { sample::<_, _, false> };
+            whole(
+                &self.machine,
+                law,
+                state,
+                &mut self.run,
+                arrived,
+                S::constant(load),
+                dt,
+                0..parts,
+                self.integrator,
+            );
+            self.machine.wind(&mut self.run, arrived, dt);
+            self.machine.remember(&before, &mut self.run);
+        });
+        Ok(())
+    }
+
+    /// Samples; `row` sees the body, the machine and one state of the law after each.
+    pub fn simulate(
+        &mut self,
+        inputs: &[f64],
+        around: Surroundings<'_>,
+        dt: PerSample<'_>,
+        row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
+    ) -> Result<()> {
+        self.simulate_under(inputs, around, |_| S::constant(0.0), dt, row)
+    }
+
+    /// As [`Self::simulate`], with a load added that may depend on parameters.
+    pub(crate) fn simulate_under(
+        &mut self,
+        inputs: &[f64],
+        around: Surroundings<'_>,
+        added: impl Fn(usize) -> S,
+        dt: PerSample<'_>,
+        row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
+    ) -> Result<()> {
+        self.simulate_rows(inputs, around, added, dt, Told(row))
+    }
+
+    /// As [`Self::simulate_under`], for one who sees the samples in the loop itself.
+    pub(super) fn simulate_rows(
+        &mut self,
+        inputs: &[f64],
+        around: Surroundings<'_>,
+        added: impl Fn(usize) -> S,
+        dt: PerSample<'_>,
+        rows: impl Rows<S>,
+    ) -> Result<()> {
+        if self.machine.is_bare() {
+            self.simulate_kind::<true>(inputs, around, added, dt, rows)
+        } else {
+            self.simulate_kind::<false>(inputs, around, added, dt, rows)
+        }
+    }
+
+    fn simulate_kind<const BARE: bool>(
+        &mut self,
+        inputs: &[f64],
+        around: Surroundings<'_>,
+        added: impl Fn(usize) -> S,
+        dt: PerSample<'_>,
+        mut rows: impl Rows<S>,
+    ) -> Result<()> {
+        let mut way = self.way.as_mut();
+        let plain = BARE && self.integrator == Integrator::Fast && around.is_steady();
+        with_law_and_state!(&self.law, &mut self.state, |law, state| {
+            let glides = plain && glides(law);
+            let mut known = f64::NAN;
+            let mut divided = 1;
+            let mut room = 0;
+            let mut index = 0;
+            while index < inputs.len() {
+                let dt_now = dt.at(index);
+                if dt_now != known {
+                    divided =
+                        whole_parts(parts(&self.machine, law, dt_now, self.longest_phase), dt_now)?;
+                    known = dt_now;
+                }
+                self.run.temperature = around.temperature_at(index);
+                self.run.enabled = around.enabled_at(index);
+                let mut passed = 0;
+                if glides && self.machine.glides(&self.run) {
+                    let span = S::constant(dt_now / f64::from(divided));
+                    let applied = |k: usize| (S::constant(inputs[k]), added(k) + around.load.at(k));
+                    let machine = &self.machine;
+                    let seen = Showing { machine, rows: &mut rows };
+                    // Not to the end, which would be looked for anew after every event.
+                    let end = inputs.len().min(index + 8 * CHUNK);
+                    let samples = index..dt.same_until(index, end);
+                    let mut glide =
+                        machine.glide(self.run, applied, seen, samples, (span, divided));
+                    law.glide(state, &mut glide);
+                    (index, passed) = (glide.samples.start, glide.part);
+                    let more = index < glide.samples.end;
+                    self.run = glide.run;
+                    if !more {
+                        continue;
+                    }
+                }
+                let left = divided - passed;
+                if room < left {
+                    // Once a chunk where samples are not divided, never inside a step.
+                    room = (CHUNK as u32).max(left);
+                    state.make_room(room as usize + CHUNK / 4);
+                }
+                room -= left;
+                let before = self.run;
+                let arrived = arriving(&mut way, inputs[index], dt_now);
+                sample::<_, _, BARE>(
+                    &self.machine,
+                    law,
+                    state,
+                    &mut self.run,
+                    arrived,
+                    added(index) + around.load.at(index),
+                    dt_now,
+                    passed..divided,
+                    self.integrator,
+                );
+                self.machine.wind(&mut self.run, arrived, dt_now);
+                self.machine.remember(&before, &mut self.run);
+                let seen = &*state;
+                rows.see(index, &self.run, &self.machine, |column| seen.output(column));
+                index += 1;
+            }
+        });
+        Ok(())
+    }
+}
+
+fn glides<S: Scalar, L: FrictionLaw<S>>(_law: &L) -> bool {
+    L::GLIDES
+}

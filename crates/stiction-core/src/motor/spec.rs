@@ -1,0 +1,174 @@
+//! What defines a motor, in plain numbers.
+
+use crate::body::Body;
+use crate::drive::Drive;
+use crate::effects::{AnyEffect, EffectRecord, Effects, effect_record};
+use crate::error::{Error, Result};
+use crate::friction::Law;
+use crate::integrate::{Integrator, Machine};
+use crate::model::LawSpec;
+use crate::parameter::resolve;
+use crate::scalar::Scalar;
+use crate::sensor::Sensor;
+use crate::servo::Servo;
+
+/// An effect with every parameter decided.
+#[derive(Debug, Clone)]
+pub struct EffectSpec {
+    /// Catalogue entry.
+    pub record: &'static EffectRecord,
+    /// Values in the order of the record's parameters.
+    pub values: Vec<f64>,
+}
+
+impl PartialEq for EffectSpec {
+    fn eq(&self, other: &Self) -> bool {
+        self.record.name == other.record.name && self.values == other.values
+    }
+}
+
+impl EffectSpec {
+    /// The effect called `name`; what is not stated takes its default, gains 0.
+    pub fn new(name: &str, stated: &[(String, f64)]) -> Result<Self> {
+        let record = effect_record(name)?;
+        Ok(Self { record, values: resolve(name, record.parameters, stated)? })
+    }
+
+    /// The effect called `name` at its neutral point, in the shape stated.
+    pub fn candidate(name: &str, shape: &[(String, f64)]) -> Result<Self> {
+        let effect = Self::new(name, shape)?;
+        let gains = effect.record.facts.gains;
+        if let Some((gain, value)) = shape.iter().find(|(word, _)| gains.contains(&word.as_str())) {
+            let shapes = effect.record.parameters.iter().map(|p| p.name);
+            let shapes: Vec<&str> = shapes.filter(|word| !gains.contains(word)).collect();
+            return Err(Error::Gain {
+                effect: name.to_owned(),
+                gain: gain.clone(),
+                given: *value,
+                shapes: if shapes.is_empty() { "nothing".to_owned() } else { shapes.join(", ") },
+            });
+        }
+        Ok(effect)
+    }
+}
+
+/// Everything that defines a motor, in plain numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotorSpec {
+    /// Inertia (mass).
+    pub inertia: f64,
+    /// Effort per unit of input.
+    pub gain: f64,
+    /// Greatest magnitude of the input that gets through.
+    pub input_limit: f64,
+    /// What makes an effort of a goal position, where the input is one.
+    pub servo: Option<Servo>,
+    /// Amplitude of the pendulum torque.
+    pub gravity_amplitude: f64,
+    /// Position at which the pendulum hangs.
+    pub gravity_zero: f64,
+    /// Constant weight against positive motion.
+    pub weight: f64,
+    /// Size of a sensor count, 0 for none.
+    pub count: f64,
+    /// Friction law.
+    pub friction: LawSpec,
+    /// Effects.
+    pub effects: Vec<EffectSpec>,
+    /// Which integrator runs it.
+    pub integrator: Integrator,
+}
+
+impl MotorSpec {
+    /// A motor with inertia, gain and friction alone.
+    pub fn new(inertia: f64, gain: f64, friction: LawSpec) -> Self {
+        Self {
+            inertia,
+            gain,
+            input_limit: f64::INFINITY,
+            servo: None,
+            gravity_amplitude: 0.0,
+            gravity_zero: 0.0,
+            weight: 0.0,
+            count: 0.0,
+            friction,
+            effects: Vec::new(),
+            integrator: Integrator::Fast,
+        }
+    }
+
+    /// Refuses values that no motor has.
+    pub fn check(&self) -> Result<()> {
+        let bounded = [
+            ("inertia", self.inertia, 1e-15, 1e15),
+            ("gain", self.gain, -1e12, 1e12),
+            ("input_limit", self.input_limit, 0.0, f64::INFINITY),
+            ("gravity_amplitude", self.gravity_amplitude, -1e12, 1e12),
+            ("gravity_zero", self.gravity_zero, -1e12, 1e12),
+            ("weight", self.weight, -1e12, 1e12),
+            ("count", self.count, 0.0, 1e6),
+        ];
+        for (name, given, lower, upper) in bounded {
+            if given.is_nan() {
+                return Err(Error::NotFinite { name: name.to_owned(), given });
+            }
+            if given < lower || given > upper {
+                let unit = String::new();
+                return Err(Error::OutOfBounds {
+                    name: name.to_owned(),
+                    given,
+                    lower,
+                    upper,
+                    unit,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Path of the effort per unit: of input, or of a servo's current.
+    fn gain_path(&self) -> &'static str {
+        if self.servo.is_some() { "drive.torque_constant" } else { "drive.gain" }
+    }
+
+    /// Paths and values of all parameters: `body.inertia`, `friction.coulomb`,
+    /// `effects.cogging.cosine` … in a fixed order.
+    pub fn parameters(&self) -> Vec<(String, f64)> {
+        let mut list = vec![
+            ("body.inertia".to_owned(), self.inertia),
+            (self.gain_path().to_owned(), self.gain),
+            ("body.gravity_amplitude".to_owned(), self.gravity_amplitude),
+            ("body.gravity_zero_rad".to_owned(), self.gravity_zero),
+            ("body.weight_n".to_owned(), self.weight),
+        ];
+        let friction = self.friction.record.parameters.iter().zip(&self.friction.values);
+        list.extend(friction.map(|(spec, v)| (format!("friction.{}", spec.name), *v)));
+        for effect in &self.effects {
+            let name = effect.record.name;
+            let values = effect.record.parameters.iter().zip(&effect.values);
+            list.extend(values.map(|(spec, v)| (format!("effects.{name}.{}", spec.name), *v)));
+        }
+        list
+    }
+
+    /// Machine and law over some number type; `values` in the order of [`Self::parameters`].
+    pub fn build<S: Scalar>(&self, values: &[S]) -> (Machine<S>, Law<S>) {
+        let (first, rest) = values.split_at(5);
+        let (friction, mut rest) = rest.split_at(self.friction.values.len());
+        let effects = self.effects.iter().map(|effect| {
+            let own;
+            (own, rest) = rest.split_at(effect.values.len());
+            AnyEffect::build(effect.record.name, own).expect("the record's own name is in the list")
+        });
+        let effects = Effects::new(effects);
+        let law = self.friction.law(friction);
+        let machine = Machine::new(
+            Drive { gain: first[1], limit: self.input_limit, servo: self.servo },
+            Body::new(first[0], first[2], first[3], first[4]),
+            effects,
+            Sensor { count: self.count },
+            law.sliding_force(),
+        );
+        (machine, law)
+    }
+}
