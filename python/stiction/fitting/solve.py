@@ -25,6 +25,7 @@ from .start import complete, free_paths
 from .statistics import (
     correlations,
     covariance,
+    echoes,
     interval_width,
     jackknife,
     undetermined_directions,
@@ -251,9 +252,13 @@ def evaluate(
     residuals = [each.weight * each.residual(plant, nuisances)[each.mask] for each in train]
     matrix, pieces = covariance(jacobians, residuals, [each.per_block for each in train])
     matrix = matrix[: len(paths), : len(paths)]
-    flat = undetermined_directions([j[:, : len(paths)] for j in jacobians], paths)
-    dead = {path for group in flat for path in group}
+    own = [j[:, : len(paths)] for j in jacobians]
+    flat = undetermined_directions(own, paths)
     values, starts = variables.values(solution.vector), variables.values(begin)
+    given = [each.weight * each.form.measured(plant)[each.mask] for each in train]
+    found = echoes(own, given, residuals, values, paths)
+    flat += [group for group in found if group not in flat]
+    dead = {path for group in flat for path in group}
     errors = np.sqrt(np.maximum(np.diag(matrix), 0.0))
     sides = _sides(variables, solution.vector, begin, errors)
     width = interval_width(pieces)
