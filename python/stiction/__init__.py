@@ -10,7 +10,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from ._native import FrictionModel, __version__
+from ._native import FrictionModel, Motion, __version__
 from .errors import InputError
 from .motor import Motor
 from .trajectory import Trajectory
@@ -32,6 +32,7 @@ __all__ = [
     "FitResult",
     "FrictionModel",
     "InputError",
+    "Motion",
     "Motor",
     "Plant",
     "Recording",

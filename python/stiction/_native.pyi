@@ -11,6 +11,7 @@ _Floats = npt.NDArray[np.float64]
 __all__ = [
     "Ensemble",
     "FrictionModel",
+    "Motion",
     "Motor",
     "Nothing",
     "RowKernel",
@@ -75,6 +76,20 @@ class FrictionModel:
     __hash__: None  # type: ignore[assignment]
     def __reduce__(self) -> tuple[Any, ...]: ...
 
+@final
+class Motion:
+    def __new__(
+        cls,
+        position: npt.ArrayLike,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        *,
+        load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
+    ) -> Motion: ...
+    def __len__(self) -> int: ...
+
 class Motor:
     def __new__(
         cls,
@@ -124,120 +139,68 @@ class Motor:
         outputs: Sequence[str] | None = None,
     ) -> tuple[_Floats, dict[str, _Floats], dict[str, int]]: ...
     def follow(
-        self,
-        position: npt.ArrayLike,
-        current: npt.ArrayLike,
-        dt: npt.ArrayLike,
-        *,
-        load: npt.ArrayLike | None = None,
-        temperature: npt.ArrayLike | None = None,
-        enabled: npt.ArrayLike | None = None,
-        start: dict[str, float] | None = None,
+        self, motion: Motion, *, start: dict[str, float] | None = None
     ) -> tuple[_Floats, _Floats, _Floats, _Floats]: ...
     def follow_sensitivity(
-        self,
-        position: npt.ArrayLike,
-        current: npt.ArrayLike,
-        dt: npt.ArrayLike,
-        parameters: Sequence[str],
-        *,
-        load: npt.ArrayLike | None = None,
-        temperature: npt.ArrayLike | None = None,
-        enabled: npt.ArrayLike | None = None,
-        start: dict[str, float] | None = None,
+        self, motion: Motion, parameters: Sequence[str], *, start: dict[str, float] | None = None
     ) -> tuple[_Floats, _Floats, _Floats]: ...
     def follow_columns(
         self,
-        position: npt.ArrayLike,
-        current: npt.ArrayLike,
-        dt: npt.ArrayLike,
+        motion: Motion,
         parameters: Sequence[str],
         kernel: RowKernel,
         *,
-        load: npt.ArrayLike | None = None,
-        temperature: npt.ArrayLike | None = None,
-        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> _Floats: ...
     def signatures(
         self,
-        position: npt.ArrayLike,
-        current: npt.ArrayLike,
-        dt: npt.ArrayLike,
+        motion: Motion,
         candidates: Iterable[tuple[str, dict[str, float]]],
         *,
-        load: npt.ArrayLike | None = None,
-        temperature: npt.ArrayLike | None = None,
-        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
         threads: int = 1,
     ) -> tuple[_Floats, _Floats, _Floats]: ...
     def signature_columns(
         self,
-        position: npt.ArrayLike,
-        current: npt.ArrayLike,
-        dt: npt.ArrayLike,
+        motion: Motion,
         candidates: Iterable[tuple[str, dict[str, float]]],
         kernel: RowKernel,
         *,
-        load: npt.ArrayLike | None = None,
-        temperature: npt.ArrayLike | None = None,
-        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
         threads: int = 1,
     ) -> _Floats: ...
     def shoot(
         self,
-        position: npt.ArrayLike,
-        current: npt.ArrayLike,
-        dt: npt.ArrayLike,
+        motion: Motion,
         weights: npt.ArrayLike,
         stride: int,
         *,
-        load: npt.ArrayLike | None = None,
-        temperature: npt.ArrayLike | None = None,
-        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> _Floats: ...
     def accompany(
         self,
-        position: npt.ArrayLike,
-        current: npt.ArrayLike,
-        dt: npt.ArrayLike,
+        motion: Motion,
         stiffness: float,
         damping: float,
         *,
-        load: npt.ArrayLike | None = None,
-        temperature: npt.ArrayLike | None = None,
-        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> tuple[_Floats, _Floats]: ...
     def shoot_sensitivity(
         self,
-        position: npt.ArrayLike,
-        current: npt.ArrayLike,
-        dt: npt.ArrayLike,
+        motion: Motion,
         weights: npt.ArrayLike,
         stride: int,
         parameters: Sequence[str],
         *,
-        load: npt.ArrayLike | None = None,
-        temperature: npt.ArrayLike | None = None,
-        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> _Floats: ...
     def shoot_response(
         self,
-        position: npt.ArrayLike,
-        current: npt.ArrayLike,
-        dt: npt.ArrayLike,
+        motion: Motion,
         weights: npt.ArrayLike,
         stride: int,
         parts: int,
         *,
-        load: npt.ArrayLike | None = None,
-        temperature: npt.ArrayLike | None = None,
-        enabled: npt.ArrayLike | None = None,
         start: dict[str, float] | None = None,
     ) -> _Floats: ...
     def sensitivity(

@@ -49,13 +49,6 @@ def accompanied(
     rate = min(PULL_RATE / form.kernel.support, STEADY / form.dt)
     inertia = form.own(plant).inertia
     motor = form.begun(plant, target)
-    readings, pull = motor.accompany(
-        target,
-        form.input,
-        form.dt,
-        inertia * rate**2,
-        2.0 * inertia * rate,
-        **form.around,
-        start=start,
-    )
+    motion = form.motion if position is None else form.moved(position)
+    readings, pull = motor.accompany(motion, inertia * rate**2, 2.0 * inertia * rate, start=start)
     return np.concatenate([target[:1], readings]), form.load[:-1] + pull

@@ -1,4 +1,4 @@
-"""JSON text of plain data, with words for the numbers that JSON lacks."""
+"""JSON text of plain data; JSON has numbers, and neither infinities nor NaN."""
 
 from __future__ import annotations
 
@@ -7,16 +7,29 @@ import math
 from pathlib import Path
 from typing import Any
 
-__all__ = ["json_of"]
+__all__ = ["json_of", "worded"]
 
 
 def json_of(data: Any) -> str:
-    """The data as JSON text; what JSON has no number for becomes a word."""
-    return json.dumps(_plain(data), indent=2, ensure_ascii=False)
+    """The data as JSON text; a number that is not finite becomes null: not known, or open."""
+    return json.dumps(_plain(data), indent=2, ensure_ascii=False, allow_nan=False)
+
+
+def worded(data: Any) -> Any:
+    """The data with the words "inf" and "-inf" for infinities.
+
+    In the catalogue they are values of their own: a break-away that is never reached.
+    """
+    if isinstance(data, dict):
+        return {key: worded(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [worded(value) for value in data]
+    if isinstance(data, float) and math.isinf(data):
+        return str(data)
+    return data
 
 
 def _plain(data: Any) -> Any:
-    """JSON has no infinity: it becomes the word."""
     if isinstance(data, dict):
         return {str(key): _plain(value) for key, value in data.items()}
     if isinstance(data, list | tuple):
@@ -24,5 +37,5 @@ def _plain(data: Any) -> Any:
     if isinstance(data, Path):
         return str(data)
     if isinstance(data, float) and not math.isfinite(data):
-        return str(data)
+        return None
     return data

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from ._native import Motion
 from .errors import InputError
 from .motion import count_of
 from .trajectory import FloatArray, Trajectory
@@ -233,7 +234,7 @@ def started(plant: Plant, position: float, velocity: float, start: Start) -> Mot
     motor.reset(position, velocity)
     if start:
         state = motor.state
-        motor.follow([position] * 2, [0.0], NO_TIME, start=start)
+        motor.follow(Motion([position] * 2, [0.0], NO_TIME), start=start)
         kept = ("velocity", "second_velocity", "time")
         motor.state = {**motor.state, **{name: state[name] for name in kept}}
     return motor

@@ -106,14 +106,7 @@ class ShootingForm(WeakForm):
         motor = self.begun(plant, self.position)
         try:
             moved = motor.shoot_sensitivity(
-                self.position,
-                self.input,
-                self.dt,
-                self.kernel.second,
-                self.stride,
-                wanted,
-                **self.around,
-                start=start,
+                self.motion, self.kernel.second, self.stride, wanted, start=start
             )
         except InputError:
             return np.zeros((len(self), len(wanted)))
@@ -135,24 +128,12 @@ class ShootingForm(WeakForm):
         Parameters and return value are those of ``WeakForm.signatures``.
         """
         needed, driven, ahead = self.begun(plant, self.position).signatures(
-            self.position,
-            self.input,
-            self.dt,
-            list(candidates),
-            **self.around,
-            start=start,
+            self.motion, list(candidates), start=start
         )
         weights = self.kernel.second
         number = min(RESPONSE_PARTS, len(weights))
         response = self.begun(plant, self.position).shoot_response(
-            self.position,
-            self.input,
-            self.dt,
-            weights,
-            self.stride,
-            number,
-            **self.around,
-            start=start,
+            self.motion, weights, self.stride, number, start=start
         )
         edges = [k * (len(weights) // number) for k in range(number)] + [len(weights)]
         starts = self.stride * np.arange(len(self))
@@ -202,17 +183,8 @@ class ShootingForm(WeakForm):
         """Acceleration of the simulated motion of each window, through the kernel."""
         motor = self.begun(plant, motion)
         try:
-            return motor.shoot(
-                motion,
-                self.input,
-                self.dt,
-                self.kernel.second,
-                self.stride,
-                load=load,
-                temperature=self.around["temperature"],
-                enabled=self.around["enabled"],
-                start=start,
-            )
+            moved = self.moved(motion, load=load)
+            return motor.shoot(moved, self.kernel.second, self.stride, start=start)
         except InputError:
             # A trial of a fit that is too stiff for the sample time: it must look bad, not end it.
             return np.full(len(self), np.nan)

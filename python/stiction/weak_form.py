@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, TypedDict
 
 import numpy as np
 
-from ._native import RowKernel
+from ._native import Motion, RowKernel
 from .adaptive import adaptively_smoothed
 from .errors import InputError, NotEnoughData
 from .motion import (
@@ -188,12 +189,36 @@ class WeakForm:
 
     @property
     def around(self) -> Around:
-        """What acted beside the input in every sample, as ``Motor.follow`` takes it."""
+        """What acted beside the input in every sample, as ``Motor.simulate`` takes it."""
         return {
             "load": self.load[:-1],
             "temperature": None if self.temperature is None else self.temperature[:-1],
             "enabled": None if self.enabled is None else self.enabled[:-1],
         }
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The measured motion, and what acted in every sample."""
+        return self.moved()
+
+    def moved(
+        self,
+        position: FloatArray | None = None,
+        *,
+        current: FloatArray | None = None,
+        load: FloatArray | None = None,
+    ) -> Motion:
+        """The measured motion with something else in the place of what was measured.
+
+        ``position`` has the shape of the recording, ``current`` and ``load`` one row less.
+        """
+        around = self.around if load is None else {**self.around, "load": load}
+        return Motion(
+            self.position if position is None else position,
+            self.input if current is None else current,
+            self.dt,
+            **around,
+        )
 
     def own(self, plant: Plant) -> Plant:
         """The plant as it was set for this recording."""
@@ -238,7 +263,7 @@ class WeakForm:
             return driven
         motor = replace(plant, effects=()).follower()
         motor.reset(float(self.position[0]), 0.0)
-        drive: FloatArray = motor.follow(self.position, given, self.dt, **self.around)[0]
+        drive: FloatArray = motor.follow(self.moved(current=given))[0]
         return drive
 
     def driving(self, readings: FloatArray) -> FloatArray:
@@ -277,16 +302,10 @@ class WeakForm:
         ahead of the reading. Shape of ``position[1:]`` each, before the kernel; ``position`` takes
         the place of the measured motion, and ``load`` of what acted beside the input (rows - 1).
         """
-        around = self.around if load is None else {**self.around, "load": load}
-        motion = self.position if position is None else position
-        motor = self.begun(plant, motion)
-        drive, ambient, friction, ahead = motor.follow(
-            motion,
-            self.input,
-            self.dt,
-            **around,
-            start=start,
-        )
+        measured = position is None and load is None
+        motion = self.motion if measured else self.moved(position, load=load)
+        motor = self.begun(plant, self.position if position is None else position)
+        drive, ambient, friction, ahead = motor.follow(motion, start=start)
         return drive, friction - ambient, ahead
 
     def inertial(self, plant: Plant, position: FloatArray, ahead: FloatArray) -> FloatArray:
@@ -342,15 +361,7 @@ class WeakForm:
         ``start.force``.
         """
         motor = self.begun(plant, self.position)
-        found = motor.follow_columns(
-            self.position,
-            self.input,
-            self.dt,
-            list(paths),
-            self._rows(plant),
-            **self.around,
-            start=start,
-        )
+        found = motor.follow_columns(self.motion, list(paths), self._rows(plant), start=start)
         columns: FloatArray = found.T
         if "body.inertia" in paths:
             place = list(paths).index("body.inertia")
@@ -377,15 +388,8 @@ class WeakForm:
             In the order of the candidates and of the gains of each.
         """
         motor = self.begun(plant, self.position)
-        found = motor.signature_columns(
-            self.position,
-            self.input,
-            self.dt,
-            list(candidates),
-            self._rows(plant),
-            **self.around,
-            start=start,
-        )
+        rows = self._rows(plant)
+        found = motor.signature_columns(self.motion, list(candidates), rows, start=start)
         columns: FloatArray = found.T
         return columns
 

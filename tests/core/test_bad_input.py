@@ -607,58 +607,68 @@ REFUSED = {
         ["dt"],
     ),
     "follow from an unknown start": (
-        lambda: machine().follow([0.0, 0.1], [0.1], DT, start={"forces": 0.1}),
-        lambda: machine().follow([0.0, 0.1], [0.1], DT, start={"force": 0.1}),
+        lambda: machine().follow(st.Motion([0.0, 0.1], [0.1], DT), start={"forces": 0.1}),
+        lambda: machine().follow(st.Motion([0.0, 0.1], [0.1], DT), start={"force": 0.1}),
         ["start of hsieh_pan", "did you mean 'force'", "hardening"],
     ),
     "follow from a start of coulomb": (
-        lambda: motor("coulomb").follow([0.0, 0.1], [0.1], DT, start={"force": 0.1}),
-        lambda: motor("coulomb").follow([0.0, 0.1], [0.1], DT, start={}),
+        lambda: motor("coulomb").follow(st.Motion([0.0, 0.1], [0.1], DT), start={"force": 0.1}),
+        lambda: motor("coulomb").follow(st.Motion([0.0, 0.1], [0.1], DT), start={}),
         ["start of coulomb", "known: none"],
     ),
     "follow from negative hardening": (
-        lambda: machine().follow([0.0, 0.1], [0.1], DT, start={"hardening": -1e-6}),
-        lambda: machine().follow([0.0, 0.1], [0.1], DT, start={"hardening": 1e-6}),
+        lambda: machine().follow(st.Motion([0.0, 0.1], [0.1], DT), start={"hardening": -1e-6}),
+        lambda: machine().follow(st.Motion([0.0, 0.1], [0.1], DT), start={"hardening": 1e-6}),
         ["hardening", "out of bounds"],
     ),
     "follow from a start that is a number": (
-        lambda: machine().follow([0.0, 0.1], [0.1], DT, start=0.1),
-        lambda: machine().follow([0.0, 0.1], [0.1], DT, start=None),
+        lambda: machine().follow(st.Motion([0.0, 0.1], [0.1], DT), start=0.1),
+        lambda: machine().follow(st.Motion([0.0, 0.1], [0.1], DT), start=None),
         ["start", "dict"],
     ),
     "derivative by a start that is not given": (
-        lambda: machine().follow_sensitivity([0.0, 0.1], [0.1], DT, ["start.force"]),
-        lambda: machine().follow_sensitivity([0.0, 0.1], [0.1], DT, ["start.force"], start={}),
+        lambda: machine().follow_sensitivity(st.Motion([0.0, 0.1], [0.1], DT), ["start.force"]),
+        lambda: machine().follow_sensitivity(
+            st.Motion([0.0, 0.1], [0.1], DT), ["start.force"], start={}
+        ),
         ["start.force", "give start"],
     ),
     "derivative by an unknown start": (
-        lambda: machine().follow_sensitivity([0.0, 0.1], [0.1], DT, ["start.x"], start={}),
-        lambda: machine().follow_sensitivity([0.0, 0.1], [0.1], DT, ["start.hardening"], start={}),
+        lambda: machine().follow_sensitivity(
+            st.Motion([0.0, 0.1], [0.1], DT), ["start.x"], start={}
+        ),
+        lambda: machine().follow_sensitivity(
+            st.Motion([0.0, 0.1], [0.1], DT), ["start.hardening"], start={}
+        ),
         ["start.x", "start.hardening"],
     ),
     "signature of an unknown effect": (
-        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [("coging", {})]),
-        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [("cogging", {})]),
+        lambda: machine().signatures(st.Motion([0.0, 0.1], [0.1], DT), [("coging", {})]),
+        lambda: machine().signatures(st.Motion([0.0, 0.1], [0.1], DT), [("cogging", {})]),
         ["coging", "did you mean 'cogging'"],
     ),
     "signature at a gain": (
-        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [("cogging", {"sine": 0.1})]),
-        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [("cogging", {"order": 3.0})]),
+        lambda: machine().signatures(
+            st.Motion([0.0, 0.1], [0.1], DT), [("cogging", {"sine": 0.1})]
+        ),
+        lambda: machine().signatures(
+            st.Motion([0.0, 0.1], [0.1], DT), [("cogging", {"order": 3.0})]
+        ),
         ["sine = 0.1", "gain", "order"],
     ),
     "signature of a name alone": (
-        lambda: machine().signatures([0.0, 0.1], [0.1], DT, ["cogging"]),
-        lambda: machine().signatures([0.0, 0.1], [0.1], DT, (("cogging", {}),)),
+        lambda: machine().signatures(st.Motion([0.0, 0.1], [0.1], DT), ["cogging"]),
+        lambda: machine().signatures(st.Motion([0.0, 0.1], [0.1], DT), (("cogging", {}),)),
         ["candidates[0]", "cogging"],
     ),
     "signatures of nothing iterable": (
-        lambda: machine().signatures([0.0, 0.1], [0.1], DT, 3),
-        lambda: machine().signatures([0.0, 0.1], [0.1], DT, []),
+        lambda: machine().signatures(st.Motion([0.0, 0.1], [0.1], DT), 3),
+        lambda: machine().signatures(st.Motion([0.0, 0.1], [0.1], DT), []),
         ["candidates is 3"],
     ),
     "signatures on no thread": (
-        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [], threads=0),
-        lambda: machine().signatures([0.0, 0.1], [0.1], DT, [], threads=1),
+        lambda: machine().signatures(st.Motion([0.0, 0.1], [0.1], DT), [], threads=0),
+        lambda: machine().signatures(st.Motion([0.0, 0.1], [0.1], DT), [], threads=1),
         ["threads = 0"],
     ),
     "a kernel with an even number of weights": (

@@ -239,5 +239,5 @@ def test_a_start_force_is_that_of_the_first_loading():
     motor = st.Motor(inertia=0.0076, friction=law(**values))
     start = {"force": float(force[39])}
     assert 0.2 < start["force"] < 0.4
-    friction = motor.follow(path, np.zeros(40), DT, start=start)[2]
+    friction = motor.follow(st.Motion(path, np.zeros(40), DT), start=start)[2]
     assert friction == pytest.approx(force[40:80], rel=1e-9)

@@ -182,7 +182,7 @@ def test_input_delay_is_the_mean_of_the_delayed_input(kind, delay):
     assert worst_share(run.position, shifted.position) < 1e-8
     path = np.concatenate([[0.0], run.position])
     both = motor(kind, effects={"input_delay": {"delay": delay / 2}, "torque_bias": {}})
-    driven = both.follow(path, current, durations)[0]
+    driven = both.follow(st.Motion(path, current, durations))[0]
     assert np.allclose(driven, delayed_mean(current, durations, delay / 2), rtol=0, atol=1e-12)
 
 
@@ -192,7 +192,9 @@ def test_a_delay_is_differentiated_towards_longer_ones(delay):
     current = pulses(0.8, 400)
     path = np.linspace(0.0, 1.0, 401)
     machine = motor("coulomb", effects={"input_delay": {"delay": delay}})
-    _, driven, _ = machine.follow_sensitivity(path, current, 5e-4, ["effects.input_delay.delay"])
+    _, driven, _ = machine.follow_sensitivity(
+        st.Motion(path, current, 5e-4), ["effects.input_delay.delay"]
+    )
     durations = np.full(400, 5e-4)
     near, here = (delayed_mean(current, durations, d) for d in (delay + 1e-7, delay))
     assert np.allclose(driven[0], (near - here) / 1e-7, rtol=0, atol=1e-4 * np.abs(driven).max())

@@ -104,7 +104,7 @@ def test_a_pulled_body_rings_at_the_frequency_of_the_contact_and_does_not_slide(
 
 def test_a_start_force_stands_in_the_spring():
     machine = st.Motor(inertia=0.0076, friction=elastic())
-    held = machine.follow(np.zeros(11), np.zeros(10), 1e-3, start={"force": 0.2})[2]
+    held = machine.follow(st.Motion(np.zeros(11), np.zeros(10), 1e-3), start={"force": 0.2})[2]
     assert held == pytest.approx(np.full(10, 0.2))
 
 

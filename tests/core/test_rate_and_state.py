@@ -218,9 +218,11 @@ def test_motion_of_a_contact_along_readings_is_differentiated_exactly(compliance
     def friction(**changed):
         model = st.FrictionModel("rate_and_state", **(law | changed))
         other = st.Motor(inertia=INERTIA, friction=model)
-        return other.follow(motion, np.zeros(399), 1e-3, start={"log_age": 0.3})[2]
+        return other.follow(st.Motion(motion, np.zeros(399), 1e-3), start={"log_age": 0.3})[2]
 
-    exact = motor.follow_sensitivity(motion, np.zeros(399), 1e-3, names, start={"log_age": 0.3})[0]
+    exact = motor.follow_sensitivity(
+        st.Motion(motion, np.zeros(399), 1e-3), names, start={"log_age": 0.3}
+    )[0]
     for name, column in zip(names, np.asarray(exact), strict=True):
         short = name.removeprefix("friction.")
         value = {"coulomb": 0.35, "direct_effect": 0.015, "slip_distance": 1e-4}[short]

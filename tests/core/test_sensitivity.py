@@ -255,12 +255,12 @@ def test_efforts_along_a_motion_are_differentiated_by_every_parameter(kind):
     paths = [
         p for p, v in machine.parameters.items() if np.isfinite(v) and v and p != "body.inertia"
     ]
-    needed, driven, _ = machine.follow_sensitivity(path, current, 1e-3, paths)
+    needed, driven, _ = machine.follow_sensitivity(st.Motion(path, current, 1e-3), paths)
     assert needed.shape == driven.shape == (len(paths), 600)
 
     def along(value, name):
         other = changed(machine, name, value)
-        drive, ambient, friction, _ = other.follow(path, current, 1e-3)
+        drive, ambient, friction, _ = other.follow(st.Motion(path, current, 1e-3))
         return np.array([friction - ambient, drive])
 
     compared = 0
@@ -302,12 +302,12 @@ def test_columns_are_derivatives_seen_through_the_kernel(held, effects):
         measured = centred if held else np.zeros_like(centred)
         return kernel.mean(measured - needed, every=5) - inertia * bent
 
-    columns = machine.follow_columns(path, current, 1e-3, paths, rows)
-    expected = seen(machine.follow_sensitivity(path, current, 1e-3, paths))
+    columns = machine.follow_columns(st.Motion(path, current, 1e-3), paths, rows)
+    expected = seen(machine.follow_sensitivity(st.Motion(path, current, 1e-3), paths))
     assert columns.shape == expected.shape
     assert np.allclose(columns, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
-    columns = machine.signature_columns(path, current, 1e-3, CANDIDATES, rows)
-    expected = seen(machine.signatures(path, current, 1e-3, CANDIDATES))
+    columns = machine.signature_columns(st.Motion(path, current, 1e-3), CANDIDATES, rows)
+    expected = seen(machine.signatures(st.Motion(path, current, 1e-3), CANDIDATES))
     assert np.allclose(columns, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
 
 
@@ -334,7 +334,9 @@ def signature_alone(machine, name, shape, gain, path, current, load):
     settings["effects"][name] = shape
     other = st.Motor(friction=st.FrictionModel(law, **keywords), **settings)
     parameter = f"effects.{name}.{gain}"
-    needed, driven, _ = other.follow_sensitivity(path, current, 1e-3, [parameter], load=load)
+    needed, driven, _ = other.follow_sensitivity(
+        st.Motion(path, current, 1e-3, load=load), [parameter]
+    )
     return needed[0], driven[0]
 
 
@@ -345,7 +347,7 @@ def test_signatures_are_the_derivatives_by_each_gain_alone(kind):
     path = 0.02 * np.sin(9.0 * time) + 1e-3 * np.sin(41.0 * time)
     current, load = np.cos(7.0 * time[:-1]), 0.1 * np.sin(3.0 * time[:-1])
     kept = machine.copy()
-    needed, driven, _ = machine.signatures(path, current, 1e-3, CANDIDATES, load=load)
+    needed, driven, _ = machine.signatures(st.Motion(path, current, 1e-3, load=load), CANDIDATES)
     gains = {effect.name: effect.gains for effect in st.effects()}
     rows = [(name, shape, gain) for name, shape in CANDIDATES for gain in gains[name]]
     assert machine == kept
@@ -368,11 +370,11 @@ def test_signatures_stand_beside_an_effect_of_the_same_name():
     time = np.arange(501) * 1e-3
     path, current = 0.02 * np.sin(9.0 * time), np.cos(7.0 * time[:-1])
     needed, driven, _ = machine.signatures(
-        path, current, 1e-3, [("stribeck", {}), ("input_delay", {})]
+        st.Motion(path, current, 1e-3), [("stribeck", {}), ("input_delay", {})]
     )
     paths = ["effects.stribeck.excess", "effects.input_delay.delay"]
     # Both effects are linear in their gains, two delays add up: the derivative is that of the own.
-    also_needed, also_driven, _ = machine.follow_sensitivity(path, current, 1e-3, paths)
+    also_needed, also_driven, _ = machine.follow_sensitivity(st.Motion(path, current, 1e-3), paths)
     assert np.linalg.norm(needed - also_needed) <= 0.01 * np.linalg.norm(also_needed)
     assert np.allclose(driven, also_driven, rtol=0, atol=SCREENED * np.abs(also_driven).max())
 
@@ -382,11 +384,11 @@ def test_signatures_are_the_same_for_any_number_of_threads():
     time = np.arange(801) * 1e-3
     path, current = 0.02 * np.sin(9.0 * time), np.cos(7.0 * time[:-1])
     candidates = [("cogging", {"order": float(k)}) for k in range(1, 30)]
-    one = machine.signatures(path, current, 1e-3, candidates)
+    one = machine.signatures(st.Motion(path, current, 1e-3), candidates)
     for threads in (2, 5):
-        other = machine.signatures(path, current, 1e-3, candidates, threads=threads)
+        other = machine.signatures(st.Motion(path, current, 1e-3), candidates, threads=threads)
         assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
-    assert machine.signatures(path, current, 1e-3, [])[0].shape == (0, 800)
+    assert machine.signatures(st.Motion(path, current, 1e-3), [])[0].shape == (0, 800)
 
 
 def test_two_shapes_of_one_relaxation_are_seen_each_for_itself():
@@ -398,7 +400,9 @@ def test_two_shapes_of_one_relaxation_are_seen_each_for_itself():
     shapes += [("backlash", {"gap": 1e-4}), ("backlash", {"gap": 1e-3})]
 
     def seen(candidates):
-        return np.concatenate(motor.signatures(position, np.zeros(2000), 1e-3, candidates), axis=1)
+        return np.concatenate(
+            motor.signatures(st.Motion(position, np.zeros(2000), 1e-3), candidates), axis=1
+        )
 
     together = seen(shapes)
     for each, row in zip(shapes, together, strict=True):

@@ -37,7 +37,7 @@ def pieces(machine, position, current, load):
         own = machine.copy()
         own.reset(position[0], 0.0)
         if start:
-            own.follow(position[: start + 1], current[:start], DT, load=load[:start])
+            own.follow(st.Motion(position[: start + 1], current[:start], DT, load=load[:start]))
         before, after = max(start - 1, 0), start + 1
         slope = (position[after] - position[before]) / (DT * (after - before))
         own.state = own.state | {"position": position[start], "velocity": slope}
@@ -53,7 +53,7 @@ def test_a_window_is_a_simulation_from_where_following_led(kind):
     load = 0.05 * np.sin(300.0 * DT * np.arange(len(current)))
     machine.reset(position[0], 0.0)
     kept = machine.copy()
-    sums = machine.shoot(position, current, DT, weights(), STRIDE, load=load)
+    sums = machine.shoot(st.Motion(position, current, DT, load=load), weights(), STRIDE)
     assert machine == kept
     expected = pieces(machine, position, current, load)
     assert sums.shape == expected.shape
@@ -72,7 +72,7 @@ def test_derivatives_of_windows_equal_differences(kind):
     ]
     if machine.parameters.get("friction.breakaway") == machine.parameters.get("friction.coulomb"):
         wanted = [p for p in wanted if p not in ("friction.breakaway", "friction.coulomb")]
-    exact = machine.shoot_sensitivity(position, current, DT, weights(), STRIDE, wanted)
+    exact = machine.shoot_sensitivity(st.Motion(position, current, DT), weights(), STRIDE, wanted)
 
     def chord(path, relative):
         step = relative * abs(machine.parameters[path])
@@ -80,7 +80,7 @@ def test_derivatives_of_windows_equal_differences(kind):
         for sign in (1.0, -1.0):
             other = changed(machine, path, machine.parameters[path] + sign * step)
             other.reset(position[0], 0.0)
-            sums.append(other.shoot(position, current, DT, weights(), STRIDE))
+            sums.append(other.shoot(st.Motion(position, current, DT), weights(), STRIDE))
         return (sums[0] - sums[1]) / (2.0 * step)
 
     right = 0
@@ -99,9 +99,9 @@ def test_derivatives_of_windows_equal_differences(kind):
 def test_the_response_to_all_parts_is_that_to_a_constant_effort():
     machine, position, current = moved("hook", 3)
     machine.reset(position[0], 0.0)
-    parts = machine.shoot_response(position, current, DT, weights(), STRIDE, 7)
+    parts = machine.shoot_response(st.Motion(position, current, DT), weights(), STRIDE, 7)
     by_bias = machine.shoot_sensitivity(
-        position, current, DT, weights(), STRIDE, ["effects.torque_bias.bias"]
+        st.Motion(position, current, DT), weights(), STRIDE, ["effects.torque_bias.bias"]
     )[0]
     assert parts.shape == (7, len(by_bias))
     assert np.abs(parts.sum(axis=0) - by_bias).max() < ROUND_OFF * np.abs(by_bias).max()
@@ -111,22 +111,22 @@ def test_a_run_that_is_drawn_needs_no_pull_when_the_pull_is_its_load():
     machine, position, current = moved("hook", 4)
     load = 0.03 * np.cos(200.0 * DT * np.arange(len(current)))
     machine.reset(position[0], 0.0)
-    readings, pull = machine.accompany(position, current, DT, 50.0, 0.5, load=load)
+    readings, pull = machine.accompany(st.Motion(position, current, DT, load=load), 50.0, 0.5)
     alone = machine.copy().simulate(current, DT, load=load + pull).position
     np.testing.assert_array_equal(readings, alone)
     # Pushed off by an effort that the motion knows nothing of.
     free = machine.copy().simulate(current, DT, load=load + 0.2).position
-    drawn, _ = machine.accompany(position, current, DT, 2e3, 4.0, load=load + 0.2)
+    drawn, _ = machine.accompany(st.Motion(position, current, DT, load=load + 0.2), 2e3, 4.0)
     assert np.abs(drawn - position[1:]).max() < 0.1 * np.abs(free - position[1:]).max()
 
 
 def test_windows_that_are_none_are_refused():
     machine, position, current = moved("stribeck", 1)
     with pytest.raises(InputError, match="weights"):
-        machine.shoot(position, current, DT, [], STRIDE)
+        machine.shoot(st.Motion(position, current, DT), [], STRIDE)
     with pytest.raises(InputError, match="stride"):
-        machine.shoot(position, current, DT, weights(), 0)
+        machine.shoot(st.Motion(position, current, DT), weights(), 0)
     with pytest.raises(InputError, match="parts"):
-        machine.shoot_response(position, current, DT, weights(), STRIDE, LENGTH + 1)
-    assert len(machine.shoot(position[:100], current[:99], DT, weights(), STRIDE)) == 0
+        machine.shoot_response(st.Motion(position, current, DT), weights(), STRIDE, LENGTH + 1)
+    assert len(machine.shoot(st.Motion(position[:100], current[:99], DT), weights(), STRIDE)) == 0
     assert isinstance(machine, st.Motor)

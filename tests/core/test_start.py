@@ -42,7 +42,9 @@ def motion(direction=1.0):
 
 
 def needed(motor, start, path):
-    _, ambient, friction, _ = motor.copy().follow(path, np.zeros(SAMPLES), DT, start=start)
+    _, ambient, friction, _ = motor.copy().follow(
+        st.Motion(path, np.zeros(SAMPLES), DT), start=start
+    )
     return friction - ambient
 
 
@@ -69,8 +71,8 @@ def test_a_start_of_zeros_changes_no_bit(kind):
     moved.friction.simulate(np.full(50, 1e-3), DT)
     assert np.array_equal(needed(moved, {}, path), want)
     primed, plain = machine(kind), machine(kind)
-    primed.follow(path, np.zeros(SAMPLES), DT, start=zeros)
-    plain.follow(path, np.zeros(SAMPLES), DT)
+    primed.follow(st.Motion(path, np.zeros(SAMPLES), DT), start=zeros)
+    plain.follow(st.Motion(path, np.zeros(SAMPLES), DT))
     assert primed == plain
 
 
@@ -123,7 +125,9 @@ def test_derivatives_by_the_start_equal_differences(kind, direction, force, hard
     start = {name: start[name] for name in QUANTITIES[law]}
     paths = [f"start.{name}" for name in start]
     kept = motor.copy()
-    exact, driven, _ = motor.follow_sensitivity(path, np.zeros(SAMPLES), DT, paths, start=start)
+    exact, driven, _ = motor.follow_sensitivity(
+        st.Motion(path, np.zeros(SAMPLES), DT), paths, start=start
+    )
     assert motor == kept
     assert not driven.any()
     for k, name in enumerate(start):
@@ -154,7 +158,7 @@ def test_derivatives_by_the_law_see_the_start_depend_on_it(kind, force):
     for name in ("initial_stiffness", "coulomb"):
         value = motor.parameters[f"friction.{name}"]
         exact = motor.follow_sensitivity(
-            path, np.zeros(SAMPLES), DT, [f"friction.{name}"], start=start
+            st.Motion(path, np.zeros(SAMPLES), DT), [f"friction.{name}"], start=start
         )[0][0]
         near, wide = (
             (
@@ -181,7 +185,7 @@ def test_a_force_beyond_sliding_levels_off_below_it(shape):
     assert got[-1] < 0.35
     mirrored = [needed(motor, {"force": -float(f)}, rest)[0] for f in forces]
     assert np.array_equal(mirrored, -got)
-    motor.follow(motion(), np.zeros(SAMPLES), DT, start={"force": 0.35})
+    motor.follow(st.Motion(motion(), np.zeros(SAMPLES), DT), start={"force": 0.35})
     other = motor.copy()
     other.state = motor.state
     assert other == motor
@@ -190,6 +194,6 @@ def test_a_force_beyond_sliding_levels_off_below_it(shape):
 def test_signatures_begin_with_the_start_too():
     motor, path, start = machine("maxwell_slip"), motion(), {"force": 0.2}
     level = [("position_dependent_friction", {"order": 1.0})]
-    needed_rows, _, _ = motor.signatures(path, np.zeros(SAMPLES), DT, level, start=start)
+    needed_rows, _, _ = motor.signatures(st.Motion(path, np.zeros(SAMPLES), DT), level, start=start)
     assert needed_rows[0, 0] == pytest.approx(0.2, rel=0.2)
-    assert abs(motor.signatures(path, np.zeros(SAMPLES), DT, level)[0][0, 0]) < 0.05
+    assert abs(motor.signatures(st.Motion(path, np.zeros(SAMPLES), DT), level)[0][0, 0]) < 0.05

@@ -27,10 +27,12 @@ def opened(*sizes: float) -> HeldOut:
     return HeldOut(tuple(size * one for size in sizes), np.ones(len(one)), one, cells, ())
 
 
-def selected(*names: str) -> Search:
-    choices: list[Any] = [SimpleNamespace(winner=SimpleNamespace(name=name)) for name in names]
+def selected(*names: str, known: bool = True) -> Search:
+    winners = [SimpleNamespace(name=name, candidate=name) for name in names]
+    choices: list[Any] = [SimpleNamespace(winner=winner) for winner in winners]
     rows = {name: CandidateRow(name, 0.5, 0.1, 0.2, "accepted") for name in names}
-    models: list[Any] = ["base", *names]
+    fitted = [SimpleNamespace(knows=lambda _: known) for _ in names]
+    models: list[Any] = [SimpleNamespace(), *fitted]
     return Search(models, choices, rows)
 
 
@@ -49,15 +51,16 @@ def test_names_that_test_rows_speak_against_are_taken_away(
     sizes: tuple[float, ...], kept: int
 ) -> None:
     names = ("first", "second")[: len(sizes) - 1]
-    found = confirmed(selected(*names), opened(*sizes), 0, lambda *_: True)
+    selection = selected(*names)
+    found = confirmed(selection, opened(*sizes), 0)
     assert [choice.winner.name for choice in found.choices] == list(names[:kept])
-    assert found.models == ["base", *names[:kept]]
+    assert found.models == selection.models[: kept + 1]
     reasons = [found.rows[name].reason for name in names]
     assert reasons == ["accepted"] * kept + [AGAINST] * (len(names) - kept)
 
 
 def test_without_rows_that_test_nothing_is_taken_away() -> None:
-    assert len(confirmed(selected("first"), None, 0, lambda *_: False).choices) == 1
+    assert len(confirmed(selected("first"), None, 0).choices) == 1
 
 
 @pytest.mark.parametrize(
@@ -66,15 +69,8 @@ def test_without_rows_that_test_nothing_is_taken_away() -> None:
 def test_a_name_needs_a_strength_or_a_gain_that_is_not_nothing(
     size: float, known: bool, kept: int
 ) -> None:
-    asked: list[tuple[Any, str]] = []
-
-    def told(model: Any, trial: Any) -> bool:
-        asked.append((model, trial.name))
-        return known
-
-    found = confirmed(selected("first"), opened(1.0, size), 0, told)
+    found = confirmed(selected("first", known=known), opened(1.0, size), 0)
     assert len(found.choices) == kept
-    assert asked == ([("first", "first")] if size == 1.0 else [])
     assert found.rows["first"].reason == ("accepted" if kept else NOT_KNOWN)
 
 

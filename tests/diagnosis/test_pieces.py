@@ -13,20 +13,23 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.catalogue import EffectRecord
 from stiction.cli import run
 from stiction.diagnosis import listing
 from stiction.diagnosis.candidates import Scales, candidates, left_out, present, scales_of
 from stiction.diagnosis.decide import Choice, Trial, choose, strangers
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import Gain, HeldOut, gain_of
-from stiction.diagnosis.model import LEAST_GIVEN, Model, fitted
+from stiction.diagnosis.model import LEAST_GIVEN, Model, fitted, with_effect
 from stiction.diagnosis.noise import measure_noise
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.replay import centre, surrogate_residuals
+from stiction.diagnosis.result import Cause, Diagnosis
 from stiction.diagnosis.screen import Signatures
 from stiction.diagnosis.verdict import relatives
-from stiction.diagnosis.words import joined, sentence
+from stiction.diagnosis.words import joined, sentence, value_words
 from stiction.fitting.levenberg import escaped, levenberg_marquardt
+from stiction.fitting.result import FitParameter
 from stiction.fitting.rows import Nuisances
 from stiction.fitting.statistics import interval_width
 from stiction.parameter import Parameter
@@ -144,6 +147,40 @@ def test_every_effect_has_candidates_within_its_bounds(evidence: Evidence) -> No
                 if parameter.name in each.shape:
                     low, high = parameter.bounds
                     assert low <= each.shape[parameter.name] <= high
+
+
+@pytest.mark.parametrize("record", st.effects(), ids=lambda record: record.name)
+def test_an_effect_is_drawn_within_its_bounds_however_strong_its_estimate_is(
+    evidence: Evidence, record: EffectRecord
+) -> None:
+    candidate = candidates(record, scales_of(evidence, evidence.plant))[0]
+    bounds = {p.name: p.bounds for p in record.parameters}
+    waves = [candidate, replace(candidate, second=True)] if record.second else [candidate]
+    plant = true_plant()
+    for wave in waves:
+        for gain in (3.0, -3.0, 1e12, -1e12, math.inf, math.nan):
+            strong = with_effect(plant, wave, [gain] * len(record.gains))
+            strong.motor()
+            effect = next(each for each in strong.effects if each.name == record.name)
+            for name, parameter in effect.parameters.items():
+                low, high = bounds[name]
+                assert low <= parameter.value <= high
+        plant = with_effect(plant, wave, [0.01] * len(record.gains))
+
+
+def test_findings_hold_null_where_an_interval_is_open() -> None:
+    unknown = FitParameter(0.1, math.inf, (-math.inf, math.inf), "N·m", "", 0.0)
+    known = replace(unknown, stderr=0.01, ci95=(0.08, 0.12))
+    values = {"effects.cogging.cosine": unknown, "effects.cogging.sine": known}
+    cause = Cause("cogging", "cogging", True, (), values, None, "", "", "", "position")
+    found = Diagnosis("missing_effect", "", true_plant(), effects=(cause,))
+    text = found.to_json()
+    (entry,) = json.loads(text, parse_constant=pytest.fail)["effects"]
+    assert entry["parameters"]["effects.cogging.cosine"]["ci95"] == [None, None]
+    assert entry["parameters"]["effects.cogging.sine"]["ci95"] == [0.08, 0.12]
+    assert "inf" not in text
+    assert value_words("cosine", unknown) == "cosine 0.1 N·m (not determined)"
+    assert value_words("sine", known) == "sine 0.1 N·m (0.08 to 0.12)"
 
 
 def test_an_effect_that_the_law_holds_is_not_offered_again() -> None:

@@ -102,6 +102,9 @@ def test_what_the_data_do_not_tell_is_said(recording: Recording) -> None:
     found = fit(plant(friction={**friction, "coulomb": {"value": 0.3, "fixed": True}}), recording)
     assert any("friction.stribeck_velocity is not determined" in s for s in found.undetermined)
     assert found["stribeck_velocity"].stderr == np.inf
+    told = json.loads(found.to_json(), parse_constant=pytest.fail)["parameters"]
+    assert told["friction.stribeck_velocity"]["ci95"] == [None, None]
+    assert told["body.inertia"]["ci95"] == list(found["inertia"].ci95)
 
 
 def test_two_effects_that_act_alike_are_named_together(recording: Recording) -> None:

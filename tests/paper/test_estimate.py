@@ -10,15 +10,18 @@ import pytest
 from tests.reference.estimation_reference import (
     COUNT,
     NOISE,
+    STEPS,
     TRUTH,
     motions,
     readings,
     torques,
 )
+from tests.reference.hsieh_pan_reference import simulate_sticking
 
 from stiction import paper
 from stiction.errors import InputError
 from stiction.paper import ARC_SECOND, Recorded, estimate
+from stiction.paper.readings import count_of, evidence, noise_of
 
 graphical = importlib.import_module("stiction.paper.graphical")
 
@@ -152,15 +155,52 @@ def test_results_of_the_experiments_serve_as_recordings():
     assert found.parameters["creep_rate"].value == pytest.approx(2.0, rel=0.35)
 
 
+def of_experiment_2(reading):
+    dt, torque = torques()["experiment 2"]
+    known = {"inertia": TRUTH["inertia"], "damping": TRUTH["damping"]}
+    return estimate(Recorded(dt, torque, reading), start=known, fixed=list(known))
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_little_noise_does_not_slow_the_creep(seed):
+    # An eighth of a count: least squares find 0.88 of the rate.
+    dt, torque = torques()["experiment 2"]
+    position = simulate_sticking(torque, dt, step=STEPS[dt], **TRUTH).position
+    quiet = of_experiment_2(readings(position, np.random.default_rng(seed), COUNT / 8.0))
+    rate = quiet.parameters["creep_rate"]
+    assert rate.value == pytest.approx(TRUTH["creep_rate"], rel=0.03)
+    assert rate.ci95[0] < TRUTH["creep_rate"] < rate.ci95[1]
+
+
 def test_readings_without_noise_are_warned_of():
     dt, torque = torques()["experiment 2"]
     run = paper.illustrative_motor().simulate(torque, dt, outputs=("position",))
-    rounded = np.round(run.position / COUNT) * COUNT
-    known = {"inertia": TRUTH["inertia"], "damping": TRUTH["damping"]}
-    quiet = estimate(Recorded(dt, torque, rounded), start=known, fixed=list(known))
+    quiet = of_experiment_2(np.round(run.position / COUNT) * COUNT)
     assert any("makes stairs of slow creep" in text for text in quiet.cautions)
-    # As bad as the warning says, and outside of the interval: that is what it is for.
-    assert 0.65 < quiet.parameters["creep_rate"].value / TRUTH["creep_rate"] < 0.9
+    assert quiet.parameters["creep_rate"].value == pytest.approx(TRUTH["creep_rate"], rel=0.06)
+
+
+@pytest.mark.parametrize("noise", [0.3, 0.1])
+def test_readings_as_intervals_have_the_derivatives_that_their_cost_has(noise):
+    rng = np.random.default_rng(3)
+    missed, counts = rng.uniform(-0.9, 0.9, 40), np.where(rng.random(40) < 0.7, 1.0, 0.0)
+    said = evidence(missed, counts, noise)
+    step = 1e-5
+    for k in range(40):
+        other = [evidence(missed + d * (np.arange(40) == k), counts, noise) for d in (step, -step)]
+        slope = (other[0].cost - other[1].cost) / (4.0 * step)
+        bend = (other[0].cost - 2.0 * said.cost + other[1].cost) / (2.0 * step**2)
+        assert said.pull[k] * said.root_weight[k] == pytest.approx(slope, rel=1e-5, abs=1e-6)
+        assert said.root_weight[k] ** 2 == pytest.approx(bend, rel=2e-3, abs=1e-3 / noise**2)
+
+
+def test_the_count_of_readings_and_their_noise_are_found():
+    rng = np.random.default_rng(5)
+    true = np.linspace(0.0, 30.0, 20_000) * COUNT
+    read = readings(true, rng, COUNT / 6.0)
+    assert count_of(read) == pytest.approx(COUNT, rel=1e-9)
+    assert count_of(true + rng.normal(0.0, COUNT, true.size)) == 0.0
+    assert noise_of(true - read, np.full(true.size, COUNT)) == pytest.approx(COUNT / 6.0, rel=0.03)
 
 
 @pytest.mark.parametrize(

@@ -33,8 +33,9 @@ from stiction.fitting.result import FitParameter
 from stiction.parameter import Parameter
 from stiction.plant import Effect
 from stiction.report import write
-from stiction.report.figures import headline, most_shown, shortened
+from stiction.report.figures import headline, most_shown
 from stiction.report.numbers import between, digits, percent, quantity, tick
+from stiction.report.panels import shortened
 from stiction.report.sections.parameters import rows_of_effect
 
 LARGEST_REPORT = 5_000_000  # bytes; what an e-mail carries

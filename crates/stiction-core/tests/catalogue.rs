@@ -17,21 +17,24 @@ use stiction_core::sensitivity::sensitivity;
 /// What beside the parameters of a law an effect may be part of.
 const BESIDE: [&str; 2] = ["body.gravity_amplitude", "law.remembers"];
 
-fn files(folder: &str) -> BTreeSet<String> {
+/// Names of the modules in a folder, of one file each or of a folder; `elements` are shared pieces.
+fn modules(folder: &str) -> BTreeSet<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(folder);
     std::fs::read_dir(path)
         .unwrap()
         .filter_map(|entry| {
-            let name = entry.unwrap().file_name().into_string().unwrap();
-            name.strip_suffix(".rs").map(str::to_owned).filter(|stem| stem != "mod")
+            let path = entry.unwrap().path();
+            let is_module = path.is_dir() || path.extension().is_some_and(|own| own == "rs");
+            let name = path.file_stem()?.to_str()?;
+            (is_module && !["mod", "elements"].contains(&name)).then(|| name.to_owned())
         })
         .collect()
 }
 
 #[test]
 fn every_file_in_the_folders_is_in_its_list() {
-    assert_eq!(files("friction"), LAWS.iter().map(|law| law.name.to_owned()).collect());
-    assert_eq!(files("effects"), EFFECTS.iter().map(|e| e.name.to_owned()).collect());
+    assert_eq!(modules("friction"), LAWS.iter().map(|law| law.name.to_owned()).collect());
+    assert_eq!(modules("effects"), EFFECTS.iter().map(|e| e.name.to_owned()).collect());
 }
 
 #[test]

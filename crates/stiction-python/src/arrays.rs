@@ -7,7 +7,6 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 use stiction_core::motor::{PerSample, Surroundings};
-use stiction_core::sensitivity::MeasuredMotion;
 
 use crate::error::{duration, input_error};
 
@@ -158,50 +157,6 @@ impl<'py> Around<'py> {
             load: self.load.per_sample()?,
             temperature: self.temperature.as_ref().map(Each::per_sample).transpose()?,
             enabled: self.enabled.as_ref().map(Each::per_sample).transpose()?,
-        })
-    }
-}
-
-/// A motion that is followed: positions, and what acted in each sample between them.
-pub struct Measured<'py> {
-    position: PyReadonlyArrayDyn<'py, f64>,
-    current: Each<'py>,
-    around: Around<'py>,
-    dt: Each<'py>,
-}
-
-impl<'py> Measured<'py> {
-    /// Reads positions and, for the samples between them, inputs, steps and what acted beside.
-    pub fn read(
-        position: &Bound<'py, PyAny>,
-        current: &Bound<'py, PyAny>,
-        dt: &Bound<'py, PyAny>,
-        around: [Option<&Bound<'py, PyAny>>; 3],
-    ) -> PyResult<Self> {
-        let py = position.py();
-        let position = one_row("position", position)?;
-        let n = position.len() - 1;
-        if n == 0 {
-            return Err(input_error(py, "position has 1 value; give at least two"));
-        }
-        let current = Each::read("current", Some(current), 0.0, &[n])?;
-        let dt = Each::steps("dt", dt, &[n])?;
-        let around = Around::read(around, &[n])?;
-        Ok(Self { position, current, around, dt })
-    }
-
-    /// Samples between the positions.
-    pub fn samples(&self) -> usize {
-        self.position.len() - 1
-    }
-
-    /// The form that the core takes, usable without the interpreter.
-    pub fn motion(&self) -> PyResult<MeasuredMotion<'_>> {
-        Ok(MeasuredMotion {
-            positions: self.position.as_slice()?,
-            inputs: self.current.per_sample()?,
-            around: self.around.surroundings()?,
-            dt: self.dt.per_sample()?,
         })
     }
 }

@@ -7,6 +7,7 @@ mod ensemble;
 mod error;
 mod friction_model;
 mod kernel;
+mod motion;
 mod motor;
 mod state;
 
@@ -22,6 +23,8 @@ mod _native {
     use super::friction_model::FrictionModel;
     #[pymodule_export]
     use super::kernel::RowKernel;
+    #[pymodule_export]
+    use super::motion::Motion;
     #[pymodule_export]
     use super::motor::Motor;
 

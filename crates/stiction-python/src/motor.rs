@@ -18,10 +18,11 @@ use stiction_core::shoot::{Pull, shoot_response, shoot_sensitivity};
 use crate::arguments::{
     Shots, candidates_of, effects_of, gains_of, integrator_of, numbers_of, servo_of, threads_of,
 };
-use crate::arrays::{Around, Each, Measured, one_row, target};
-use crate::error::{IntoPython, duration, finite, input_error, velocity};
+use crate::arrays::{Around, Each, one_row, target};
+use crate::error::{IntoPython, duration, finite, input_error, out_of_range, velocity};
 use crate::friction_model::FrictionModel;
 use crate::kernel::RowKernel;
+use crate::motion::Motion;
 use crate::state::{from_dict, to_dict};
 
 /// Base of ``stiction.Motor``: everything that needs no Python.
@@ -51,6 +52,39 @@ impl Motor {
         let numbers = numbers_of("start", given)?;
         self.lock().spec().friction.start(&numbers).or_input_error(py).map(Some)
     }
+
+    /// A copy, primed where start values are given.
+    fn primed(&self, start: Option<&[f64]>) -> Core {
+        let mut core = self.lock().clone();
+        if let Some(start) = start {
+            core.prime(start);
+        }
+        core
+    }
+
+    /// Work that starts where the motor is and leaves it as it was, without the interpreter.
+    fn beside<R: Send>(
+        &self,
+        py: Python<'_>,
+        start: Option<&Bound<'_, PyAny>>,
+        work: impl FnOnce(&MotorSpec, Start<'_>) -> R + Send,
+    ) -> PyResult<R> {
+        let primed = self.start(py, start)?;
+        Ok(py.detach(|| {
+            let core = self.lock().clone();
+            work(core.spec(), Start { running: core.running(), primed: primed.as_deref() })
+        }))
+    }
+}
+
+/// Refuses to go on with a motor that is nowhere.
+#[inline]
+fn in_range(py: Python<'_>, core: &Core) -> PyResult<()> {
+    let run = &core.running().run;
+    if (run.position + run.velocity + run.friction).is_finite() {
+        return Ok(());
+    }
+    Err(out_of_range(py, core.spec().friction.record.name))
 }
 
 fn servo_settings<'py>(py: Python<'py>, servo: &Servo) -> PyResult<Bound<'py, PyDict>> {
@@ -152,7 +186,9 @@ impl Motor {
         let mut core = self.lock();
         core.set_temperature(temperature);
         core.set_enabled(enabled);
-        core.step(current, load, dt).or_input_error(py)
+        let reached = core.step(current, load, dt).or_input_error(py)?;
+        in_range(py, &core)?;
+        Ok(reached)
     }
 
     /// Samples with held inputs; the arrays asked for, by name.
@@ -216,6 +252,7 @@ impl Motor {
             columns.push((*column, array.as_slice_mut()?));
         }
         py.detach(|| self.lock().simulate(current, around, dt, &mut columns)).or_input_error(py)?;
+        in_range(py, &self.lock())?;
         Ok(result)
     }
 
@@ -273,29 +310,23 @@ impl Motor {
         Ok((PyArray1::from_vec(py, rows), result, cost))
     }
 
-    /// Efforts along given positions (shape (n + 1,)): of the drive for held inputs (shape (n,)), of
-    /// gravity and added efforts, friction, and how far the centre of mass is ahead of the reading
-    /// (a second mass, a sensor that errs); each of shape (n,), at the end of each sample.
+    /// Efforts along a measured motion: of the drive for its inputs, of gravity and added efforts,
+    /// friction, and how far the centre of mass is ahead of the reading (a second mass, a sensor
+    /// that errs); each of shape (n,), at the end of each sample.
     /// With start values of the law (`laws()`) the contact begins with these, not as it is.
-    #[pyo3(signature = (position, current, dt, *, load=None, temperature=None, enabled=None, start=None))]
-    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    #[pyo3(signature = (motion, *, start=None))]
     fn follow<'py>(
         &self,
         py: Python<'py>,
-        position: &Bound<'py, PyAny>,
-        current: &Bound<'py, PyAny>,
-        dt: &Bound<'py, PyAny>,
-        load: Option<&Bound<'py, PyAny>>,
-        temperature: Option<&Bound<'py, PyAny>>,
-        enabled: Option<&Bound<'py, PyAny>>,
+        motion: &Bound<'py, Motion>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Followed<'py>> {
-        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
+        let motion = motion.get();
         let start = self.start(py, start)?;
-        let n = measured.samples();
+        let n = motion.samples();
         let mut efforts = [vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0.0; n]];
         {
-            let MeasuredMotion { positions, inputs, around, dt } = measured.motion()?;
+            let MeasuredMotion { positions, inputs, around, dt } = motion.measured();
             let arrays = efforts.each_mut().map(Vec::as_mut_slice);
             py.detach(|| {
                 let mut core = self.lock();
@@ -311,231 +342,157 @@ impl Motor {
         Ok((driven, ambient, friction, ahead))
     }
 
-    /// Exact derivatives by parameters along given positions (shape (n + 1,)): of friction less
-    /// gravity and added efforts, of the effort of the drive, and of how far the centre of mass is
-    /// ahead of the reading; each of shape (parameters, n).
+    /// Exact derivatives by parameters along a measured motion: of friction less gravity and added
+    /// efforts, of the effort of the drive, and of how far the centre of mass is ahead of the
+    /// reading; each of shape (parameters, n).
     /// Where a start is given its values are parameters too: `start.force` and so on. The motor is
     /// left as it was.
-    #[pyo3(signature = (position, current, dt, parameters, *, load=None, temperature=None, enabled=None, start=None))]
-    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    #[pyo3(signature = (motion, parameters, *, start=None))]
     fn follow_sensitivity<'py>(
         &self,
         py: Python<'py>,
-        position: &Bound<'py, PyAny>,
-        current: &Bound<'py, PyAny>,
-        dt: &Bound<'py, PyAny>,
+        motion: &Bound<'py, Motion>,
         parameters: Vec<String>,
-        load: Option<&Bound<'py, PyAny>>,
-        temperature: Option<&Bound<'py, PyAny>>,
-        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Derivatives<'py>> {
-        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
-        let motion = measured.motion()?;
-        let primed = self.start(py, start)?;
-        let rows = py.detach(|| {
-            let core = self.lock().clone();
-            let start = Start { running: core.running(), primed: primed.as_deref() };
-            follow_sensitivity(core.spec(), start, &motion, &parameters)
-        });
-        arrays(py, rows.or_input_error(py)?, [parameters.len(), measured.samples()])
+        let motion = motion.get();
+        let measured = motion.measured();
+        let rows = self.beside(py, start, |spec, start| {
+            follow_sensitivity(spec, start, &measured, &parameters)
+        })?;
+        arrays(py, rows.or_input_error(py)?, [parameters.len(), motion.samples()])
     }
 
     /// Exact derivatives, by the parameters at these paths, of measured minus needed effort along
-    /// given positions (shape (n + 1,)), seen through a kernel; shape (parameters, rows). Starts as
-    /// in ``follow_sensitivity``. The motor is left as it was.
-    #[pyo3(signature = (position, current, dt, parameters, kernel, *, load=None, temperature=None, enabled=None, start=None))]
-    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    /// a measured motion, seen through a kernel; shape (parameters, rows). Starts as in
+    /// ``follow_sensitivity``. The motor is left as it was.
+    #[pyo3(signature = (motion, parameters, kernel, *, start=None))]
     fn follow_columns<'py>(
         &self,
         py: Python<'py>,
-        position: &Bound<'py, PyAny>,
-        current: &Bound<'py, PyAny>,
-        dt: &Bound<'py, PyAny>,
+        motion: &Bound<'py, Motion>,
         parameters: Vec<String>,
         kernel: &Bound<'py, RowKernel>,
-        load: Option<&Bound<'py, PyAny>>,
-        temperature: Option<&Bound<'py, PyAny>>,
-        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
-        let motion = measured.motion()?;
-        let primed = self.start(py, start)?;
+        let motion = motion.get();
+        let measured = motion.measured();
         let kernel = kernel.get().core();
-        let values = py.detach(|| {
-            let core = self.lock().clone();
-            let start = Start { running: core.running(), primed: primed.as_deref() };
-            follow_columns(core.spec(), start, &motion, &parameters, &kernel)
-        });
-        let rows = kernel.rows(measured.samples());
+        let values = self.beside(py, start, |spec, start| {
+            follow_columns(spec, start, &measured, &parameters, &kernel)
+        })?;
+        let rows = kernel.rows(motion.samples());
         PyArray1::from_vec(py, values.or_input_error(py)?).reshape([parameters.len(), rows])
     }
 
-    /// Exact derivatives along given positions (shape (n + 1,)) by the gains of effects beside the
-    /// motor's own, each at the gain 0 and in the shape given as (name, parameters): of friction
-    /// less gravity and added efforts, of the effort of the drive, and of how far the centre of mass
-    /// is ahead of the reading; each of shape (gains, n), in the order of the candidates and of their
-    /// gains. The motor is left as it was.
-    #[pyo3(signature = (position, current, dt, candidates, *, load=None, temperature=None, enabled=None, start=None, threads=1))]
-    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    /// Exact derivatives along a measured motion by the gains of effects beside the motor's own,
+    /// each at the gain 0 and in the shape given as (name, parameters): of friction less gravity and
+    /// added efforts, of the effort of the drive, and of how far the centre of mass is ahead of the
+    /// reading; each of shape (gains, n), in the order of the candidates and of their gains. The
+    /// motor is left as it was.
+    #[pyo3(signature = (motion, candidates, *, start=None, threads=1))]
     fn signatures<'py>(
         &self,
         py: Python<'py>,
-        position: &Bound<'py, PyAny>,
-        current: &Bound<'py, PyAny>,
-        dt: &Bound<'py, PyAny>,
+        motion: &Bound<'py, Motion>,
         candidates: &Bound<'py, PyAny>,
-        load: Option<&Bound<'py, PyAny>>,
-        temperature: Option<&Bound<'py, PyAny>>,
-        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
         threads: i64,
     ) -> PyResult<Derivatives<'py>> {
-        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
-        let motion = measured.motion()?;
-        let primed = self.start(py, start)?;
+        let motion = motion.get();
+        let measured = motion.measured();
         let threads = threads_of(py, threads)?;
         let list = candidates_of(candidates)?;
-        let rows = py.detach(|| {
-            let core = self.lock().clone();
-            let start = Start { running: core.running(), primed: primed.as_deref() };
-            signatures(core.spec(), start, &motion, &list, threads)
-        });
-        arrays(py, rows, [gains_of(&list), measured.samples()])
+        let rows = self
+            .beside(py, start, |spec, start| signatures(spec, start, &measured, &list, threads))?;
+        arrays(py, rows, [gains_of(&list), motion.samples()])
     }
 
     /// The same of measured minus needed effort, seen through a kernel; shape (gains, rows).
-    #[pyo3(signature = (
-        position, current, dt, candidates, kernel, *, load=None, temperature=None, enabled=None, start=None, threads=1,
-    ))]
-    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    #[pyo3(signature = (motion, candidates, kernel, *, start=None, threads=1))]
     fn signature_columns<'py>(
         &self,
         py: Python<'py>,
-        position: &Bound<'py, PyAny>,
-        current: &Bound<'py, PyAny>,
-        dt: &Bound<'py, PyAny>,
+        motion: &Bound<'py, Motion>,
         candidates: &Bound<'py, PyAny>,
         kernel: &Bound<'py, RowKernel>,
-        load: Option<&Bound<'py, PyAny>>,
-        temperature: Option<&Bound<'py, PyAny>>,
-        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
         threads: i64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
-        let motion = measured.motion()?;
-        let primed = self.start(py, start)?;
+        let motion = motion.get();
+        let measured = motion.measured();
         let threads = threads_of(py, threads)?;
         let list = candidates_of(candidates)?;
         let kernel = kernel.get().core();
-        let values = py.detach(|| {
-            let core = self.lock().clone();
-            let start = Start { running: core.running(), primed: primed.as_deref() };
-            signature_columns(core.spec(), start, &motion, &list, &kernel, threads)
-        });
-        PyArray1::from_vec(py, values).reshape([gains_of(&list), kernel.rows(measured.samples())])
+        let values = self.beside(py, start, |spec, start| {
+            signature_columns(spec, start, &measured, &list, &kernel, threads)
+        })?;
+        PyArray1::from_vec(py, values).reshape([gains_of(&list), kernel.rows(motion.samples())])
     }
 
-    /// What each of many short simulations along given positions (shape (n + 1,)) comes to: the sum,
-    /// by `weights` (shape (samples of a window,)), of what the sensor would read after each sample
-    /// less what it read at the start; shape (windows,). Windows start every `stride` samples at the
-    /// measured position and velocity, with friction as `follow` leaves it there.
-    #[pyo3(signature = (position, current, dt, weights, stride, *, load=None, temperature=None, enabled=None, start=None))]
-    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    /// What each of many short simulations along a measured motion comes to: the sum, by `weights`
+    /// (shape (samples of a window,)), of what the sensor would read after each sample less what it
+    /// read at the start; shape (windows,). Windows start every `stride` samples at the measured
+    /// position and velocity, with friction as `follow` leaves it there.
+    #[pyo3(signature = (motion, weights, stride, *, start=None))]
     fn shoot<'py>(
         &self,
         py: Python<'py>,
-        position: &Bound<'py, PyAny>,
-        current: &Bound<'py, PyAny>,
-        dt: &Bound<'py, PyAny>,
+        motion: &Bound<'py, Motion>,
         weights: &Bound<'py, PyAny>,
         stride: i64,
-        load: Option<&Bound<'py, PyAny>>,
-        temperature: Option<&Bound<'py, PyAny>>,
-        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
-        let motion = measured.motion()?;
+        let motion = motion.get();
+        let measured = motion.measured();
         let shots = Shots::read(weights, stride)?;
         let windows = shots.windows()?;
         let start = self.start(py, start)?;
-        let sums = py.detach(|| {
-            let mut core = self.lock().clone();
-            if let Some(start) = &start {
-                core.prime(start);
-            }
-            core.shoot(&motion, &windows)
-        });
+        let sums = py.detach(|| self.primed(start.as_deref()).shoot(&measured, &windows));
         Ok(PyArray1::from_vec(py, sums.or_input_error(py)?))
     }
 
-    /// One simulation drawn to given positions (shape (n + 1,)) by a spring and a damper: what the
-    /// sensor reads after each sample, and the effort of the pull during it; shape (n,) each. The
-    /// motor is left as it was.
-    #[pyo3(signature = (position, current, dt, stiffness, damping, *, load=None, temperature=None, enabled=None, start=None))]
-    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    /// One simulation drawn to a measured motion by a spring and a damper: what the sensor reads
+    /// after each sample, and the effort of the pull during it; shape (n,) each. The motor is left
+    /// as it was.
+    #[pyo3(signature = (motion, stiffness, damping, *, start=None))]
     fn accompany<'py>(
         &self,
         py: Python<'py>,
-        position: &Bound<'py, PyAny>,
-        current: &Bound<'py, PyAny>,
-        dt: &Bound<'py, PyAny>,
+        motion: &Bound<'py, Motion>,
         stiffness: f64,
         damping: f64,
-        load: Option<&Bound<'py, PyAny>>,
-        temperature: Option<&Bound<'py, PyAny>>,
-        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Accompanied<'py>> {
-        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
-        let motion = measured.motion()?;
+        let motion = motion.get();
+        let measured = motion.measured();
         let stiffness = finite(py, "stiffness", stiffness)?;
         let pull = Pull { stiffness, damping: finite(py, "damping", damping)? };
         let start = self.start(py, start)?;
-        let rows = py.detach(|| {
-            let mut core = self.lock().clone();
-            if let Some(start) = &start {
-                core.prime(start);
-            }
-            core.accompany(&motion, pull)
-        });
+        let rows = py.detach(|| self.primed(start.as_deref()).accompany(&measured, pull));
         let (readings, efforts) = rows.or_input_error(py)?;
         Ok((PyArray1::from_vec(py, readings), PyArray1::from_vec(py, efforts)))
     }
 
     /// Exact derivatives of what `shoot` returns by parameters and start values; shape
     /// (parameters, windows). The motor is left as it was.
-    #[pyo3(signature = (
-        position, current, dt, weights, stride, parameters, *, load=None, temperature=None, enabled=None, start=None
-    ))]
-    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    #[pyo3(signature = (motion, weights, stride, parameters, *, start=None))]
     fn shoot_sensitivity<'py>(
         &self,
         py: Python<'py>,
-        position: &Bound<'py, PyAny>,
-        current: &Bound<'py, PyAny>,
-        dt: &Bound<'py, PyAny>,
+        motion: &Bound<'py, Motion>,
         weights: &Bound<'py, PyAny>,
         stride: i64,
         parameters: Vec<String>,
-        load: Option<&Bound<'py, PyAny>>,
-        temperature: Option<&Bound<'py, PyAny>>,
-        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
-        let motion = measured.motion()?;
+        let motion = motion.get();
+        let measured = motion.measured();
         let shots = Shots::read(weights, stride)?;
         let windows = shots.windows()?;
-        let primed = self.start(py, start)?;
-        let rows = py.detach(|| {
-            let core = self.lock().clone();
-            let start = Start { running: core.running(), primed: primed.as_deref() };
-            shoot_sensitivity(core.spec(), start, &motion, &windows, &parameters)
-        });
+        let rows = self.beside(py, start, |spec, start| {
+            shoot_sensitivity(spec, start, &measured, &windows, &parameters)
+        })?;
         let shape = [parameters.len(), windows.number(motion.samples())];
         PyArray1::from_vec(py, rows.or_input_error(py)?).reshape(shape)
     }
@@ -543,27 +500,20 @@ impl Motor {
     /// Exact derivatives of what `shoot` returns by an effort along +x that acts during one part of
     /// each window, for every of so many equal parts; shape (parts, windows). The motor is left as
     /// it was.
-    #[pyo3(signature = (position, current, dt, weights, stride, parts, *, load=None, temperature=None, enabled=None, start=None))]
-    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    #[pyo3(signature = (motion, weights, stride, parts, *, start=None))]
     fn shoot_response<'py>(
         &self,
         py: Python<'py>,
-        position: &Bound<'py, PyAny>,
-        current: &Bound<'py, PyAny>,
-        dt: &Bound<'py, PyAny>,
+        motion: &Bound<'py, Motion>,
         weights: &Bound<'py, PyAny>,
         stride: i64,
         parts: i64,
-        load: Option<&Bound<'py, PyAny>>,
-        temperature: Option<&Bound<'py, PyAny>>,
-        enabled: Option<&Bound<'py, PyAny>>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let measured = Measured::read(position, current, dt, [load, temperature, enabled])?;
-        let motion = measured.motion()?;
+        let motion = motion.get();
+        let measured = motion.measured();
         let shots = Shots::read(weights, stride)?;
         let windows = shots.windows()?;
-        let primed = self.start(py, start)?;
         let most = windows.weights.len();
         let Some(parts) = usize::try_from(parts).ok().filter(|n| (1..=most).contains(n)) else {
             return Err(input_error(
@@ -571,11 +521,9 @@ impl Motor {
                 format!("parts = {parts} is out of bounds: allowed is 1 to {most}, one a sample"),
             ));
         };
-        let rows = py.detach(|| {
-            let core = self.lock().clone();
-            let start = Start { running: core.running(), primed: primed.as_deref() };
-            shoot_response(core.spec(), start, &motion, &windows, parts)
-        });
+        let rows = self.beside(py, start, |spec, start| {
+            shoot_response(spec, start, &measured, &windows, parts)
+        })?;
         let shape = [parts, windows.number(motion.samples())];
         PyArray1::from_vec(py, rows.or_input_error(py)?).reshape(shape)
     }

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated, Any, TypeVar
 
 from cyclopts import Parameter
 
 from .. import catalogue
 from ..catalogue import EffectRecord, LawRecord, ParameterRecord
 from ..errors import InputError
+from ..json_text import worded
 from ..wording import did_you_mean, listed
 from .answer import answer, folder, json_of
 
@@ -39,7 +40,7 @@ def laws(
     records = catalogue.laws()
     _write(out, "laws", records)
     if name is None:
-        answer(_table(records), [record.to_dict() for record in records], as_json=json)
+        answer(_table(records), _data(records), as_json=json)
         return
     record = _find(name, records, "law")
     lines = [
@@ -55,7 +56,7 @@ def laws(
         for index, (word, meaning) in enumerate(option.choices):
             lines.append(f"  {word:<10} {meaning}{' (default)' if index == 0 else ''}")
     lines += ["", f"states a trajectory shows: {listed(record.outputs)}"]
-    answer("\n".join(lines), record.to_dict(), as_json=json)
+    answer("\n".join(lines), worded(record.to_dict()), as_json=json)
 
 
 def effects(
@@ -78,7 +79,7 @@ def effects(
     records = catalogue.effects()
     _write(out, "effects", records)
     if name is None:
-        answer(_table(records), [record.to_dict() for record in records], as_json=json)
+        answer(_table(records), _data(records), as_json=json)
         return
     record = _find(name, records, "effect")
     lines = [
@@ -93,13 +94,17 @@ def effects(
         "",
         *_parameters(record.parameters),
     ]
-    answer("\n".join(lines), record.to_dict(), as_json=json)
+    answer("\n".join(lines), worded(record.to_dict()), as_json=json)
 
 
 def _write(out: Path | None, name: str, records: Iterable[LawRecord | EffectRecord]) -> None:
     if out is not None:
-        text = json_of([record.to_dict() for record in records])
+        text = json_of(_data(records))
         (folder(out) / f"{name}.json").write_text(text + "\n", encoding="utf-8")
+
+
+def _data(records: Iterable[LawRecord | EffectRecord]) -> list[Any]:
+    return [worded(record.to_dict()) for record in records]
 
 
 def _table(records: Iterable[LawRecord | EffectRecord]) -> str:

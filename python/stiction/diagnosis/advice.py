@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from typing import Final
 
 from ..catalogue import EffectRecord, effects
+from ..plant import Plant
 from ..recording import Check
+from .remedies import recorded
 from .result import Advice, Cause, Unexplained
 from .words import joined
 
@@ -85,6 +87,7 @@ def advise(
     unexplained: Sequence[Unexplained],
     blind: Sequence[EffectRecord],
     checks: Sequence[tuple[str, Check]],
+    plant: Plant,
 ) -> tuple[Advice, ...]:
     """Experiments, the most useful first.
 
@@ -97,13 +100,15 @@ def advise(
         Effects that these data could not show.
     checks : sequence of (str, Check)
         Recording and what was found in it.
+    plant : Plant
+        Whether it is driven, or moved by a rig.
     """
     records = {record.name: record for record in effects()}
     advice: dict[str, Advice] = {}
 
     def add(plan: str, what: str, reason: str, separates: tuple[str, ...] = ()) -> None:
         # The first reason to record an experiment is the best one.
-        advice.setdefault(plan, Advice(f"{plan}: {what}", reason, separates))
+        advice.setdefault(plan, Advice(recorded(plan, what, plant), reason, separates))
 
     for cause in causes:
         names = (cause.name, *cause.look_alikes)

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from ..errors import NotEnoughData
+from ..fitting.forms import horizon_of, shows_its_ring
 from ..fitting.minimise import MOST_EVALUATIONS, launch
-from ..fitting.rows import primed
-from ..fitting.solve import fit, reweighted
+from ..fitting.solve import fit, settled
 from ..fitting.start import complete, free_paths
 from ..plant import Plant
+from ..recording import Recording
+from ..recording.split import split
 from .evidence import Evidence
-from .model import Model, fitted
+from .model import Model
 
-__all__ = ["base_of", "calibrated"]
+__all__ = ["based", "calibrated"]
 
 LOST: Final = 1e-3
 """An inertia that shrinks to this share of what the plant states, or of what the motion told at
@@ -28,7 +31,7 @@ SHOWS: Final = 0.3
 _logger = logging.getLogger(__name__)
 
 
-def calibrated(evidence: Evidence, plant: Plant) -> Plant:
+def calibrated(plant: Plant, recordings: Sequence[Recording]) -> Plant:
     """A plant whose gain is to be fitted, with the gain that its closed loop has.
 
     The gain scales what is measured here: fitted to an effort residual it would shrink until little
@@ -37,25 +40,51 @@ def calibrated(evidence: Evidence, plant: Plant) -> Plant:
     if not plant.servo or not any(path.startswith("drive.") for path in plant.parameters):
         return plant
     _logger.info("fitting the gain of the drive to its closed loop")
-    train = sorted({part.recording for part in evidence.split.train})
-    gauged = fit(plant, [evidence.recordings[index] for index in train]).plant
+    train = sorted({part.recording for part in split(recordings).train})
+    gauged = fit(plant, [recordings[index] for index in train]).plant
     return replace(gauged, drive={**gauged.drive, "torque_constant": gauged.gain})
 
 
-def base_of(evidence: Evidence, plant: Plant) -> Model:
-    """The plant fitted twice: the second time with recordings weighted by what is left in each."""
+def based(
+    plant: Plant, recordings: Sequence[Recording], *, threads: int | None = None
+) -> tuple[Evidence, Model]:
+    """A session and the base that is fitted to its rows of train.
+
+    The way is that of `stiction.fit`: a first pass from starts that the data give, a second with
+    recordings weighted by what the first left in each; where the first one shows that readings are
+    too coarse to drive friction, both on short simulations from there.
+
+    Returns
+    -------
+    Evidence
+        Seen through the residual that was chosen.
+    Model
+
+    Raises
+    ------
+    NotEnoughData
+        As for ``Evidence``; a base that lost the inertia that the motion shows.
+    """
+    evidence = Evidence(plant, recordings, threads=threads)
     starts = complete(plant, [rows.form for rows in evidence.train])
     paths = free_paths(starts[0])
-    first = Model(evidence, launch(starts, paths, evidence.train, most=MOST_EVALUATIONS))
-    if len(evidence.train) > 1:
-        reweighted(evidence.train, first.plant, first.nuisances)
-    else:
-        evidence.train[0].weight = 1.0 / max(np.sqrt(np.mean(first.residual**2)), 1e-300)
+    first = launch(starts, paths, evidence.train, most=MOST_EVALUATIONS)
+    horizon = None
+    if not first.interrupted:
+        horizon = horizon_of(first.plant, first.nuisances, evidence.train, evidence.forms)
+    if horizon is not None:
+        _logger.info("fitting it again, simulated over %.0f ms", 1e3 * horizon)
+        simulated = Evidence(
+            plant, recordings, threads=threads, horizon=horizon, watch=evidence.watch
+        )
+        again = launch([first.plant], paths, simulated.train, most=MOST_EVALUATIONS)
+        if shows_its_ring(again.plant, simulated.forms):
+            evidence, first = simulated, again
+    solution = settled(first, evidence.train, most=MOST_EVALUATIONS)
     evidence.weigh()
-    nuisances = primed(first.plant, evidence.train, first.nuisances)
-    base = fitted(evidence, first.plant, nuisances, most=MOST_EVALUATIONS)
+    base = Model(evidence, solution)
     _refuse_what_does_not_move(evidence, starts[0], base)
-    return base
+    return evidence, base
 
 
 def _refuse_what_does_not_move(evidence: Evidence, begin: Plant, base: Model) -> None:

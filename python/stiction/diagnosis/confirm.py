@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Final
 
-from .decide import Trial
 from .gain import HeldOut, gain_of
-from .model import Model
 from .rounds import Search
 
 __all__ = ["confirmed"]
@@ -19,9 +16,7 @@ NOT_KNOWN: Final = (
 )
 
 
-def confirmed(
-    selection: Search, test: HeldOut | None, seed: int, known: Callable[[Model, Trial], bool]
-) -> Search:
+def confirmed(selection: Search, test: HeldOut | None, seed: int) -> Search:
     """The selection without the last causes that the rows that test do not bear out.
 
     Rows that test choose nothing. They may take a name away, though: a plant that simulates worse
@@ -34,8 +29,6 @@ def confirmed(
     test : HeldOut or None
         Residuals of its models; without them nothing is taken away.
     seed : int
-    known : callable
-        Whether a fitted model knows a strength of its last cause from 0.
     """
     choices, rows = list(selection.choices), dict(selection.rows)
     while test is not None and choices:
@@ -44,7 +37,7 @@ def confirmed(
         winner = choices[last].winner
         if high < 0.0:
             reason = AGAINST
-        elif low <= 0.0 and not known(selection.models[last + 1], winner):
+        elif low <= 0.0 and not selection.models[last + 1].knows(winner.candidate):
             reason = NOT_KNOWN
         else:
             break

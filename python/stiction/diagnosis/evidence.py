@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import NotEnoughData
 from ..fitting.forms import forms_of, set_clocks
+from ..fitting.pushes import Watch
 from ..fitting.rows import Mask, Nuisances, Rows, rows_of
 from ..plant import Plant
 from ..recording import Part, Recording
@@ -80,9 +81,16 @@ class Evidence:
         Recordings looked at side by side; results do not depend on it.
     horizon : float, optional
         Length of the windows of a shooting residual, s; the weak form without it.
+    watch : Watch, optional
+        Who looks out for pushes from outside; without it a new one learns from the rows that may
+        be looked at.
 
     Attributes
     ----------
+    watch : Watch
+    pushes : list of Push
+        Times that no drive made: their rows are left out. Those among rows that test are added when
+        these are opened.
     train : list of Rows
         Fitted on.
     split : Split
@@ -111,6 +119,7 @@ class Evidence:
         *,
         threads: int | None = None,
         horizon: float | None = None,
+        watch: Watch | None = None,
     ) -> None:
         self.plant = plant
         self.recordings = list(recordings)
@@ -121,13 +130,16 @@ class Evidence:
         self.split: Split = split(self.recordings, edge_s=min(self.support, 0.25 * BLOCK_S))
         seen = {part.recording for part in (*self.split.train, *self.split.select)}
         set_clocks(self.forms, self.recordings, set(range(len(self.forms))) - seen)
+        shown_parts = (*self.split.train, *self.split.select)
+        self.watch = watch or Watch(plant, self.forms, self.recordings, shown_parts)
+        self.pushes = self.watch.look(shown_parts)
         self.train = self._rows(plant, self.split.train)
         if not self.train:
             raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
         self._select = self._masks(self.split.select)
         self._sealed = True
         # What may be looked at before the last decision: train and select, one under the other.
-        shown = self._masks((*self.split.train, *self.split.select))
+        shown = self._masks(shown_parts)
         self.shown = [Rows(plant, f, k, m) for k, (f, m) in enumerate(shown) if m.any()]
         self.cells = self._cells(self.shown)
         self.fitted = self._stacked(self._masks(self.split.train))
@@ -190,6 +202,7 @@ class Evidence:
         if not self._sealed:
             raise SealedError("the test rows were opened already")
         self._sealed = False
+        self.pushes += self.watch.look(self.split.test)
         rows = self._rows(self.plant, self.split.test)
         for each in rows:
             each.weight = self._weights[each.index]
@@ -205,7 +218,7 @@ class Evidence:
 
     def _masks(self, parts: Sequence[Part]) -> list[tuple[WeakForm, Mask]]:
         return [
-            (form, rows_of(form, recording, k, parts))
+            (form, rows_of(form, recording, k, parts, self.pushes))
             for k, (form, recording) in enumerate(zip(self.forms, self.recordings, strict=True))
         ]
 

@@ -12,8 +12,10 @@ import numpy as np
 
 from ..catalogue import effects
 from ..fitting.minimise import Solution, minimise
+from ..fitting.result import FitResult
 from ..fitting.rows import Nuisances, Rows, timing_bound
 from ..fitting.slopes import slopes
+from ..fitting.solve import evaluate
 from ..fitting.start import free_paths
 from ..parameter import Parameter
 from ..plant import Effect, Plant
@@ -92,6 +94,25 @@ class Model:
             columns = columns.copy()
             columns[:, len(self.solution.variables.paths)] = 0.0
         return columns
+
+    @cached_property
+    def told(self) -> FitResult:
+        """What the fit says: values and intervals."""
+        return evaluate(
+            self.solution,
+            self.evidence.train,
+            [],
+            begin=self.solution.begin,
+            described=self.evidence.split.describe(),
+            evaluations=self.solution.evaluations,
+            names=self.evidence.names,
+        )
+
+    def knows(self, candidate: Candidate) -> bool:
+        """Whether the interval of one of the gains of an effect leaves 0 out."""
+        paths = (f"effects.{candidate.name}.{name}" for name in candidate.gains)
+        intervals = (self.told.parameters[path].ci95 for path in paths)
+        return any(low > 0.0 or high < 0.0 for low, high in intervals)
 
     def strength(self, candidate: Candidate) -> float:
         """Gains of an effect over their standard errors: √(γᵀC⁻¹γ), C over blocks of 1 s.
@@ -247,14 +268,21 @@ def without_effect(plant: Plant, name: str) -> Plant:
 
 
 def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> Plant:
-    """The plant with one more effect, or a second wave of one, which starts from these gains."""
+    """The plant with one more effect, or a second wave of one, which starts from these gains.
+
+    What lies beyond the bounds of the catalogue starts at its bound: a multiple of an estimated
+    gain, or an estimate for a second wave, which may be less large than a first one.
+    """
+    bounds = {p.name: p.bounds for p in candidate.record.parameters}
     parameters = {
-        name: Parameter(float(value)) for name, value in zip(candidate.gains, gains, strict=True)
+        name: Parameter(float(np.clip(np.nan_to_num(value), *bounds[name])))
+        for name, value in zip(candidate.gains, gains, strict=True)
     }
     for name, value in candidate.shape.items():
         low, high = candidate.limits.get(name, (None, None))
         fixed = name not in candidate.free
-        parameters[candidate.own(name)] = Parameter(value, low, high, fixed=fixed)
+        own = candidate.own(name)
+        parameters[own] = Parameter(float(np.clip(value, *bounds[own])), low, high, fixed=fixed)
     kept = []
     for effect in plant.effects:
         if candidate.second and effect.name == candidate.name:

@@ -12,23 +12,21 @@ import numpy as np
 
 from .. import __version__
 from ..errors import InputError, NotEnoughData
-from ..fitting.forms import horizon_of
 from ..fitting.forms import told as residual_told
+from ..fitting.pushes import told as pushes_told
 from ..fitting.result import FitResult
-from ..fitting.solve import evaluate
 from ..plant import Effect, Plant
 from ..recording import Check, Recording
-from ..recording.checks import check
 from ..recording.split import name_of
+from ..recording.usable import checks_of, usable
 from ..session import Session
 from ..trajectory import FloatArray
 from .advice import advise
-from .base import base_of, calibrated
-from .candidates import left_out, scales_of
+from .base import based, calibrated
+from .candidates import Scales, left_out, scales_of
 from .ceiling import ceiling_of
 from .confirm import confirmed
 from .coordinates import Look, looks
-from .decide import Trial
 from .evidence import Evidence
 from .gain import HeldOut, gain_of, open_residuals
 from .laws import THE_LAW, Rival, better_law, law_names, law_rows, rivals_of
@@ -38,9 +36,11 @@ from .loop import replayed
 from .model import Model
 from .noise import Noise
 from .omnibus import Rest, rest
+from .orders import open_orders
 from .own import own_view
 from .pictures import Pictures, Stretch
 from .regression import refitted
+from .remedies import meant
 from .replay import centre, surrogate_residuals
 from .result import Cause, Diagnosis, ModelSummary, Unexplained
 from .rounds import Search, friction_of, search
@@ -52,6 +52,14 @@ __all__ = ["SURROGATES", "diagnose"]
 
 SURROGATES: Final = 24
 """Replays of the base with noise; more make thresholds smoother and cost in proportion."""
+
+MOST_TOLD: Final = 3
+"""Pushes that the sentence names."""
+TRAIN_IS_FITTED: Final = (
+    "Parameters are fitted to the rows of train alone; stiction fit takes those of select as well "
+    "and may end at values a little different."
+)
+"""Where a fit of the same session and the base differ; everything else they do alike."""
 
 _logger = logging.getLogger(__name__)
 
@@ -107,7 +115,7 @@ def diagnose(
     _check_numbers(surrogates, seed, threads)
     unwanted = left_out(without)
     others = law_names(laws, machine.friction.law)
-    checks = [(name_of(r, k), c) for k, r in enumerate(whole) for c in check(r)]
+    checks = checks_of(whole.recordings)
     data: dict[str, Any] = {
         "checks": [
             *({"recording": name, **c.to_dict()} for name, c in _repairs(whole)),
@@ -130,7 +138,7 @@ def diagnose(
     usable, fault = _usable(checks, whole)
     if usable is None:
         found = replace(
-            found, verdict="data_fault", sentence=fault, advice=advise((), (), (), checks)
+            found, verdict="data_fault", sentence=fault, advice=advise((), (), (), checks, machine)
         )
     else:
         try:
@@ -175,33 +183,16 @@ def _repairs(session: Session) -> list[tuple[str, Check]]:
 
 def _usable(checks: Sequence[tuple[str, Check]], session: Session) -> tuple[Session | None, str]:
     """The recordings without a fault, None where too few are left, and in words what is wrong."""
-    names = [name_of(recording, index) for index, recording in enumerate(session)]
-    # What could not be mended on reading is a whole sentence, which names file and remedy itself.
-    told = {
-        name: sentence
-        for name, recording in zip(names, session, strict=True)
-        for sentence in recording.faults
-    }
-    for name, c in checks:
-        if c.verdict == "fault":
-            told.setdefault(name, f"{name}: {c.what}; {c.try_}")
-    if not told:
-        return session, ""
-    kept = [r for name, r in zip(names, session, strict=True) if name not in told]
-    first = next(iter(told.values())).rstrip(".")
-    more = f" ({len(told) - 1} more stand among the data checks)" if len(told) > 1 else ""
-    roles = {recording.role for recording in session}
-    lost = {role for role in roles if role and role not in {r.role for r in kept}}
-    if 2 * len(kept) < len(names) or "train" in lost:
-        return None, f"The data cannot be used: {first}.{more}"
-    left_out = "1 recording is" if len(told) == 1 else f"{len(told)} recordings are"
-    places = {k: j for j, k in enumerate(k for k, name in enumerate(names) if name not in told)}
+    kept, told = usable(session.recordings, checks)
+    if kept is None or len(kept) == len(session):
+        return None if kept is None else session, told
+    places = {k: j for j, k in enumerate(kept)}
     repeats = {
         places[k]: places[of]
         for k, of in session.replicates.items()
         if k in places and of in places
     }
-    return Session(kept, session.plant, repeats), f"{left_out} left out: {first}.{more}"
+    return Session([session.recordings[k] for k in kept], session.plant, repeats), told
 
 
 def _testable(
@@ -215,22 +206,16 @@ def _testable(
 ) -> Diagnosis:
     """The diagnosis of data that can be used."""
     _logger.info("looking through %d recordings", len(session))
-    evidence = Evidence(found.plant, session.recordings, threads=threads)
-    gauged = calibrated(evidence, found.plant)
-    if gauged is not found.plant:
-        found = replace(found, plant=gauged)
-        evidence = Evidence(gauged, session.recordings, threads=threads)
+    found = replace(found, plant=calibrated(found.plant, session.recordings))
     _logger.info("fitting the base")
-    base = base_of(evidence, found.plant)
-    horizon = horizon_of(base.plant, base.nuisances, evidence.train, evidence.forms)
-    if horizon is not None:
-        _logger.info("fitting it again, simulated over %.0f ms", 1e3 * horizon)
-        evidence = Evidence(found.plant, session.recordings, threads=threads, horizon=horizon)
-        base = base_of(evidence, base.plant)
-    found = replace(found, split=evidence.split.describe())
+    evidence, base = based(found.plant, session.recordings, threads=threads)
+    dealt = evidence.split.to_dict()
+    told = [TRAIN_IS_FITTED] if evidence.split.select else []
+    dealt["rules"] = [*dealt["rules"], *told]
+    found = replace(found, split="\n".join([evidence.split.describe(), *told]))
     data = {
         **found.data,
-        "split": evidence.split.to_dict(),
+        "split": dealt,
         "residual": residual_told([rows.form for rows in evidence.shown]),
     }
     _logger.info("replaying it with noise, %d times", surrogates)
@@ -246,9 +231,7 @@ def _testable(
     models = [*selection.models, *(rival.model for rival in rivals if rival.model is not None)]
     test = open_residuals(evidence, [(m.plant, m.nuisances) for m in models])
     first_rival = len(selection.models)
-    selection = confirmed(
-        selection, test, found.seed, lambda model, trial: _strength_is_known(evidence, model, trial)
-    )
+    selection = confirmed(selection, test, found.seed)
     final = selection.models[-1]
     clocks = session.starts
     scales = scales_of(evidence, base.plant)
@@ -285,7 +268,28 @@ def _testable(
         null,
         checks,
     )
+    found = _with_pushes(found, evidence)
     return replayed(replace(found, ceiling=ceiling), evidence, base, final)
+
+
+def _with_pushes(found: Diagnosis, evidence: Evidence) -> Diagnosis:
+    """What was left out because something pushed the machine, in the sentence and the checks."""
+    checks = pushes_told(evidence.pushes, evidence.names)
+    if not checks:
+        return found
+    words = " ".join(
+        f"{c.what[0].upper()}{c.what[1:]} in {name}; {c.means}." for name, c in checks[:MOST_TOLD]
+    )
+    if len(checks) > MOST_TOLD:
+        words += f" {len(checks) - MOST_TOLD} more stand among the data checks."
+    data = {
+        **found.data,
+        "checks": [
+            *found.data["checks"],
+            *({"recording": name, **c.to_dict()} for name, c in checks),
+        ],
+    }
+    return replace(found, sentence=f"{found.sentence} {words}", data=data)
 
 
 def _noise_entry(evidence: Evidence, index: int, noise: Noise) -> dict[str, Any]:
@@ -316,7 +320,8 @@ def _concluded(
     first_rival, rivals = compared
     base, final = selection.models[0], selection.models[-1]
     floor = _floor(evidence, null)
-    results = {id(m): _evaluated(evidence, m) for m in (base, final)}
+    scales = scales_of(evidence, base.plant)
+    results = {id(m): _evaluated(m, scales) for m in (base, final)}
     baseline = _summary(evidence, base, results[id(base)], test, 0, floor)
     extended = _summary(evidence, final, results[id(final)], test, len(selection.choices), floor)
     better, own_law = better_law(rivals), base.plant.friction.law
@@ -333,6 +338,7 @@ def _concluded(
             for path, p in results[id(final)].parameters.items()
             if path.startswith(f"effects.{record.name}.")
         }
+        means, remedy = meant(record, final.plant)
         causes.append(
             Cause(
                 name=record.name,
@@ -342,8 +348,8 @@ def _concluded(
                 parameters=fitted_values,
                 gain=None if test is None else gain_of(test, k, k + 1, found.seed),
                 what=what(record, fitted_values, _effect(final.plant, record.name)),
-                means=record.means,
-                try_=record.remedy,
+                means=means,
+                try_=remedy,
                 coordinate=record.coordinate,
             )
         )
@@ -380,7 +386,7 @@ def _concluded(
         advice=(
             *([] if better is None else [better.advice()]),
             *([] if event is None else [event.advice()]),
-            *advise(causes, unexplained, selection.blind, checks),
+            *advise(causes, unexplained, selection.blind, checks, final.plant),
         ),
         success=not selection.interrupted,
         message=(
@@ -420,24 +426,8 @@ def _effect(plant: Plant, name: str) -> Effect:
     return next(effect for effect in plant.effects if effect.name == name)
 
 
-def _strength_is_known(evidence: Evidence, model: Model, trial: Trial) -> bool:
-    """Whether the interval of one of its strengths leaves 0 out."""
-    values = _evaluated(evidence, model).parameters
-    own = (trial.candidate.own(gain) for gain in trial.candidate.record.gains)
-    strengths = (values[f"effects.{trial.name}.{name}"].ci95 for name in own)
-    return any(low > 0.0 or high < 0.0 for low, high in strengths)
-
-
-def _evaluated(evidence: Evidence, model: Model) -> FitResult:
-    return evaluate(
-        model.solution,
-        evidence.train,
-        [],
-        begin=model.solution.begin,
-        described=evidence.split.describe(),
-        evaluations=model.solution.evaluations,
-        names=evidence.names,
-    )
+def _evaluated(model: Model, scales: Scales) -> FitResult:
+    return replace(model.told, parameters=open_orders(model.told.parameters, scales))
 
 
 def _summary(

@@ -308,7 +308,7 @@ class Diagnosis:
         }
 
     def to_json(self) -> str:
-        """findings.json as text."""
+        """findings.json as text; null stands for an end of an interval that the data leave open."""
         from ..json_text import json_of
 
         return json_of(self.to_dict())

@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 
-from ..catalogue import EffectRecord
 from ..fitting.rows import Nuisances
 from ..plant import Effect, Plant
 from ..trajectory import FloatArray
@@ -252,7 +251,7 @@ class _Scan:
             if inverse is None:
                 gains.append(np.zeros(len(product)))
                 continue
-            best = _bounded(candidate.record, inverse @ product)
+            best = _bounded(candidate, inverse @ product)
             gains.append(best)
             explained[k] = 2.0 * float(best @ product) - float(best @ self.normal[k] @ best)
         return gains, explained
@@ -309,10 +308,12 @@ def _threshold(noise: FloatArray, turned: FloatArray) -> float:
     )
 
 
-def _bounded(record: EffectRecord, gains: FloatArray) -> FloatArray:
+def _bounded(candidate: Candidate, gains: FloatArray) -> FloatArray:
     """Gains within their bounds: a delay is not negative."""
-    bounds: Mapping[str, tuple[float, float]] = {p.name: p.bounds for p in record.parameters}
-    low, high = np.array([bounds[name] for name in record.gains]).T
+    bounds: Mapping[str, tuple[float, float]] = {
+        p.name: p.bounds for p in candidate.record.parameters
+    }
+    low, high = np.array([bounds[name] for name in candidate.gains]).T
     clipped: FloatArray = np.clip(gains, low, high)
     return clipped
 
@@ -332,8 +333,8 @@ def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) ->
             inverse = _inverse(part.fit.T @ part.fit)
             gains = np.zeros(part.fit.shape[1])
             if inverse is not None:
-                record = signatures.candidates[index].record
-                gains = _bounded(record, inverse @ (part.fit.T @ residual.fit))
+                candidate = signatures.candidates[index]
+                gains = _bounded(candidate, inverse @ (part.fit.T @ residual.fit))
             left = residual.held - part.held @ gains
             after[index] += np.bincount(block, left**2, number)
     shares = {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from ..fitting.result import FitParameter
 from ..plant import Effect
 from ..report.scale import loop_scale_of
 from ..wording import counted
+from .orders import order_words
 
 if TYPE_CHECKING:
     from .gain import Gain
@@ -44,7 +46,9 @@ def value_words(name: str, parameter: FitParameter) -> str:
     """A parameter with its interval: ``"bias 3.1 N (2.6 to 3.6)"``."""
     low, high = parameter.ci95
     unit = "" if parameter.unit == "1" else f" {parameter.unit}"
-    return f"{name} {parameter.value:.4g}{unit} ({low:.3g} to {high:.3g})"
+    known = math.isfinite(low) and math.isfinite(high)
+    interval = f"{low:.3g} to {high:.3g}" if known else "not determined"
+    return f"{name} {parameter.value:.4g}{unit} ({interval})"
 
 
 def gain_words(gain: Gain | None) -> str:
@@ -60,7 +64,10 @@ def gain_words(gain: Gain | None) -> str:
 
 def what(record: EffectRecord, parameters: Mapping[str, FitParameter], effect: Effect) -> str:
     """What was found of an effect, with its fitted values, and orders that were chosen."""
-    values = [value_words(path.rsplit(".", 1)[-1], p) for path, p in parameters.items()]
+    values = [
+        order_words(path, p) or value_words(path.rsplit(".", 1)[-1], p)
+        for path, p in parameters.items()
+    ]
     chosen = [shape.parameter for shape in record.shapes if shape.scale == "order"]
     chosen += [name for name in record.second if name not in record.gains and "order" in name]
     values += [

@@ -17,7 +17,7 @@ from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .rows import Nuisances, Rows
 
-__all__ = ["EVERY_S", "forms_of", "horizon_of", "set_clocks", "told"]
+__all__ = ["EVERY_S", "forms_of", "horizon_of", "set_clocks", "shows_its_ring", "told"]
 
 EVERY_S: Final = 0.005
 """Spacing of the weak-form residual: the kernel leaves nothing between."""
@@ -135,7 +135,7 @@ def horizon_of(
         return None
     reach = friction["coulomb"].value / friction["initial_stiffness"].value
     step = float(np.median([_step(each.form) for each in rows]))
-    if reach >= FEWEST_COUNTS * step:
+    if reach >= FEWEST_COUNTS * step or not shows_its_ring(plant, forms):
         return None
     left = [each.residual(plant, nuisances)[each.mask] for each in rows]
     measured = [each.form.measured(plant)[each.mask] for each in rows]
@@ -145,6 +145,16 @@ def horizon_of(
     stiffness = friction["initial_stiffness"].value
     rings = RINGS * 2.0 * np.pi * float(np.sqrt(plant.inertia / stiffness))
     return float(np.clip(max(drifts, rings), *HORIZONS_S))
+
+
+def shows_its_ring(plant: Plant, forms: Sequence[WeakForm]) -> bool:
+    """Whether samples follow a machine that rings on its pre-sliding stiffness.
+
+    Of a faster ring no reading tells, and each sample would be simulated in thousands of parts.
+    """
+    stiffness = plant.friction.parameters["initial_stiffness"].value
+    ring = float(np.sqrt(stiffness / plant.inertia))
+    return ring * max(form.dt for form in forms) < np.pi
 
 
 def told(forms: Sequence[WeakForm]) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
 from ..errors import InputError
+from ..json_text import json_of
 from ..plant import Plant
 from ..trajectory import FloatArray
 from ..wording import did_you_mean
@@ -185,5 +185,5 @@ class FitResult:
         }
 
     def to_json(self) -> str:
-        """Everything as JSON."""
-        return json.dumps(self.to_dict(), indent=2, ensure_ascii=False)
+        """Everything as JSON; null stands for what the data do not determine."""
+        return json_of(self.to_dict())

@@ -18,6 +18,7 @@ from .statistics import CORRELATED_S
 __all__ = [
     "Mask",
     "Nuisances",
+    "Push",
     "Rows",
     "Start",
     "begun",
@@ -105,13 +106,48 @@ def warm(form: WeakForm, recording: Recording) -> Mask:
     return after
 
 
-def rows_of(form: WeakForm, recording: Recording, index: int, parts: Sequence[Part]) -> Mask:
-    """Rows of a form that lie in these parts, the warm-up left out."""
+@dataclass(frozen=True)
+class Push:
+    """A time in which something else than the drive moved the machine.
+
+    Attributes
+    ----------
+    recording : int
+        Index in the session.
+    start, end : float
+        s since the first row of the recording.
+    sure : bool
+        Rows alike elsewhere show that it was not the machine.
+    """
+
+    recording: int
+    start: float
+    end: float
+    sure: bool = True
+
+    def words(self) -> str:
+        """That in words."""
+        told = f"something pushed the machine from {self.start:.1f} s to {self.end:.1f} s"
+        return told if self.sure else f"{told}, or it does there what it does nowhere else"
+
+
+def rows_of(
+    form: WeakForm,
+    recording: Recording,
+    index: int,
+    parts: Sequence[Part],
+    pushes: Sequence[Push] = (),
+) -> Mask:
+    """Rows of a form that lie in these parts, the warm-up and pushes left out."""
     chosen = np.zeros(len(form), dtype=bool)
     for part in parts:
         if part.recording == index:
             first, last = recording.time[part.start], recording.time[part.stop - 1]
             chosen |= (form.time >= first) & (form.time <= last)
+    for push in pushes:
+        if push.recording == index:
+            time = form.time - recording.time[0]
+            chosen &= (time < push.start) | (time > push.end)
     return chosen & warm(form, recording)
 
 

@@ -12,10 +12,12 @@ from ..errors import InputError, NotEnoughData
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
-from ..recording.split import BLOCK_S, split
+from ..recording.split import BLOCK_S, name_of, split
+from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
-from .forms import forms_of, horizon_of, set_clocks
+from .forms import forms_of, horizon_of, set_clocks, shows_its_ring
 from .minimise import MOST_EVALUATIONS, Solution, launch, minimise
+from .pushes import Watch, told
 from .result import FitParameter, FitResult
 from .rows import Nuisances, Rows, primed, rows_of
 from .slopes import slopes
@@ -23,18 +25,24 @@ from .start import complete, free_paths
 from .statistics import (
     correlations,
     covariance,
+    echoes,
     interval_width,
     jackknife,
     undetermined_directions,
 )
 from .variables import Variables, unit_of
 
-__all__ = ["evaluate", "fit", "reweighted"]
+__all__ = ["evaluate", "fit", "reweighted", "settled"]
 
 AT_BOUND: Final = 1e-6
 """A value that has come this much of the way to its bound stands at it."""
 NEAR_BOUND: Final = 1e-3
 """And no value is at a bound that is further off than this share of the box."""
+SELECT_IS_FITTED: Final = (
+    "A fit decides nothing, so the rows of select are fitted as well; a diagnosis decides by them, "
+    "fits those of train alone, and may end at values a little different."
+)
+"""The one thing in which a fit and the base of a diagnosis differ."""
 WEIGHT_FLOOR: Final = 0.1
 """A recording weighs at most this many times less residual than the worst one has."""
 
@@ -56,6 +64,7 @@ class _Seen:
         horizon: float | None = None,
         *,
         loop: bool = False,
+        watch: Watch | None = None,
     ) -> None:
         self.forms = forms_of(
             plant,
@@ -64,13 +73,19 @@ class _Seen:
             horizon=horizon,
             loop=loop,
         )
-        set_clocks(self.forms, recordings)
         self.parts = _deal(recordings, max(form.kernel.support for form in self.forms))
+        fitted = {part.recording for part in self.parts.train}
+        set_clocks(self.forms, recordings, set(range(len(self.forms))) - fitted)
+        self.watch = watch or Watch(plant, self.forms, recordings, self.parts.train)
+        self.pushes = sorted(
+            (*self.watch.look(self.parts.train), *self.watch.look(self.parts.test)),
+            key=lambda push: (push.recording, push.start),
+        )
         self.train: list[Rows] = []
         self.held: list[Rows] = []
         for index, (form, recording) in enumerate(zip(self.forms, recordings, strict=True)):
             for chosen, own in ((self.train, self.parts.train), (self.held, self.parts.test)):
-                mask = rows_of(form, recording, index, own)
+                mask = rows_of(form, recording, index, own, self.pushes)
                 if mask.any():
                     chosen.append(Rows(plant, form, index, mask))
         if not self.train:
@@ -111,13 +126,14 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     recordings = [session] if isinstance(session, Recording) else list(session)
     if not recordings:
         raise InputError("there are no recordings to fit; give at least one")
+    recordings, faults = _without_faults(recordings)
     seen = _Seen(plant, recordings)
     train = seen.train
     starts = complete(plant, [each.form for each in train])
     paths = free_paths(starts[0])
     if not paths:
         raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
-    first = solution = launch(starts, paths, train, most=max_evaluations)
+    first = launch(starts, paths, train, most=max_evaluations)
     evaluations = first.evaluations
     begin = first.begin
     horizon = None
@@ -125,35 +141,56 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         horizon = horizon_of(first.plant, first.nuisances, train, seen.forms)
     servo = plant.servo and not first.interrupted
     if horizon is not None or servo:
-        seen = _Seen(first.plant, recordings, horizon, loop=servo)
-        train = seen.train
+        simulated = _Seen(first.plant, recordings, horizon, loop=servo, watch=seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
         begun = [first.plant, starts[0]] if servo else [first.plant]
-        first = solution = launch(begun, paths, train, most=max_evaluations)
-        evaluations += first.evaluations
-    if len(train) > 1 and not first.interrupted:
-        reweighted(train, first.plant, first.nuisances)
-        solution = minimise(
-            first.plant,
-            paths,
-            train,
-            most=max_evaluations,
-            nuisances=primed(first.plant, train, first.nuisances),
-        )
+        again = launch(begun, paths, simulated.train, most=max_evaluations)
+        evaluations += again.evaluations
+        if servo or shows_its_ring(again.plant, simulated.forms):
+            seen, train, first = simulated, simulated.train, again
+    solution = settled(first, train, most=max_evaluations)
+    if solution is not first:
         evaluations += solution.evaluations
+    names = [name_of(recording, k) for k, recording in enumerate(recordings)]
+    pushed = [f"{name}: {c.what}; {c.means}." for name, c in told(seen.pushes, names)]
     return evaluate(
         solution,
         train,
         seen.held,
         begin=begin,
-        described=seen.parts.described,
+        described="\n".join([*faults, *pushed, seen.parts.described]),
         evaluations=evaluations,
-        names=[_name(recording, k) for k, recording in enumerate(recordings)],
+        names=names,
     )
 
 
-def _name(recording: Recording, index: int) -> str:
-    return recording.path.name if recording.path is not None else f"recording {index + 1}"
+def _without_faults(recordings: list[Recording]) -> tuple[list[Recording], list[str]]:
+    """The recordings that a diagnosis would use, and in words what is wrong with the others.
+
+    Where too few are left, all of them: a fit says how well it does, whatever it is given.
+    """
+    kept, fault = usable(recordings, checks_of(recordings))
+    if kept is None:
+        return recordings, [fault.replace("cannot be used", "are fitted, though they have a fault")]
+    return [recordings[k] for k in kept], [fault] if fault else []
+
+
+def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
+    """The second pass, with recordings weighted by what the first left in each.
+
+    A fit that was interrupted stays as it is. Fit and diagnosis both end here, so that the same
+    rows give both the same machine.
+    """
+    if first.interrupted:
+        return first
+    reweighted(rows, first.plant, first.nuisances)
+    return minimise(
+        first.plant,
+        first.variables.paths,
+        rows,
+        most=most,
+        nuisances=primed(first.plant, rows, first.nuisances),
+    )
 
 
 def reweighted(rows: Sequence[Rows], plant: Plant, nuisances: Nuisances) -> None:
@@ -173,11 +210,15 @@ def _deal(recordings: Sequence[Recording], support: float) -> _Parts:
     only = recordings[0]
     if len(recordings) == 1 and only.duration < FEWEST_BLOCKS * BLOCK_S * (1.0 - SHORT_SHARE):
         whole = Part(0, 0, len(only))
-        told = f"The recording lasts {only.duration:.3g} s: all of it is fitted, none held out."
-        return _Parts((whole,), (), told)
+        described = (
+            f"The recording lasts {only.duration:.3g} s: all of it is fitted, none held out."
+        )
+        return _Parts((whole,), (), described)
     dealt = split(recordings, edge_s=min(support, 0.25 * BLOCK_S))
-    # Only a diagnosis needs rows to decide on: a fit uses them to fit.
-    return _Parts((*dealt.train, *dealt.select), dealt.test, dealt.describe())
+    described = dealt.describe()
+    if dealt.select:
+        described += f"\n{SELECT_IS_FITTED}"
+    return _Parts((*dealt.train, *dealt.select), dealt.test, described)
 
 
 def evaluate(
@@ -211,9 +252,14 @@ def evaluate(
     residuals = [each.weight * each.residual(plant, nuisances)[each.mask] for each in train]
     matrix, pieces = covariance(jacobians, residuals, [each.per_block for each in train])
     matrix = matrix[: len(paths), : len(paths)]
-    flat = undetermined_directions([j[:, : len(paths)] for j in jacobians], paths)
-    dead = {path for group in flat for path in group}
+    own = [j[:, : len(paths)] for j in jacobians]
+    flat = undetermined_directions(own, paths)
     values, starts = variables.values(solution.vector), variables.values(begin)
+    given = [each.weight * each.form.measured(plant)[each.mask] for each in train]
+    pure = [unit_of(plant, path) == "1" for path in paths]
+    found = echoes(own, given, residuals, values, paths, pure)
+    flat += [group for group in found if group not in flat]
+    dead = {path for group in flat for path in group}
     errors = np.sqrt(np.maximum(np.diag(matrix), 0.0))
     sides = _sides(variables, solution.vector, begin, errors)
     width = interval_width(pieces)

@@ -13,6 +13,7 @@ __all__ = [
     "CORRELATED_S",
     "correlations",
     "covariance",
+    "echoes",
     "interval_width",
     "jackknife",
     "undetermined_directions",
@@ -24,6 +25,14 @@ FEWEST_RECORDINGS: Final = 4
 """Fewer recordings say nothing of how parameters differ from one to the next."""
 ALONE: Final = 1e-10
 """Directions with less than this share of the steepest curvature belong to one recording alone."""
+ECHO: Final = 0.98
+"""Derivatives that go with the size of the measured effort as closely as this repeat it."""
+ECHO_TIMES: Final = 3.0
+"""What of them no other parameter explains has to stand above the noise of the effort this far."""
+SELF: Final = 0.05
+"""What is less of the effort than this is nothing: the rest would be explained by the effort."""
+PART: Final = 0.1
+"""Share of a derivative, or of its own value, from which on a parameter has part in it."""
 FLAT: Final = 1e-5
 """A direction with less than this share of the steepest one's slope is not determined."""
 
@@ -127,3 +136,61 @@ def undetermined_directions(
             members = live[np.abs(direction) > 0.1 * largest]
             groups.append([paths[k] for k in members])
     return dead + groups
+
+
+def echoes(
+    jacobians: Sequence[FloatArray],
+    measured: Sequence[FloatArray],
+    residuals: Sequence[FloatArray],
+    values: FloatArray,
+    paths: Sequence[str],
+    shares_of_effort: Sequence[bool],
+) -> list[list[str]]:
+    """Groups in which friction per measured effort is not told from what the effort balances.
+
+    Where friction is a share K of the effort that is measured, (1 − K)·u = J·a + F: with K the
+    inertia and all other friction may scale together, and what is left scales with them: down to
+    nothing at K = 1. Only what of u they do not explain tells K, and where that is the noise of u,
+    K is not told, however many rows there are.
+
+    Parameters
+    ----------
+    jacobians : sequence of numpy.ndarray, shape (n_i, p)
+    measured, residuals : sequence of numpy.ndarray, shape (n_i,)
+        Measured effort and what is left of it, weighted as the derivatives.
+    values : numpy.ndarray, shape (p,)
+    paths : sequence of str, length p
+    shares_of_effort : sequence of bool, length p
+        Which may be a share of the effort: pure numbers. The derivative by viscous friction goes
+        with the effort as well where there is little else, and is well told.
+    """
+    matrix, effort = np.vstack(jacobians), np.concatenate(measured)
+    rest = np.concatenate(residuals)
+    sizes = np.sqrt(np.sum(matrix**2, axis=0))
+    live = np.flatnonzero(sizes > 0.0).tolist()
+    groups = []
+    for k in live:
+        if not shares_of_effort[k]:
+            continue
+        column, others = matrix[:, k], [j for j in live if j != k]
+        # A body at rest holds whatever effort there is: no share shows there.
+        moves = np.abs(column) > 1e-6 * np.max(np.abs(column))
+        level = float(np.linalg.norm(effort[moves]))
+        likeness = float(np.abs(column[moves]) @ np.abs(effort[moves]))
+        if not others or likeness <= ECHO * sizes[k] * level:
+            continue
+        noise = float(np.linalg.norm(rest[moves])) / level
+        scaled = matrix[:, others] / sizes[others]
+        shares, *_ = np.linalg.lstsq(scaled, column, rcond=FLAT)
+        # What of the effort is not taken as a share of itself.
+        kept = abs(1.0 - abs(float(values[k])) * sizes[k] / level)
+        left = float(np.linalg.norm(column - scaled @ shares)) / sizes[k]
+        if kept < SELF:
+            groups.append([paths[j] for j in sorted([k, *others])])
+        elif left < ECHO_TIMES * noise / kept:
+            # Inertia may scale along and yet give a small part of the effort.
+            own = np.abs(shares) / sizes[others] > PART * np.abs(values[others])
+            large = (np.abs(shares) > PART * sizes[k]) | (own & (values[others] != 0.0))
+            part = [j for j, belongs in zip(others, large, strict=True) if belongs]
+            groups.append([paths[j] for j in sorted([k, *part])])
+    return groups

@@ -19,7 +19,9 @@ from .._native import FrictionModel
 from ..errors import InputError
 from ..motor import Motor
 from ..trajectory import FloatArray
+from .cautions import assumed, stairs
 from .graphical import Recorded, Steps, branch_curve, read_off
+from .readings import Evidence, count_of, evidence, noise_of
 from .result import MotionResult, Number, Result
 from .rig import ARC_SECOND, ILLUSTRATIVE_RIG
 
@@ -57,12 +59,14 @@ _PRIOR: Final = 1.5
 _DETERMINED: Final = 0.35
 """A parameter whose logarithm is known to no better than this is not determined: ±70 % or more."""
 _QUANTILE: Final = 1.96
-_STAIRS: Final = 0.75
-"""Share of readings equal to the last; noise of a quarter of a count and more gives fewer."""
-_LEVELS: Final = 3
-"""Levels of torque from which on a power of it can be told from another curve."""
 _BLOCK: Final = 0.1  # s; residuals within a block may be correlated as they like
 _ITERATIONS: Final = 40
+_LEAST: Final = 1e-7  # fall of the cost of a reading that is worth another step
+_ROUNDS: Final = 20  # of noise and fit in turn
+_SETTLED: Final = 0.003  # change of the noise that is none
+_ROUGH: Final = 0.45  # counts; rounding is then noise like any other
+_QUIET: Final = 0.25  # counts; least squares see little of less noise
+_ALIKE: Final = 0.1  # of the cost: what lies as near as this the readings do not tell apart
 _CURVE: Final = np.linspace(2.0, 40.0, 39) * ARC_SECOND
 
 
@@ -170,15 +174,17 @@ def estimate(
 
     Notes
     -----
-    Least squares on the positions with exact derivatives, by the logarithms of the parameters,
+    Maximum likelihood of the positions with exact derivatives, by the logarithms of the parameters,
     k_inf as a share of k_0, and f at the middle of the torques in place of c. A weak prior (a
     factor of 4.5 either way) keeps undetermined parameters where they are; where recordings
     determine a parameter it has no weight. Intervals allow for residuals that are correlated
     within 0.1 s.
 
-    k_0, k_inf and d_0 trade against each other: look at the curve, not at them. α is biased where
-    an encoder without noise rounds the creep; the ring's decrement overstates C_s, the simulation
-    does not.
+    Where there is less noise than half a count, readings are taken as intervals: the position, with
+    the noise before rounding, lay within half a count of each; that noise is estimated along.
+
+    k_0, k_inf and d_0 trade against each other: look at the curve, not at them. The ring's
+    decrement overstates C_s, the simulation does not.
 
     Source
     ------
@@ -220,34 +226,64 @@ class _Fit:
         self._prior = self._variables(guess)
         spread = np.concatenate([np.diff(record.position) for record in records])
         self._noise = float(np.std(spread) / math.sqrt(2.0)) or 1.0
+        self._counts = np.concatenate(
+            [np.full(len(record.position), count_of(record.position)) for record in records]
+        )
 
     def run(self, steps: Steps) -> Estimate:
         """Iterate to the end and sum up."""
-        x, damping = self._prior.copy(), 1e-3
-        residual, jacobian = self._residual(x, derivatives=True)
-        assert jacobian is not None
-        cost, message, success = self._cost(x, residual), "no end within the iterations", False
+        rounded, self._counts = self._counts, np.zeros(len(self._counts))
+        x, message, success = self._lessened(self._prior.copy())
+        count = float(np.max(rounded))
+        # Least squares come near enough to tell how much noise there is before rounding.
+        noise = noise_of(self._missed(x), rounded)
+        if noise < _ROUGH * count:
+            self._counts = rounded
+            x, message, success = self._within_counts(x, noise, count)
+        return self._summed_up(x, steps, message, success)
+
+    def _within_counts(
+        self, x: FloatArray, noise: float, count: float
+    ) -> tuple[FloatArray, str, bool]:
+        """Variables and noise at which readings are likeliest that are intervals of a count."""
+        if noise < _QUIET * count:
+            # Stairs taken for motion may have led far away: begin again, with more noise than that.
+            self._noise = _QUIET * count
+            again = self._lessened(self._prior.copy())[0]
+            x = min(again, self._lessened(x)[0], key=self._tried)
+        message, success = "", False
+        for _ in range(_ROUNDS):
+            before = self._noise
+            self._noise = noise_of(self._missed(x), self._counts)
+            settled = abs(self._noise / before - 1.0) < _SETTLED
+            was = self._tried(x)
+            x, message, success = self._lessened(x)
+            if settled and was - self._tried(x) < _ALIKE:
+                break
+        return x, message, success
+
+    def _lessened(self, x: FloatArray) -> tuple[FloatArray, str, bool]:
+        """Variables at which the cost is least, from these on; how that ended."""
+        damping, message, success = 1e-3, "no end within the iterations", False
+        said, jacobian = self._linearised(x)
+        cost = self._cost(x, said)
         for _ in range(_ITERATIONS):
-            normal, gradient = self._normal(x, residual, jacobian)
+            normal, gradient = self._normal(x, said, jacobian)
             step = -np.linalg.solve(normal + damping * np.diag(np.diag(normal)), gradient)
             trial = x.copy()
             trial[self._free] += np.clip(step, -1.0, 1.0)
-            trial_residual = self._tried(trial)
-            if trial_residual is None or self._cost(trial, trial_residual) > cost:
+            tried = self._tried(trial)
+            if not tried < cost:
                 damping *= 8.0
                 if damping > 1e9:
-                    message, success = "no step lessens the residual any more", True
-                    break
+                    return x, "no step lessens the residual any more", True
                 continue
-            less = cost - self._cost(trial, trial_residual)
-            x, damping = trial, max(damping / 8.0, 1e-9)
-            residual, jacobian = self._residual(x, derivatives=True)
-            assert jacobian is not None
-            cost = self._cost(x, residual)
-            if less < 1e-7 * cost:
-                message, success = "the residual does not fall any more", True
-                break
-        return self._summed_up(x, residual, jacobian, steps, message, success)
+            x, damping, less = trial, max(damping / 8.0, 1e-9), cost - tried
+            said, jacobian = self._linearised(x)
+            cost = tried
+            if less < _LEAST * len(said.pull):
+                return x, "the residual does not fall any more", True
+        return x, message, success
 
     def _variables(self, values: Mapping[str, float]) -> FloatArray:
         share = values["final_stiffness"] / values["initial_stiffness"]
@@ -283,44 +319,49 @@ class _Fit:
         chain[3, 4] = -values["hardening_coefficient"] * math.exp(x[4]) * math.log(self._middle)
         return chain
 
-    def _residual(
-        self, x: FloatArray, *, derivatives: bool
-    ) -> tuple[FloatArray, FloatArray | None]:
-        """Simulated less recorded position over the noise, and its derivatives by variables."""
-        values = self._values(x)
-        pieces, slopes = [], []
+    def _missed(self, x: FloatArray) -> FloatArray:
+        """Simulated less recorded position."""
+        motor = _motor(self._values(x))
+        pieces = []
         for record in self._records:
-            run = _motor(values).simulate(record.effort, record.dt, outputs=("position",))
-            pieces.append((run.position - record.position) / self._noise)
-            if derivatives:
-                by_parameter, _ = _motor(values).sensitivity(record.effort, record.dt, _PATHS)
-                slopes.append(by_parameter.T / self._noise)
-        residual = np.concatenate(pieces)
-        if not derivatives:
-            return residual, None
-        return residual, (np.concatenate(slopes) @ self._chain(x))[:, self._free]
+            run = motor.copy().simulate(record.effort, record.dt, outputs=("position",))
+            pieces.append(run.position - record.position)
+        return np.concatenate(pieces)
 
-    def _tried(self, x: FloatArray) -> FloatArray | None:
-        """The residual at a trial; None where the law refuses the values or the motion escapes."""
+    def _linearised(self, x: FloatArray) -> tuple[Evidence, FloatArray]:
+        """What the readings say, and the weighted derivatives of positions by free variables."""
+        motor = _motor(self._values(x))
+        slopes = [
+            motor.copy().sensitivity(record.effort, record.dt, _PATHS)[0].T
+            for record in self._records
+        ]
+        said = evidence(self._missed(x), self._counts, self._noise)
+        by_variable = (np.concatenate(slopes) @ self._chain(x))[:, self._free]
+        return said, by_variable * said.root_weight[:, None]
+
+    def _tried(self, x: FloatArray) -> float:
+        """The cost of a trial; infinite where the law refuses it or the motion escapes."""
         try:
-            residual, _ = self._residual(x, derivatives=False)
+            missed = self._missed(x)
         except (InputError, OverflowError):
-            return None
-        return residual if np.isfinite(residual).all() else None
+            return math.inf
+        if not np.isfinite(missed).all():
+            return math.inf
+        return self._cost(x, evidence(missed, self._counts, self._noise))
 
-    def _cost(self, x: FloatArray, residual: FloatArray) -> float:
-        return float(residual @ residual + np.sum(((x - self._prior) / _PRIOR) ** 2))
+    def _cost(self, x: FloatArray, said: Evidence) -> float:
+        return said.cost + float(np.sum(((x - self._prior) / _PRIOR) ** 2))
 
     def _normal(
-        self, x: FloatArray, residual: FloatArray, jacobian: FloatArray
+        self, x: FloatArray, said: Evidence, jacobian: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         pull = ((x - self._prior) / _PRIOR**2)[self._free]
         normal = jacobian.T @ jacobian + np.eye(int(self._free.sum())) / _PRIOR**2
-        return normal, jacobian.T @ residual + pull
+        return normal, jacobian.T @ said.pull + pull
 
-    def _covariance(self, residual: FloatArray, jacobian: FloatArray) -> FloatArray:
+    def _covariance(self, said: Evidence, jacobian: FloatArray) -> FloatArray:
         """Of the free variables: the greater of what white and what correlated residuals give."""
-        power = float(np.mean(residual**2))
+        power = float(np.sum((said.pull * said.root_weight) ** 2) / np.sum(said.root_weight**2))
         bread = np.linalg.inv(jacobian.T @ jacobian / power + np.eye(jacobian.shape[1]) / _PRIOR**2)
         meat = np.zeros_like(bread)
         at = 0
@@ -329,7 +370,7 @@ class _Fit:
             end = at + len(record.effort)
             for first in range(at, end, block):
                 last = min(first + block, end)
-                score = jacobian[first:last].T @ residual[first:last] / power
+                score = jacobian[first:last].T @ said.pull[first:last] / power
                 meat += np.outer(score, score)
             at = end
         meat += np.eye(jacobian.shape[1]) / _PRIOR**2
@@ -340,15 +381,14 @@ class _Fit:
     def _summed_up(
         self,
         x: FloatArray,
-        residual: FloatArray,
-        jacobian: FloatArray,
         steps: Steps,
         message: str,
         success: bool,
     ) -> Estimate:
+        said, jacobian = self._linearised(x)
         free = np.flatnonzero(self._free)
         covariance = np.zeros((len(NAMES), len(NAMES)))
-        covariance[np.ix_(free, free)] = self._covariance(residual, jacobian)
+        covariance[np.ix_(free, free)] = self._covariance(said, jacobian)
         values, chain = self._values(x), self._chain(x)
         scale = np.array([values[name] for name in NAMES])
         # Of the logarithms of the parameters: intervals that stay positive.
@@ -389,46 +429,21 @@ class _Fit:
                 *(
                     f"{name} rests on the form of the model alone: {why}; record "
                     f"{EXPERIMENTS[name]}"
-                    for name, why in _assumed(steps).items()
+                    for name, why in assumed(steps, NAMES[:3]).items()
                     if parameters[name].determined and name not in self._fixed
                 ),
-                *_stairs(self._records),
+                *stairs(self._records),
             ),
-            rms=self._left(residual),
+            rms=self._left(self._missed(x)),
             success=success,
             message=message,
             correlations=covariance / np.outer(deviation, deviation),
         )
 
-    def _left(self, residual: FloatArray) -> tuple[float, ...]:
+    def _left(self, missed: FloatArray) -> tuple[float, ...]:
         ends = np.cumsum([len(record.effort) for record in self._records])[:-1]
-        pieces = np.split(residual * self._noise, ends)
+        pieces = np.split(missed, ends)
         return tuple(float(np.sqrt(np.mean(piece**2))) for piece in pieces)
-
-
-def _stairs(records: list[Recorded]) -> tuple[str, ...]:
-    """A sentence where readings hardly flicker: rounding then shows, and creep looks slower."""
-    same = max(float(np.mean(np.diff(record.position) == 0.0)) for record in records)
-    if same < _STAIRS:
-        return ()
-    return (
-        f"creep_rate may be too low by a tenth to a quarter: {same:.0%} of the readings of a "
-        "recording equal the one before, so that rounding makes stairs of slow creep; record with "
-        "more noise, or with a finer encoder",
-    )
-
-
-def _assumed(steps: Steps) -> dict[str, str]:
-    """Parameters that no recording shows by themselves, and why."""
-    why: dict[str, str] = {}
-    if steps.branch is None:
-        why |= dict.fromkeys(NAMES[:3], "there is no loop below a level that was held before")
-    if steps.levels < _LEVELS:
-        levels = {0: "no level", 1: "one level"}.get(steps.levels, f"{steps.levels} levels")
-        why["hardening_exponent"] = f"torque was held at {levels}"
-    if steps.creep_rate is None:
-        why["creep_rate"] = "no torque was held long enough"
-    return why
 
 
 def _branch_interval(

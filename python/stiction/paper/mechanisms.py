@@ -18,9 +18,9 @@ import numpy as np
 from .. import catalogue
 from .._native import FrictionModel
 from ..trajectory import FloatArray
+from .paths import ForcePath
 from .result import Number, Result, arcsec
 from .rig import ARC_SECOND
-from .static import ForcePath
 
 __all__ = [
     "Curve",

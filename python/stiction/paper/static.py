@@ -21,8 +21,8 @@ from .. import catalogue
 from .._native import FrictionModel
 from ..errors import InputError
 from ..trajectory import FloatArray
-from .bench import STATES, Bench, as_record, whole_samples
 from .dynamic import STEP
+from .paths import FORCE_STEP, RAMP_RATE, ForcePath, motor_path
 from .result import Known, MotionResult, Number, Result, arcsec, counted_off
 from .rig import RigLike, build_friction, is_illustrative
 
@@ -40,11 +40,6 @@ __all__ = [
 ]
 
 HOLD = 2.0  # s, stated
-RAMP_RATE = 0.045  # N·m/s, ours
-# Sample of a force-driven path, s. Halving it moves no position by more than 1e-5 arc-seconds.
-FORCE_STEP = 2e-3
-# The friction of a force-driven path is met to this, N·m.
-_FORCE_TOLERANCE = 1e-15
 
 
 @dataclass(frozen=True)
@@ -271,7 +266,7 @@ def static_test(
     else:
         rate = ramp_rate if driven == "ramp" else math.inf
         step = STEP if dt is None else dt
-        record, settled_at = _motor_path(rig, integrator, step, encoder_count, levels, rate, hold)
+        record, settled_at = motor_path(rig, integrator, step, encoder_count, levels, rate, hold)
     settled = record["measured"][settled_at]
     standard = (
         is_illustrative(rig)
@@ -523,120 +518,6 @@ def dahl_on_static_1(*, stiffness: float = 2063.0, coulomb: float = 0.5) -> Dahl
         effort=np.concatenate(efforts),
         position=np.concatenate(positions),
     )
-
-
-class ForcePath:
-    """A path on which the friction passes through levels of force, without a body.
-
-    Parameters
-    ----------
-    law : FrictionModel
-        Driven from its present state, which changes.
-    levels : sequence of float
-        N·m.
-    ramp_rate : float
-        N·m/s, from level to level.
-    hold : float
-        Time at a level, counted from the end of its ramp, s.
-    step : float
-        Duration of a sample, s; the last one of a ramp or hold is made to fit.
-    start : float
-        Force that the law is at, N·m.
-    """
-
-    def __init__(
-        self,
-        law: FrictionModel,
-        levels: Sequence[float],
-        *,
-        ramp_rate: float = RAMP_RATE,
-        hold: float = 0.0,
-        step: float = FORCE_STEP,
-        start: float = 0.0,
-    ) -> None:
-        self._law = law
-        self._names = [name for name in STATES if name in law.state]
-        self._rows: list[tuple[float, ...]] = []
-        self._time = self._position = self._velocity = 0.0
-        self.reverse_points: list[int] = []
-        reached = []
-        force = start
-        for level in levels:
-            self._through(force, float(level), abs(level - force) / ramp_rate, step)
-            if hold > 0.0:
-                self._through(float(level), float(level), hold, step)
-            reached.append(len(self._rows) - 1)
-            force = float(level)
-        self.reached = np.array(reached, dtype=np.int64)
-
-    def record(self, encoder_count: float) -> dict[str, Any]:
-        """The path as the arrays of a :class:`MotionResult`."""
-        time, effort, position, velocity, *states = np.array(self._rows).T
-        return as_record(
-            time,
-            effort,
-            position,
-            velocity,
-            dict(zip(self._names, states, strict=True)),
-            encoder_count,
-        )
-
-    def _through(self, start: float, end: float, duration: float, step: float) -> None:
-        steps = max(1, math.ceil(duration / step - 1e-9))
-        dt = duration / steps
-        if dt == 0.0:
-            return
-        for index in range(1, steps + 1):
-            effort = start + (end - start) * index / steps
-            self._velocity = self._velocity_for(effort, dt)
-            self._law.commit()
-            self._position += self._velocity * dt
-            self._time += dt
-            state = self._law.state
-            self.reverse_points.append(len(state.get("reverse_points", ())))
-            own = (float(state[name]) for name in self._names)
-            self._rows.append((self._time, effort, self._position, self._velocity, *own))
-
-    def _velocity_for(self, effort: float, dt: float) -> float:
-        """Newton's method on the velocity; the last trial is the one to commit."""
-        velocity, best = self._velocity, math.inf
-        for _ in range(50):
-            force, slope = self._law.trial(velocity, dt)
-            excess = force - effort
-            # At round-off the iterations only wander; then the next-to-last is as good.
-            if abs(excess) <= _FORCE_TOLERANCE or best <= abs(excess) <= 1e-12:
-                return velocity
-            if not slope > 0.0:
-                break
-            best = abs(excess)
-            velocity -= excess / slope
-        raise InputError(
-            f"the friction does not reach {effort:g} N·m at rest: law '{self._law.law}' slips at "
-            "this level or has no slope there; give lower levels, a higher breakaway or another law"
-        )
-
-
-def _motor_path(
-    rig: RigLike,
-    integrator: str,
-    dt: float,
-    encoder_count: float,
-    levels: Sequence[float],
-    ramp_rate: float,
-    hold: float,
-) -> tuple[dict[str, Any], np.ndarray[Any, np.dtype[np.int64]]]:
-    """The motor through ramps (steps at an infinite rate) and holds; record and ends of holds."""
-    bench = Bench(rig, integrator, dt, encoder_count)
-    held = whole_samples(hold, dt)
-    reached = []
-    force = 0.0
-    for level in levels:
-        ramped = round(abs(level - force) / ramp_rate / dt)
-        ramp = force + (level - force) * np.arange(1, ramped + 1) / max(ramped, 1)
-        bench.apply(np.concatenate([ramp, np.full(held, float(level))]))
-        reached.append(bench.samples - 1)
-        force = float(level)
-    return bench.record(), np.array(reached, dtype=np.int64)
 
 
 def _letter(index: int) -> str:

@@ -25,6 +25,8 @@ SHARE_TO_ACCELERATE: Final = 0.5
 """Of the effort beyond friction: the rest is the controller's."""
 BLEND_S: Final = 0.15
 """Least time to full speed: what a position loop of some 10 Hz follows without overshoot."""
+OF_NO_LOAD: Final = 0.5
+"""Share of a servo's speed without load that is asked for: the rest of its voltage makes effort."""
 SLOW_S: Final = 100.0
 """Time in which the range is crossed to measure friction without its viscous part."""
 STEPS: Final = 400
@@ -106,8 +108,7 @@ def sizes_of(plant: Plant, limits: Limits) -> Sizes:
     reach = MARGIN * (2.0 * math.pi if reach is None else reach)
     friction = _level(plant, reach)
     yields = presliding(plant.friction, friction) if plant.friction.springy else 0.0
-    gain = abs(float(plant.drive.get("gain", 1.0)))
-    own = gain * float(plant.drive.get("limit", math.inf))
+    own = _greatest(plant)
     weight = _steady(plant)
     given = math.inf if limits.effort is None else limits.effort
     most = min(own, given)
@@ -125,6 +126,8 @@ def sizes_of(plant: Plant, limits: Limits) -> Sizes:
     spare = SHARE_TO_ACCELERATE * (most - friction - weight)
     acceleration = max(spare, 0.05 * most) / inertia
     speed = math.sqrt(acceleration * reach)
+    if plant.servo:
+        speed = min(speed, OF_NO_LOAD * _no_load(plant))
     if limits.speed is not None:
         speed = min(speed, MARGIN * limits.speed)
     speed = _carried(plant, speed, friction + spare)
@@ -145,10 +148,24 @@ def _level(plant: Plant, reach: float) -> float:
     return level
 
 
+def _greatest(plant: Plant) -> float:
+    """Greatest effort that the drive gives: of a servo that of its supply at rest."""
+    drive = plant.drive
+    if not plant.servo:
+        return abs(plant.gain) * float(drive.get("limit", math.inf))
+    current = float(drive["supply_v"] * drive.get("duty_limit", 1.0) / drive["resistance_ohm"])
+    return abs(plant.gain) * min(current, float(drive.get("current_limit_a", math.inf)))
+
+
+def _no_load(plant: Plant) -> float:
+    """Speed at which a servo generates all of its supply."""
+    return float(plant.drive["supply_v"] * plant.drive.get("duty_limit", 1.0)) / abs(plant.gain)
+
+
 def _steady(plant: Plant) -> float:
-    """Greatest effort that gravity takes."""
-    names = ("gravity_amplitude", "weight_n")
-    return float(sum(abs(plant.body[n].value) for n in names if n in plant.body))
+    """Greatest effort that gravity takes, payload included."""
+    weight = abs(plant.body["weight_n"].value) if "weight_n" in plant.body else 0.0
+    return abs(plant.gravity) + weight
 
 
 def _carried(plant: Plant, speed: float, effort: float) -> float:

@@ -8,6 +8,8 @@ from typing import Final
 
 import numpy as np
 
+from .._native import Motion
+from ..drive import GOALS
 from ..errors import InputError
 from ..plant import Plant
 from ..trajectory import FloatArray
@@ -76,8 +78,16 @@ def plan(
     limits = Limits(position, speed, effort)
     sizes = sizes_of(plant, limits)
     signals, notes = [], _guessed(plant)
+    if plant.servo:
+        inputs = [e.name for e in EXPERIMENTS if e.kind == "input" and e.name in (only or known)]
+        if inputs:
+            notes.append(
+                f"{listed(inputs)} are left out: a servo is told where to go, not what to push with"
+            )
     for experiment in EXPERIMENTS:
         if only and experiment.name not in only:
+            continue
+        if plant.servo and experiment.kind == "input":
             continue
         if experiment.name == "loops" and sizes.presliding == 0.0:
             notes.append(
@@ -87,7 +97,12 @@ def plan(
         _logger.info("planning %s", experiment.name)
         made = [
             _signal(
-                plant, experiment, sizes, 1.0 / rate, role, [seed, k, known.index(experiment.name)]
+                plant,
+                experiment,
+                (sizes, limits),
+                1.0 / rate,
+                role,
+                [seed, k, known.index(experiment.name)],
             )
             for k, role in enumerate(ROLES)
         ]
@@ -116,16 +131,20 @@ def _guessed(plant: Plant) -> list[str]:
 def _signal(
     plant: Plant,
     experiment: Experiment,
-    sizes: Sizes,
+    within: tuple[Sizes, Limits],
     dt: float,
     role: str,
     seed: Sequence[int],
 ) -> Signal | None:
     """The signal, made smaller until it stays within the limits; None where nothing is left."""
+    sizes, limits = within
     share = 1.0
     for _ in range(TRIES):
         values = experiment.build(plant, sizes, dt, np.random.default_rng(seed), share)
-        if experiment.kind == "reference":
+        if plant.servo:
+            path = _reached(plant, values, dt)
+            effort = _needed(plant, path, dt)
+        elif experiment.kind == "reference":
             path, effort = values, _needed(plant, values, dt)
         else:
             path, effort = _moved(plant, values, dt), values
@@ -136,10 +155,16 @@ def _signal(
             "effort": float(np.max(np.abs(effort))),
         }
         allowed = {"distance": sizes.reach, "speed": sizes.speed, "effort": sizes.effort}
+        if plant.servo:
+            # How hard it pushes is decided by the servo itself, and limited by its drive.
+            greatest["distance"] = max(greatest["distance"], float(np.max(np.abs(values))))
+            allowed["effort"] = np.inf if limits.effort is None else limits.effort
         # Rounding to samples is no fault.
         if all(greatest[name] <= 1.02 * allowed[name] for name in allowed):
             gain = 1.0 if experiment.kind == "reference" else float(plant.drive.get("gain", 1.0))
             reference = "reference_rad" if plant.motion == "rotary" else "reference_m"
+            if plant.servo:
+                reference = GOALS[plant.motion]
             return Signal(
                 experiment.name,
                 experiment.kind,
@@ -164,11 +189,19 @@ def _needed(plant: Plant, path: FloatArray, dt: float) -> FloatArray:
     """Effort that following a path takes: inertia, friction, gravity; shape (n,)."""
     motor = plant.follower()
     motor.reset(float(path[0]), 0.0)
-    _, ambient, friction, _ = motor.follow(path, np.zeros(len(path) - 1), dt)
+    _, ambient, friction, _ = motor.follow(Motion(path, np.zeros(len(path) - 1), dt))
     bend = np.diff(path, 2, prepend=path[0], append=path[-1]) / dt**2
     needed = plant.inertia * bend
     needed[1:] += friction - ambient
     return np.asarray(needed)
+
+
+def _reached(plant: Plant, goal: FloatArray, dt: float) -> FloatArray:
+    """Position that a servo comes to with a goal, from rest at 0; shape (n,)."""
+    run = plant.simulate(goal[:-1], dt, outputs=["position"])
+    if not run.success:
+        return np.full(len(goal), np.inf)
+    return np.concatenate([[0.0], run.position])
 
 
 def _moved(plant: Plant, effort: FloatArray, dt: float) -> FloatArray:

@@ -14,10 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import (
     FuncFormatter,
-    LogLocator,
     MaxNLocator,
-    NullLocator,
-    SymmetricalLogLocator,
 )
 
 from ..errors import InputError
@@ -31,10 +28,10 @@ from ..plot import (
     TEXT,
     WIDTH,
     figure,
-    legend,
     thinned,
 )
-from .numbers import NO_BREAK, digits, percent, tick, tick_of_ten
+from .numbers import NO_BREAK, digits, percent, tick
+from .panels import STEPS, beside, grid, grid_height, legend_above, named, note, shortened, ticks
 from .scale import Scale, loop_scale_of, scale_of, suited
 
 if TYPE_CHECKING:
@@ -63,10 +60,6 @@ TOGETHER: Final = 0.012
 """Stretches nearer than this share of the axis are drawn as one."""
 _LARGE: Final = ((2e7, 1e-6, "M"), (2e4, 1e-3, "k"), (0.0, 1.0, ""))
 """Places from which on they are drawn in other units: least, factor, prefix."""
-STEPS: Final = (1, 2, 5, 10)
-_GRID_LEFT, _GRID_RIGHT, _GRID_TOP = 0.6, 0.1, 0.3
-_GRID_PANEL, _GRID_GAP, _GRID_TITLE = 0.92, 0.88, 0.42
-"""Inches: margins, height of a panel, from panel to panel, and of that what its title takes."""
 
 
 def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
@@ -101,7 +94,7 @@ def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     )
     buckets = 350 if narrow else 700
     upper.plot(*thinned(stretch.time, stretch.effort, buckets), color=MEASURED, linewidth=0.9)
-    _named(upper, "measured effort", narrow)
+    named(upper, "measured effort", narrow)
     upper.set_ylabel(f"effort ({pictures.effort_unit})")
     band = FLOOR_TIMES * scale.factor * pictures.floor
     span = max(scale.factor * _extent([values for _, values, _ in left]), 1.3 * band)
@@ -111,13 +104,13 @@ def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
         panel.plot(*shown, color=colour, linewidth=0.8)
         panel.set_ylim(-1.08 * span, 1.08 * span)
         panel.set_ylabel(f"residual ({scale.unit})")
-        _named(panel, f"{name}: {scale.text(_rms(values))} rms not explained", narrow)
+        named(panel, f"{name}: {scale.text(_rms(values))} rms not explained", narrow)
     lower[-1].set_xlabel("time in the recording (s)")
     upper.set_xlim(min(0.0, float(stretch.time[0])), float(stretch.time[-1]))
     for panel in (upper, *lower):
-        _ticks(panel, 5 if narrow else 9, 4 if narrow else 5)
+        ticks(panel, 5 if narrow else 9, 4 if narrow else 5)
     if not narrow:
-        _note(lower[0], "band: noise alone")
+        note(lower[0], "band: noise alone")
     drawn.align_ylabels()
     return drawn
 
@@ -140,8 +133,8 @@ def cause(diagnosis: Diagnosis, index: int, *, narrow: bool = False) -> Figure:
     _curves(panel, before, after, scale, size=3.5)
     panel.set_xlabel(_axis(before, pictures))
     panel.set_ylabel(f"{upright} ({scale.unit})")
-    _ticks(panel, 4 if narrow else 8, 6)
-    _legend_above(panel, 3)
+    ticks(panel, 4 if narrow else 8, 6)
+    legend_above(panel, 3)
     return drawn
 
 
@@ -163,10 +156,10 @@ def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     drawn, panels = figure(
         rows,
         columns,
-        height=_GRID_TOP + rows * (_GRID_PANEL + _GRID_GAP),
+        height=grid_height(rows),
         width=NARROW if narrow else WIDTH,
     )
-    _grid(drawn, rows)
+    grid(drawn, rows)
     both, scale = bool(diagnosis.effects), scale_of(diagnosis)
     shown = (*views, *(before.values() if both else ()))
     parts = [part for view in shown for part in (view.mean, view.low, view.high)]
@@ -175,7 +168,7 @@ def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
         first = before[view.coordinate.name]
         _curves(panel, first if both else view, view if both else None, scale, size=2.0)
         panel.set_ylim(-1.1 * span, 1.1 * span)
-        _ticks(panel, 2 if narrow else 4, 4)
+        ticks(panel, 2 if narrow else 4, 4)
         panel.tick_params(labelsize=SMALL - 1.0)
         if position % columns:
             panel.tick_params(labelleft=False)
@@ -237,7 +230,7 @@ def candidates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
         label="what noise alone reaches",
     )
     for place, score, mark in zip(at, scores, marks, strict=True):
-        _beside(panel, percent(score / 100.0), max(score, mark), float(place))
+        beside(panel, percent(score / 100.0), max(score, mark), float(place))
     longest = LONGEST_NARROW_NAME + 11 if narrow else LONGEST_NAME
     panel.set_yticks(at, [shortened(row.name.replace("_", " "), longest) for row in rows])
     panel.invert_yaxis()
@@ -247,7 +240,7 @@ def candidates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     panel.set_xlabel("share of the residual explained" if narrow else
                      "share of the residual that it would explain")  # fmt: skip
     panel.xaxis.set_major_locator(MaxNLocator(4 if narrow else 6, steps=STEPS))
-    _legend_above(panel, 1)
+    legend_above(panel, 1)
     return drawn
 
 
@@ -282,7 +275,7 @@ def errors(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     panel.set_xlabel(f"residual, rms ({scale.unit})")
     panel.xaxis.set_major_locator(MaxNLocator(4 if narrow else 7, steps=STEPS))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
-    _legend_above(panel, 3)
+    legend_above(panel, 3)
     return drawn
 
 
@@ -328,32 +321,14 @@ def closed_loop(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     lower.set_ylabel(f"difference ({scale.unit})")
     sizes = [digits(scale.factor * _rms(left)) for _, _, left, _ in simulated]
     what = "rms" if narrow else "measured − simulated, rms:"
-    _named(lower, f"{what} {' → '.join(sizes)} {scale.unit}", narrow)
+    named(lower, f"{what} {' → '.join(sizes)} {scale.unit}", narrow)
     lower.set_xlabel("time in the recording (s)")
     lower.set_xlim(min(0.0, float(tracking.time[0])), float(tracking.time[-1]))
-    _legend_above(upper, 3)
+    legend_above(upper, 3)
     for panel in (upper, lower):
-        _ticks(panel, 5 if narrow else 9, 4 if narrow else 5)
+        ticks(panel, 5 if narrow else 9, 4 if narrow else 5)
     drawn.align_ylabels()
     return drawn
-
-
-def shortened(name: str, longest: int) -> str:
-    """A name as it can be drawn: not too long, and only characters that the font has.
-
-    A dollar sign would begin a formula; a character without a glyph would draw a box and warn.
-    """
-    shown = "".join(c if _has_glyph(c) else "?" for c in name)
-    if len(shown) > longest:
-        half = (longest - 1) // 2
-        shown = f"{shown[: longest - 1 - half]}…{shown[-half:]}"
-    return shown.replace("$", r"\$")
-
-
-def _has_glyph(character: str) -> bool:
-    # Latin, Greek and Cyrillic: what the font of the figures covers without gaps.
-    code = ord(character)
-    return character.isprintable() and (code < 0x250 or 0x386 <= code < 0x460 or code == 0x2026)
 
 
 def _pictures(diagnosis: Diagnosis) -> Pictures:
@@ -426,39 +401,6 @@ def _panel_title(before: View, after: View, *, both: bool, narrow: bool) -> str:
     return f"{name}\n{shares} ({noise})"
 
 
-def _ticks(panel: Axes, across: int, up: int) -> None:
-    """So many ticks at most, written without powers at the end of an axis."""
-    kind = panel.get_xscale()
-    if kind == "linear":
-        panel.xaxis.set_major_locator(MaxNLocator(across, steps=STEPS))
-        panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
-    else:
-        if kind == "log":
-            panel.xaxis.set_major_locator(LogLocator(numticks=across))
-        else:
-            locator = SymmetricalLogLocator(panel.xaxis.get_transform())
-            locator.set_params(numticks=across)
-            panel.xaxis.set_major_locator(locator)
-        panel.xaxis.set_minor_locator(NullLocator())
-        panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: tick_of_ten(value)))
-    panel.yaxis.set_major_locator(MaxNLocator(up, steps=STEPS))
-    panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
-
-
-def _grid(drawn: Figure, rows: int) -> None:
-    """Places the panels of a grid by hand: arranging that many takes longer than drawing them."""
-    width, height = drawn.get_size_inches()
-    drawn.set_layout_engine(None)
-    drawn.subplots_adjust(
-        left=_GRID_LEFT / width,
-        right=1.0 - _GRID_RIGHT / width,
-        top=1.0 - (_GRID_TOP + _GRID_TITLE) / height,
-        bottom=(_GRID_GAP - _GRID_TITLE) / height,
-        hspace=_GRID_GAP / _GRID_PANEL if rows > 1 else 0.0,
-        wspace=0.14,
-    )
-
-
 def _share(view: View) -> str:
     return _share_of(max(view.share, 0.0))
 
@@ -529,35 +471,3 @@ def _extent(parts: Sequence[np.ndarray]) -> float:
     """Greatest magnitude of all that is finite, 1 where there is nothing."""
     greatest = [float(np.max(np.abs(p[np.isfinite(p)]))) for p in parts if np.isfinite(p).any()]
     return max(greatest, default=0.0) or 1.0
-
-
-def _named(panel: Axes, text: str, narrow: bool) -> None:
-    panel.set_title(text, loc="left", fontsize=SMALL if narrow else TEXT, color=INK, pad=3.0)
-
-
-def _note(panel: Axes, text: str) -> None:
-    """A remark above the right end of a panel."""
-    panel.set_title(text, loc="right", fontsize=SMALL - 1.0, color=MEASURED, pad=3.0)
-
-
-def _beside(panel: Axes, text: str, x: float, y: float) -> None:
-    panel.annotate(
-        text,
-        (x, y),
-        xytext=(6, 0),
-        textcoords="offset points",
-        va="center",
-        fontsize=SMALL,
-        color=INK,
-    )
-
-
-def _legend_above(panel: Axes, columns: int) -> None:
-    legend(
-        panel,
-        loc="lower left",
-        bbox_to_anchor=(0.0, 1.0),
-        ncols=columns,
-        borderaxespad=0.1,
-        columnspacing=1.2,
-    )

@@ -204,6 +204,9 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     const START: &'static [ParameterSpec] = &[];
     /// Whether it remembers where it turned round, so that small loops close.
     const REMEMBERS: bool = false;
+    /// Whether a body without viscous friction on it makes much of little: it stops and breaks away
+    /// where the phase of a ring says, so that two runs that differ by one part in 10⁹ go apart.
+    const SENSITIVE: bool = false;
     /// Options; the first choice of each is the default.
     const OPTIONS: &'static [OptionSpec] = &[];
     /// One sentence: what the law is.
@@ -378,6 +381,8 @@ pub struct LawRecord {
     pub start: &'static [ParameterSpec],
     /// Whether it remembers where it turned round.
     pub remembers: bool,
+    /// Whether a body without viscous friction on it makes much of little.
+    pub sensitive: bool,
     /// Options.
     pub options: &'static [OptionSpec],
     /// States that a trajectory can show.
@@ -415,6 +420,7 @@ macro_rules! laws {
             optional: <$module::$law<f64> as FrictionLaw<f64>>::OPTIONAL,
             start: <$module::$law<f64> as FrictionLaw<f64>>::START,
             remembers: <$module::$law<f64> as FrictionLaw<f64>>::REMEMBERS,
+            sensitive: <$module::$law<f64> as FrictionLaw<f64>>::SENSITIVE,
             options: <$module::$law<f64> as FrictionLaw<f64>>::OPTIONS,
             outputs: <<$module::$law<f64> as FrictionLaw<f64>>::State as LawState<f64>>::OUTPUTS,
         },)*];
@@ -572,6 +578,7 @@ macro_rules! laws {
 
 laws! {
     bouc_wen => BoucWen,
+    bristle => Bristle,
     coulomb => Coulomb,
     dahl => Dahl,
     dahl_with_memory => DahlWithMemory,

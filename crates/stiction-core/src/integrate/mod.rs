@@ -15,6 +15,7 @@ mod reference;
 mod response;
 mod shaft;
 mod steep;
+mod swing;
 
 pub use adaptive::{Account, Adaptive};
 pub use contact::{Along, Held};

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 from ...catalogue import EffectRecord, effects
+from ...diagnosis.orders import order_words
 from ...diagnosis.words import joined
 from ..drawings import cause_name
 from ..numbers import percent, percent_between, plain, quantity
@@ -73,7 +74,7 @@ def _cause(cause: Cause, record: EffectRecord | None, plant: Plant) -> dict[str,
         "decided": cause.decided,
         "doubtful": doubtful,
         "look_alikes": [plain(name) for name in cause.look_alikes],
-        "what": f"{summary}{_how_often(effect, plant)}",
+        "what": f"{summary}{_how_often(effect, plant, cause)}",
         "means": cause.means,
         "try": cause.try_,
         "gain": None if gain is None else percent(gain.value),
@@ -83,9 +84,11 @@ def _cause(cause: Cause, record: EffectRecord | None, plant: Plant) -> dict[str,
     }
 
 
-def _how_often(effect: Effect | None, plant: Plant) -> str:
+def _how_often(effect: Effect | None, plant: Plant, cause: Cause) -> str:
     """How often a wave repeats, "" for what has no order."""
     given = {} if effect is None else effect.parameters
+    if any(order_words(path, p) for path, p in cause.parameters.items()):
+        return ", in less than one period over the range of motion: how often is not determined"
     orders = [f"{given[name].value:.4g}" for name in ("order", "order_2") if name in given]
     if not orders:
         return ""

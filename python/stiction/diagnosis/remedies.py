@@ -1,0 +1,88 @@
+"""What to do about a cause, in words that fit the kind of machine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from ..catalogue import EffectRecord
+from ..plant import Plant
+
+__all__ = ["meant", "recorded"]
+
+_Words = Mapping[str, tuple[str, str]]
+
+LINEAR: Final[_Words] = {
+    "direction_asymmetry": (
+        "a compensation with one friction level for both directions is wrong in each",
+        "give the compensation a level for each direction; look for a preload to one side, a wiper "
+        "or seal lip, a cable chain, or a screw that drives one way more easily",
+    ),
+    "torque_bias": (
+        "a constant force pulls one way, at rest too",
+        "add it as a feed-forward; look for an axis that is not level, a weight or spring, a cable "
+        "chain, the offset of an amplifier or current sensor",
+    ),
+    "torque_constant_ripple": (
+        "the same current gives more force at some places than at others",
+        "tabulate the gain over the position and divide the command by it; look for a wrong "
+        "commutation, an offset in one phase current, or a magnet that is off",
+    ),
+}
+"""Meaning and remedy where a machine does not turn."""
+MOVED: Final[_Words] = {
+    "direction_asymmetry": (
+        "the force is higher in one direction: one level for both is wrong in each",
+        "give the model a level for each direction; look for a valve or seal that acts one way, or "
+        "for gas pressure",
+    ),
+    "torque_bias": (
+        "a constant effort pulls one way, at rest too",
+        "state it as an effect of the plant; look for the offset of the load cell, a weight that "
+        "hangs on it, gas pressure or a spring",
+    ),
+    "viscous_quadratic": (
+        "drag at high speed is more than proportional to it",
+        "state the term; look for an orifice, turbulent flow or a fan",
+    ),
+    "stribeck": (
+        "friction falls with speed at first",
+        "state the fall in the law; look for the seals and their lubricant",
+    ),
+    "warm_up": (
+        "what was measured cold does not hold warm",
+        "warm the specimen up before measuring, or record its temperature",
+    ),
+    "run_in": (
+        "the specimen eases with motion, not with time",
+        "run it in before measuring: some full strokes after each long rest",
+    ),
+}
+"""Meaning and remedy where a rig moves a specimen and measures the effort."""
+MOTIONS: Final = {
+    "ramps": "constant speeds over three decades, both ways, without rests",
+    "turns": "slow full strokes or turns both ways, twice",
+    "fast": "fast constant speed over the whole range, both ways",
+    "sines": "sines over amplitude and frequency: the same speeds at different accelerations",
+    "dwells": "rests of 0.1 to 5 s, each ended slowly and fast",
+    "loops": "small loops nested in one another, and holds of 5 s and more",
+    "rests": "5 s of rest and 5 s of constant speed",
+    "cycle": "from cold: a short cycle, again after minutes of rest, again after long fast motion",
+    "tracking": "sines of many frequencies at once",
+    "pulses": "quick moves with rests between them",
+    "chirp": "sines of rising frequency at one amplitude of the motion",
+}
+"""What a rig that prescribes the motion does in place of each experiment of ``stiction plan``."""
+
+
+def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
+    """What an effect means, and what to do about it."""
+    usual = record.means, record.remedy
+    if plant.prescribed_motion:
+        return MOVED.get(record.name, usual)
+    return LINEAR.get(record.name, usual) if plant.motion == "linear" else usual
+
+
+def recorded(plan: str, what: str, plant: Plant) -> str:
+    """An experiment in words: one of ``stiction plan``, or a motion where a rig prescribes it."""
+    return f"move it by {MOTIONS[plan]}" if plant.prescribed_motion else f"{plan}: {what}"

@@ -1,0 +1,94 @@
+"""Pushes from outside: told by their time, left out, and named as no effect of the machine."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from tests.reference.coulomb_reference import simulate_coulomb
+
+import stiction as st
+
+DT, SECONDS = 1e-3, 10.0
+TRUE = {"inertia": 0.006, "coulomb": 0.25, "viscous": 0.02}
+COUNT = 2.0 * math.pi / 2**18
+PLANT = st.Plant.from_dict({"drive": {"input": "torque_nm"}, "friction": {"law": "coulomb"}})
+Times = tuple[tuple[float, float, float], ...]
+
+
+def recorded(seed: int, pushes: Times = (), *, law: float = 0.0, **labels: object) -> st.Recording:
+    """An independent dry machine that hands push (from, to, N·m) without the recorder's knowledge.
+
+    ``law`` is a share by which friction grows at some places: an effect of the machine.
+    """
+    source = np.random.default_rng(seed)
+    time = np.arange(round(SECONDS / DT)) * DT
+    waves = [0.22 * np.sin(w * time + source.uniform(0, 6)) for w in (2.0, 5.3, 13.0)]
+    effort = np.sum(waves, axis=0)
+    hands = np.zeros_like(time)
+    for start, end, size in pushes:
+        inside = (time >= start) & (time < end)
+        # Thrown and caught again.
+        hands[inside] = size * np.sin(2.0 * np.pi * (time[inside] - start) / (end - start))
+    run = simulate_coulomb(
+        (effort + hands)[:-1],
+        DT,
+        inertia=TRUE["inertia"],
+        coulomb=TRUE["coulomb"],
+        breakaway=TRUE["coulomb"] * (1.0 + law),
+        viscous=TRUE["viscous"],
+    )
+    position = np.concatenate([[0.0], run["position"]])
+    measured = effort + 0.004 * source.standard_normal(len(time))
+    return st.Recording(time, measured, np.round(position / COUNT) * COUNT, **labels)
+
+
+@pytest.fixture(scope="module")
+def pushed() -> list[st.Recording]:
+    return [
+        recorded(1, ((4.2, 4.9, 1.8),), role="train"),
+        recorded(2, role="train"),
+        recorded(3, ((7.0, 7.8, -1.6),), role="select"),
+        recorded(4, ((2.5, 3.1, 2.0),), role="test"),
+    ]
+
+
+def times(found: st.Diagnosis) -> dict[str, tuple[float, float]]:
+    told = [check for check in found.data["checks"] if check["name"] == "push"]
+    return {
+        check["recording"]: tuple(
+            float(word) for word in check["what"].split() if word[:1].isdigit()
+        )  # type: ignore[misc]
+        for check in told
+    }
+
+
+def test_a_hand_is_told_by_its_time_and_named_as_nothing_else(pushed: list[st.Recording]) -> None:
+    found = st.diagnose(PLANT, pushed, surrogates=6)
+    assert found.effects == ()
+    told = times(found)
+    for name, start, end in (("1", 4.2, 4.9), ("3", 7.0, 7.8), ("4", 2.5, 3.1)):
+        first, last = told[f"recording {name}"]
+        assert first == pytest.approx(start, abs=0.4)
+        assert last == pytest.approx(end, abs=0.4)
+    assert len(told) == 3
+    assert "omething pushed the machine from" in found.sentence
+    assert "because the drive did not make that motion" in found.sentence
+
+
+def test_a_fit_leaves_the_hand_out_and_finds_the_machine(pushed: list[st.Recording]) -> None:
+    fitted = st.fit(PLANT, pushed)
+    for name, value in TRUE.items():
+        assert fitted[name].value == pytest.approx(value, rel=0.1 if name == "viscous" else 0.02)
+    assert fitted.split.count("something pushed the machine") == 3
+
+
+def test_nobody_pushes_where_the_machine_itself_lacks_something() -> None:
+    session = [recorded(k, law=0.6, role=r) for k, r in enumerate(("train", "select", "test"))]
+    assert "pushed" not in st.fit(PLANT, session).split
+
+
+def test_what_comes_all_the_time_is_no_push() -> None:
+    often = tuple((0.7 * k + 0.3, 0.7 * k + 0.6, 1.8) for k in range(13))
+    assert "pushed" not in st.fit(PLANT, [recorded(5, often)]).split

@@ -1,0 +1,66 @@
+"""What is said of a cause fits the machine that has it."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import stiction as st
+from stiction.diagnosis.advice import advise
+from stiction.diagnosis.candidates import Scales
+from stiction.diagnosis.orders import open_orders, order_words
+from stiction.diagnosis.remedies import meant, recorded
+from stiction.fitting.result import FitParameter
+
+EFFECTS = {record.name: record for record in st.effects()}
+
+
+def plant(motion: str, *, moved: bool = False) -> st.Plant:
+    unit = "torque_nm" if motion == "rotary" else "force_n"
+    drive: dict[str, object] = {"kind": "prescribed_motion"} if moved else {"input": unit}
+    return st.Plant.from_dict(
+        {"motion": {"kind": motion}, "drive": drive, "friction": {"law": "coulomb"}}
+    )
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_a_linear_machine_has_no_gear_and_no_angle(name: str) -> None:
+    if EFFECTS[name].rotary_only:
+        return
+    if name in ("direction_asymmetry", "torque_bias", "torque_constant_ripple"):
+        told = " ".join(meant(EFFECTS[name], plant("linear")))
+        assert not {"gear", "angle", "angles", "torque"} & set(told.replace(",", "").split())
+    assert meant(EFFECTS[name], plant("rotary")) == (EFFECTS[name].means, EFFECTS[name].remedy)
+
+
+@pytest.mark.parametrize("motion", ["rotary", "linear"])
+@pytest.mark.parametrize("name", EFFECTS)
+def test_a_rig_that_moves_a_specimen_has_no_amplifier_and_no_drive(name: str, motion: str) -> None:
+    record = EFFECTS[name]
+    if {"input map", "input delay", "input lag"} & set(record.hooks):
+        return
+    rig = plant(motion, moved=True)
+    told = " ".join([*meant(record, rig), recorded(record.plan, record.experiment, rig)])
+    for word in ("amplifier", "current sensor", "chirp", "pulses", "the input"):
+        assert word not in told
+    (advice,) = advise((), (), (record,), (), rig) or (None,)
+    if advice is not None:
+        assert advice.experiment.startswith("move it by ")
+
+
+def test_less_than_a_period_over_a_stroke_determines_no_order() -> None:
+    step = 0.5 * 2.0 * math.pi / 0.3
+    scales = Scales((0.1, 1.0), tuple(step * k for k in range(1, 9)), False, {})
+    path = "effects.cogging.order"
+
+    def fitted(order: float) -> dict[str, FitParameter]:
+        return {path: FitParameter(order, 0.1, (order - 0.2, order + 0.2), "1/m", "", order)}
+
+    few, many = open_orders(fitted(1.5 * step), scales), open_orders(fitted(2.5 * step), scales)
+    assert few[path].ci95 == (-math.inf, math.inf)
+    assert "not determined" in order_words(path, few[path])
+    assert many == fitted(2.5 * step)
+    assert order_words(path, many[path]) == ""
+    turns = Scales((0.1, 1.0), (1.0, 2.0), True, {})
+    assert open_orders(fitted(1.0), turns) == fitted(1.0)
