@@ -219,7 +219,7 @@ fn across_breakaway(dt: f64) -> (f64, f64) {
                 &path,
             )
             .unwrap()
-            .position[0][samples - 1]
+            .position[samples - 1]
         })
         .sum::<f64>()
         / f64::from(points);

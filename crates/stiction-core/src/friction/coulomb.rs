@@ -80,7 +80,7 @@ impl<S: Scalar> LawState<S> for CoulombState<S> {
 
 impl<S: Scalar> Coulomb<S> {
     /// Force and its slope by velocity while sliding in direction `mode`.
-    #[inline]
+    #[inline(always)]
     fn sliding(&self, mode: f64, velocity: S, channels: &Channels<S>) -> (S, S) {
         let p = &self.parameters;
         let viscous = p.viscous * channels.viscous_level;
@@ -150,7 +150,7 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
         steepest(excess, p.stribeck_velocity.re(), p.stribeck_exponent.re())
     }
 
-    #[inline]
+    #[inline(always)]
     fn force(&self, state: &CoulombState<S>, velocity: S, channels: &Channels<S>) -> S {
         let mode = state.0.mode_at(velocity);
         if mode == 0.0 {
@@ -159,7 +159,7 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
         self.sliding(mode, velocity, channels).0
     }
 
-    #[inline]
+    #[inline(always)]
     fn advance(
         &self,
         state: &CoulombState<S>,
@@ -179,27 +179,27 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
         CoulombTrial { mode, outcome: Outcome { force, slope, damping } }
     }
 
-    #[inline]
+    #[inline(always)]
     fn outcome(&self, trial: &CoulombTrial<S>) -> Outcome<S> {
         trial.outcome
     }
 
-    #[inline]
+    #[inline(always)]
     fn commit(&self, state: &mut CoulombState<S>, trial: &CoulombTrial<S>) {
         state.0.accept(trial.mode, trial.outcome.force);
     }
 
-    #[inline]
+    #[inline(always)]
     fn holds(&self, state: &mut CoulombState<S>, channels: &Channels<S>) -> bool {
         state.0.holds(channels.effort, self.parameters.breakaway * channels.level)
     }
 
-    #[inline]
+    #[inline(always)]
     fn pending(&self, state: &CoulombState<S>, velocity: S) -> Option<Event> {
         state.0.turned(velocity).then_some(Event::Reversal)
     }
 
-    #[inline]
+    #[inline(always)]
     fn event(
         &self,
         state: &CoulombState<S>,
@@ -209,7 +209,7 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
         state.0.stops_by(motion.velocity).then_some(Event::Reversal)
     }
 
-    #[inline]
+    #[inline(always)]
     fn margin(
         &self,
         state: &CoulombState<S>,

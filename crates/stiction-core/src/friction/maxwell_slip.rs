@@ -108,7 +108,7 @@ impl<S: Scalar> LawState<S> for MaxwellSlipState<S> {
 }
 
 impl<S: Scalar> MaxwellSlip<S> {
-    #[inline]
+    #[inline(always)]
     fn moved(
         &self,
         state: &MaxwellSlipState<S>,
@@ -183,13 +183,13 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
         self.parameters.viscous.re()
     }
 
-    #[inline]
+    #[inline(always)]
     fn force(&self, state: &MaxwellSlipState<S>, velocity: S, channels: &Channels<S>) -> S {
         state.spring.force * channels.level
             + self.parameters.viscous * channels.viscous_level * velocity
     }
 
-    #[inline]
+    #[inline(always)]
     fn advance(
         &self,
         state: &MaxwellSlipState<S>,
@@ -199,7 +199,7 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
         self.moved(state, motion, channels)
     }
 
-    #[inline]
+    #[inline(always)]
     fn outcome(&self, trial: &MaxwellSlipTrial<S>) -> Outcome<S> {
         trial.outcome
     }
@@ -209,7 +209,7 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
         Some(Rest::still(self, state, channels, duration))
     }
 
-    #[inline]
+    #[inline(always)]
     fn commit(&self, state: &mut MaxwellSlipState<S>, trial: &MaxwellSlipTrial<S>) {
         state.spring.accept(&trial.walk);
         state.spring.count(&trial.walk, &mut state.statistics);

@@ -26,29 +26,29 @@ impl<S: Scalar> Held<S> {
 impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Held<S> {
     type Attempt = (L::Trial, Motion<S>);
 
-    #[inline]
+    #[inline(always)]
     fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt {
         let motion = Motion::held(self.velocity, span);
         (law.advance(state, &motion, &self.channels), motion)
     }
 
-    #[inline]
+    #[inline(always)]
     fn contact<'a>(&self, attempt: &'a Self::Attempt) -> (&'a L::Trial, &'a Motion<S>) {
         (&attempt.0, &attempt.1)
     }
 
-    #[inline]
+    #[inline(always)]
     fn accept(&mut self, law: &L, state: &mut L::State, attempt: &Self::Attempt, _stopped: bool) {
         law.commit(state, &attempt.0);
         self.outcome = law.outcome(&attempt.0);
     }
 
-    #[inline]
+    #[inline(always)]
     fn velocity(&self) -> S {
         self.velocity
     }
 
-    #[inline]
+    #[inline(always)]
     fn hold(&mut self, _law: &L, _state: &mut L::State, _span: S) -> bool {
         false
     }
@@ -74,12 +74,14 @@ pub struct Along<S> {
 
 impl<S: Scalar> Along<S> {
     /// A sample of this motion.
+    #[inline(always)]
     pub fn new(displacement: S, duration: S, velocities: (S, S), channels: Channels<S>) -> Self {
         let zero = S::constant(0.0);
         let outcome = Outcome { force: zero, slope: zero, damping: zero };
         Self { displacement, duration, velocities, channels, passed: zero, outcome }
     }
 
+    #[inline(always)]
     fn velocity_at(&self, share: S) -> S {
         self.velocities.0 + (self.velocities.1 - self.velocities.0) * share
     }
@@ -88,6 +90,7 @@ impl<S: Scalar> Along<S> {
 impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Along<S> {
     type Attempt = (L::Trial, Motion<S>);
 
+    #[inline(always)]
     fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt {
         let share = span / self.duration;
         let motion = Motion {
@@ -99,16 +102,19 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Along<S> {
         (law.advance(state, &motion, &self.channels), motion)
     }
 
+    #[inline(always)]
     fn contact<'a>(&self, attempt: &'a Self::Attempt) -> (&'a L::Trial, &'a Motion<S>) {
         (&attempt.0, &attempt.1)
     }
 
+    #[inline(always)]
     fn accept(&mut self, law: &L, state: &mut L::State, attempt: &Self::Attempt, _stopped: bool) {
         law.commit(state, &attempt.0);
         self.outcome = law.outcome(&attempt.0);
         self.passed += attempt.1.duration / self.duration;
     }
 
+    #[inline(always)]
     fn velocity(&self) -> S {
         self.velocity_at(self.passed)
     }

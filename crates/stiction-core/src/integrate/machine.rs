@@ -208,14 +208,17 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Gravity and added efforts.
-    #[inline]
+    #[inline(always)]
     fn surroundings(&self, at: &Situation<S>) -> S {
-        let at = Situation { sliding: self.sliding, ..*at };
-        self.body.gravity(at.position) + self.effects.effort(&at)
+        let gravity = self.body.gravity(at.position);
+        if !self.effects.adds_efforts() {
+            return gravity + 0.0;
+        }
+        gravity + self.effects.effort(&Situation { sliding: self.sliding, ..*at })
     }
 
     /// What the drive is commanded: the input, or the voltage that a servo makes of its goal.
-    #[inline]
+    #[inline(always)]
     pub fn command(&self, input: S, at: &Situation<S>) -> S {
         match &self.drive.servo {
             None => input,
@@ -266,7 +269,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Effort of the drive.
-    #[inline]
+    #[inline(always)]
     pub(super) fn driven(&self, input: S, at: &Situation<S>) -> S {
         if !at.enabled {
             return S::constant(0.0);
@@ -286,7 +289,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// All effort but friction and shaft, then the drive's share and the rest of it.
-    #[inline]
+    #[inline(always)]
     pub fn efforts(&self, at: &Situation<S>, input: S, load: S) -> (S, S, S) {
         let driven = self.driven(input, at);
         let ambient = self.surroundings(at);
@@ -306,15 +309,14 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// What reaches the contact.
-    #[inline]
+    #[inline(always)]
     pub fn channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
-        let at_contact = self.at_contact(at, load);
         let (level, viscous_level) = if self.effects.changes_levels() {
-            self.effects.levels(&at_contact)
+            self.effects.levels(&self.at_contact(at, load))
         } else {
             self.effects.levels(at)
         };
-        let load = at_contact.load;
+        let load = load + self.body.gravity(at.position);
         Channels { effort, load, level, viscous_level, temperature: at.temperature }
     }
 
@@ -345,7 +347,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Whether the contact creeps of itself.
-    #[inline]
+    #[inline(always)]
     pub fn relaxes(&self) -> bool {
         self.relaxation.is_some() || self.steady_creep.is_some()
     }

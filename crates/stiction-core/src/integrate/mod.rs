@@ -19,7 +19,7 @@ mod steep;
 pub use adaptive::{Account, Adaptive};
 pub use contact::{Along, Held};
 pub use events::{Stepper, quiet, through_events};
-pub use glide::{Glide, Seen, Verlet};
+pub use glide::{Glide, Plain, Seen, Verlet};
 pub use machine::{Machine, Run};
 pub use shaft::Beyond;
 

@@ -16,7 +16,7 @@ pub struct Followed<S> {
 /// Solves dy/dζ = target(ζ) − y over ζ = 0 … z with the target going linearly from `from` to `to`.
 ///
 /// y(z) = to − (to − from)·(1 − e^(−z))/z + (y₀ − from)·e^(−z), exact and stable for any z ≥ 0.
-#[inline]
+#[inline(always)]
 pub fn follow<S: Scalar>(y: S, from: S, to: S, z: S) -> Followed<S> {
     // Far from 0 the plain exponential has the same digits for less.
     let gone = if z.re() < 0.5 { -((-z).exp_m1()) } else { -((-z).exp() - 1.0) };

@@ -50,13 +50,13 @@ impl<S: Scalar> Rigid<S> {
     }
 
     /// The mode at this velocity: a slide lasts until an event ends it.
-    #[inline]
+    #[inline(always)]
     pub fn mode_at(&self, velocity: S) -> f64 {
         if self.mode == 0.0 { sign(velocity.re()) } else { self.mode }
     }
 
     /// Accepts a step that ends in this mode with this force.
-    #[inline]
+    #[inline(always)]
     pub fn accept(&mut self, mode: f64, force: S) {
         if self.mode == 0.0 && mode != 0.0 {
             self.statistics.breakaways += 1;
@@ -66,7 +66,7 @@ impl<S: Scalar> Rigid<S> {
     }
 
     /// Whether a contact at velocity 0 holds this effort; starts a slide where it does not.
-    #[inline]
+    #[inline(always)]
     pub fn holds(&mut self, effort: S, greatest: S) -> bool {
         if self.mode != 0.0 {
             return false;
@@ -81,13 +81,13 @@ impl<S: Scalar> Rigid<S> {
     }
 
     /// Whether it slides one way while the velocity points the other.
-    #[inline]
+    #[inline(always)]
     pub fn turned(&self, velocity: S) -> bool {
         self.mode * velocity.re() < 0.0
     }
 
     /// Whether a slide ends at or before this velocity.
-    #[inline]
+    #[inline(always)]
     pub fn stops_by(&self, velocity: S) -> bool {
         self.mode != 0.0 && self.mode * velocity.re() <= 0.0
     }
@@ -100,7 +100,7 @@ impl<S: Scalar> Rigid<S> {
 }
 
 /// What a resting contact answers to an effort: the effort, at most its break-away level.
-#[inline]
+#[inline(always)]
 pub fn held<S: Scalar>(effort: S, greatest: S) -> S {
     if effort.re().abs() <= greatest.re() { effort } else { greatest * sign(effort.re()) }
 }
