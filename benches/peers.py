@@ -81,8 +81,8 @@ def own(outputs: dict[str, np.ndarray] | None) -> tuple[Run, int]:
     return run, SAMPLES
 
 
-def jacobian(columns: int) -> tuple[Run, int]:
-    """`Motor.sensitivity` by so many parameters."""
+def jacobian(columns: int, *, reused: bool) -> tuple[Run, int]:
+    """`Motor.sensitivity` by so many parameters, into an array that is there or a fresh one."""
     law = st.FrictionModel("hsieh_pan", breakaway=0.5, viscous=0.05)
     motor = st.Motor(0.0076, friction=law, weight=0.01)
     paths = [p for p in motor.parameters if not p.startswith("friction.loading")]
@@ -90,7 +90,8 @@ def jacobian(columns: int) -> tuple[Run, int]:
     if len(paths) < columns:
         raise RuntimeError(f"this motor has {len(paths)} parameters")
     effort = efforts()
-    return lambda: _drop(motor.sensitivity(effort, DT, paths)), SAMPLES
+    out = np.zeros((2, columns, SAMPLES)) if reused else None
+    return lambda: _drop(motor.sensitivity(effort, DT, paths, out=out)), SAMPLES
 
 
 def _drop(_: object) -> None:
@@ -237,7 +238,8 @@ def contestants(folder: Path) -> tuple[dict[str, tuple[Run, int]], dict[str, str
         "C, every exponential by the library": lambda: in_c("hsieh_pan_direct", folder),
         "Motor.simulate, x and v reused": lambda: own(reused),
         "Motor.simulate, six fresh columns": lambda: own(None),
-        "Motor.sensitivity, 16 columns": lambda: jacobian(16),
+        "Motor.sensitivity, 16 columns, reused": lambda: jacobian(16, reused=True),
+        "Motor.sensitivity, 16 columns, fresh": lambda: jacobian(16, reused=False),
         "numba, warm": in_numba,
         "C, lugre": lambda: in_c("lugre", folder),
         "Motor.simulate, lugre": lambda: own_law("lugre"),

@@ -10,6 +10,7 @@ pub mod friction;
 
 pub mod body;
 pub mod drive;
+pub mod dual;
 pub mod effects;
 pub mod ensemble;
 pub mod error;
@@ -27,5 +28,6 @@ pub mod sensitivity;
 pub mod sensor;
 pub mod servo;
 pub mod shoot;
+mod traces;
 pub mod trig;
 pub mod wave;

@@ -1,18 +1,13 @@
 //! The number type every model is written over: `f64` for values, [`Dual`] for values with exact
-//! derivatives. This is the only file that names the dual-number library.
+//! derivatives.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use num_dual::{DualNum, DualSVec64};
+use stiction_dispatch::Task;
 
+pub use crate::dual::{COLUMNS, Dual};
 use crate::trig::sin_cos;
-
-/// Derivative columns carried by one [`Dual`]: one pass of the model yields this many.
-pub const COLUMNS: usize = 12;
-
-/// A value with its derivatives with respect to [`COLUMNS`] seeded parameters.
-pub type Dual = DualSVec64<COLUMNS>;
 
 /// A real number or a dual number; branches are decided on the real part alone.
 pub trait Scalar:
@@ -46,49 +41,49 @@ pub trait Scalar:
     fn chain(self, value: f64, slope: f64) -> Self;
 
     /// e^x.
-    #[inline]
+    #[inline(always)]
     fn exp(self) -> Self {
         let e = self.re().exp();
         self.chain(e, e)
     }
     /// e^x − 1, accurate near 0.
-    #[inline]
+    #[inline(always)]
     fn exp_m1(self) -> Self {
         let e = self.re().exp_m1();
         self.chain(e, e + 1.0)
     }
     /// Natural logarithm of a positive number.
-    #[inline]
+    #[inline(always)]
     fn ln(self) -> Self {
         let x = self.re();
         self.chain(x.ln(), 1.0 / x)
     }
     /// Sine.
-    #[inline]
+    #[inline(always)]
     fn sin(self) -> Self {
         let (s, c) = sin_cos(self.re());
         self.chain(s, c)
     }
     /// Cosine.
-    #[inline]
+    #[inline(always)]
     fn cos(self) -> Self {
         let (s, c) = sin_cos(self.re());
         self.chain(c, -s)
     }
     /// Sine and cosine, for the price of one.
-    #[inline]
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (s, c) = sin_cos(self.re());
         (self.chain(s, c), self.chain(c, -s))
     }
     /// √x with derivative 0 at 0, where the true one is infinite and would turn into NaN.
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         let r = self.re().sqrt();
         self.chain(r, if r > 0.0 { 0.5 / r } else { 0.0 })
     }
     /// |x| with derivative 0 at the kink.
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
         let x = self.re();
         let slope = if x > 0.0 {
@@ -101,7 +96,7 @@ pub trait Scalar:
         self.chain(x.abs(), slope)
     }
     /// |x|^a for a > 0, with all derivatives 0 at x = 0 (dual libraries give NaN there).
-    #[inline]
+    #[inline(always)]
     fn power_of_magnitude(self, exponent: Self) -> Self {
         let (x, a) = (self.re(), exponent.re());
         let m = x.abs();
@@ -125,6 +120,7 @@ pub trait Scalar:
         }
     }
     /// True when the number depends on a seeded parameter.
+    #[inline(always)]
     fn derivative_is_nonzero(self) -> bool {
         (0..COLUMNS).any(|k| self.partial(k) != 0.0)
     }
@@ -132,30 +128,36 @@ pub trait Scalar:
     fn is_finite(self) -> bool {
         self.re().is_finite() && (0..COLUMNS).all(|k| self.partial(k).is_finite())
     }
+    /// Runs a loop over such numbers, with the widest vectors that the processor has where they carry
+    /// rows of derivatives. What is not part of the loop, but called by it, gets none of that.
+    #[inline(always)]
+    fn run<T: Task>(task: T) -> T::Output {
+        task.run()
+    }
 }
 
 impl Scalar for f64 {
-    #[inline]
+    #[inline(always)]
     fn constant(value: f64) -> Self {
         value
     }
-    #[inline]
+    #[inline(always)]
     fn variable(value: f64, _column: usize) -> Self {
         value
     }
-    #[inline]
+    #[inline(always)]
     fn re(self) -> f64 {
         self
     }
-    #[inline]
+    #[inline(always)]
     fn partial(self, _column: usize) -> f64 {
         0.0
     }
-    #[inline]
+    #[inline(always)]
     fn chain(self, value: f64, _slope: f64) -> Self {
         value
     }
-    #[inline]
+    #[inline(always)]
     fn power_of_magnitude(self, exponent: Self) -> Self {
         let m = f64::abs(self);
         if exponent == 2.0 {
@@ -168,37 +170,8 @@ impl Scalar for f64 {
     }
 }
 
-impl Scalar for Dual {
-    #[inline]
-    fn constant(value: f64) -> Self {
-        Self::from_re(value)
-    }
-    #[inline]
-    fn variable(value: f64, column: usize) -> Self {
-        Self::from_re(value).derivative(column)
-    }
-    #[inline]
-    fn re(self) -> f64 {
-        self.re
-    }
-    #[inline]
-    fn partial(self, column: usize) -> f64 {
-        self.eps.0.map_or(0.0, |eps| eps[column])
-    }
-    #[inline]
-    fn chain(self, value: f64, slope: f64) -> Self {
-        let mut scaled = <Self as DualNum>::scale(self, &slope);
-        scaled.re = value;
-        scaled
-    }
-    #[inline]
-    fn derivative_is_nonzero(self) -> bool {
-        self.eps.0.is_some_and(|eps| eps.iter().any(|partial| *partial != 0.0))
-    }
-}
-
 /// −ln(1 − u)/u for u < 1; 1 at u = 0.
-#[inline]
+#[inline(always)]
 pub fn logarithmic_mean<S: Scalar>(u: S) -> S {
     let x = u.re();
     if x.abs() < 1e-3 {
@@ -217,7 +190,7 @@ pub const SHORT: f64 = 0.02;
 /// (1 − e^(−z))/z for |z| < [`SHORT`], to 3e-17 of it; 1 at z = 0.
 ///
 /// The series to z⁶, summed in pairs: that waits for half as many results as Horner's scheme does.
-#[inline]
+#[inline(always)]
 pub fn gone_share<S: Scalar>(z: S) -> S {
     let x = z.re();
     let value = in_pairs(
@@ -232,7 +205,7 @@ pub fn gone_share<S: Scalar>(z: S) -> S {
 }
 
 /// (1 − [`gone_share`])/z likewise; ½ at z = 0.
-#[inline]
+#[inline(always)]
 pub fn second_share<S: Scalar>(z: S) -> S {
     let x = z.re();
     let value = in_pairs(
@@ -263,7 +236,7 @@ pub fn second_share<S: Scalar>(z: S) -> S {
 }
 
 /// c₀ + c₁·x + … + c₆·x⁶.
-#[inline]
+#[inline(always)]
 fn in_pairs(x: f64, c: [f64; 7]) -> f64 {
     let square = x * x;
     let low = (c[0] + c[1] * x) + square * (c[2] + c[3] * x);
@@ -272,7 +245,7 @@ fn in_pairs(x: f64, c: [f64; 7]) -> f64 {
 }
 
 /// The sign of a real number as −1, 0 or 1.
-#[inline]
+#[inline(always)]
 pub fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0

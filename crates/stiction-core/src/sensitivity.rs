@@ -4,18 +4,34 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::effects::{AnyEffect, EffectRecord, Effects, Hook, Passage, Situation};
 use crate::error::{Error, Result};
-use crate::follow::Efforts;
+use crate::integrate::{Machine, Run};
 use crate::kernel::RowKernel;
-use crate::motor::{EffectSpec, MotorSpec, PerSample, Running, Surroundings};
+use crate::motor::{EffectSpec, MotorSpec, PerSample, Rows, Running, Surroundings};
 use crate::scalar::{COLUMNS, Dual, Scalar};
+use crate::traces::{Stretch, Traces, put};
 
 /// Derivatives of position and velocity at the end of every sample.
 #[derive(Debug, Clone)]
 pub struct Sensitivity {
-    /// ∂position/∂parameter, one vector of samples for each parameter asked for.
-    pub position: Vec<Vec<f64>>,
+    /// ∂position/∂parameter: all samples of the first parameter asked for, then all of the next.
+    pub position: Vec<f64>,
     /// ∂velocity/∂parameter, likewise.
-    pub velocity: Vec<Vec<f64>>,
+    pub velocity: Vec<f64>,
+}
+
+/// Where the derivatives of a pass go.
+struct Slopes<'a> {
+    position: &'a mut [f64],
+    velocity: &'a mut [f64],
+    samples: usize,
+}
+
+impl Rows<Dual> for Slopes<'_> {
+    #[inline(always)] // where it is called, the motion is in registers
+    fn see(&mut self, k: usize, run: &Run<Dual>, _: &Machine<Dual>, _: impl Fn(usize) -> Dual) {
+        put(self.position, self.samples, k, run.position.slopes());
+        put(self.velocity, self.samples, k, run.velocity.slopes());
+    }
 }
 
 /// The state from which a differentiated run starts.
@@ -94,17 +110,36 @@ pub fn sensitivity(
     dt: PerSample<'_>,
     paths: &[String],
 ) -> Result<Sensitivity> {
-    let columns = || vec![vec![0.0; inputs.len()]; paths.len()];
-    let mut result = Sensitivity { position: columns(), velocity: columns() };
-    passes(spec, start.into(), paths, |running, first, number| {
-        running.simulate(inputs, around, dt, |k, run, _, _| {
-            for column in 0..number {
-                result.position[first + column][k] = Scalar::partial(run.position, column);
-                result.velocity[first + column][k] = Scalar::partial(run.velocity, column);
-            }
-        })
-    })?;
+    let zeros = || vec![0.0; paths.len() * inputs.len()];
+    let mut result = Sensitivity { position: zeros(), velocity: zeros() };
+    let rows = [&mut *result.position, &mut *result.velocity];
+    sensitivity_into(spec, start, inputs, around, dt, paths, rows)?;
     Ok(result)
+}
+
+/// The same, into rows laid out as those of [`Sensitivity`]: of position, and of velocity.
+pub fn sensitivity_into(
+    spec: &MotorSpec,
+    start: &Running<f64>,
+    inputs: &[f64],
+    around: Surroundings<'_>,
+    dt: PerSample<'_>,
+    paths: &[String],
+    [position, velocity]: [&mut [f64]; 2],
+) -> Result<()> {
+    let samples = inputs.len();
+    for rows in [&*position, &*velocity] {
+        let (given, wanted) = (rows.len(), paths.len() * samples);
+        if given != wanted {
+            return Err(Error::Length { name: "out".to_owned(), given, wanted });
+        }
+    }
+    passes(spec, start.into(), paths, |running, first, number| {
+        let own = first * samples..(first + number) * samples;
+        let (position, velocity) = (&mut position[own.clone()], &mut velocity[own]);
+        let slopes = Slopes { position, velocity, samples };
+        running.simulate_rows(inputs, around, |_| Dual::constant(0.0), dt, slopes)
+    })
 }
 
 /// Derivatives of the efforts along given positions.
@@ -151,41 +186,38 @@ impl EffortSensitivity {
     }
 }
 
-/// Derivatives by one parameter at every sample end: needed, driven, ahead.
-type Traces = [Vec<f64>; 3];
-
 impl MeasuredMotion<'_> {
     /// Samples between the positions.
     pub fn samples(&self) -> usize {
         self.positions.len().saturating_sub(1)
     }
 
-    fn traces(&self) -> Traces {
-        [(); 3].map(|()| vec![0.0; self.samples()])
-    }
-
-    /// Follows the motion and fills the traces of a pass, one for each seeded column.
-    fn differentiate(&self, running: &mut Running<Dual>, traces: &mut [Traces]) {
-        running.follow(self.positions, self.inputs, self.around, self.dt, |k, efforts| {
+    /// Follows the motion and hands over the traces of a pass, stretch by stretch.
+    fn differentiate(
+        &self,
+        running: &mut Running<Dual>,
+        traces: &mut Traces,
+        take: impl FnMut(usize, usize, Stretch<'_>),
+    ) {
+        let mut traces = traces.to(take);
+        running.follow(self.positions, self.inputs, self.around, self.dt, |k, efforts, _| {
             let short = efforts.friction - efforts.ambient;
-            for (column, [needed, driven, ahead]) in traces.iter_mut().enumerate() {
-                needed[k] = Scalar::partial(short, column);
-                driven[k] = Scalar::partial(efforts.driven, column);
-                ahead[k] = Scalar::partial(efforts.ahead, column);
-            }
+            traces.put(k, [&short, &efforts.driven, &efforts.ahead]);
         });
+        traces.hand_over();
     }
 }
 
 /// Where the traces of a parameter go.
 trait Target: Send {
-    fn take(&mut self, traces: &Traces);
+    /// Takes those of some samples, the first of which is the `begin`-th.
+    fn take(&mut self, begin: usize, traces: Stretch<'_>);
 }
 
 impl Target for [&mut [f64]; 3] {
-    fn take(&mut self, traces: &Traces) {
+    fn take(&mut self, begin: usize, traces: Stretch<'_>) {
         for (row, trace) in self.iter_mut().zip(traces) {
-            row.copy_from_slice(trace);
+            row[begin..begin + trace.len()].copy_from_slice(trace);
         }
     }
 }
@@ -194,11 +226,20 @@ impl Target for [&mut [f64]; 3] {
 struct Column<'a> {
     kernel: &'a RowKernel<'a>,
     values: &'a mut [f64],
+    /// How many of them are there.
+    done: usize,
 }
 
 impl Target for Column<'_> {
-    fn take(&mut self, [needed, driven, ahead]: &Traces) {
-        self.kernel.column([needed, driven, ahead], self.values);
+    fn take(&mut self, begin: usize, traces: Stretch<'_>) {
+        let places = self.kernel.rows(begin + traces[0].len()).min(self.values.len());
+        if places <= self.done {
+            return;
+        }
+        let from = self.done * self.kernel.every - begin;
+        let values = &mut self.values[self.done..places];
+        self.kernel.column(traces.map(|trace| &trace[from..]), values);
+        self.done = places;
     }
 }
 
@@ -209,7 +250,7 @@ fn columns<'a>(
     kernel: &'a RowKernel<'a>,
 ) -> Vec<Column<'a>> {
     let rows = kernel.rows(motion.samples()).max(1);
-    values.chunks_mut(rows).map(|values| Column { kernel, values }).collect()
+    values.chunks_mut(rows).map(|values| Column { kernel, values, done: 0 }).collect()
 }
 
 /// Follows given positions and differentiates the efforts by the parameters at these paths: all of
@@ -221,7 +262,7 @@ pub fn follow_sensitivity(
     paths: &[String],
 ) -> Result<EffortSensitivity> {
     let mut result = EffortSensitivity::zeros(paths.len(), motion);
-    follow_into(spec, start, motion, paths, &mut result.rows(motion))?;
+    follow_into(spec, start, motion, paths, None, &mut result.rows(motion))?;
     Ok(result)
 }
 
@@ -235,7 +276,8 @@ pub fn follow_columns(
     kernel: &RowKernel<'_>,
 ) -> Result<Vec<f64>> {
     let mut values = vec![0.0; paths.len() * kernel.rows(motion.samples())];
-    follow_into(spec, start, motion, paths, &mut columns(&mut values, motion, kernel))?;
+    let mut targets = columns(&mut values, motion, kernel);
+    follow_into(spec, start, motion, paths, Some(kernel), &mut targets)?;
     Ok(values)
 }
 
@@ -244,15 +286,15 @@ fn follow_into(
     start: Start<'_>,
     motion: &MeasuredMotion<'_>,
     paths: &[String],
+    kernel: Option<&RowKernel<'_>>,
     targets: &mut [impl Target],
 ) -> Result<()> {
-    let mut traces: Vec<Traces> = Vec::new();
+    let mut traces = Traces::new(motion.samples(), kernel);
     passes(spec, start, paths, |running, first, number| {
-        traces.resize_with(number.max(traces.len()), || motion.traces());
-        motion.differentiate(running, &mut traces[..number]);
-        for (target, traces) in targets[first..first + number].iter_mut().zip(&traces) {
-            target.take(traces);
-        }
+        let own = &mut targets[first..first + number];
+        motion.differentiate(running, traces.of(number), |column, begin, stretch| {
+            own[column].take(begin, stretch);
+        });
         Ok(())
     })
 }
@@ -271,7 +313,7 @@ pub fn signatures(
     threads: usize,
 ) -> EffortSensitivity {
     let mut result = EffortSensitivity::zeros(gains_of(candidates).len(), motion);
-    signatures_into(spec, start, motion, candidates, threads, result.rows(motion));
+    signatures_into(spec, start, motion, candidates, threads, None, result.rows(motion));
     result
 }
 
@@ -287,7 +329,7 @@ pub fn signature_columns(
 ) -> Vec<f64> {
     let mut values = vec![0.0; gains_of(candidates).len() * kernel.rows(motion.samples())];
     let targets = columns(&mut values, motion, kernel);
-    signatures_into(spec, start, motion, candidates, threads, targets);
+    signatures_into(spec, start, motion, candidates, threads, Some(kernel), targets);
     values
 }
 
@@ -310,6 +352,7 @@ fn signatures_into(
     motion: &MeasuredMotion<'_>,
     candidates: &[EffectSpec],
     threads: usize,
+    kernel: Option<&RowKernel<'_>>,
     targets: Vec<impl Target>,
 ) {
     let (mut direct, mut seeded) = (Vec::new(), Vec::new());
@@ -323,15 +366,13 @@ fn signatures_into(
     let work = Mutex::new(apart(seeded, candidates).into_iter());
     let next = || work.lock().unwrap_or_else(PoisonError::into_inner).next();
     let passes = || {
-        let mut traces: Vec<Traces> = Vec::new();
+        let mut traces = Traces::new(motion.samples(), kernel);
         while let Some(mut pass) = next() {
             let places: Vec<(usize, usize)> = pass.iter().map(|(place, _)| *place).collect();
             let mut running = with_candidates(spec, start, candidates, &places);
-            traces.resize_with(pass.len().max(traces.len()), || motion.traces());
-            motion.differentiate(&mut running, &mut traces[..pass.len()]);
-            for ((_, target), traces) in pass.iter_mut().zip(&traces) {
-                target.take(traces);
-            }
+            motion.differentiate(&mut running, traces.of(pass.len()), |column, begin, stretch| {
+                pass[column].1.take(begin, stretch);
+            });
         }
     };
     std::thread::scope(|scope| {
@@ -403,7 +444,7 @@ fn at_once(
 ) {
     let samples = samples_along(spec, start, motion);
     let usual = samples.iter().map(|sample| sample.command.abs()).fold(0.0, f64::max);
-    let mut traces = motion.traces();
+    let mut traces = [(); 3].map(|()| vec![0.0; motion.samples()]);
     for ((index, gain), target) in targets {
         let candidate = &candidates[*index];
         let mapped = candidate.record.hooks.contains(&Hook::InputMap);
@@ -423,7 +464,7 @@ fn at_once(
                 *driven = sample.gain * moved / unit;
             }
         }
-        target.take(&traces);
+        target.take(0, traces.each_ref().map(Vec::as_slice));
     }
 }
 
@@ -435,32 +476,38 @@ fn samples_along(spec: &MotorSpec, start: Start<'_>, motion: &MeasuredMotion<'_>
     let drive = running.machine.drive;
     let mut before = (running.actual(motion.positions[0]), running.run.friction.re());
     let mut samples = Vec::with_capacity(motion.samples());
-    running.follow(motion.positions, motion.inputs, motion.around, motion.dt, |k, efforts| {
-        let Efforts { friction, at, command, .. } = efforts;
-        let position = at.position.re();
-        let (displacement, span) = (position - before.0, motion.dt.at(k));
-        let passage = Passage { displacement, friction: before.1, span };
-        before = (position, friction.re());
-        let command = command.re();
-        samples.push(Sample {
-            at: Situation {
-                position,
-                velocity: at.velocity.re(),
-                time: at.time.re(),
-                path: at.path.re(),
-                moved: at.moved.re(),
-                load: at.load.re(),
-                sliding: at.sliding.re(),
-                temperature: at.temperature,
-                wound: at.wound.re(),
-                enabled: at.enabled,
-            },
-            passage,
-            by_levels: (friction.partial(0), friction.partial(1)),
-            command,
-            gain: if at.enabled { drive.slope(command, at.velocity.re()) } else { 0.0 },
-        });
-    });
+    running.follow(
+        motion.positions,
+        motion.inputs,
+        motion.around,
+        motion.dt,
+        |k, efforts, there| {
+            let (friction, at) = (efforts.friction, there.situation());
+            let position = at.position.re();
+            let (displacement, span) = (position - before.0, motion.dt.at(k));
+            let passage = Passage { displacement, friction: before.1, span };
+            before = (position, friction.re());
+            let command = there.command().re();
+            samples.push(Sample {
+                at: Situation {
+                    position,
+                    velocity: at.velocity.re(),
+                    time: at.time.re(),
+                    path: at.path.re(),
+                    moved: at.moved.re(),
+                    load: at.load.re(),
+                    sliding: at.sliding.re(),
+                    temperature: at.temperature,
+                    wound: at.wound.re(),
+                    enabled: at.enabled,
+                },
+                passage,
+                by_levels: (friction.partial(0), friction.partial(1)),
+                command,
+                gain: if at.enabled { drive.slope(command, at.velocity.re()) } else { 0.0 },
+            });
+        },
+    );
     samples
 }
 

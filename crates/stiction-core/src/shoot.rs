@@ -65,7 +65,7 @@ impl<S: Scalar> Running<S> {
         let mut reached = 0;
         for window in 0..windows.number(motion.samples()) {
             let start = window * windows.stride.max(1);
-            self.follow_on(positions, reached..start, inputs, around, dt, |_, _| ());
+            self.follow_on(positions, reached..start, inputs, around, dt, |_, _, _| ());
             reached = start;
             let end = start + length;
             let track = Track::new(positions, &actual, start);

@@ -161,25 +161,28 @@ impl<'py> Around<'py> {
     }
 }
 
-/// A writable C-contiguous float64 array of this length to fill.
+/// A writable C-contiguous float64 array of this shape to fill, called `name` in a complaint.
 pub fn target<'py>(
     name: &str,
     value: &Bound<'py, PyAny>,
-    length: usize,
+    shape: &[usize],
 ) -> PyResult<PyReadwriteArrayDyn<'py, f64>> {
     let py = value.py();
     let wrong = |what: String| {
+        let comma = if shape.len() == 1 { "," } else { "" };
+        let numbers: Vec<String> = shape.iter().map(usize::to_string).collect();
+        let wanted = numbers.join(", ");
         input_error(
             py,
             format!(
-                "out['{name}'] {what}; give a writable C-contiguous float64 array of shape \
-                 ({length},)"
+                "{name} {what}; give a writable C-contiguous float64 array of shape \
+                 ({wanted}{comma})"
             ),
         )
     };
     let array =
         value.cast::<PyArrayDyn<f64>>().map_err(|_| wrong("is not a float64 array".to_owned()))?;
-    if array.shape() != [length] {
+    if array.shape() != shape {
         return Err(wrong(format!("has shape {:?}", array.shape())));
     }
     if !array.is_c_contiguous() {

@@ -2,14 +2,16 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use numpy::{
+    PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stiction_core::integrate::Integrator;
 use stiction_core::motor::{Column, Motor as Core, MotorSpec};
 use stiction_core::segments::Segments;
 use stiction_core::sensitivity::{
-    EffortSensitivity, MeasuredMotion, Start, follow_columns, follow_sensitivity, sensitivity,
+    EffortSensitivity, MeasuredMotion, Start, follow_columns, follow_sensitivity, sensitivity_into,
     signature_columns, signatures,
 };
 use stiction_core::servo::Servo;
@@ -243,7 +245,7 @@ impl Motor {
                 None => PyArray1::<f64>::zeros(py, n, false).into_any(),
             };
             result.set_item(name, &array)?;
-            arrays.push((column, target(name, &array, n)?));
+            arrays.push((column, target(&format!("out['{name}']"), &array, &[n])?));
         }
         let current = current.as_slice()?;
         let (dt, around) = (dt.per_sample()?, around.surroundings()?);
@@ -530,8 +532,9 @@ impl Motor {
 
     /// Exact derivatives of position and velocity by parameters, from the present state.
     ///
-    /// Returns two arrays of shape (parameters, n); the motor is left as it was.
-    #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None))]
+    /// Returns two arrays of shape (parameters, n), parts of one of shape (2, parameters, n) that
+    /// may be given as ``out``; the motor is left as it was.
+    #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None, out=None))]
     #[allow(clippy::type_complexity)]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn sensitivity<'py>(
@@ -543,19 +546,31 @@ impl Motor {
         load: Option<&Bound<'py, PyAny>>,
         temperature: Option<&Bound<'py, PyAny>>,
         enabled: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let current = one_row("current", current)?;
         let shape = current.shape().to_vec();
         let dt = Each::steps("dt", dt, &shape)?;
         let around = Around::read([load, temperature, enabled], &shape)?;
         let current = current.as_slice()?;
         let (dt, around) = (dt.per_sample()?, around.surroundings()?);
+        let shape = [2, parameters.len(), current.len()];
+        // One array, for the system gives large ones larger pages.
+        let array = match out {
+            Some(array) => array.clone(),
+            None => PyArray3::<f64>::zeros(py, shape, false).into_any(),
+        };
+        let mut rows = target("out", &array, &shape)?;
+        let both = rows.as_slice_mut()?;
+        let (position, velocity) = both.split_at_mut(both.len() / 2);
         let result = py.detach(|| {
             let core = self.lock().clone();
-            sensitivity(core.spec(), core.running(), current, around, dt, &parameters)
+            let rows = [position, velocity];
+            sensitivity_into(core.spec(), core.running(), current, around, dt, &parameters, rows)
         });
-        let result = result.or_input_error(py)?;
-        Ok((PyArray2::from_vec2(py, &result.position)?, PyArray2::from_vec2(py, &result.velocity)?))
+        drop(rows);
+        result.or_input_error(py)?;
+        Ok((array.get_item(0)?, array.get_item(1)?))
     }
 
     /// Paths and values of all parameters.

@@ -5,6 +5,8 @@
 //! goes through those in one loop that keeps what runs from step to step in registers, and leaves
 //! the first step that is not plain to the others. The equations are the same, to the bit.
 
+use stiction_dispatch::Task;
+
 use super::machine::Run;
 use crate::friction::{Channels, FrictionLaw, Motion};
 use crate::scalar::Scalar;
@@ -22,7 +24,7 @@ pub struct Verlet<S> {
 
 impl<S: Scalar> Verlet<S> {
     /// Steps of this duration.
-    #[inline]
+    #[inline(always)]
     pub fn new(span: S, inertia: S, lightness: S) -> Self {
         let half = span * 0.5;
         let pace = span * lightness;
@@ -30,7 +32,7 @@ impl<S: Scalar> Verlet<S> {
     }
 
     /// Displacement over the step and the velocity predicted for its end.
-    #[inline]
+    #[inline(always)]
     pub fn depart(&self, velocity: S, net: S) -> (S, S) {
         (self.span * velocity + self.lever * net, velocity + self.pace * net)
     }
@@ -39,14 +41,14 @@ impl<S: Scalar> Verlet<S> {
     /// as what its damping leaves and that.
     ///
     /// (J·v₀ + h/2·(E₀ − F₀ + E₁ − F* + D·v*))/(J + h/2·D), F* last: the rest waits for nothing.
-    #[inline]
+    #[inline(always)]
     pub fn arrive(&self, velocity: S, both: S, damping: S, undamped: S) -> S {
         let (unbraked, braking) = self.unbraked(velocity, both, damping);
         unbraked - braking * undamped
     }
 
     /// The velocity at the end without undamped friction there, and what that takes off for its unit.
-    #[inline]
+    #[inline(always)]
     pub fn unbraked(&self, velocity: S, both: S, damping: S) -> (S, S) {
         let share = S::constant(1.0) / (self.inertia + self.half * damping);
         ((self.inertia * velocity + self.half * both) * share, self.half * share)
@@ -58,7 +60,7 @@ impl<S: Scalar> Verlet<S> {
     }
 
     /// Duration of a step.
-    #[inline]
+    #[inline(always)]
     pub fn span(&self) -> S {
         self.span
     }
@@ -145,5 +147,31 @@ impl<S: Scalar, E: Fn(usize) -> S, V> Glide<S, E, V> {
             self.seen.see(self.samples.start, run, contact);
             self.samples.start += 1;
         }
+    }
+}
+
+/// A row of plain steps of a law, as a loop to run.
+#[derive(Debug)]
+pub struct Plain<'a, L, T, G> {
+    /// The law.
+    pub law: &'a L,
+    /// Its state.
+    pub state: &'a mut T,
+    /// The body.
+    pub glide: &'a mut G,
+}
+
+impl<S, L, E, V> Task for Plain<'_, L, L::State, Glide<S, E, V>>
+where
+    S: Scalar,
+    L: FrictionLaw<S>,
+    E: Fn(usize) -> S,
+    V: Seen<S, L::State>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.law.glide(self.state, self.glide);
     }
 }

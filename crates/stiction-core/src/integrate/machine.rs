@@ -210,8 +210,11 @@ impl<S: Scalar> Machine<S> {
     /// Gravity and added efforts.
     #[inline]
     fn surroundings(&self, at: &Situation<S>) -> S {
-        let at = Situation { sliding: self.sliding, ..*at };
-        self.body.gravity(at.position) + self.effects.effort(&at)
+        let gravity = self.body.gravity(at.position);
+        if !self.effects.adds_efforts() {
+            return gravity + 0.0;
+        }
+        gravity + self.effects.effort(&Situation { sliding: self.sliding, ..*at })
     }
 
     /// What the drive is commanded: the input, or the voltage that a servo makes of its goal.
@@ -324,13 +327,12 @@ impl<S: Scalar> Machine<S> {
     /// What reaches the contact.
     #[inline]
     pub fn channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
-        let at_contact = self.at_contact(at, load);
         let (level, viscous_level) = if self.effects.changes_levels() {
-            self.effects.levels(&at_contact)
+            self.effects.levels(&self.at_contact(at, load))
         } else {
             self.effects.levels(at)
         };
-        let load = at_contact.load;
+        let load = load + self.body.gravity(at.position);
         Channels { effort, load, level, viscous_level, temperature: at.temperature }
     }
 

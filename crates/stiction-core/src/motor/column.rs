@@ -62,7 +62,7 @@ impl Column {
 }
 
 /// Who sees body, machine and states of the law after each sample.
-pub(super) trait Rows<S: Scalar> {
+pub(crate) trait Rows<S: Scalar> {
     fn see(
         &mut self,
         sample: usize,

@@ -14,6 +14,7 @@ use crate::shoot::{Pull, Windows};
 
 pub use column::Column;
 use column::Columns;
+pub(crate) use column::Rows;
 pub use running::Running;
 pub use spec::{EffectSpec, MotorSpec};
 pub use surroundings::{PerSample, Surroundings};
@@ -99,7 +100,7 @@ impl Motor {
                 return Err(Error::Length { name, given: array.len(), wanted });
             }
         }
-        self.running.follow(positions, inputs, around, dt, |k, efforts| {
+        self.running.follow(positions, inputs, around, dt, |k, efforts, _| {
             driven[k] = efforts.driven;
             ambient[k] = efforts.ambient;
             friction[k] = efforts.friction;

@@ -6,7 +6,7 @@ use crate::drive::Way;
 use crate::error::{Error, Result};
 use crate::follow::arriving;
 use crate::friction::{AnyState, FrictionLaw, Law, LawState};
-use crate::integrate::{Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Run, parts, sample};
+use crate::integrate::{Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, parts, sample};
 use crate::model::CHUNK;
 use crate::scalar::Scalar;
 
@@ -111,7 +111,7 @@ impl<S: Scalar> Running<S> {
     }
 
     /// As [`Self::simulate_under`], for one who sees the samples in the loop itself.
-    pub(super) fn simulate_rows(
+    pub(crate) fn simulate_rows(
         &mut self,
         inputs: &[f64],
         around: Surroundings<'_>,
@@ -162,7 +162,7 @@ impl<S: Scalar> Running<S> {
                     let samples = index..dt.same_until(index, end);
                     let mut glide =
                         machine.glide(self.run, applied, seen, samples, (span, divided));
-                    law.glide(state, &mut glide);
+                    S::run(Plain { law, state: &mut *state, glide: &mut glide });
                     (index, passed) = (glide.samples.start, glide.part);
                     let more = index < glide.samples.end;
                     self.run = glide.run;

@@ -179,6 +179,12 @@ impl<S: Scalar> Effects<S> {
         sum
     }
 
+    /// Whether any effect adds an effort.
+    #[inline]
+    pub fn adds_efforts(&self) -> bool {
+        !self.efforts.is_empty()
+    }
+
     /// What the input becomes.
     #[inline]
     pub fn input(&self, input: S, at: &Situation<S>) -> S {

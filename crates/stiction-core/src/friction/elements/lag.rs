@@ -17,7 +17,7 @@ pub struct Followed<S> {
 /// Solves dy/dζ = target(ζ) − y over ζ = 0 … z with the target going linearly from `from` to `to`.
 ///
 /// y(z) = to − (to − from)·(1 − e^(−z))/z + (y₀ − from)·e^(−z), exact and stable for any z ≥ 0.
-#[inline]
+#[inline(always)]
 pub fn follow<S: Scalar>(y: S, from: S, to: S, z: S) -> Followed<S> {
     let gone = faded_of(-z);
     let remainder = -(gone - 1.0);

@@ -32,13 +32,13 @@ pub struct Creep<S> {
 
 impl<S: Scalar> Plastic<S> {
     /// Greatest hardening that a force of this magnitude can cause.
-    #[inline]
+    #[inline(always)]
     pub fn limit(&self, force: S) -> S {
         self.coefficient * force.power_of_magnitude(self.exponent)
     }
 
     /// Slope of that limit by the magnitude of the force; 0 at no force, as f'(0) = 0.
-    #[inline]
+    #[inline(always)]
     pub fn limit_slope(&self, force: S) -> S {
         if force.re() == 0.0 {
             return S::constant(0.0);
@@ -57,7 +57,7 @@ impl<S: Scalar> Plastic<S> {
     }
 
     /// Whether f is a plain square, which costs no power.
-    #[inline]
+    #[inline(always)]
     pub fn is_square(&self) -> bool {
         self.exponent.re() == 2.0 && !self.exponent.derivative_is_nonzero()
     }
@@ -223,7 +223,7 @@ impl<S: Scalar> Plastic<S> {
 
     /// Sign of a quantity that vanishes with the coefficient: where that is 0, the sign it takes
     /// as soon as the coefficient is above 0, so that derivatives see what switching it on does.
-    #[inline]
+    #[inline(always)]
     fn sign_of(&self, quantity: S) -> f64 {
         if self.coefficient.re() != 0.0 {
             return sign(quantity.re());
@@ -233,7 +233,7 @@ impl<S: Scalar> Plastic<S> {
     }
 
     /// Creep rate h' at this hardening and force.
-    #[inline]
+    #[inline(always)]
     pub fn hardening_rate(&self, hardening: S, force: S) -> S {
         let margin = self.limit(force) - hardening;
         if margin.re() > 0.0 { self.rate * margin } else { S::constant(0.0) }
@@ -241,7 +241,7 @@ impl<S: Scalar> Plastic<S> {
 }
 
 /// φ₁(z) = (1 − e^(−z))/z and φ₂(z) = (1 − φ₁)/z.
-#[inline]
+#[inline(always)]
 fn exponential_means<S: Scalar>(z: S) -> (S, S) {
     if z.re() < SHORT {
         let second = second_share(z);

@@ -166,3 +166,45 @@ pub fn instant<S: Scalar>(
     }
     (t, rate(t))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::friction::elements::spring::{Curve, VirginCurve};
+    use crate::scalar::Dual;
+
+    fn moved<S: Scalar>(displacement: S, hardening: S, velocity: f64) -> S {
+        let k = |value: f64| S::constant(value);
+        let curve = Curve::new(k(6300.0), k(1400.0), k(2.1e-4), VirginCurve::Same);
+        let plastic = Plastic { coefficient: k(3.6e-3), exponent: k(1.5), rate: k(2.3) };
+        let mut spring = SpringState::relaxed(&curve);
+        spring.place(&curve, k(8e-5), curve.virgin(k(8e-5)).force);
+        let motion = Motion {
+            displacement,
+            duration: k(4.7e-4),
+            start_velocity: k(0.9 * velocity),
+            velocity: k(velocity),
+        };
+        step(&spring, &curve, &plastic, k(0.23), hardening, &motion).force
+    }
+
+    // Where round-off took the last Newton pass past its bracket, the force had no derivative.
+    #[test]
+    fn the_force_has_its_derivative_wherever_the_root_lies() {
+        for k in 1..20_000 {
+            let velocity = 1e-5 * f64::from(k);
+            let displacement = 4.7e-4 * velocity;
+            let hardening = 1e-7 * f64::from(k % 37);
+            let by_way =
+                moved(Dual::variable(displacement, 0), Dual::constant(hardening), velocity);
+            let width = 1e-4 * displacement;
+            let (high, low) = (
+                moved(displacement + width, hardening, velocity),
+                moved(displacement - width, hardening, velocity),
+            );
+            let chord = (high - low) / (2.0 * width);
+            let digits = 1e-15 * high.abs() / width;
+            assert!((by_way.partial(0) - chord).abs() <= 1e-4 * chord.abs() + digits, "{k}");
+        }
+    }
+}

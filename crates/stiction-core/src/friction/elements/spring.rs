@@ -27,7 +27,7 @@ pub trait Loading<S: Scalar> {
     /// G and its slope at distance d ≥ 0 from a reverse point.
     fn branch(&self, d: S) -> Response<S>;
     /// The same of a branch that depends on where its reverse point lies as well.
-    #[inline]
+    #[inline(always)]
     fn branch_from(&self, _anchor: S, _direction: f64, d: S) -> Response<S> {
         self.branch(d)
     }
@@ -37,7 +37,7 @@ pub trait Loading<S: Scalar> {
     fn closes_at_mirror(&self) -> bool;
     /// Where the present branch gets on a short way from here, without asking for its reverse
     /// point. None where that would cost digits, or save no time.
-    #[inline]
+    #[inline(always)]
     fn onward(&self, _here: &Here<S>, _branch: &Branch, _displacement: S) -> Option<Response<S>> {
         None
     }
@@ -99,7 +99,7 @@ impl<S: Scalar> Here<S> {
 pub const SYNCHRONISED: u32 = 256;
 
 /// The virgin curve that goes with a branch under Masing's rule: half its size.
-#[inline]
+#[inline(always)]
 pub fn masing<S: Scalar>(curve: &impl Loading<S>, x: S) -> Response<S> {
     let s = if x.re() < 0.0 { -1.0 } else { 1.0 };
     let r = curve.branch(x * (2.0 * s));
@@ -193,12 +193,12 @@ pub fn virgin_inverse<S: Scalar>(curve: &impl Loading<S>, force: S) -> S {
 }
 
 impl<S: Scalar> Loading<S> for Curve<S> {
-    #[inline]
+    #[inline(always)]
     fn initial_stiffness(&self) -> S {
         self.initial_stiffness
     }
 
-    #[inline]
+    #[inline(always)]
     fn branch(&self, d: S) -> Response<S> {
         // A wrong anchor gives a negative distance, and the exponential explodes.
         debug_assert!(d.re() >= 0.0, "branch evaluated behind its reverse point: {d:?}");
@@ -209,7 +209,7 @@ impl<S: Scalar> Loading<S> for Curve<S> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn virgin(&self, x: S) -> Response<S> {
         match self.virgin {
             VirginCurve::Masing => masing(self, x),
@@ -221,7 +221,7 @@ impl<S: Scalar> Loading<S> for Curve<S> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn closes_at_mirror(&self) -> bool {
         self.virgin == VirginCurve::Masing
     }
@@ -310,7 +310,7 @@ impl<S: Scalar> SpringState<S> {
     }
 
     /// Slope with which the spring would start to move in this direction.
-    #[inline]
+    #[inline(always)]
     pub fn slope_towards(&self, curve: &impl Loading<S>, direction: f64) -> S {
         if direction == self.direction || direction == 0.0 {
             self.slope
@@ -337,7 +337,7 @@ impl<S: Scalar> SpringState<S> {
     }
 
     /// Where it is.
-    #[inline]
+    #[inline(always)]
     pub fn here(&self) -> Here<S> {
         Here {
             position: self.position,
@@ -349,7 +349,7 @@ impl<S: Scalar> SpringState<S> {
     }
 
     /// Puts it elsewhere on the same branch.
-    #[inline]
+    #[inline(always)]
     pub fn slide(&mut self, there: &Here<S>) {
         self.position = there.position;
         self.force = there.force;
@@ -358,7 +358,7 @@ impl<S: Scalar> SpringState<S> {
     }
 
     /// The branch on which it is.
-    #[inline]
+    #[inline(always)]
     pub fn present(&self, curve: &impl Loading<S>) -> Branch {
         let never = f64::INFINITY * self.direction;
         match self.memory.points() {
@@ -381,7 +381,7 @@ impl<S: Scalar> SpringState<S> {
     }
 
     /// Read-only walk to an elongation that lies in this direction, from the reverse point.
-    #[inline]
+    #[inline(always)]
     pub fn walk_to(&self, curve: &impl Loading<S>, position: S, moving: f64) -> Walk<S> {
         let direction = if moving == 0.0 { self.direction } else { moving };
         let points = self.memory.points();
@@ -414,7 +414,7 @@ impl<S: Scalar> SpringState<S> {
     }
 
     /// Where the present branch closes its loop, and how many stored points that forgets.
-    #[inline]
+    #[inline(always)]
     fn closing_target(
         &self,
         curve: &impl Loading<S>,
@@ -436,7 +436,7 @@ impl<S: Scalar> SpringState<S> {
     }
 
     /// Accepts a walk.
-    #[inline]
+    #[inline(always)]
     pub fn accept(&mut self, walk: &Walk<S>) {
         self.position = walk.position;
         self.force = walk.end.force;
@@ -449,7 +449,7 @@ impl<S: Scalar> SpringState<S> {
     }
 
     /// Counts reversals and closings of an accepted walk.
-    #[inline]
+    #[inline(always)]
     pub fn count(&self, walk: &Walk<S>, statistics: &mut Statistics) {
         if walk.reversed || walk.closings > 0 {
             statistics.reversals += u64::from(walk.reversed);

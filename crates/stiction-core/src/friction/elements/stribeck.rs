@@ -8,7 +8,7 @@ use crate::scalar::Scalar;
 /// defined for δ ≤ 1.
 ///
 /// Source: Bo, Pavelescu, Wear 82 (1982).
-#[inline]
+#[inline(always)]
 pub fn fall<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> (S, S) {
     let power = (velocity * (S::constant(1.0) / stribeck_velocity)).power_of_magnitude(exponent);
     let left = fading_of(-power);
@@ -45,7 +45,7 @@ impl<S: Scalar> SlidingLevel<S> {
     }
 
     /// g and its slope by speed |v|.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, velocity: S) -> (S, S) {
         if !self.falls {
             return (self.coulomb, S::constant(0.0));

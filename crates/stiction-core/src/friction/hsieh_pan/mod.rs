@@ -63,7 +63,7 @@ impl<S: Scalar> HsiehPan<S> {
     }
 
     /// Filtered force and break-away level after the series force went from `from` to `to`.
-    #[inline]
+    #[inline(always)]
     fn breakaway_after(&self, filtered: S, from: S, to: S, duration: S) -> (S, S) {
         let p = &self.parameters;
         if !self.rated {
@@ -73,7 +73,7 @@ impl<S: Scalar> HsiehPan<S> {
         (filtered, self.breakaway_at((to - filtered).abs() / p.loading_time))
     }
 
-    #[inline]
+    #[inline(always)]
     fn breakaway_at(&self, rate: S) -> S {
         let p = &self.parameters;
         p.coulomb + (p.breakaway - p.coulomb) * (-(rate / p.loading_rate)).exp()
@@ -219,7 +219,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         self.plastic.rate.re() * (1.0 + gain)
     }
 
-    #[inline]
+    #[inline(always)]
     fn force(&self, state: &HsiehPanState<S>, velocity: S, channels: &Channels<S>) -> S {
         if state.mode == 0.0 && !self.damper_on_spring {
             return state.series * channels.level + self.parameters.damping * velocity;
@@ -241,12 +241,12 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn outcome(&self, trial: &HsiehPanTrial<S>) -> Outcome<S> {
         trial.outcome
     }
 
-    #[inline]
+    #[inline(always)]
     fn undamped(&self, trial: &HsiehPanTrial<S>, _velocity: S) -> S {
         trial.undamped
     }
@@ -307,7 +307,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
 
     const GLIDES: bool = true;
 
-    #[inline]
+    #[inline(always)]
     fn glide<E: Fn(usize) -> S, V: Seen<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,
@@ -331,12 +331,12 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
     }
 
-    #[inline]
+    #[inline(always)]
     fn pending(&self, state: &HsiehPanState<S>, velocity: S) -> Option<Event> {
         (state.mode * velocity.re() < 0.0).then_some(Event::Reversal)
     }
 
-    #[inline]
+    #[inline(always)]
     fn event(
         &self,
         state: &HsiehPanState<S>,
@@ -363,7 +363,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn margin(
         &self,
         state: &HsiehPanState<S>,

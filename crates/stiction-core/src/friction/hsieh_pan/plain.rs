@@ -16,7 +16,7 @@ fn after_reversal<S: Scalar>(curve: &Curve<S>) -> S {
 
 impl<S: Scalar> HsiehPan<S> {
     /// Plain steps of a sticking hook whose damper sits beside the spring.
-    #[inline]
+    #[inline(always)]
     pub(super) fn glide_sticking<const SQUARE: bool, E: Fn(usize) -> S, V: Seen<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,
@@ -58,7 +58,7 @@ impl<S: Scalar> HsiehPan<S> {
     }
 
     /// Plain steps of a sliding hook.
-    #[inline]
+    #[inline(always)]
     pub(super) fn glide_sliding<E: Fn(usize) -> S, V: Seen<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,

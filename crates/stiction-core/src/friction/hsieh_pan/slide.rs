@@ -19,7 +19,7 @@ pub(super) struct Slide<S> {
 
 impl<S: Scalar> HsiehPan<S> {
     /// Sliding level T at this speed and its slope by speed, at level 1.
-    #[inline]
+    #[inline(always)]
     pub(super) fn sliding_level(&self, latched: S, velocity: S, channels: &Channels<S>) -> (S, S) {
         let p = &self.parameters;
         let (left, steepness) = fall(velocity, p.stribeck_velocity, p.stribeck_exponent);
@@ -31,7 +31,7 @@ impl<S: Scalar> HsiehPan<S> {
     /// A force rising from `from` to `to` while the body moves by `distance`, limited to what the
     /// spring gains when the hook stands still: a hook dragged backwards would give back work
     /// that nobody did. Returns the stiffness where the limit holds.
-    #[inline]
+    #[inline(always)]
     pub(super) fn no_faster_than_the_spring(&self, from: S, to: S, distance: S) -> (S, Option<S>) {
         let least = from + self.parameters.final_stiffness * distance;
         if to.re() <= least.re() {

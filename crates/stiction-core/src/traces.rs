@@ -1,0 +1,160 @@
+//! Derivatives of efforts along a motion, handed over stretch by stretch: what is read soon after it is
+//! written stays in the cache, and a long motion asks for no more memory than a short one.
+
+use crate::dual::{COLUMNS, Dual};
+use crate::kernel::RowKernel;
+
+/// Samples of a stretch, or as many as a kernel covers where that is more.
+const STRETCH: usize = 512;
+
+/// Derivatives by one parameter in some samples: needed, driven, ahead.
+pub type Stretch<'a> = [&'a [f64]; 3];
+
+/// Room for the samples of a stretch and for those before it that a kernel still asks for.
+#[derive(Debug)]
+pub struct Traces {
+    /// Of needed, driven, ahead: all samples of the first column, then all of the next.
+    rows: [Vec<f64>; 3],
+    /// Samples of the motion, and how many of them there is room for.
+    samples: usize,
+    room: usize,
+    /// Samples that a place of the kernel covers, and from one place to the next.
+    reach: Option<(usize, usize)>,
+    columns: usize,
+}
+
+impl Traces {
+    /// For a motion of so many samples, seen sample by sample or through a kernel.
+    pub fn new(samples: usize, kernel: Option<&RowKernel<'_>>) -> Self {
+        let reach = kernel.map(|kernel| (kernel.second.len(), kernel.every));
+        let covered = reach.map_or(0, |(width, every)| width + every);
+        let room = samples.min(covered + STRETCH.max(covered));
+        Self { rows: Default::default(), samples, room, reach, columns: 0 }
+    }
+
+    /// The same for so many columns.
+    pub fn of(&mut self, columns: usize) -> &mut Self {
+        self.columns = columns;
+        for rows in &mut self.rows {
+            rows.resize(rows.len().max(columns * self.room), 0.0);
+        }
+        self
+    }
+
+    /// Ready for the first sample; `take` is given column, first sample and stretch.
+    pub fn to<F: FnMut(usize, usize, Stretch<'_>)>(&mut self, take: F) -> Filling<'_, F> {
+        Filling { traces: self, begin: 0, end: 0, take }
+    }
+
+    /// The first sample that is still asked for once all before `end` are there.
+    fn kept_from(&self, end: usize) -> usize {
+        self.reach.map_or(end, |(width, every)| {
+            let places = (end + 1).saturating_sub(width).div_ceil(every);
+            end.min(places * every)
+        })
+    }
+}
+
+/// Traces that are being filled.
+#[derive(Debug)]
+pub struct Filling<'a, F> {
+    traces: &'a mut Traces,
+    /// The first sample there is, and the first beyond.
+    begin: usize,
+    end: usize,
+    take: F,
+}
+
+impl<F: FnMut(usize, usize, Stretch<'_>)> Filling<'_, F> {
+    /// Takes the derivatives of the next sample.
+    #[inline(always)]
+    pub fn put(&mut self, sample: usize, of: [&Dual; 3]) {
+        let Traces { rows, room, columns, .. } = &mut *self.traces;
+        for (rows, dual) in rows.iter_mut().zip(of) {
+            put(&mut rows[..*columns * *room], *room, sample - self.begin, dual.slopes());
+        }
+        self.end = sample + 1;
+        if self.end == self.begin + *room {
+            self.hand_over();
+        }
+    }
+
+    /// Hands over what is there, and keeps what is asked for again.
+    #[inline(never)]
+    pub fn hand_over(&mut self) {
+        let Traces { rows, room, columns, samples, .. } = &mut *self.traces;
+        let (begin, end) = (self.begin, self.end);
+        for column in 0..*columns {
+            let own = column * *room..column * *room + (end - begin);
+            (self.take)(column, begin, rows.each_ref().map(|rows| &rows[own.clone()]));
+        }
+        if end == *samples {
+            return;
+        }
+        let room = *room;
+        self.begin = self.traces.kept_from(end);
+        for rows in &mut self.traces.rows {
+            for row in rows.chunks_exact_mut(room) {
+                row.copy_within(self.begin - begin..end - begin, 0);
+            }
+        }
+    }
+}
+
+/// Writes what stands for a sample into one row after the other, for as many as there are.
+#[inline(always)]
+pub fn put(rows: &mut [f64], samples: usize, k: usize, slopes: &[f64; COLUMNS]) {
+    if rows.len() == COLUMNS * samples {
+        for (column, slope) in slopes.iter().enumerate() {
+            rows[column * samples + k] = *slope;
+        }
+    } else {
+        for (row, slope) in rows.chunks_exact_mut(samples).zip(slopes) {
+            row[k] = *slope;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::Scalar;
+
+    #[test]
+    fn stretches_end_where_the_next_begins_or_a_kernel_still_reaches_back() {
+        let weights = [0.0; 42];
+        let kernel = RowKernel {
+            mean: &weights[..39],
+            second: &weights[..41],
+            every: 7,
+            inertia: 0.0,
+            held: true,
+        };
+        for (samples, kernel) in
+            [(0, None), (1, None), (5000, None), (5000, Some(&kernel)), (30, Some(&kernel))]
+        {
+            let mut traces = Traces::new(samples, kernel);
+            let mut seen = [0, 0];
+            let mut places = 0;
+            let mut filling = traces.of(2).to(|column, begin, [needed, driven, _]| {
+                assert!(begin <= seen[column]);
+                for (k, (needed, driven)) in needed.iter().zip(driven).enumerate() {
+                    assert_eq!(*needed, (begin + k) as f64 * [1.0, 2.0][column]);
+                    assert_eq!(*driven, 0.0);
+                }
+                seen[column] = begin + needed.len();
+                if let (Some(kernel), 0) = (kernel, column) {
+                    assert!(begin <= places * kernel.every);
+                    places = kernel.rows(seen[0]);
+                }
+            });
+            let zero = Dual::constant(0.0);
+            for k in 0..samples {
+                let x = (Dual::variable(0.0, 0) + Dual::variable(0.0, 1) * 2.0) * k as f64;
+                filling.put(k, [&x, &zero, &zero]);
+            }
+            filling.hand_over();
+            assert_eq!(seen, [samples; 2]);
+        }
+    }
+}
