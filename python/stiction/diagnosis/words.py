@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
 from ..catalogue import effects as catalogue
+from ..fitting.pushes import LEFT_OUT
 from ..fitting.result import FitParameter
+from ..fitting.rows import Push
 from ..plant import Effect
 from ..report.scale import loop_scale_of
 from ..wording import counted
@@ -22,6 +24,8 @@ __all__ = [
     "gain_words",
     "joined",
     "loop_words",
+    "no_machine",
+    "push_words",
     "sentence",
     "shown_rows",
     "summary",
@@ -29,6 +33,8 @@ __all__ = [
     "what",
 ]
 
+MOST_TOLD = 3
+"""Pushes that a sentence names."""
 MOST_ROWS = 5
 """Candidates that the command line shows."""
 MISSED = 0.1
@@ -111,6 +117,39 @@ def sentence(
             f"{_unconfirmed(effects)}"
         )
     return f"The simulation lacks {named}.{gained}{_unconfirmed(effects)}"
+
+
+def no_machine(left: float, named: bool, verdict: Verdict) -> str:
+    """What to look at first where the plant leaves most of the effort, "" where it does not.
+
+    ``left`` is the share of its power on rows that the plant was not fitted to, 0 where it is less.
+    """
+    if not left or verdict in ("data_fault", "not_testable"):
+        return ""
+    share = f"{100 * left:.0f} % of" if left < 1.0 else "more than"
+    return (
+        f" The plant{', causes and all,' if named else ''} leaves {share} the power of the effort "
+        "on rows that it was not fitted to: before any cause counts, check columns, units, signs "
+        "and clocks, and what [drive] and [body] state, hold fixed or leave out, as gravity or a "
+        "load."
+    )
+
+
+def push_words(pushes: Sequence[Push], names: Sequence[str]) -> str:
+    """The first pushes, recording by recording, as one sentence; "" without any."""
+    if not pushes:
+        return ""
+    shown = pushes[:MOST_TOLD]
+    of = {push.recording: [p for p in shown if p.recording == push.recording] for push in shown}
+    times = [
+        f"from {joined([push.when() for push in own])} in {names[recording]}"
+        for recording, own in of.items()
+    ]
+    words = f"Something pushed the machine {joined(times)}; {LEFT_OUT}."
+    if len(pushes) > MOST_TOLD:
+        more = len(pushes) - MOST_TOLD
+        words += f" {more} more {'stands' if more == 1 else 'stand'} among the data checks."
+    return words
 
 
 def _unconfirmed(effects: Sequence[Cause]) -> str:
