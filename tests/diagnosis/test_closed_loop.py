@@ -17,7 +17,7 @@ from stiction.cli import run
 from stiction.closed_loop import replay
 from stiction.diagnosis.evidence import Evidence, SealedError
 from stiction.diagnosis.loop import replayed
-from stiction.diagnosis.words import loop_words
+from stiction.diagnosis.words import loop_words, worse_loop_words
 from stiction.fitting.rows import Nuisances
 
 # A power of two: stamps carry no round-off, and a loop made by hand agrees to the last bit.
@@ -236,6 +236,21 @@ def test_naming_the_cause_makes_the_simulated_loop_better(diagnosed: st.Diagnosi
     (line,) = [row for row in str(diagnosed).splitlines() if row.startswith("closed loop")]
     assert "mrad rms before" in line
     assert "[controller]" not in line
+
+
+def test_a_loop_that_a_cause_makes_worse_is_said_on_the_first_screen(
+    diagnosed: st.Diagnosis,
+) -> None:
+    assert worse_loop_words(diagnosed) == ""
+    assert diagnosed.baseline is not None
+    assert diagnosed.extended is not None
+    turned = replace(
+        diagnosed,
+        baseline=replace(diagnosed.baseline, replay=diagnosed.extended.replay),
+        extended=replace(diagnosed.extended, replay=diagnosed.baseline.replay),
+    )
+    assert "the simulated loop does worse with it" in worse_loop_words(turned)
+    assert worse_loop_words(replace(turned, effects=())) == ""
 
 
 def test_the_report_shows_the_loop_where_there_is_one(

@@ -19,6 +19,7 @@ from ..trajectory import FloatArray
 from ..wording import counted
 from .evidence import Evidence, SealedError
 from .pictures import Pictures, Tracking
+from .words import worse_loop_words
 
 if TYPE_CHECKING:
     from .model import Model
@@ -83,7 +84,7 @@ def replayed(found: Diagnosis, evidence: Evidence, base: Model, final: Model) ->
     after, told_after = (before, told) if final is base else _runs(evidence, final, wanted)
     assert found.baseline is not None
     assert found.extended is not None
-    return replace(
+    found = replace(
         found,
         baseline=replace(
             found.baseline,
@@ -97,6 +98,7 @@ def replayed(found: Diagnosis, evidence: Evidence, base: Model, final: Model) ->
         ),
         pictures=_pictured(found.pictures, evidence, before, after),
     )
+    return replace(found, sentence=found.sentence + worse_loop_words(found))
 
 
 def _has_loop(plant: Plant, recording: Recording) -> bool:

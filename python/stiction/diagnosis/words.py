@@ -31,12 +31,15 @@ __all__ = [
     "summary",
     "value_words",
     "what",
+    "worse_loop_words",
 ]
 
 MOST_TOLD = 3
 """Pushes that a sentence names."""
 MOST_ROWS = 5
 """Candidates that the command line shows."""
+WORSE = 1.1
+"""A loop does worse with the causes where its error is so many times that without."""
 MISSED = 0.1
 """Share of the recorded input that a stated controller may miss before it is doubted."""
 
@@ -197,14 +200,12 @@ def shown_rows(diagnosis: Diagnosis) -> list[str]:
 
 def loop_words(diagnosis: Diagnosis) -> str:
     """The position error in closed loop, "" where no loop was replayed."""
-    before, after = diagnosis.baseline, diagnosis.extended
-    if before is None or after is None or before.replay is None or after.replay is None:
+    after = diagnosis.extended
+    found = _loop_errors(diagnosis)
+    if found is None or after is None or after.replay is None:
         return ""
-    rows, errors = "held out", [before.replay.heldout_rms, after.replay.heldout_rms]
-    if None in errors:
-        rows, errors = "on the rows fitted", [before.replay.train_rms, after.replay.train_rms]
-    known = [error for error in errors if error is not None]
-    if len(known) < 2:
+    rows, known = found
+    if not known:
         return "closed loop: the simulated loop runs away; see the remarks in the report"
     scale = loop_scale_of(diagnosis)
     told = [f"{scale.factor * error:.3g} {scale.unit}" for error in known]
@@ -218,6 +219,39 @@ def loop_words(diagnosis: Diagnosis) -> str:
             "[controller]"
         )
     return words
+
+
+def worse_loop_words(diagnosis: Diagnosis) -> str:
+    """That the causes make the simulated loop worse, "" where they do not."""
+    found = _loop_errors(diagnosis)
+    if not diagnosis.effects or found is None or not found[1]:
+        return ""
+    rows, (before, after) = found
+    if after <= WORSE * before:
+        return ""
+    scale = loop_scale_of(diagnosis)
+    one, two = (f"{scale.factor * error:.3g}" for error in (before, after))
+    which = "it" if len(diagnosis.effects) == 1 else "them"
+    return (
+        f" But the simulated loop does worse with {which}: its position error {rows} is {two} "
+        f"{scale.unit} rms, {one} without, so what was named stands for something else or is not "
+        "all of it."
+    )
+
+
+def _loop_errors(diagnosis: Diagnosis) -> tuple[str, list[float]] | None:
+    """Rows and position errors in closed loop before and after, none of them for one that ran away.
+
+    None where no loop was replayed.
+    """
+    before, after = diagnosis.baseline, diagnosis.extended
+    if before is None or after is None or before.replay is None or after.replay is None:
+        return None
+    rows, errors = "held out", [before.replay.heldout_rms, after.replay.heldout_rms]
+    if None in errors:
+        rows, errors = "on the rows fitted", [before.replay.train_rms, after.replay.train_rms]
+    known = [error for error in errors if error is not None]
+    return rows, known if len(known) == 2 else []
 
 
 def _percent(share: float | None) -> str:
