@@ -32,7 +32,7 @@ from .gain import HeldOut, gain_of, open_residuals
 from .laws import THE_LAW, Rival, better_law, law_names, law_rows, rivals_of
 from .listing import in_order
 from .lone import lone_event
-from .loop import replayed
+from .loop import borne_out, replayed
 from .model import Model
 from .noise import Noise
 from .omnibus import Rest, rest
@@ -223,6 +223,7 @@ def _testable(
     data["noise"] = [_noise_entry(evidence, index, noise) for index, noise in noises.items()]
     _logger.info("screening the effects")
     selection = described(search(evidence, base, null, without=without), evidence, null)
+    selection = borne_out(selection, evidence)
     rivals = [] if selection.interrupted else rivals_of(selection, others)
     # Every decision is taken: now, and once, the rows that test.
     _logger.info("opening the test rows")

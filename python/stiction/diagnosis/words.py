@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .result import Cause, Diagnosis, Unexplained, Verdict
 
 __all__ = [
+    "WORSE",
     "gain_words",
     "joined",
     "loop_words",
@@ -172,7 +173,7 @@ def _cause(cause: Cause) -> str:
     if cause.decided:
         return own
     if not cause.look_alikes:
-        return f"{own}, perhaps"
+        return f"perhaps {own}"
     known = {record.name: f"{record.name} ({record.summary})" for record in catalogue()}
     names = [own, *(known.get(name, name) for name in cause.look_alikes)]
     either = "either" if len(names) == 2 else "one of"
