@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+from numba import njit, prange
 
 INERTIA, DT = 0.0076, 1e-4
 K_0, K_INF, D_0 = 3000.0, 810.0, 2.908882086657216e-4
@@ -275,3 +275,12 @@ def hsieh_pan(effort, position, velocity):
             position[k], velocity[k] = state[X], state[V]
             k += 1
     return int(state[BREAKS]), int(state[STICKS])
+
+
+@njit(parallel=True)
+def hsieh_pan_ensemble(efforts, found):
+    """Root mean square of the position of each member, members shared among the threads."""
+    for member in prange(efforts.shape[0]):
+        position, velocity = np.empty(efforts.shape[1]), np.empty(efforts.shape[1])
+        hsieh_pan(efforts[member], position, velocity)
+        found[member] = math.sqrt(np.mean(position * position))

@@ -27,10 +27,19 @@ import stiction as st
 
 HERE = Path(__file__).parent
 SAMPLES, DT = 20_000, 1e-4
+MEMBERS = 64
 ROUNDS = 8
 FLAGS = ["-O3", "-std=c11", "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC"]
 # Contestants that take long are timed over fewer samples.
 FEW = 2000
+
+# What a row is a multiple of where it is not the loop in C of the first row.
+IN_TURN = f"C, {MEMBERS} members in turn"
+UNITS = {f"Motor.simulate, {law}": f"C, {law}" for law in ("lugre", "dahl")} | {
+    f"{who}, {MEMBERS}, {cores}": IN_TURN
+    for who in ("simulate_ensemble", "numba prange")
+    for cores in ("one core", "two cores")
+}
 
 Run = Callable[[], None]
 
@@ -39,6 +48,18 @@ def efforts() -> np.ndarray:
     """Efforts that ring, creep and now and then break away, as in benches/lib.rs."""
     t = np.arange(SAMPLES) * DT
     return 0.45 * np.sin(6.0 * t) + np.where(np.mod(t, 0.3) < 0.02, 0.3, 0.0)
+
+
+def own_law(law: str) -> tuple[Run, int]:
+    """`Motor.simulate` of another law, into reused arrays."""
+    motor = st.Motor(0.0076, friction=st.FrictionModel(law))
+    effort, outputs = efforts(), {"position": np.zeros(SAMPLES), "velocity": np.zeros(SAMPLES)}
+
+    def run() -> None:
+        motor.reset()
+        motor.simulate(effort, DT, out=outputs)
+
+    return run, SAMPLES
 
 
 def own(outputs: dict[str, np.ndarray] | None) -> tuple[Run, int]:
@@ -76,13 +97,19 @@ def _drop(_: object) -> None:
     pass
 
 
-def in_c(name: str, folder: Path) -> tuple[Run, int]:
-    """The loop in C."""
+def c_loop(name: str, folder: Path) -> Callable[..., None]:
+    """The loop in C, compiled."""
     library = folder / f"{name}.so"
     direct = ["-DHSIEH_PAN_DIRECT"] if name.endswith("direct") else []
-    source = HERE / "c" / "hsieh_pan.c"
+    source = HERE / "c" / f"{name.removesuffix('_direct')}.c"
     subprocess.run(["cc", *FLAGS, *direct, source, "-o", library, "-lm"], check=True)
-    loop = getattr(ctypes.CDLL(str(library)), name)
+    loop: Callable[..., None] = getattr(ctypes.CDLL(str(library)), name)
+    return loop
+
+
+def in_c(name: str, folder: Path) -> tuple[Run, int]:
+    """The loop in C, one trajectory."""
+    loop = c_loop(name, folder)
     effort = efforts()
     x, v = np.empty_like(effort), np.empty_like(effort)
     counted = (ctypes.c_long * 2)()
@@ -105,6 +132,54 @@ def in_numba() -> tuple[Run, int]:
     if min(numba_loops.hsieh_pan(effort, x, v)) < 2:
         raise RuntimeError("the timed path does not break away and stick again")
     return lambda: _drop(numba_loops.hsieh_pan(effort, x, v)), SAMPLES
+
+
+def many_efforts() -> np.ndarray:
+    """Those of an ensemble: the same at sizes from 0.85 to 1.15, so that events come apart."""
+    return np.linspace(0.85, 1.15, MEMBERS)[:, None] * efforts()
+
+
+def many_in_c(folder: Path) -> tuple[Run, int]:
+    """The loop in C, one member after the other, nothing reduced."""
+    loop = c_loop("hsieh_pan", folder)
+    rows = many_efforts()
+    x, v = np.empty(SAMPLES), np.empty(SAMPLES)
+    counted = (ctypes.c_long * 2)()
+    x_, v_ = (a.ctypes.data_as(ctypes.c_void_p) for a in (x, v))
+    pointers = [row.ctypes.data_as(ctypes.c_void_p) for row in rows]
+    samples = ctypes.c_size_t(SAMPLES)
+
+    def run(_keep: object = (rows, x, v)) -> None:
+        for pointer in pointers:
+            loop(pointer, samples, x_, v_, counted)
+
+    return run, SAMPLES * MEMBERS
+
+
+def many_own(threads: int) -> tuple[Run, int]:
+    """`simulate_ensemble`, reduced to the root mean square of the position."""
+    motor = st.Motor(0.0076, friction=st.FrictionModel("hsieh_pan", breakaway=0.5))
+    rows = many_efforts()
+
+    def run() -> None:
+        st.simulate_ensemble(motor, rows, DT, reduce="rms", threads=threads)
+
+    return run, SAMPLES * MEMBERS
+
+
+def many_in_numba(threads: int) -> tuple[Run, int]:
+    """The loop in numba, members shared among threads by `prange`, reduced likewise."""
+    sys.path.insert(0, str(HERE))
+    import numba
+    import numba_loops
+
+    rows, found = many_efforts(), np.empty(MEMBERS)
+
+    def run() -> None:
+        numba.set_num_threads(threads)
+        numba_loops.hsieh_pan_ensemble(rows, found)
+
+    return run, SAMPLES * MEMBERS
 
 
 def by_scipy(method: str) -> tuple[Run, int]:
@@ -164,6 +239,15 @@ def contestants(folder: Path) -> tuple[dict[str, tuple[Run, int]], dict[str, str
         "Motor.simulate, six fresh columns": lambda: own(None),
         "Motor.sensitivity, 16 columns": lambda: jacobian(16),
         "numba, warm": in_numba,
+        "C, lugre": lambda: in_c("lugre", folder),
+        "Motor.simulate, lugre": lambda: own_law("lugre"),
+        "C, dahl": lambda: in_c("dahl", folder),
+        "Motor.simulate, dahl": lambda: own_law("dahl"),
+        IN_TURN: lambda: many_in_c(folder),
+        f"simulate_ensemble, {MEMBERS}, one core": lambda: many_own(1),
+        f"simulate_ensemble, {MEMBERS}, two cores": lambda: many_own(2),
+        f"numba prange, {MEMBERS}, one core": lambda: many_in_numba(1),
+        f"numba prange, {MEMBERS}, two cores": lambda: many_in_numba(2),
         "SciPy LSODA (LuGre)": lambda: by_scipy("LSODA"),
         "SciPy Radau (LuGre)": lambda: by_scipy("Radau"),
         "MuJoCo mj_step, frictionloss": lambda: by_mujoco("frictionloss"),
@@ -190,9 +274,12 @@ def measured(ready: dict[str, tuple[Run, int]], repeats: int) -> dict[str, list[
             for name, (run, samples) in ready.items():
                 if turn and name in slow:
                     continue
-                start = time.perf_counter()
+                # Time on the processor, which others on the machine do not lengthen, where one
+                # thread does all of it.
+                clock = time.perf_counter if name.endswith("two cores") else time.thread_time
+                start = clock()
                 run()
-                best[name] = min(best[name], 1e9 * (time.perf_counter() - start) / samples)
+                best[name] = min(best[name], 1e9 * (clock() - start) / samples)
         for name, each in best.items():
             times[name].append(each)
     return times
@@ -215,10 +302,11 @@ def main() -> None:
         times[name] = bam(chosen.bam_python, chosen.repeats)
     except (RuntimeError, OSError) as problem:
         missing[name] = str(problem)
-    unit = times.get("C") or times["Motor.simulate, x and v reused"]
+    usual = "C" if "C" in times else "Motor.simulate, x and v reused"
     print(f"{'':38}{'ns a sample':>12}{'against C':>12}{'spread':>18}")
     rows = {}
     for name, each in times.items():
+        unit = times.get(UNITS.get(name, usual), times[usual])
         ratios = [a / b for a, b in zip(each, unit, strict=True)]
         row = {"ns": statistics.median(each), "ratio": statistics.median(ratios)}
         rows[name] = row | {"least": min(ratios), "most": max(ratios)}

@@ -13,5 +13,9 @@ void hsieh_pan(const double *restrict effort, size_t samples, double *restrict p
     double *restrict velocity, long counted[2]);
 void hsieh_pan_direct(const double *restrict effort, size_t samples, double *restrict position,
     double *restrict velocity, long counted[2]);
+void lugre(const double *restrict effort, size_t samples, double *restrict position,
+    double *restrict velocity, long counted[2]);
+void dahl(const double *restrict effort, size_t samples, double *restrict position,
+    double *restrict velocity, long counted[2]);
 
 #endif

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Final
 
 import numpy as np
@@ -75,6 +76,7 @@ def adaptively_smoothed(readings: FloatArray, dt: float, noise: float) -> FloatA
     return smoothed
 
 
+@cache
 def _parabola(half: int) -> FloatArray:
     """Weights that give the value in the middle of a parabola through 2·half + 1 samples.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
+from functools import cache
 from typing import Any
 
 from . import _native
@@ -155,11 +156,13 @@ def _laws() -> Iterator[LawRecord]:
         )
 
 
+@cache
 def laws() -> tuple[LawRecord, ...]:
     """Every friction law of the catalogue."""
     return tuple(_laws())
 
 
+@cache
 def effects() -> tuple[EffectRecord, ...]:
     """Every effect of the catalogue."""
     return tuple(

@@ -22,18 +22,17 @@ def efforts(samples):
     return 0.45 * np.sin(6.0 * t) + np.where(np.mod(t, 0.3) < 0.02, 0.3, 0.0)
 
 
-@pytest.fixture(scope="module", params=["hsieh_pan", "hsieh_pan_direct"])
-def reference(request, tmp_path_factory):
+def compiled(name, folder):
     """The loop in C as a function of efforts: positions, velocities and counts."""
     compiler = shutil.which("cc")
     if compiler is None:
         pytest.skip("no C compiler")
-    library = tmp_path_factory.mktemp("c") / f"{request.param}.so"
-    direct = ["-DHSIEH_PAN_DIRECT"] if request.param.endswith("direct") else []
+    library = folder / f"{name}.so"
+    direct = ["-DHSIEH_PAN_DIRECT"] if name.endswith("direct") else []
     flags = ["-O3", "-std=c11", "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC"]
-    source = SOURCES / "hsieh_pan.c"
+    source = SOURCES / f"{name.removesuffix('_direct')}.c"
     subprocess.run([compiler, *flags, *direct, source, "-o", library, "-lm"], check=True)
-    loop = getattr(ctypes.CDLL(str(library)), request.param)
+    loop = getattr(ctypes.CDLL(str(library)), name)
 
     def run(effort):
         x, v = np.empty_like(effort), np.empty_like(effort)
@@ -43,6 +42,36 @@ def reference(request, tmp_path_factory):
         return x, v, tuple(counted)
 
     return run
+
+
+@pytest.fixture(scope="module", params=["hsieh_pan", "hsieh_pan_direct"])
+def reference(request, tmp_path_factory):
+    """The loop in C of this law."""
+    return compiled(request.param, tmp_path_factory.mktemp("c"))
+
+
+@pytest.mark.parametrize("law", ["lugre", "dahl"])
+def test_the_loops_in_c_of_laws_without_modes_agree_with_the_core(law, tmp_path):
+    effort = efforts(20_000)
+    x, v, _ = compiled(law, tmp_path)(effort)
+    own = st.Motor(0.0076, friction=st.FrictionModel(law)).simulate(effort, DT)
+    assert np.abs(own.position - x).max() <= ROUND_OFF * np.abs(x).max()
+    assert np.abs(own.velocity - v).max() <= ROUND_OFF * np.abs(v).max()
+
+
+@pytest.mark.parametrize("law", ["lugre", "dahl"])
+@pytest.mark.parametrize("dt", [DT, 4e-4])
+def test_laws_without_modes_do_the_same_in_one_call_and_in_steps(law, dt):
+    effort = efforts(4000)
+    effort[:50] = 0.0
+    for options in ({}, {"viscous": 0.05}):
+        whole = st.Motor(0.0076, friction=st.FrictionModel(law, **options))
+        single = st.Motor(0.0076, friction=st.FrictionModel(law, **options))
+        rows = np.array([single.step(u, dt) for u in effort.tolist()])
+        run = whole.simulate(effort, dt)
+        assert np.array_equal(run.position, rows[:, 0])
+        assert np.array_equal(run.velocity, rows[:, 1])
+        assert str(whole.state) == str(single.state)
 
 
 def test_the_loop_in_c_agrees_with_the_core_and_breaks_away(reference):

@@ -61,3 +61,15 @@ def test_a_motor_that_brakes_tells_it() -> None:
     assert not any("friction.drive" in text for text in found.undetermined)
     assert found["drive"].value == pytest.approx(TRUE["drive"], abs=0.02)
     assert found["inertia"].value == pytest.approx(INERTIA, rel=0.02)
+
+
+def test_a_damper_is_told_though_its_force_goes_with_the_effort() -> None:
+    time = DT * np.arange(10_000)
+    effort = 0.8 * np.sin(time) + 0.1 * np.sin(3.0 * time)
+    motor = Motor(INERTIA, friction=FrictionModel("coulomb", coulomb=0.01, viscous=1.0))
+    position = np.concatenate([[0.0], motor.simulate(effort[:-1], DT).position])
+    measured = effort + 2e-3 * np.random.default_rng(1).standard_normal(len(effort))
+    plant = Plant.from_dict({"drive": {"input": "torque_nm"}, "friction": {"law": "coulomb"}})
+    found = fit(plant, Recording(time, measured, position))
+    assert not any("friction.viscous" in text for text in found.undetermined)
+    assert found["viscous"].value == pytest.approx(1.0, rel=0.01)

@@ -10,11 +10,13 @@ import pytest
 from tests.reference.estimation_reference import (
     COUNT,
     NOISE,
+    STEPS,
     TRUTH,
     motions,
     readings,
     torques,
 )
+from tests.reference.hsieh_pan_reference import simulate_sticking
 
 from stiction import paper
 from stiction.errors import InputError
@@ -162,7 +164,8 @@ def of_experiment_2(reading):
 @pytest.mark.parametrize("seed", SEEDS)
 def test_little_noise_does_not_slow_the_creep(seed):
     # An eighth of a count: least squares find 0.88 of the rate.
-    position = motions()["experiment 2"]
+    dt, torque = torques()["experiment 2"]
+    position = simulate_sticking(torque, dt, step=STEPS[dt], **TRUTH).position
     quiet = of_experiment_2(readings(position, np.random.default_rng(seed), COUNT / 8.0))
     rate = quiet.parameters["creep_rate"]
     assert rate.value == pytest.approx(TRUTH["creep_rate"], rel=0.03)

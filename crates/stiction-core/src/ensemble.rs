@@ -3,9 +3,12 @@
 //! Members share nothing, so that what comes out is the same to the bit for any number of threads,
 //! and the same as one motor after the other.
 
+use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use crate::error::{Error, Result};
+use crate::friction::Law;
+use crate::lanes::{self, Job, Width};
 use crate::model::LawSpec;
 use crate::motor::{Column, EffectSpec, Motor, MotorSpec, PerSample, Running, Surroundings};
 
@@ -63,6 +66,16 @@ pub enum Inputs<'a> {
     Each(&'a [f64]),
 }
 
+impl<'a> Inputs<'a> {
+    /// Those of one member, `samples` of them.
+    pub fn of(&self, member: usize, samples: usize) -> &'a [f64] {
+        match *self {
+            Self::Shared(values) => values,
+            Self::Each(values) => &values[member * samples..(member + 1) * samples],
+        }
+    }
+}
+
 /// What is kept of each column.
 #[derive(Debug, Clone, Copy)]
 pub enum Keep<'a> {
@@ -102,6 +115,8 @@ pub struct Plan<'a> {
     pub keep: Keep<'a>,
     /// Threads that share the members.
     pub threads: usize,
+    /// Vectors in which they go side by side; no bit depends on it.
+    pub width: Width,
 }
 
 /// Machines of one kind, each with its state.
@@ -110,9 +125,6 @@ pub struct Ensemble {
     spec: MotorSpec,
     members: Vec<Running<f64>>,
 }
-
-/// A member, its number, and where its columns go.
-type Work<'a> = (usize, &'a mut Running<f64>, Vec<&'a mut [f64]>);
 
 impl Ensemble {
     /// So many copies of a motor in its present state, with the changes made.
@@ -211,22 +223,26 @@ impl Ensemble {
         }
         let mut parts: Vec<_> =
             columns.iter_mut().map(|(_, values)| values.chunks_mut(width.max(1))).collect();
-        let work: Vec<Work<'_>> = self
-            .members
-            .iter_mut()
-            .enumerate()
-            .map(|(k, running)| {
-                let own = parts.iter_mut().map(|part| part.next().unwrap_or_default()).collect();
-                (k, running, own)
-            })
-            .collect();
-        let queue = Mutex::new(work.into_iter());
+        let motors = self.members.iter_mut().enumerate().map(|(number, running)| {
+            let own = parts.iter_mut().map(|part| part.next().unwrap_or_default()).collect();
+            lanes::Motor { number, running, own }
+        });
+        let queue = Mutex::new(Work::of(motors, plan, &kinds).into_iter());
         let failed: Mutex<Option<(usize, Error)>> = Mutex::new(None);
         let labour = || {
             loop {
                 let next = queue.lock().map_or(None, |mut queue| queue.next());
-                let Some((member, running, mut own)) = next else { break };
-                if let Err(error) = simulate(running, member, plan, &kinds, &mut own)
+                let mut motor = match next {
+                    None => break,
+                    Some(Work::Team(job, motors)) => {
+                        Law::take_abreast(&job, motors);
+                        continue;
+                    }
+                    Some(Work::Alone(motor)) => motor,
+                };
+                let member = motor.number;
+                if let Err(error) =
+                    simulate(motor.running, member, plan, &kinds, &mut motor.own)
                     && let Ok(mut failed) = failed.lock()
                     // The first by number, whichever thread met its own first.
                     && failed.as_ref().is_none_or(|(before, _)| member < *before)
@@ -245,6 +261,43 @@ impl Ensemble {
             Ok(Some((member, error))) => Err(Error::Member { member, problem: error.to_string() }),
             _ => Ok(()),
         }
+    }
+}
+
+/// What a thread takes on at a time.
+enum Work<'a> {
+    Alone(lanes::Motor<'a>),
+    Team(Job<'a>, Vec<lanes::Motor<'a>>),
+}
+
+impl<'a> Work<'a> {
+    /// All members: those that can in teams, with samples divided alike.
+    fn of(
+        motors: impl Iterator<Item = lanes::Motor<'a>>,
+        plan: &'a Plan<'a>,
+        kinds: &'a [Column],
+    ) -> Vec<Self> {
+        let mut work = Vec::new();
+        let mut teams: BTreeMap<u32, Vec<lanes::Motor<'a>>> = BTreeMap::new();
+        for motor in motors {
+            match Job::parts(motor.running, plan, kinds) {
+                Some(parts) => teams.entry(parts).or_default().push(motor),
+                None => work.push(Self::Alone(motor)),
+            }
+        }
+        for (parts, mut motors) in teams {
+            let size = Job::members(motors.len(), plan.threads);
+            while !motors.is_empty() {
+                let rest = motors.split_off(motors.len().min(size));
+                if motors.len() < lanes::LEAST {
+                    work.extend(motors.into_iter().map(Self::Alone));
+                } else {
+                    work.push(Self::Team(Job::new(plan, kinds, parts), motors));
+                }
+                motors = rest;
+            }
+        }
+        work
     }
 }
 

@@ -6,6 +6,7 @@ use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods}
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stiction_core::ensemble::{Changes, Ensemble as Core, Inputs, Keep, Plan, Rows};
+use stiction_core::lanes::Width;
 use stiction_core::motor::Column;
 
 use crate::arguments::threads_of;
@@ -181,8 +182,15 @@ impl Ensemble {
         for (column, array) in &mut arrays {
             columns.push((*column, array.as_slice_mut()?));
         }
-        let plan =
-            Plan { samples: n, inputs, loads: load.rows()?, dt: dt.per_sample()?, keep, threads };
+        let plan = Plan {
+            samples: n,
+            inputs,
+            loads: load.rows()?,
+            dt: dt.per_sample()?,
+            keep,
+            threads,
+            width: Width::widest(),
+        };
         py.detach(|| self.lock().run(&plan, &mut columns)).or_input_error(py)?;
         Ok(result)
     }

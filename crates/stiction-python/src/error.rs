@@ -69,3 +69,16 @@ pub fn duration(py: Python<'_>, name: &str, value: f64) -> PyResult<f64> {
         ))
     }
 }
+
+/// What is not finite although everything given was: the law left the range of floats.
+#[cold]
+pub fn out_of_range(py: Python<'_>, law: &str) -> PyErr {
+    input_error(
+        py,
+        format!(
+            "friction of '{law}' left the range of floats: its parameters lie too far apart for this \
+             motion; give values nearer to the typical ones that `stiction laws {law}` shows, or a \
+             shorter dt, and reset"
+        ),
+    )
+}

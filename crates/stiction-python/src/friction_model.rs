@@ -11,7 +11,7 @@ use stiction_core::friction::{Channels, Entry};
 use stiction_core::model::{FrictionModel as Core, LawSpec};
 
 use crate::arrays::{Each, samples};
-use crate::error::{FASTEST, IntoPython, duration, finite, input_error, velocity};
+use crate::error::{FASTEST, IntoPython, duration, finite, input_error, out_of_range, velocity};
 use crate::state::{from_dict, keywords, to_dict};
 
 /// A friction law with its parameters and its state.
@@ -104,7 +104,9 @@ impl FrictionModel {
         let velocity = self::velocity(py, velocity)?;
         let dt = duration(py, "dt", dt)?;
         let channels = channels(py, load, effort, temperature)?;
-        Ok(self.lock().step(velocity, dt, &channels))
+        let mut core = self.lock();
+        let force = core.step(velocity, dt, &channels);
+        if force.is_finite() { Ok(force) } else { Err(out_of_range(py, core.spec().record.name)) }
     }
 
     /// Samples at held velocities.
@@ -175,6 +177,9 @@ impl FrictionModel {
                     core.clone().simulate(velocity, dt, |k| at(row * n + k), friction);
                 }
             });
+            if !friction.iter().all(|force| force.is_finite()) {
+                return Err(out_of_range(py, self.lock().spec().record.name));
+            }
         }
         Ok(result)
     }
@@ -193,7 +198,13 @@ impl FrictionModel {
         let velocity = self::velocity(py, velocity)?;
         let dt = duration(py, "dt", dt)?;
         let channels = channels(py, load, effort, temperature)?;
-        Ok(self.lock().trial(velocity, dt, &channels))
+        let mut core = self.lock();
+        let (force, slope) = core.trial(velocity, dt, &channels);
+        if (force + slope).is_finite() {
+            Ok((force, slope))
+        } else {
+            Err(out_of_range(py, core.spec().record.name))
+        }
     }
 
     /// Accepts the last trial.

@@ -256,7 +256,8 @@ def evaluate(
     flat = undetermined_directions(own, paths)
     values, starts = variables.values(solution.vector), variables.values(begin)
     given = [each.weight * each.form.measured(plant)[each.mask] for each in train]
-    found = echoes(own, given, residuals, values, paths)
+    pure = [unit_of(plant, path) == "1" for path in paths]
+    found = echoes(own, given, residuals, values, paths, pure)
     flat += [group for group in found if group not in flat]
     dead = {path for group in flat for path in group}
     errors = np.sqrt(np.maximum(np.diag(matrix), 0.0))

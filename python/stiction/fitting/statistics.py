@@ -144,6 +144,7 @@ def echoes(
     residuals: Sequence[FloatArray],
     values: FloatArray,
     paths: Sequence[str],
+    shares_of_effort: Sequence[bool],
 ) -> list[list[str]]:
     """Groups in which friction per measured effort is not told from what the effort balances.
 
@@ -159,6 +160,9 @@ def echoes(
         Measured effort and what is left of it, weighted as the derivatives.
     values : numpy.ndarray, shape (p,)
     paths : sequence of str, length p
+    shares_of_effort : sequence of bool, length p
+        Which may be a share of the effort: pure numbers. The derivative by viscous friction goes
+        with the effort as well where there is little else, and is well told.
     """
     matrix, effort = np.vstack(jacobians), np.concatenate(measured)
     rest = np.concatenate(residuals)
@@ -166,6 +170,8 @@ def echoes(
     live = np.flatnonzero(sizes > 0.0).tolist()
     groups = []
     for k in live:
+        if not shares_of_effort[k]:
+            continue
         column, others = matrix[:, k], [j for j in live if j != k]
         # A body at rest holds whatever effort there is: no share shows there.
         moves = np.abs(column) > 1e-6 * np.max(np.abs(column))

@@ -259,7 +259,7 @@ impl<S: Scalar> Bristle<S> {
         let strongest = self.parameters.initial_stiffness * self.limit;
         let mut mean = strongest * (sum / way * (side * SHARE));
         // Far from the start a way may be shorter than the digits of the places it ends at.
-        if !(mean.re().abs() <= strongest.re()) {
+        if mean.re().is_nan() || mean.re().abs() > strongest.re() {
             mean = strongest * sign(mean.re());
         }
         (force, mean, all)

@@ -5,6 +5,7 @@ use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::Result;
+use crate::integrate::{Glide, Seen, glide_on};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::{Scalar, logarithmic_mean, sign};
@@ -98,6 +99,10 @@ fn left_over<S: Scalar>(r: S, exponent: S, eta: S) -> S {
         return r;
     }
     let pace = eta * r.power_of_magnitude(exponent - 1.0);
+    if exponent.re() == 2.0 && !exponent.derivative_is_nonzero() {
+        // The same in a quotient.
+        return r / (pace + 1.0);
+    }
     let u = pace * (-(exponent - 1.0));
     if u.re() >= 1.0 {
         return S::constant(0.0);
@@ -174,13 +179,14 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
         let p = &self.0;
         let damping = p.viscous * channels.viscous_level;
         let moving = sign(motion.displacement.re());
-        let remaining = |s: f64, dry: S| -(dry * s / p.coulomb - 1.0);
+        let per_force = S::constant(1.0) / p.coulomb;
+        let remaining = |s: f64, dry: S| -(dry * s * per_force - 1.0);
         let (dry, share) = if moving == 0.0 {
             // The slope differs to either side: the mean of the two.
             let (up, down) = (remaining(1.0, state.dry), remaining(-1.0, state.dry));
             (state.dry, (self.share(up) + self.share(down)) * 0.5)
         } else {
-            let eta = p.initial_stiffness * motion.displacement * moving / p.coulomb;
+            let eta = p.initial_stiffness * per_force * (motion.displacement * moving);
             let r = left_over(remaining(moving, state.dry), p.exponent, eta);
             (-(r - 1.0) * p.coulomb * moving, self.share(r))
         };
@@ -197,6 +203,17 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
     #[inline]
     fn outcome(&self, trial: &DahlTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    const GLIDES: bool = true;
+
+    #[inline]
+    fn glide<E: Fn(usize) -> S, V: Seen<S, DahlState<S>>>(
+        &self,
+        state: &mut DahlState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) {
+        glide_on(self, state, glide);
     }
 
     // Where the body stays, so does the force.

@@ -5,6 +5,7 @@ use super::elements::lag::follow;
 use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
 use crate::error::Result;
+use crate::integrate::{Glide, Seen};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::{Scalar, sign};
@@ -56,18 +57,24 @@ parameters! {
 pub struct LuGre<S>(Bristle<S>);
 
 impl<S: Scalar> LuGre<S> {
-    /// t = σ₀·|z|/g(v), signed by the direction of motion.
+    /// t = σ₀·|z|/g(v), signed by the direction of motion, from g and its slope.
     #[inline]
-    fn slip(&self, force: S, velocity: S) -> Slip<S> {
-        let (level, steepness) = self.0.level.at(velocity);
+    fn slip(&self, force: S, velocity: S, (level, steepness): (S, S)) -> Slip<S> {
         let share = force * sign(velocity.re()) / level;
         let by_force = S::constant(1.0) / level;
         Slip { share, by_force, by_speed: -(share * steepness / level) }
     }
 
-    /// The bristles follow g over the path ∫σ₀·|dx|/g, exactly where the velocity is held.
+    /// The bristles follow g over the path ∫σ₀·|dx|/g, exactly where the velocity is held; g at the
+    /// start, and at the end with its slope.
     #[inline]
-    fn bend(&self, state: &BristleState<S>, motion: &Motion<S>) -> Bent<S> {
+    fn bend(
+        &self,
+        state: &BristleState<S>,
+        motion: &Motion<S>,
+        from: S,
+        (to, steepness): (S, S),
+    ) -> Bent<S> {
         let bristle = &self.0;
         let force = bristle.stiffness * state.deflection;
         let s = sign(motion.displacement.re());
@@ -75,7 +82,6 @@ impl<S: Scalar> LuGre<S> {
             let by_velocity = bristle.stiffness * motion.duration;
             return Bent { force, by_velocity, by_end: S::constant(0.0) };
         }
-        let (to, steepness) = bristle.level.at(motion.velocity);
         let path = bristle.stiffness * motion.displacement * s;
         if motion.start_velocity.re() == motion.velocity.re() {
             let z = path / to;
@@ -87,7 +93,6 @@ impl<S: Scalar> LuGre<S> {
             let by_end = steepness * followed.end_share;
             return Bent { force: followed.value * s, by_velocity: by_speed, by_end };
         }
-        let (from, _) = bristle.level.at(motion.start_velocity);
         let z = path * (S::constant(0.5) / from + S::constant(0.5) / to);
         let followed = follow(force * s, from, to, z);
         let by_end = steepness * followed.end_share;
@@ -162,7 +167,8 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
 
     #[inline]
     fn force(&self, state: &BristleState<S>, velocity: S, channels: &Channels<S>) -> S {
-        let slip = self.slip(self.0.stiffness * state.deflection, velocity);
+        let level = self.0.level.at(velocity);
+        let slip = self.slip(self.0.stiffness * state.deflection, velocity, level);
         self.0.force(state.deflection, &slip, velocity, channels)
     }
 
@@ -173,14 +179,51 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
         motion: &Motion<S>,
         channels: &Channels<S>,
     ) -> BristleTrial<S> {
-        let bent = self.bend(state, motion);
-        let slip = self.slip(bent.force, motion.velocity);
+        let to = self.0.level.at(motion.velocity);
+        let held = motion.start_velocity.re() == motion.velocity.re();
+        let from = if held { to.0 } else { self.0.level.at(motion.start_velocity).0 };
+        let bent = self.bend(state, motion, from, to);
+        let slip = self.slip(bent.force, motion.velocity, to);
         self.0.settled(state, &bent, &slip, motion.velocity, channels)
     }
 
     #[inline]
     fn outcome(&self, trial: &BristleTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    const GLIDES: bool = true;
+
+    #[inline]
+    fn glide<E: Fn(usize) -> S, V: Seen<S, BristleState<S>>>(
+        &self,
+        state: &mut BristleState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) {
+        let (bristle, channels) = (&self.0, Channels::default());
+        let duration = glide.verlet.span();
+        // g at the end of a step is that at the start of the next.
+        let (mut now, mut start_velocity) = (*state, glide.run.velocity);
+        let mut from = bristle.level.at(start_velocity);
+        while let Some(effort) = glide.next() {
+            let slip = self.slip(bristle.stiffness * now.deflection, start_velocity, from);
+            let net = effort - bristle.force(now.deflection, &slip, start_velocity, &channels);
+            let (displacement, velocity) = glide.verlet.depart(start_velocity, net);
+            let motion = Motion { displacement, duration, start_velocity, velocity };
+            let to = bristle.level.at(velocity);
+            let bent = self.bend(&now, &motion, from.0, to);
+            let slip = self.slip(bent.force, velocity, to);
+            let BristleTrial { after, outcome } =
+                bristle.settled(&now, &bent, &slip, velocity, &channels);
+            let Outcome { force, damping, .. } = outcome;
+            let undamped = force - damping * velocity;
+            let arrived = glide.verlet.arrive(start_velocity, net + effort, damping, undamped);
+            now = after;
+            *state = after;
+            start_velocity = arrived;
+            from = bristle.level.at(arrived);
+            glide.accept(displacement, arrived, force + damping * (arrived - velocity), state);
+        }
     }
 
     // Where the body stays, so does the force.

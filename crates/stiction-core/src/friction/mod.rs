@@ -7,6 +7,7 @@ pub mod elements;
 
 use crate::error::{Error, Result};
 use crate::integrate::{Glide, Seen};
+use crate::lanes::Abreast;
 use crate::parameter::{OptionSpec, ParameterSpec};
 use crate::scalar::Scalar;
 
@@ -276,6 +277,11 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         _glide: &mut Glide<S, E, V>,
     ) {
     }
+    /// What takes motors with contacts like this one through their samples side by side; see
+    /// [`crate::lanes`].
+    fn abreast(&self) -> Option<Abreast<S, Self>> {
+        None
+    }
     /// Accepts a step.
     fn commit(&self, state: &mut Self::State, trial: &Self::Trial);
 
@@ -449,6 +455,35 @@ macro_rules! laws {
                         Ok(<$module::$law<f64> as FrictionLaw<f64>>::passive(values))
                     })*
                     _ => Err(unknown_law(name)),
+                }
+            }
+        }
+
+        impl Law<f64> {
+            /// Whether motors with contacts like this one go through their samples side by side.
+            pub fn goes_abreast(&self) -> bool {
+                match self { $(Self::$law(law) => law.abreast().is_some(),)* }
+            }
+
+            /// Takes motors with contacts of one kind that go abreast through their samples.
+            pub fn take_abreast(job: &$crate::lanes::Job<'_>, motors: Vec<$crate::lanes::Motor<'_>>) {
+                let Some(first) = motors.first() else { return };
+                match &first.running.law {
+                    $(Self::$law(law) => {
+                        let Some(walk) = law.abreast() else { return };
+                        let members = motors.into_iter().filter_map(|motor| {
+                            let (number, own) = (motor.number, motor.own);
+                            let $crate::motor::Running { machine, law, state, run, .. } = motor.running;
+                            match (&*law, state) {
+                                (Self::$law(law), AnyState::$law(state)) => {
+                                    Some($crate::lanes::Member { number, machine, law, state, run, own })
+                                }
+                                #[allow(unreachable_patterns)]
+                                _ => unreachable!("motors of an ensemble have one law"),
+                            }
+                        });
+                        walk(&mut $crate::lanes::Team { members: members.collect(), job });
+                    })*
                 }
             }
         }

@@ -6,6 +6,7 @@
 //! the first step that is not plain to the others. The equations are the same, to the bit.
 
 use super::machine::Run;
+use crate::friction::{Channels, FrictionLaw, Motion};
 use crate::scalar::Scalar;
 
 /// The body's share of a step: velocity Verlet with trapezoidal damping.
@@ -51,6 +52,11 @@ impl<S: Scalar> Verlet<S> {
         ((self.inertia * velocity + self.half * both) * share, self.half * share)
     }
 
+    /// Duration of a step, half of it, inertia, velocity and displacement per effort, as plain numbers.
+    pub fn numbers(&self) -> [f64; 5] {
+        [self.span, self.half, self.inertia, self.pace, self.lever].map(Scalar::re)
+    }
+
     /// Duration of a step.
     #[inline]
     pub fn span(&self) -> S {
@@ -63,6 +69,35 @@ impl<S: Scalar> Verlet<S> {
 pub trait Seen<S: Scalar, T> {
     /// Sees a sample.
     fn see(&mut self, sample: usize, run: &Run<S>, contact: &T);
+}
+
+/// Goes through all steps with a law that knows no events and asks for nothing but the motion: each
+/// of them is plain.
+#[inline]
+pub fn glide_on<S, L, E, V>(law: &L, state: &mut L::State, glide: &mut Glide<S, E, V>)
+where
+    S: Scalar,
+    L: FrictionLaw<S, State: Copy>,
+    E: Fn(usize) -> S,
+    V: Seen<S, L::State>,
+{
+    let channels = Channels::default();
+    let duration = glide.verlet.span();
+    // Copies that nobody else sees stay in registers.
+    let (mut now, mut start_velocity) = (*state, glide.run.velocity);
+    while let Some(effort) = glide.next() {
+        let net = effort - law.force(&now, start_velocity, &channels);
+        let (displacement, velocity) = glide.verlet.depart(start_velocity, net);
+        let motion = Motion { displacement, duration, start_velocity, velocity };
+        let trial = law.advance(&now, &motion, &channels);
+        let (outcome, undamped) = (law.outcome(&trial), law.undamped(&trial, velocity));
+        let arrived = glide.verlet.arrive(start_velocity, net + effort, outcome.damping, undamped);
+        law.commit(&mut now, &trial);
+        *state = now;
+        start_velocity = arrived;
+        let friction = outcome.force + outcome.damping * (arrived - velocity);
+        glide.accept(displacement, arrived, friction, state);
+    }
 }
 
 /// A row of plain steps.

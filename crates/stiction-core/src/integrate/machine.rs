@@ -240,6 +240,22 @@ impl<S: Scalar> Machine<S> {
         run.ambient.re().to_bits() == self.weight().re().to_bits()
     }
 
+    /// The share of this machine in a step of this duration.
+    #[inline]
+    pub fn verlet(&self, span: S) -> Verlet<S> {
+        Verlet::new(span, self.inertia, self.lightness)
+    }
+
+    /// Gain and limit of the drive and the weight of this bare machine, as plain numbers.
+    pub fn bare_numbers(&self) -> [f64; 3] {
+        [self.drive.gain.re(), self.drive.limit, self.weight().re()]
+    }
+
+    /// What the sensor reads where the body is.
+    pub fn measured(&self, position: f64) -> f64 {
+        self.sensor.read(self.effects.sensor(S::constant(position)).re())
+    }
+
     /// A row of plain steps of this bare machine from where a run is; `applied` says input and load
     /// of a sample, `parts` in how many steps of `span` it is divided.
     pub fn glide<E: Fn(usize) -> (S, S), V>(
@@ -255,7 +271,7 @@ impl<S: Scalar> Machine<S> {
             let (input, load) = applied(k);
             self.drive.direct(input) + load + weight
         };
-        let verlet = Verlet::new(span, self.inertia, self.lightness);
+        let verlet = self.verlet(span);
         Glide { verlet, run, efforts, seen, samples, part: 0, parts }
     }
 

@@ -20,7 +20,7 @@ mod swing;
 pub use adaptive::{Account, Adaptive};
 pub use contact::{Along, Held};
 pub use events::{Stepper, quiet, through_events};
-pub use glide::{Glide, Seen, Verlet};
+pub use glide::{Glide, Seen, Verlet, glide_on};
 pub use machine::{Machine, Run};
 pub use shaft::Beyond;
 
@@ -65,6 +65,21 @@ pub fn parts<S: Scalar, L: FrictionLaw<S>>(
     let calming = dt * (law.greatest_damping() + machine.servo().1) / lightest / LONGEST_DAMPING;
     let falling = dt * law.steepest_fall() / lightest / LONGEST_DAMPING;
     phase.max(calming).max(falling.min(MOST_PARTS_FOR_A_FALL)).ceil().max(1.0)
+}
+
+/// One step of the fast integrator under a held input and load; `BARE` as in [`sample`].
+#[inline]
+pub fn step<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
+    machine: &Machine<S>,
+    law: &L,
+    state: &mut L::State,
+    run: &mut Run<S>,
+    input: S,
+    load: S,
+    span: S,
+) {
+    let mut stepper = fast::Fast::<S, BARE> { machine, run, input, load };
+    through_events(&mut stepper, law, state, span);
 }
 
 /// Advances body and friction by these of the equal steps of a sample whose input and load are held

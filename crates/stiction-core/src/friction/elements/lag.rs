@@ -1,5 +1,6 @@
 //! First-order following of a target that changes linearly.
 
+use crate::exponential::faded_of;
 use crate::scalar::Scalar;
 
 /// What [`follow`] returns.
@@ -18,8 +19,7 @@ pub struct Followed<S> {
 /// y(z) = to − (to − from)·(1 − e^(−z))/z + (y₀ − from)·e^(−z), exact and stable for any z ≥ 0.
 #[inline]
 pub fn follow<S: Scalar>(y: S, from: S, to: S, z: S) -> Followed<S> {
-    // Far from 0 the plain exponential has the same digits for less.
-    let gone = if z.re() < 0.5 { -((-z).exp_m1()) } else { -((-z).exp() - 1.0) };
+    let gone = faded_of(-z);
     let remainder = -(gone - 1.0);
     // (1 − e^(−z))/z loses digits below 1e-5; the series error there is under z²/6 ≈ 2e-11.
     let mean_share = if z.re() < 1e-5 { -(z * 0.5 - 1.0) } else { gone / z };

@@ -90,7 +90,10 @@ pub fn step<S: Scalar>(
         let next = force - miss / rise;
         let inside = next.re() * s >= low && next.re() * s <= high;
         let settled = miss.re().abs() <= 4.0 * f64::EPSILON * high;
-        force = if inside { next } else { S::constant(0.5 * (low + high) * s) };
+        let value = if inside { next.re() } else { 0.5 * (low + high) * s };
+        // The derivatives of a Newton pass are those of the root also where round-off takes its value
+        // past the bracket.
+        force = next.chain(value, 1.0);
         if settled || s == 0.0 {
             break;
         }

@@ -7,6 +7,7 @@
 
 use super::memory::{ReverseMemory, ReversePoint};
 use crate::error::{Error, Result};
+use crate::exponential::faded_of;
 use crate::friction::{Entry, EntryReader, Statistics};
 use crate::scalar::{SHORT, Scalar, gone_share, sign};
 
@@ -95,7 +96,7 @@ impl<S: Scalar> Here<S> {
 /// Steps of a spring that go on from the one before until it is evaluated from its reverse point
 /// again. Each adds at most 1.5 units in the last place of the force and of the slope, together
 /// below 1e-13 of them.
-const SYNCHRONISED: u32 = 256;
+pub const SYNCHRONISED: u32 = 256;
 
 /// The virgin curve that goes with a branch under Masing's rule: half its size.
 #[inline]
@@ -150,6 +151,19 @@ impl<S: Scalar> Curve<S> {
         }
     }
 
+    /// k_inf, k_0 − k_inf and d_0 as plain numbers.
+    pub fn numbers(&self) -> [f64; 3] {
+        [self.final_stiffness, self.fading, self.decay_distance].map(Scalar::re)
+    }
+
+    /// Share of d_0 that a displacement in this direction is on this branch.
+    #[inline(always)]
+    pub fn per_displacement(&self, branch: &Branch, direction: f64) -> S {
+        // The first loading runs through a branch of twice the size.
+        let twice = if branch.first && self.virgin == VirginCurve::Masing { 2.0 } else { 1.0 };
+        self.inverse_distance * (direction * twice)
+    }
+
     /// The elongation at which the virgin curve has this force.
     pub fn virgin_inverse(&self, force: S) -> S {
         virgin_inverse(self, force)
@@ -188,7 +202,7 @@ impl<S: Scalar> Loading<S> for Curve<S> {
     fn branch(&self, d: S) -> Response<S> {
         // A wrong anchor gives a negative distance, and the exponential explodes.
         debug_assert!(d.re() >= 0.0, "branch evaluated behind its reverse point: {d:?}");
-        let faded = -((-(d * self.inverse_distance)).exp_m1());
+        let faded = faded_of(-(d * self.inverse_distance));
         Response {
             force: self.final_stiffness * d + self.fading * self.decay_distance * faded,
             slope: self.initial_stiffness - self.fading * faded,
@@ -216,9 +230,7 @@ impl<S: Scalar> Loading<S> for Curve<S> {
     // here less k_inf.
     #[inline(always)]
     fn onward(&self, here: &Here<S>, branch: &Branch, displacement: S) -> Option<Response<S>> {
-        // The first loading runs through a branch of twice the size.
-        let twice = if branch.first && self.virgin == VirginCurve::Masing { 2.0 } else { 1.0 };
-        let z = displacement * (self.inverse_distance * (here.direction * twice));
+        let z = displacement * self.per_displacement(branch, here.direction);
         if z.re() >= SHORT {
             return None;
         }

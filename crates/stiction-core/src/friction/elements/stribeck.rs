@@ -1,6 +1,7 @@
 //! The fall of friction with speed that several laws share.
 
 use crate::error::{Error, Result};
+use crate::exponential::fading_of;
 use crate::scalar::Scalar;
 
 /// e^(−|v/v_s|^δ) and its slope by speed |v|; the slope is taken as 0 at v = 0, where it is not
@@ -10,7 +11,7 @@ use crate::scalar::Scalar;
 #[inline]
 pub fn fall<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> (S, S) {
     let power = (velocity * (S::constant(1.0) / stribeck_velocity)).power_of_magnitude(exponent);
-    let left = (-power).exp();
+    let left = fading_of(-power);
     if velocity.re() == 0.0 {
         return (left, S::constant(0.0));
     }

@@ -1,5 +1,6 @@
 //! The pre-sliding model of Hsieh and Pan: plastic module, nonlinear spring, damper and hook.
 
+mod abreast;
 mod parameters;
 mod plain;
 mod slide;
@@ -17,6 +18,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 use crate::integrate::{Glide, Seen};
+use crate::lanes::{self, Abreast};
 use crate::parameter::{OptionSpec, ParameterSpec};
 use crate::scalar::{Scalar, sign};
 
@@ -323,6 +325,10 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         } else {
             self.glide_sliding(state, glide);
         }
+    }
+
+    fn abreast(&self) -> Option<Abreast<S, Self>> {
+        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
     }
 
     #[inline]

@@ -1,0 +1,164 @@
+//! A row of bodies and of contacts, in the form in which they run.
+
+use crate::friction::FrictionLaw;
+use crate::integrate::{Run, Verlet};
+use crate::scalar::Scalar;
+
+/// Lanes of a block: one vector of the widest processors, two or four of others.
+pub const WIDTH: usize = 8;
+
+/// One number for each lane.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub struct Row(pub [f64; WIDTH]);
+
+impl Row {
+    /// 0 in each lane.
+    pub const ZERO: Self = Self([0.0; WIDTH]);
+
+    /// Replaces the number of a lane where `taken`.
+    #[inline(always)]
+    pub fn take(&mut self, lane: usize, taken: bool, new: f64) {
+        // By bits: a choice would become a store under a mask, on which the next load has to wait.
+        let mask = u64::from(taken).wrapping_neg();
+        let old = self.0[lane].to_bits();
+        self.0[lane] = f64::from_bits((new.to_bits() & mask) | (old & !mask));
+    }
+
+    /// Adds to the number of a lane where `taken`.
+    #[inline(always)]
+    pub fn add(&mut self, lane: usize, taken: bool, more: f64) {
+        self.take(lane, taken, self.0[lane] + more);
+    }
+}
+
+/// The bodies of a block and their share of a step, see [`Verlet`].
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+pub struct Bodies {
+    /// All effort but friction during the step; here, so that nobody has to ask whether it overlaps
+    /// with the rest, which would cost so short a loop its vectors.
+    pub effort: Row,
+    /// Position.
+    pub position: Row,
+    /// Velocity.
+    pub velocity: Row,
+    /// Friction.
+    pub friction: Row,
+    /// Path travelled.
+    pub path: Row,
+    /// Displacement since effects last remembered.
+    pub moved: Row,
+    /// Time.
+    pub time: Row,
+    /// Duration of a step.
+    pub span: Row,
+    /// Half of it.
+    pub half: Row,
+    /// Inertia.
+    pub inertia: Row,
+    /// Velocity per effort.
+    pub pace: Row,
+    /// Displacement per effort.
+    pub lever: Row,
+    /// 1 where the last step was not plain, so that the lane did not take it.
+    pub missed: [u64; WIDTH],
+    /// All bits where there is a body.
+    pub alive: [u64; WIDTH],
+}
+
+impl Bodies {
+    /// Bodies that do not move.
+    pub fn still() -> Self {
+        let zero = Row::ZERO;
+        Self {
+            effort: zero,
+            position: zero,
+            velocity: zero,
+            friction: zero,
+            path: zero,
+            moved: zero,
+            time: zero,
+            span: zero,
+            half: zero,
+            inertia: Row([1.0; WIDTH]),
+            pace: zero,
+            lever: zero,
+            missed: [0; WIDTH],
+            alive: [0; WIDTH],
+        }
+    }
+
+    /// Takes what a body needs for a step.
+    pub fn fit<S: Scalar>(&mut self, lane: usize, verlet: &Verlet<S>) {
+        let [span, half, inertia, pace, lever] = verlet.numbers();
+        self.span.0[lane] = span;
+        self.half.0[lane] = half;
+        self.inertia.0[lane] = inertia;
+        self.pace.0[lane] = pace;
+        self.lever.0[lane] = lever;
+        self.alive[lane] = u64::MAX;
+    }
+
+    /// Takes a body into a lane.
+    #[inline]
+    pub fn load<S: Scalar>(&mut self, lane: usize, run: &Run<S>) {
+        self.position.0[lane] = run.position.re();
+        self.velocity.0[lane] = run.velocity.re();
+        self.friction.0[lane] = run.friction.re();
+        self.path.0[lane] = run.path.re();
+        self.moved.0[lane] = run.moved.re();
+        self.time.0[lane] = run.time.re();
+    }
+
+    /// Puts the body of a lane back.
+    #[inline]
+    pub fn store<S: Scalar>(&self, lane: usize, run: &mut Run<S>) {
+        run.position = S::constant(self.position.0[lane]);
+        run.velocity = S::constant(self.velocity.0[lane]);
+        run.friction = S::constant(self.friction.0[lane]);
+        run.path = S::constant(self.path.0[lane]);
+        run.moved = S::constant(self.moved.0[lane]);
+        run.time = S::constant(self.time.0[lane]);
+    }
+
+    /// Whether the last step was not plain for some lane.
+    #[inline(always)]
+    pub fn misses(&self) -> bool {
+        let lanes = self.missed.iter().zip(&self.alive);
+        lanes.fold(0, |any, (missed, alive)| any | (missed & alive)) != 0
+    }
+
+    /// Moves a lane on where `plain`, see `Glide::accept`.
+    #[inline(always)]
+    pub fn accept(
+        &mut self,
+        lane: usize,
+        plain: bool,
+        displacement: f64,
+        velocity: f64,
+        friction: f64,
+    ) {
+        self.position.add(lane, plain, displacement);
+        self.path.add(lane, plain, displacement.abs());
+        self.moved.add(lane, plain, displacement);
+        self.time.add(lane, plain, self.span.0[lane]);
+        self.velocity.take(lane, plain, velocity);
+        self.friction.take(lane, plain, friction);
+    }
+}
+
+/// Contacts of one law, one in each lane.
+pub trait Contacts<S: Scalar, L: FrictionLaw<S>>: Clone {
+    /// Lanes with nothing in them.
+    fn none() -> Self;
+    /// Takes the parameters of a contact whose body has this inertia and half step.
+    fn fit(&mut self, lane: usize, law: &L, bodies: &Bodies);
+    /// Takes the state of a contact.
+    fn load(&mut self, lane: usize, law: &L, state: &L::State);
+    /// Puts the state of a lane back.
+    fn store(&self, lane: usize, state: &mut L::State);
+    /// Takes a step of all lanes under their efforts; those that it is not plain for stay where they
+    /// are and say so in `missed`. Compiled for several widths: mark it as `#[inline(always)]`.
+    fn step(&mut self, bodies: &mut Bodies);
+}

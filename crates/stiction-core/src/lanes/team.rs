@@ -1,0 +1,309 @@
+//! Takes a team of motors with one law through its samples.
+
+use std::marker::PhantomData;
+
+use stiction_dispatch::Task;
+
+use super::block::{Bodies, Contacts, Row, WIDTH};
+use super::record::{Record, SAMPLES};
+use super::supply::{Supply, load_of};
+use super::tally::Tally;
+use crate::ensemble::{Keep, Plan};
+use crate::friction::{FrictionLaw, LawState};
+use crate::integrate::{Integrator, MOST_PARTS, Machine, Run, parts, step};
+use crate::model::CHUNK;
+use crate::motor::{Column, PerSample, Running};
+use crate::scalar::Scalar;
+
+/// Members of a team at most: as many as keep a processor busy while each waits for its own step.
+const MOST: usize = 4 * WIDTH;
+/// Members of a team at least: fewer are done sooner one after the other.
+pub const LEAST: usize = 3;
+
+/// A motor of an ensemble.
+#[derive(Debug)]
+pub struct Motor<'a> {
+    /// Its number.
+    pub number: usize,
+    /// The motor.
+    pub running: &'a mut Running<f64>,
+    /// Where its columns go.
+    pub own: Vec<&'a mut [f64]>,
+}
+
+/// The same with its law known.
+#[derive(Debug)]
+pub struct Member<'a, S: Scalar, L: FrictionLaw<S>> {
+    /// Its number in the ensemble.
+    pub number: usize,
+    /// Everything but friction.
+    pub machine: &'a Machine<S>,
+    /// Friction law.
+    pub law: &'a L,
+    /// Friction state.
+    pub state: &'a mut L::State,
+    /// Body.
+    pub run: &'a mut Run<S>,
+    /// Where its columns go.
+    pub own: Vec<&'a mut [f64]>,
+}
+
+/// Motors that go side by side, all with samples divided alike.
+#[derive(Debug)]
+pub struct Team<'a, S: Scalar, L: FrictionLaw<S>> {
+    /// The motors.
+    pub members: Vec<Member<'a, S, L>>,
+    /// What they do.
+    pub job: &'a Job<'a>,
+}
+
+/// What a team does.
+#[derive(Debug)]
+pub struct Job<'a> {
+    /// What is run and kept.
+    pub plan: &'a Plan<'a>,
+    /// Columns that are kept.
+    pub kinds: &'a [Column],
+    /// Duration of a sample.
+    pub dt: f64,
+    /// Steps of a sample.
+    pub parts: u32,
+}
+
+impl<'a> Job<'a> {
+    /// What a team of motors does that divide each sample into so many steps.
+    pub fn new(plan: &'a Plan<'a>, kinds: &'a [Column], parts: u32) -> Self {
+        Self { plan, kinds, dt: plan.dt.at(0), parts }
+    }
+
+    /// Into how many steps this motor divides each sample of a plan, where it can go through that
+    /// abreast of others.
+    pub fn parts(motor: &Running<f64>, plan: &Plan<'_>, kinds: &[Column]) -> Option<u32> {
+        let PerSample::Same(dt) = plan.dt else { return None };
+        // States of a law are in rows of its own: they are put back to be looked at.
+        let seldom = matches!(plan.keep, Keep::Last);
+        let shown = seldom || !kinds.iter().any(|kind| matches!(kind, Column::Law(_)));
+        let plain = motor.integrator == Integrator::Fast && motor.machine.is_bare();
+        if !shown || !plain || !motor.machine.glides(&motor.run) || !motor.law.goes_abreast() {
+            return None;
+        }
+        let parts =
+            with_law!(&motor.law, |law| parts(&motor.machine, law, dt, motor.longest_phase));
+        (parts <= MOST_PARTS).then_some(parts as u32)
+    }
+
+    /// Members of a team where so many motors are shared among so many threads.
+    pub fn members(motors: usize, threads: usize) -> usize {
+        motors.div_ceil(threads.max(1)).next_multiple_of(WIDTH).clamp(WIDTH, MOST)
+    }
+
+    /// Duration of a step.
+    fn span(&self) -> f64 {
+        self.dt / f64::from(self.parts)
+    }
+}
+
+/// [`WIDTH`] motors.
+#[derive(Debug, Clone)]
+struct Block<C> {
+    bodies: Bodies,
+    contacts: C,
+}
+
+/// Plain steps in a row; ends early after a step that was not plain for some lane.
+struct Stretch<'a, S, L, C> {
+    blocks: &'a mut [Block<C>],
+    /// Efforts of each block in each sample of this stretch.
+    efforts: &'a [Row],
+    record: &'a mut Record,
+    /// The first step, counted from the first sample, and the first beyond.
+    steps: std::ops::Range<usize>,
+    parts: usize,
+    law: PhantomData<(S, L)>,
+}
+
+impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Task for Stretch<'_, S, L, C> {
+    /// Steps that were taken, the last of them not plain for all unless they are all there were.
+    type Output = usize;
+
+    #[inline(always)]
+    fn run(self) -> usize {
+        let Self { blocks, efforts, record, steps, parts, .. } = self;
+        let count = blocks.len();
+        let mut sample = steps.start / parts;
+        let mut part = steps.start % parts;
+        for step in steps.clone() {
+            part += 1;
+            let ends = part == parts;
+            let mut missed = false;
+            let place = sample * count;
+            let Some(row) = efforts.get(place..place + count) else { return step };
+            for (k, (block, efforts)) in blocks.iter_mut().zip(row).enumerate() {
+                block.bodies.effort = *efforts;
+                block.contacts.step(&mut block.bodies);
+                missed |= block.bodies.misses();
+                if ends {
+                    record.take(place + k, &block.bodies);
+                }
+            }
+            if missed {
+                return step + 1;
+            }
+            if ends {
+                (sample, part) = (sample + 1, 0);
+            }
+        }
+        steps.end
+    }
+}
+
+impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
+    /// Runs all samples with these contacts.
+    pub fn walk<C: Contacts<S, L>>(&mut self) {
+        let mut blocks = self.blocks::<C>();
+        let count = blocks.len();
+        let samples = self.job.plan.samples;
+        let parts = self.job.parts as usize;
+        let mut record = Record::new(self.kept(), count);
+        let mut supply = Supply::new(&self.members);
+        let mut tally = Tally::new(self.job, count);
+        let mut room = vec![0_usize; self.members.len()];
+        let mut first = 0;
+        while first < samples {
+            let length = SAMPLES.min(samples - first);
+            let numbers = self.members.iter().map(|member| member.number);
+            supply.fill(self.job.plan, numbers, first, length);
+            let mut at = 0;
+            while at < length * parts {
+                let stretch = Stretch {
+                    blocks: &mut blocks,
+                    efforts: supply.efforts(),
+                    record: &mut record,
+                    steps: at..length * parts,
+                    parts,
+                    law: PhantomData::<(S, L)>,
+                };
+                at = self.job.plan.width.run(stretch);
+                let sample = (at - 1) / parts;
+                let ends = at % parts == 0;
+                for (k, block) in blocks.iter_mut().enumerate() {
+                    if !block.bodies.misses() {
+                        continue;
+                    }
+                    for lane in 0..WIDTH {
+                        if block.bodies.missed[lane] != 0 {
+                            self.step_alone(k * WIDTH + lane, first + sample, block, &mut room);
+                        }
+                    }
+                    block.bodies.missed = [0; WIDTH];
+                    if ends {
+                        record.take(sample * count + k, &block.bodies);
+                    }
+                }
+            }
+            self.show(&record, first, length, count);
+            tally.add(self, &record, first, length);
+            first += length;
+        }
+        for (k, member) in self.members.iter_mut().enumerate() {
+            let block = &blocks[k / WIDTH];
+            block.bodies.store(k % WIDTH, member.run);
+            block.contacts.store(k % WIDTH, member.state);
+        }
+        self.end(&tally);
+    }
+
+    /// All motors in blocks; lanes that are left over do what the first motor does, unseen.
+    fn blocks<C: Contacts<S, L>>(&mut self) -> Vec<Block<C>> {
+        let count = self.members.len().div_ceil(WIDTH);
+        let mut blocks = vec![Block { bodies: Bodies::still(), contacts: C::none() }; count];
+        for (k, member) in self.members.iter_mut().enumerate() {
+            let Block { bodies, contacts } = &mut blocks[k / WIDTH];
+            let lane = k % WIDTH;
+            bodies.fit(lane, &member.machine.verlet(S::constant(self.job.span())));
+            bodies.load(lane, member.run);
+            contacts.fit(lane, member.law, bodies);
+            contacts.load(lane, member.law, member.state);
+        }
+        blocks
+    }
+
+    /// One step of one motor with all that may happen in it.
+    #[inline(never)]
+    fn step_alone<C: Contacts<S, L>>(
+        &mut self,
+        k: usize,
+        sample: usize,
+        block: &mut Block<C>,
+        room: &mut [usize],
+    ) {
+        let Some(member) = self.members.get_mut(k) else { return };
+        let lane = k % WIDTH;
+        block.bodies.store(lane, member.run);
+        block.contacts.store(lane, member.state);
+        if room[k] == 0 {
+            room[k] = CHUNK;
+            member.state.make_room(CHUNK + CHUNK / 4);
+        }
+        room[k] -= 1;
+        let (input, load) = applied(self.job.plan, member.number, sample);
+        let (input, load) = (S::constant(input), S::constant(load));
+        let span = S::constant(self.job.span());
+        step::<_, _, true>(member.machine, member.law, member.state, member.run, input, load, span);
+        block.bodies.load(lane, member.run);
+        block.contacts.load(lane, member.law, member.state);
+    }
+
+    /// Columns that are kept of every sample.
+    fn kept(&self) -> &[Column] {
+        if matches!(self.job.plan.keep, Keep::Last) { &[] } else { self.job.kinds }
+    }
+
+    /// Takes over rows of what was recorded of some samples.
+    fn show(&mut self, record: &Record, first: usize, length: usize, blocks: usize) {
+        let Keep::Every(every) = self.job.plan.keep else { return };
+        for (k, member) in self.members.iter_mut().enumerate() {
+            for (kind, own) in self.job.kinds.iter().zip(&mut member.own) {
+                let rows = record.of(*kind);
+                let mut row = first / every;
+                while (row + 1) * every <= first + length {
+                    let place = ((row + 1) * every - 1 - first) * blocks + k / WIDTH;
+                    let value = rows[place].0[k % WIDTH];
+                    let measured = *kind == Column::Measured;
+                    own[row] = if measured { member.machine.measured(value) } else { value };
+                    row += 1;
+                }
+            }
+        }
+    }
+
+    /// Writes down what is left of the whole run.
+    fn end(&mut self, tally: &Tally) {
+        let samples = self.job.plan.samples;
+        for (k, member) in self.members.iter_mut().enumerate() {
+            let (run, machine, state) = (&*member.run, member.machine, &*member.state);
+            for (column, (kind, own)) in self.job.kinds.iter().zip(&mut member.own).enumerate() {
+                match self.job.plan.keep {
+                    Keep::Last if samples > 0 => {
+                        own[0] = match *kind {
+                            Column::Position => run.position.re(),
+                            Column::Velocity => run.velocity.re(),
+                            Column::Friction => run.friction.re(),
+                            Column::Measured => machine.measured(run.position.re()),
+                            Column::Law(index) => state.output(index).re(),
+                        };
+                    }
+                    Keep::Rms(_) => own[0] = (tally.of(column, k)[0] / samples as f64).sqrt(),
+                    Keep::Extremes => own.copy_from_slice(&tally.of(column, k)),
+                    Keep::Last | Keep::Every(_) => (),
+                }
+            }
+        }
+    }
+}
+
+/// Input and load of a motor in a sample.
+fn applied(plan: &Plan<'_>, member: usize, sample: usize) -> (f64, f64) {
+    let loads = plan.loads.of(member, plan.samples);
+    (plan.inputs.of(member, plan.samples)[sample], load_of(loads, sample))
+}

@@ -1,0 +1,169 @@
+//! Motors that go side by side do what each of them does alone, to the bit and at every width.
+#![allow(missing_docs)]
+
+use stiction_core::ensemble::{Changes, Ensemble, Inputs, Keep, Plan, Rows};
+use stiction_core::friction::{LAWS, law_record};
+use stiction_core::lanes::Width;
+use stiction_core::model::LawSpec;
+use stiction_core::motor::{Column, Motor, MotorSpec, PerSample, Surroundings};
+
+const MEMBERS: usize = 21;
+const SAMPLES: usize = 3000;
+
+/// A motor with this law that breaks away, and with these values instead of the usual ones.
+fn motor(law: &str, stated: &[(&str, f64)]) -> Motor {
+    let record = law_record(law).unwrap();
+    let own = |name: &str| record.parameters.iter().any(|p| p.name == name);
+    let mut stated: Vec<(String, f64)> =
+        stated.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+    if own("breakaway") {
+        stated.push(("breakaway".to_owned(), 0.4));
+    }
+    let law = LawSpec::new(record.name, &stated, &[]).unwrap();
+    let spec = MotorSpec { weight: 0.02, ..MotorSpec::new(0.0076, 1.5, law) };
+    Motor::new(spec).unwrap()
+}
+
+/// Ramps, rings, pulses, rests and noise, another size for each member.
+fn inputs() -> Vec<f64> {
+    let mut inputs = Vec::new();
+    let mut noise = 12_345_u64;
+    for member in 0..MEMBERS {
+        let size = 0.1 + 0.03 * member as f64;
+        for k in 0..SAMPLES {
+            let t = k as f64 * 2e-4;
+            noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            let shaken = (noise >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+            let wave = size * (40.0 * t).sin() + if t % 0.2 < 0.02 { 0.25 } else { 0.0 };
+            inputs.push(match k / 700 {
+                0 => 0.0,
+                1 => 0.15,
+                2 => wave,
+                3 => wave + 0.05 * shaken,
+                _ => -size,
+            });
+        }
+    }
+    inputs
+}
+
+const KINDS: [Column; 4] = [Column::Position, Column::Velocity, Column::Friction, Column::Measured];
+
+/// What is kept of an ensemble whose members differ in inertia.
+fn together(
+    motor: &Motor,
+    masses: &[f64],
+    inputs: &[f64],
+    (dt, keep): (f64, Keep<'_>),
+    (threads, width): (usize, Width),
+) -> Vec<Vec<f64>> {
+    let paths = ["body.inertia".to_owned()];
+    let changes = Changes { paths: &paths, values: masses };
+    let mut ensemble = Ensemble::new(motor, MEMBERS, changes).unwrap();
+    let plan = Plan {
+        samples: SAMPLES,
+        inputs: Inputs::Each(inputs),
+        loads: Rows::Same(0.01),
+        dt: PerSample::Same(dt),
+        keep,
+        threads,
+        width,
+    };
+    let mut kept = vec![vec![0.0; MEMBERS * keep.width(SAMPLES)]; KINDS.len()];
+    let mut columns: Vec<_> =
+        KINDS.into_iter().zip(kept.iter_mut().map(Vec::as_mut_slice)).collect();
+    // Again from where they got to: what is kept is of the second run.
+    ensemble.run(&plan, &mut columns).unwrap();
+    ensemble.run(&plan, &mut columns).unwrap();
+    kept
+}
+
+/// The columns of each member alone.
+fn apart(motor: &Motor, masses: &[f64], inputs: &[f64], dt: f64) -> Vec<Vec<f64>> {
+    let mut all = vec![Vec::new(); KINDS.len()];
+    for (member, mass) in masses.iter().enumerate() {
+        let spec = MotorSpec { inertia: *mass, ..motor.spec().clone() };
+        let mut alone = Motor::new(spec).unwrap();
+        let mut own = vec![vec![0.0; SAMPLES]; KINDS.len()];
+        let mut columns: Vec<_> =
+            KINDS.into_iter().zip(own.iter_mut().map(Vec::as_mut_slice)).collect();
+        let around = Surroundings::from(PerSample::Same(0.01));
+        let given = &inputs[member * SAMPLES..(member + 1) * SAMPLES];
+        alone.simulate(given, around, PerSample::Same(dt), &mut columns).unwrap();
+        alone.simulate(given, around, PerSample::Same(dt), &mut columns).unwrap();
+        for (all, own) in all.iter_mut().zip(own) {
+            all.extend(own);
+        }
+    }
+    all
+}
+
+fn masses() -> Vec<f64> {
+    (0..MEMBERS).map(|k| 0.006 + 0.000_2 * k as f64).collect()
+}
+
+fn agrees(motor: &Motor, dt: f64) {
+    let (masses, inputs) = (masses(), inputs());
+    let alone = apart(motor, &masses, &inputs, dt);
+    for width in [Width::Baseline, Width::Four, Width::Eight] {
+        for threads in [1, 2] {
+            let how = (dt, Keep::Every(1));
+            let whole = together(motor, &masses, &inputs, how, (threads, width));
+            assert_eq!(whole, alone, "{width:?} {threads}");
+        }
+    }
+}
+
+#[test]
+fn every_law_does_the_same_side_by_side_as_alone() {
+    for record in LAWS {
+        agrees(&motor(record.name, &[]), 2e-4);
+    }
+}
+
+#[test]
+fn options_and_divided_samples_change_no_bit() {
+    agrees(&motor("hsieh_pan", &[("viscous", 0.05)]), 5e-4);
+    agrees(&motor("hsieh_pan", &[("hardening_coefficient", 0.0), ("coulomb", 0.4)]), 2e-4);
+    agrees(&motor("hsieh_pan", &[("creep_rate", 300.0), ("slip_distance", 1e-7)]), 2e-4);
+    agrees(&motor("hsieh_pan", &[("hardening_exponent", 1.7)]), 2e-4);
+    agrees(&motor("hsieh_pan", &[("stribeck_exponent", 1.0)]), 2e-4);
+}
+
+#[test]
+fn what_is_kept_is_made_of_the_same_samples() {
+    let motor = motor("hsieh_pan", &[("viscous", 0.02)]);
+    let (masses, inputs, dt) = (masses(), inputs(), 2e-4);
+    let alone = apart(&motor, &masses, &inputs, dt);
+    let rows = |column: usize| alone[column].chunks(SAMPLES);
+    for every in [7, 32, 100] {
+        let how = (dt, Keep::Every(every));
+        let kept = together(&motor, &masses, &inputs, how, (1, Width::widest()));
+        for (column, kept) in kept.iter().enumerate() {
+            let thinned: Vec<f64> = rows(column)
+                .flat_map(|row| row.iter().skip(every - 1).step_by(every).copied())
+                .collect();
+            assert_eq!(*kept, thinned);
+        }
+    }
+    let last = together(&motor, &masses, &inputs, (dt, Keep::Last), (1, Width::widest()));
+    let ends = together(&motor, &masses, &inputs, (dt, Keep::Extremes), (1, Width::widest()));
+    let target = Rows::Same(1e-4);
+    let rms = together(&motor, &masses, &inputs, (dt, Keep::Rms(target)), (1, Width::widest()));
+    for column in 0..KINDS.len() {
+        for (member, row) in rows(column).enumerate() {
+            assert_eq!(last[column][member], row[SAMPLES - 1]);
+            let least = row.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = row.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            assert_eq!(ends[column][2 * member..2 * member + 2], [least, most]);
+            let sum = row.iter().fold(0.0, |sum, x| sum + (x - 1e-4) * (x - 1e-4));
+            assert_eq!(rms[column][member], (sum / SAMPLES as f64).sqrt());
+        }
+    }
+}
+
+#[test]
+fn motors_without_effects_go_side_by_side() {
+    assert!(motor("hsieh_pan", &[]).running().law.goes_abreast());
+    assert!(!motor("hsieh_pan", &[("hardening_exponent", 1.7)]).running().law.goes_abreast());
+}
