@@ -330,4 +330,6 @@ def test_real_recordings_get_drafts_that_a_fit_runs_on(
     if REAL[folder]:
         assert run(["fit", str(tmp_path / "session.toml"), "-o", str(tmp_path / "f")]) == 0
     else:
+        assert 'kind = "servo"' in (tmp_path / "plant.toml").read_text("utf-8")
+        assert any('kind = "servo"' in told for told in found["to_do"])
         assert "no column is known to be the input" in run_fit(tmp_path, capsys)

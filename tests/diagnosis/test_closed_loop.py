@@ -15,9 +15,12 @@ from tests.reference.session_reference import make_session
 import stiction as st
 from stiction.cli import run
 from stiction.closed_loop import replay
+from stiction.diagnosis import loop
 from stiction.diagnosis.evidence import Evidence, SealedError
 from stiction.diagnosis.loop import replayed
-from stiction.diagnosis.words import loop_words
+from stiction.diagnosis.result import CandidateRow
+from stiction.diagnosis.rounds import Search
+from stiction.diagnosis.words import loop_words, worse_loop_words
 from stiction.fitting.rows import Nuisances
 
 # A power of two: stamps carry no round-off, and a loop made by hand agrees to the last bit.
@@ -236,6 +239,58 @@ def test_naming_the_cause_makes_the_simulated_loop_better(diagnosed: st.Diagnosi
     (line,) = [row for row in str(diagnosed).splitlines() if row.startswith("closed loop")]
     assert "mrad rms before" in line
     assert "[controller]" not in line
+
+
+def test_a_loop_that_a_cause_makes_worse_is_said_on_the_first_screen(
+    diagnosed: st.Diagnosis,
+) -> None:
+    assert worse_loop_words(diagnosed) == ""
+    assert diagnosed.baseline is not None
+    assert diagnosed.extended is not None
+    turned = replace(
+        diagnosed,
+        baseline=replace(diagnosed.baseline, replay=diagnosed.extended.replay),
+        extended=replace(diagnosed.extended, replay=diagnosed.baseline.replay),
+    )
+    assert "the simulated loop does worse with it" in worse_loop_words(turned)
+    assert worse_loop_words(replace(turned, effects=())) == ""
+
+
+@pytest.mark.parametrize(
+    ("errors", "kept"),
+    [
+        ((1.0, 0.5), 1),
+        ((1.0, 1.05), 1),
+        ((1.0, 1.2), 0),
+        ((1.0, None), 0),
+        ((None, 1.2), 1),
+        ((1.0, 0.5, 0.6), 1),
+        # The last one helps, and less than the first one does harm.
+        ((1.0, 3.0, 2.0), 0),
+        ((1.0, 3.0, 0.9), 2),
+    ],
+)
+@pytest.mark.parametrize("servo", [True, False])
+def test_what_leads_the_loop_of_a_servo_astray_is_no_cause(
+    errors: tuple[float | None, ...], kept: int, servo: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(loop, "_runs", lambda _evidence, model, _wanted: (model.error, []))
+    monkeypatch.setattr(loop, "_rms", lambda _evidence, error, _parts: error)
+    evidence = SimpleNamespace(
+        plant=SimpleNamespace(servo=servo),
+        recordings=[SimpleNamespace(position=np.zeros(9), channels=())],
+        split=SimpleNamespace(train=[SimpleNamespace(recording=0)], select=[]),
+    )
+    names = ("first", "second")[: len(errors) - 1]
+    rows = {name: CandidateRow(name, 0.5, 0.1, 0.2, "accepted") for name in names}
+    choices = [SimpleNamespace(winner=SimpleNamespace(name=name)) for name in names]
+    models = [SimpleNamespace(error=error) for error in errors]
+    found = loop.borne_out(Search(models, choices, rows), evidence)  # type: ignore[arg-type]
+    kept = kept if servo else len(names)
+    assert [choice.winner.name for choice in found.choices] == list(names[:kept])
+    assert found.models == models[: kept + 1]
+    dropped = [found.rows[name].reason for name in names[kept:]]
+    assert dropped == [loop.LOOP_AGAINST] * len(dropped)
 
 
 def test_the_report_shows_the_loop_where_there_is_one(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,11 +10,19 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.confirm import AGAINST, NOT_KNOWN, confirmed
+from stiction.diagnosis.confirm import (
+    AGAINST,
+    NO_BETTER,
+    NO_MACHINE,
+    NOT_KNOWN,
+    confirmed,
+    described,
+)
 from stiction.diagnosis.evidence import Cells
 from stiction.diagnosis.gain import HeldOut
 from stiction.diagnosis.result import CandidateRow
 from stiction.diagnosis.rounds import Search
+from stiction.diagnosis.words import no_machine
 
 BLOCKS, ROWS = 40, 50
 
@@ -130,3 +139,70 @@ def test_motion_that_the_input_does_not_make_cannot_be_tested() -> None:
     found = st.diagnose(lone, st.Recording(time, effort, position))
     assert found.verdict == "not_testable", found.sentence
     assert "do not belong together" in found.sentence
+
+
+@pytest.mark.parametrize(
+    ("sizes", "reason"),
+    [((1.0, 0.6), "accepted"), ((1.0, 0.9), NO_MACHINE), ((0.4, 0.5), NO_BETTER)],
+)
+def test_a_name_needs_a_plant_that_describes_the_machine(
+    sizes: tuple[float, float], reason: str
+) -> None:
+    one = np.random.default_rng(0).standard_normal(900)
+    held = np.arange(900) % 3 == 0
+    evidence: Any = SimpleNamespace(plans=[SimpleNamespace(held=held)], stack=lambda _: one)
+    selection = selected("first")
+    models: list[Any] = [SimpleNamespace(residual=size * one, plant=None) for size in sizes]
+    # Noise alone leaves as little everywhere.
+    null = np.repeat(0.1 * one[:, None], 4, axis=1)
+    found = described(replace(selection, models=models), evidence, null)
+    assert found.rows["first"].reason == reason
+    assert len(found.choices) == (reason == "accepted")
+    assert len(found.models) == 1 + len(found.choices)
+
+
+def alone(*, bias: float, follows: bool) -> st.Diagnosis:
+    """A machine of known inertia, whose input makes its motion or has nothing to do with it."""
+    source = np.random.default_rng(4)
+    time = np.arange(24_000) * 1e-3
+    needed = np.zeros_like(time)
+    position = np.zeros_like(time)
+    for k, rate in enumerate((2.3, 4.1, 7.3, 11.9)):
+        position += 0.3 / rate * np.sin(rate * time + k)
+        needed -= 0.06 * 0.3 * rate * np.sin(rate * time + k)
+        needed += 0.01 * 0.3 * np.cos(rate * time + k)
+    other = sum(0.3 * np.sin(rate * time) for rate in (1.7, 3.1, 5.7))
+    effort = (needed if follows else other) + bias + 0.005 * source.standard_normal(len(time))
+    lone = st.Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm", "gain": 1.0},
+            "body": {"inertia": {"value": 0.06, "fixed": True}},
+            "friction": {"law": "coulomb"},
+        }
+    )
+    return st.diagnose(lone, st.Recording(time, effort, position), surrogates=6)
+
+
+def test_a_plant_that_leaves_most_of_the_effort_has_no_causes() -> None:
+    found = alone(bias=0.0, follows=False)
+    assert found.verdict == "unexplained", found.sentence
+    assert not found.effects
+    assert "before any cause counts, check columns" in found.sentence
+
+
+def test_a_cause_that_is_most_of_the_effort_keeps_its_name() -> None:
+    found = alone(bias=0.4, follows=True)
+    assert found.effects[0].name == "torque_bias", found.sentence
+    assert "check columns" not in found.sentence
+
+
+@pytest.mark.parametrize(
+    ("left", "words"), [(0.0, ""), (0.74, "leaves 74 % of"), (2.7, "leaves more than the power")]
+)
+def test_what_a_plant_leaves_of_the_effort_is_said_where_it_is_most(
+    left: float, words: str
+) -> None:
+    told = no_machine(left, False, "unexplained")
+    assert words in told
+    assert bool(told) is bool(left)
+    assert no_machine(left, False, "not_testable") == ""

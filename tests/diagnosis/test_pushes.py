@@ -9,6 +9,8 @@ import pytest
 from tests.reference.coulomb_reference import simulate_coulomb
 
 import stiction as st
+from stiction.diagnosis.words import push_words
+from stiction.fitting.rows import Push
 
 DT, SECONDS = 1e-3, 10.0
 TRUE = {"inertia": 0.006, "coulomb": 0.25, "viscous": 0.02}
@@ -75,6 +77,22 @@ def test_a_hand_is_told_by_its_time_and_named_as_nothing_else(pushed: list[st.Re
     assert len(told) == 3
     assert "omething pushed the machine from" in found.sentence
     assert "because the drive did not make that motion" in found.sentence
+
+
+def test_pushes_of_one_recording_are_told_in_one_sentence() -> None:
+    pushes = [
+        Push(1, 2.0, 3.0),
+        Push(1, 5.0, 6.5, sure=False),
+        Push(0, 1.0, 2.0),
+        Push(0, 7.0, 8.0),
+    ]
+    told = push_words(pushes, ("a.csv", "b.csv"))
+    assert told.startswith(
+        "Something pushed the machine from 2.0 s to 3.0 s and 5.0 s to 6.5 s (or it does there "
+        "what it does nowhere else) in b.csv and from 1.0 s to 2.0 s in a.csv; these rows"
+    )
+    assert told.endswith("1 more stands among the data checks.")
+    assert push_words([], ()) == ""
 
 
 def test_a_fit_leaves_the_hand_out_and_finds_the_machine(pushed: list[st.Recording]) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from tests.reference.coulomb_reference import simulate_coulomb
 
+import stiction as st
 from stiction import InputError, Plant, Recording, fit
 from stiction.cli import run
 from stiction.fitting.rows import Nuisances, Rows
@@ -310,3 +311,19 @@ def test_emps_comes_out_near_its_published_parameters(shared_data: Path) -> None
         assert found[name].value == pytest.approx(value, rel=0.08), name
     assert found["bias"].value == pytest.approx(3.165, abs=1.2)
     assert found.train_relative < 0.045
+
+
+def test_short_recordings_with_roles_are_fitted_as_they_are() -> None:
+    true = st.Motor(0.0076, friction=st.FrictionModel("coulomb", coulomb=0.3, viscous=0.05))
+    time = np.arange(3500) * 1e-3
+    made = []
+    for role, rate in (("train", 11.0), ("test", 13.0)):
+        effort = 0.6 * np.sin(3.0 * time) + 0.4 * np.sin(rate * time)
+        position = np.concatenate([[0.0], true.copy().simulate(effort[:-1], 1e-3).position])
+        made.append(st.Recording(time, effort, position, role=role))
+    machine = st.Plant.from_dict({"drive": {"input": "torque_nm"}, "friction": {"law": "coulomb"}})
+    found = st.fit(machine, made)
+    assert found["coulomb"].value == pytest.approx(0.3, rel=0.02)
+    # A fit decides nothing, so nothing is cut or left out for a decision.
+    assert "select" not in found.split
+    assert "blocks" not in found.split

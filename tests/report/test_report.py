@@ -514,4 +514,22 @@ def test_numbers_have_as_many_digits_as_are_known() -> None:
     assert quantity(0.5, "1") == "0.500"
     assert percent(-0.0001) == "0.0\u00a0%"
     assert tick(1e-7) == "1×10⁻⁷"
+    # Neighbours on an axis that begins far from 0 are told apart.
+    assert tick(1.215e7) == "1.215×10⁷"
     assert tick(0.30000000000000004) == "0.3"
+
+
+@pytest.mark.parametrize(
+    ("share", "words"), [(0.1, "none counts"), (0.001, "No coordinate stands")]
+)
+def test_curves_above_noise_that_are_too_small_to_count_are_said_to_be(
+    share: float, words: str, tmp_path: Path
+) -> None:
+    found = diagnosis("nothing_missing")
+    assert found.pictures is not None
+    views = tuple(
+        replace(view, share=share, threshold=0.02, size=1e-5) for view in found.pictures.after.views
+    )
+    shown = replace(found.pictures, after=replace(found.pictures.after, views=views))
+    page = replace(found, pictures=shown).save(tmp_path).read_text("utf-8")
+    assert words in page

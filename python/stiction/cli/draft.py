@@ -78,7 +78,7 @@ def _drive(found: Guess, effort: str) -> list[str]:
             *_comment(
                 f"{found.drive_reason}. Take away the # when session.toml names one: current_a, "
                 f'voltage_v or {own}; or write kind = "prescribed_motion" where the machine is '
-                "moved and its effort measured."
+                "moved and its effort measured." + _servo(found)
             ),
             '# input = "current_a"',
             f"# gain = 1.0  # {effort} per unit of the input",
@@ -99,6 +99,17 @@ def _drive(found: Guess, effort: str) -> list[str]:
         ),
         "gain = 1.0",
     ]
+
+
+def _servo(found: Guess) -> str:
+    """What a servo that is given positions needs, where a goal may be among the columns."""
+    if all(one.role != "reference" for one in found.columns):
+        return ""
+    return (
+        ' A servo that is given positions is kind = "servo", with proportional (duty per '
+        "distance from the goal), supply_v, resistance_ohm and torque_constant; its input is "
+        "the goal."
+    )
 
 
 def _numbers_beside(found: Guess) -> str:

@@ -1,19 +1,103 @@
-"""What the rows that test speak against, or say as little of as the fit does, is no cause."""
+"""What is no cause although it passed: beside a plant that describes no machine, or against rows.
+
+The rows that test may speak against a name, or say as little of it as the fit does.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import Final
 
+import numpy as np
+
+from ..fitting.rows import Mask
+from ..trajectory import FloatArray
+from .evidence import Evidence
 from .gain import HeldOut, gain_of
+from .model import Model
 from .rounds import Search
 
-__all__ = ["confirmed"]
+__all__ = ["confirmed", "described", "lost", "lost_on_test"]
 
+MOST_LOST: Final = 0.5
+"""Share of the power of the effort that a plant may leave, beyond noise, on rows that it was not
+fitted to, and still describe the machine."""
+NO_MACHINE: Final = (
+    "passes, but the plant leaves most of the effort unexplained, with what was added as well"
+)
+NO_BETTER: Final = "passes, but with what was added the plant does worse on the rows that decide"
 AGAINST: Final = "the rows that test speak against it"
 NOT_KNOWN: Final = (
     "neither its strength nor its gain on the rows that test can be told from nothing"
 )
+
+
+def described(selection: Search, evidence: Evidence, null: FloatArray) -> Search:
+    """The selection without any cause where the plant describes no machine, causes and all.
+
+    Beside a model that leaves most of the effort, anything that bends a little helps a little, and
+    what helped at first may have led the whole plant astray.
+
+    Parameters
+    ----------
+    selection : Search
+    evidence : Evidence
+    null : numpy.ndarray, shape (n, surrogates)
+        Residuals of the surrogates.
+    """
+    if not selection.choices:
+        return selection
+    held = _deciding(evidence)
+    first, last = (float(np.sum(m.residual[held] ** 2)) for m in _ends(selection))
+    if lost(evidence, selection.models[-1], null):
+        reason = NO_MACHINE
+    elif last > first:
+        reason = NO_BETTER
+    else:
+        return selection
+    rows = dict(selection.rows)
+    for choice in selection.choices:
+        name = choice.winner.name
+        if name in rows:
+            rows[name] = replace(rows[name], reason=reason)
+    return replace(selection, models=selection.models[:1], choices=[], rows=rows)
+
+
+def lost(evidence: Evidence, model: Model, null: FloatArray) -> float:
+    """Share of the power of the effort that a model leaves beyond noise, on the rows that decide.
+
+    0 where it is no more than ``MOST_LOST``: then the plant describes the machine.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    model : Model
+    null : numpy.ndarray, shape (n, surrogates)
+        Residuals of the surrogates.
+    """
+    held = _deciding(evidence)
+    effort = evidence.stack(lambda rows: rows.form.measured(model.plant))[held]
+    return _beyond(model.residual[held], effort, null[held])
+
+
+def lost_on_test(test: HeldOut | None, index: int, null: FloatArray) -> float:
+    """The same of one of the models on the rows that test, the noise that of the others."""
+    return 0.0 if test is None else _beyond(test.residuals[index], test.effort, null)
+
+
+def _ends(selection: Search) -> tuple[Model, Model]:
+    return selection.models[0], selection.models[-1]
+
+
+def _deciding(evidence: Evidence) -> Mask:
+    held: Mask = np.any([plan.held for plan in evidence.plans], axis=0)
+    return held
+
+
+def _beyond(residual: FloatArray, effort: FloatArray, null: FloatArray) -> float:
+    power = float(np.mean(effort**2))
+    left = float(np.mean(residual**2)) - float(np.mean(null**2))
+    return left / power if left > MOST_LOST * power > 0.0 else 0.0
 
 
 def confirmed(selection: Search, test: HeldOut | None, seed: int) -> Search:

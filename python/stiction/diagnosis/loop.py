@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -19,12 +19,16 @@ from ..trajectory import FloatArray
 from ..wording import counted
 from .evidence import Evidence, SealedError
 from .pictures import Pictures, Tracking
+from .words import WORSE, worse_loop_words
 
 if TYPE_CHECKING:
     from .model import Model
     from .result import Diagnosis
+    from .rounds import Search
 
-__all__ = ["Replay", "replayed"]
+__all__ = ["Replay", "borne_out", "replayed"]
+
+LOOP_AGAINST: Final = "passes, but the simulated loop of the servo does worse with it"
 
 _logger = logging.getLogger(__name__)
 
@@ -83,7 +87,7 @@ def replayed(found: Diagnosis, evidence: Evidence, base: Model, final: Model) ->
     after, told_after = (before, told) if final is base else _runs(evidence, final, wanted)
     assert found.baseline is not None
     assert found.extended is not None
-    return replace(
+    found = replace(
         found,
         baseline=replace(
             found.baseline,
@@ -97,6 +101,42 @@ def replayed(found: Diagnosis, evidence: Evidence, base: Model, final: Model) ->
         ),
         pictures=_pictured(found.pictures, evidence, before, after),
     )
+    return replace(found, sentence=found.sentence + worse_loop_words(found))
+
+
+def borne_out(selection: Search, evidence: Evidence) -> Search:
+    """The selection without the last causes with which the loop of a servo does clearly worse.
+
+    The effort of a servo is what its stated law makes of the measured motion, which may err as
+    friction does: what explains it better and leads the simulated servo astray is no cause. Rows
+    that test stay sealed.
+
+    Parameters
+    ----------
+    selection : Search
+    evidence : Evidence
+    """
+    if not (evidence.plant.servo and selection.choices):
+        return selection
+    parts = (*evidence.split.train, *evidence.split.select)
+    wanted = sorted({part.recording for part in parts})
+    wanted = [k for k in wanted if _has_loop(evidence.plant, evidence.recordings[k])]
+    if not wanted:
+        return selection
+    errors = [
+        _rms(evidence, _runs(evidence, model, wanted)[0], parts) for model in selection.models
+    ]
+    choices, rows = list(selection.choices), dict(selection.rows)
+    while choices:
+        after = errors[len(choices)]
+        before = [error for error in errors[: len(choices)] if error is not None]
+        if not before or (after is not None and after <= WORSE * min(before)):
+            break
+        name = choices.pop().winner.name
+        if name in rows:
+            rows[name] = replace(rows[name], reason=LOOP_AGAINST)
+    models = selection.models[: len(choices) + 1]
+    return replace(selection, models=models, choices=choices, rows=rows)
 
 
 def _has_loop(plant: Plant, recording: Recording) -> bool:

@@ -21,18 +21,18 @@ from ..recording.split import name_of
 from ..recording.usable import checks_of, usable
 from ..session import Session
 from ..trajectory import FloatArray
-from .advice import advise
+from .advice import NO_COORDINATE, advise
 from .base import based, calibrated
 from .candidates import Scales, left_out, scales_of
 from .ceiling import ceiling_of
-from .confirm import confirmed
+from .confirm import confirmed, described, lost, lost_on_test
 from .coordinates import Look, looks
 from .evidence import Evidence
 from .gain import HeldOut, gain_of, open_residuals
 from .laws import THE_LAW, Rival, better_law, law_names, law_rows, rivals_of
 from .listing import in_order
 from .lone import lone_event
-from .loop import replayed
+from .loop import borne_out, replayed
 from .model import Model
 from .noise import Noise
 from .omnibus import Rest, rest
@@ -46,15 +46,13 @@ from .result import Cause, Diagnosis, ModelSummary, Unexplained
 from .rounds import Search, friction_of, search
 from .verdict import relatives, unnamed, verdict_of
 from .view import View
-from .words import sentence, what
+from .words import no_machine, push_words, sentence, what
 
 __all__ = ["SURROGATES", "diagnose"]
 
 SURROGATES: Final = 24
 """Replays of the base with noise; more make thresholds smoother and cost in proportion."""
 
-MOST_TOLD: Final = 3
-"""Pushes that the sentence names."""
 TRAIN_IS_FITTED: Final = (
     "Parameters are fitted to the rows of train alone; stiction fit takes those of select as well "
     "and may end at values a little different."
@@ -224,7 +222,8 @@ def _testable(
     null = refitted(base.columns, null, evidence.fitted)
     data["noise"] = [_noise_entry(evidence, index, noise) for index, noise in noises.items()]
     _logger.info("screening the effects")
-    selection = search(evidence, base, null, without=without)
+    selection = described(search(evidence, base, null, without=without), evidence, null)
+    selection = borne_out(selection, evidence)
     rivals = [] if selection.interrupted else rivals_of(selection, others)
     # Every decision is taken: now, and once, the rows that test.
     _logger.info("opening the test rows")
@@ -277,11 +276,7 @@ def _with_pushes(found: Diagnosis, evidence: Evidence) -> Diagnosis:
     checks = pushes_told(evidence.pushes, evidence.names)
     if not checks:
         return found
-    words = " ".join(
-        f"{c.what[0].upper()}{c.what[1:]} in {name}; {c.means}." for name, c in checks[:MOST_TOLD]
-    )
-    if len(checks) > MOST_TOLD:
-        words += f" {len(checks) - MOST_TOLD} more stand among the data checks."
+    words = push_words(evidence.pushes, evidence.names)
     data = {
         **found.data,
         "checks": [
@@ -359,6 +354,9 @@ def _concluded(
     unexplained = unnamed(evidence, selection, rests[1], null)
     if better is not None and not causes and not unexplained:
         unexplained = (Unexplained(THE_LAW, better.beside),)
+    left = lost(evidence, final, null)
+    if left and not unexplained:
+        unexplained = (Unexplained(NO_COORDINATE, left),)
     verdict = verdict_of(selection, unexplained, all(cause.decided for cause in causes))
     reason = "These data cannot be tested: the base imitates every effect, so none could be seen."
     event = None if causes else lone_event(evidence, final, test, 0)
@@ -368,7 +366,8 @@ def _concluded(
         found,
         verdict=verdict,
         sentence=("" if better is None else f"{better.words(own_law, bool(causes))} ")
-        + sentence(verdict, causes, gain, unexplained, reason),
+        + sentence(verdict, causes, gain, unexplained, reason)
+        + no_machine(max(left, lost_on_test(test, len(causes), null)), bool(causes), verdict),
         plant=final.plant,
         effects=tuple(causes),
         gain=gain,

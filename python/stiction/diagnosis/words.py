@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
 from ..catalogue import effects as catalogue
+from ..fitting.pushes import LEFT_OUT
 from ..fitting.result import FitParameter
+from ..fitting.rows import Push
 from ..plant import Effect
 from ..report.scale import loop_scale_of
 from ..wording import counted
@@ -19,18 +21,26 @@ if TYPE_CHECKING:
     from .result import Cause, Diagnosis, Unexplained, Verdict
 
 __all__ = [
+    "WORSE",
     "gain_words",
     "joined",
     "loop_words",
+    "no_machine",
+    "push_words",
     "sentence",
     "shown_rows",
     "summary",
     "value_words",
     "what",
+    "worse_loop_words",
 ]
 
+MOST_TOLD = 3
+"""Pushes that a sentence names."""
 MOST_ROWS = 5
 """Candidates that the command line shows."""
+WORSE = 1.1
+"""A loop does worse with the causes where its error is so many times that without."""
 MISSED = 0.1
 """Share of the recorded input that a stated controller may miss before it is doubted."""
 
@@ -113,6 +123,39 @@ def sentence(
     return f"The simulation lacks {named}.{gained}{_unconfirmed(effects)}"
 
 
+def no_machine(left: float, named: bool, verdict: Verdict) -> str:
+    """What to look at first where the plant leaves most of the effort, "" where it does not.
+
+    ``left`` is the share of its power on rows that the plant was not fitted to, 0 where it is less.
+    """
+    if not left or verdict in ("data_fault", "not_testable"):
+        return ""
+    share = f"{100 * left:.0f} % of" if left < 1.0 else "more than"
+    return (
+        f" The plant{', causes and all,' if named else ''} leaves {share} the power of the effort "
+        "on rows that it was not fitted to: before any cause counts, check columns, units, signs "
+        "and clocks, and what [drive] and [body] state, hold fixed or leave out, as gravity or a "
+        "load."
+    )
+
+
+def push_words(pushes: Sequence[Push], names: Sequence[str]) -> str:
+    """The first pushes, recording by recording, as one sentence; "" without any."""
+    if not pushes:
+        return ""
+    shown = pushes[:MOST_TOLD]
+    of = {push.recording: [p for p in shown if p.recording == push.recording] for push in shown}
+    times = [
+        f"from {joined([push.when() for push in own])} in {names[recording]}"
+        for recording, own in of.items()
+    ]
+    words = f"Something pushed the machine {joined(times)}; {LEFT_OUT}."
+    if len(pushes) > MOST_TOLD:
+        more = len(pushes) - MOST_TOLD
+        words += f" {more} more {'stands' if more == 1 else 'stand'} among the data checks."
+    return words
+
+
 def _unconfirmed(effects: Sequence[Cause]) -> str:
     """What the rows that test do not bear out, "" where they bear out everything."""
     open_: list[str] = []
@@ -130,7 +173,7 @@ def _cause(cause: Cause) -> str:
     if cause.decided:
         return own
     if not cause.look_alikes:
-        return f"{own}, perhaps"
+        return f"perhaps {own}"
     known = {record.name: f"{record.name} ({record.summary})" for record in catalogue()}
     names = [own, *(known.get(name, name) for name in cause.look_alikes)]
     either = "either" if len(names) == 2 else "one of"
@@ -158,14 +201,12 @@ def shown_rows(diagnosis: Diagnosis) -> list[str]:
 
 def loop_words(diagnosis: Diagnosis) -> str:
     """The position error in closed loop, "" where no loop was replayed."""
-    before, after = diagnosis.baseline, diagnosis.extended
-    if before is None or after is None or before.replay is None or after.replay is None:
+    after = diagnosis.extended
+    found = _loop_errors(diagnosis)
+    if found is None or after is None or after.replay is None:
         return ""
-    rows, errors = "held out", [before.replay.heldout_rms, after.replay.heldout_rms]
-    if None in errors:
-        rows, errors = "on the rows fitted", [before.replay.train_rms, after.replay.train_rms]
-    known = [error for error in errors if error is not None]
-    if len(known) < 2:
+    rows, known = found
+    if not known:
         return "closed loop: the simulated loop runs away; see the remarks in the report"
     scale = loop_scale_of(diagnosis)
     told = [f"{scale.factor * error:.3g} {scale.unit}" for error in known]
@@ -179,6 +220,39 @@ def loop_words(diagnosis: Diagnosis) -> str:
             "[controller]"
         )
     return words
+
+
+def worse_loop_words(diagnosis: Diagnosis) -> str:
+    """That the causes make the simulated loop worse, "" where they do not."""
+    found = _loop_errors(diagnosis)
+    if not diagnosis.effects or found is None or not found[1]:
+        return ""
+    rows, (before, after) = found
+    if after <= WORSE * before:
+        return ""
+    scale = loop_scale_of(diagnosis)
+    one, two = (f"{scale.factor * error:.3g}" for error in (before, after))
+    which = "it" if len(diagnosis.effects) == 1 else "them"
+    return (
+        f" But the simulated loop does worse with {which}: its position error {rows} is {two} "
+        f"{scale.unit} rms, {one} without, so what was named stands for something else or is not "
+        "all of it."
+    )
+
+
+def _loop_errors(diagnosis: Diagnosis) -> tuple[str, list[float]] | None:
+    """Rows and position errors in closed loop before and after, none of them for one that ran away.
+
+    None where no loop was replayed.
+    """
+    before, after = diagnosis.baseline, diagnosis.extended
+    if before is None or after is None or before.replay is None or after.replay is None:
+        return None
+    rows, errors = "held out", [before.replay.heldout_rms, after.replay.heldout_rms]
+    if None in errors:
+        rows, errors = "on the rows fitted", [before.replay.train_rms, after.replay.train_rms]
+    known = [error for error in errors if error is not None]
+    return rows, known if len(known) == 2 else []
 
 
 def _percent(share: float | None) -> str:

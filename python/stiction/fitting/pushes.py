@@ -13,7 +13,7 @@ from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .rows import Mask, Push, rows_of
 
-__all__ = ["Watch", "told"]
+__all__ = ["LEFT_OUT", "Watch", "told"]
 
 WINDOW_S: Final = 0.1
 """Length of the windows whose power is compared: what is shorter is a spike, no push."""

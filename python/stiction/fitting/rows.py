@@ -127,8 +127,12 @@ class Push:
 
     def words(self) -> str:
         """That in words."""
-        told = f"something pushed the machine from {self.start:.1f} s to {self.end:.1f} s"
-        return told if self.sure else f"{told}, or it does there what it does nowhere else"
+        return f"something pushed the machine from {self.when()}"
+
+    def when(self) -> str:
+        """When, and whether it is sure."""
+        told = f"{self.start:.1f} s to {self.end:.1f} s"
+        return told if self.sure else f"{told} (or it does there what it does nowhere else)"
 
 
 def rows_of(

@@ -214,8 +214,8 @@ def _deal(recordings: Sequence[Recording], support: float) -> _Parts:
             f"The recording lasts {only.duration:.3g} s: all of it is fitted, none held out."
         )
         return _Parts((whole,), (), described)
-    dealt = split(recordings, edge_s=min(support, 0.25 * BLOCK_S))
-    described = dealt.describe()
+    dealt = split(recordings, edge_s=min(support, 0.25 * BLOCK_S), decides=False)
+    described = dealt.describe().replace("select: nothing\n", "")
     if dealt.select:
         described += f"\n{SELECT_IS_FITTED}"
     return _Parts((*dealt.train, *dealt.select), dealt.test, described)

@@ -87,7 +87,8 @@ def blocks(
         raise NotEnoughData(
             f"session: {name} lasts {span:.3g} s and must be cut into at least {FEWEST_BLOCKS} "
             f"blocks of {block_s:g} s to train and to judge on; record "
-            f"{FEWEST_BLOCKS * block_s:g} s or more, or give several recordings roles"
+            f"{FEWEST_BLOCKS * block_s:g} s or more, or give recordings the roles train, select "
+            "and test"
         )
     length = span / number
     parts = []

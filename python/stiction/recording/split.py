@@ -125,7 +125,11 @@ class Split:
 
 
 def split(
-    recordings: Sequence[Recording], *, block_s: float = BLOCK_S, edge_s: float = EDGE_S
+    recordings: Sequence[Recording],
+    *,
+    block_s: float = BLOCK_S,
+    edge_s: float = EDGE_S,
+    decides: bool = True,
 ) -> Split:
     """Deal the recordings of a session, or blocks of them, to train, select and test.
 
@@ -143,6 +147,8 @@ def split(
         Length of interleaved blocks, s; they come out a little longer, for no rest is left.
     edge_s : float
         Dropped on either side of an edge between two blocks, s: the width of the kernel.
+    decides : bool
+        Something is chosen on the rows of ``select``, so that folds stand in for them.
 
     Returns
     -------
@@ -154,7 +160,7 @@ def split(
         Nothing to train on, the same recording in two roles, or a recording shorter than three
         blocks that had to be cut into blocks.
     """
-    return _Dealer(tuple(recordings), block_s, edge_s).deal()
+    return _Dealer(tuple(recordings), block_s, edge_s).deal(decides=decides)
 
 
 def name_of(recording: Recording, index: int) -> str:
@@ -178,7 +184,7 @@ class _Dealer:
         self.folds: list[Fold] = []
         self.rules: list[str] = []
 
-    def deal(self) -> Split:
+    def deal(self, *, decides: bool) -> Split:
         if self.roles == [None]:
             self._deal_blocks()
         else:
@@ -188,7 +194,7 @@ class _Dealer:
             self._refuse_copies()
             if not self.parts["test"]:
                 self._split_off()
-            if not self.parts["select"]:
+            if decides and not self.parts["select"]:
                 self._fold()
         return Split(
             train=tuple(self.parts["train"]),

@@ -100,7 +100,8 @@ def tick(value: float) -> str:
     power = _power(value)
     if _LEAST < power < _GREATEST:
         return f"{value:.6g}".replace("-", "−")
-    return f"{value / 10.0**power:.3g}".replace("-", "−") + _times_ten(power)
+    # Ticks are round, so digits stand here only where they tell neighbours apart.
+    return f"{value / 10.0**power:.6g}".replace("-", "−") + _times_ten(power)
 
 
 def tick_of_ten(value: float) -> str:

@@ -347,7 +347,10 @@ class _Guesser:
             if drive.refused:
                 sentence += f" ({listed(map(shown, drive.refused))} did not qualify)"
             if referenced:
-                sentence += "; of a servo that is given positions record what its motor gets"
+                sentence += (
+                    "; of a servo that is given positions name the goal instead of a reference, "
+                    'and state [drive] kind = "servo" in plant.toml'
+                )
             self.missing["input"] = sentence
         return drive
 

@@ -46,6 +46,7 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
     content = {
         "left": left,
         "rows": rows,
+        "small": any(view.flagged(0.0) for view in views),
         "both": bool(diagnosis.effects),
         "level": _level(diagnosis),
         "ceiling": _ceiling(diagnosis),
