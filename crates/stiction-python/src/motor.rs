@@ -21,7 +21,7 @@ use crate::arguments::{
     Shots, candidates_of, effects_of, gains_of, integrator_of, numbers_of, servo_of, threads_of,
 };
 use crate::arrays::{Around, Each, one_row, target};
-use crate::error::{IntoPython, duration, finite, input_error, out_of_range, velocity};
+use crate::error::{IntoPython, duration, finite, input_error, velocity};
 use crate::friction_model::FrictionModel;
 use crate::kernel::RowKernel;
 use crate::motion::Motion;
@@ -77,16 +77,6 @@ impl Motor {
             work(core.spec(), Start { running: core.running(), primed: primed.as_deref() })
         }))
     }
-}
-
-/// Refuses to go on with a motor that is nowhere.
-#[inline]
-fn in_range(py: Python<'_>, core: &Core) -> PyResult<()> {
-    let run = &core.running().run;
-    if (run.position + run.velocity + run.friction).is_finite() {
-        return Ok(());
-    }
-    Err(out_of_range(py, core.spec().friction.record.name))
 }
 
 fn servo_settings<'py>(py: Python<'py>, servo: &Servo) -> PyResult<Bound<'py, PyDict>> {
@@ -188,9 +178,7 @@ impl Motor {
         let mut core = self.lock();
         core.set_temperature(temperature);
         core.set_enabled(enabled);
-        let reached = core.step(current, load, dt).or_input_error(py)?;
-        in_range(py, &core)?;
-        Ok(reached)
+        core.step(current, load, dt).or_input_error(py)
     }
 
     /// Samples with held inputs; the arrays asked for, by name.
@@ -254,7 +242,6 @@ impl Motor {
             columns.push((*column, array.as_slice_mut()?));
         }
         py.detach(|| self.lock().simulate(current, around, dt, &mut columns)).or_input_error(py)?;
-        in_range(py, &self.lock())?;
         Ok(result)
     }
 
