@@ -2,6 +2,14 @@
 
 import numpy as np
 import pytest
+from tests.core.published import (
+    PULLING_SPEED,
+    PULLING_SPRING,
+    broken_away,
+    lags,
+    period_of_two_phases,
+    pulled,
+)
 from tests.reference.laws import gms as oracle
 
 import stiction as st
@@ -20,7 +28,6 @@ SLOW = {
     "attraction": 100.0,
     "viscous": 0.4,
 }
-PULLING_SPRING, PULLING_SPEED = 2.0, 0.1
 
 
 def law(**values):
@@ -140,65 +147,27 @@ def test_it_is_passive_where_the_unbounded_gain_is_not():
     assert stored > 1e3 * brought
 
 
-def broken_away(rate, integrator):
-    """Greatest friction while the force rises at this rate, on a body of 1 kg."""
-    dt = min(1e-4, 1e-3 / rate)
-    motor = st.Motor(inertia=1.0, friction=law(**SLOW), integrator=integrator)
-    samples = int((2.0 / rate + 0.1) / dt)
-    run = motor.simulate(rate * (np.arange(samples) + 0.5) * dt, dt)
-    slid = np.argmax(np.abs(run.position) > 3e-4)
-    return run.friction[: slid + 1].max()
-
-
 def test_break_away_falls_with_the_rate_of_the_force():
-    found = np.array([broken_away(r, "fast") for r in (0.1, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)])
+    found = np.array(
+        [broken_away(law(**SLOW), r, "fast") for r in (0.1, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)]
+    )
     assert np.all(np.diff(found) < 0.0)
     assert found[0] == pytest.approx(1.5, rel=1e-3)
     assert 1.0 < found[-1] < 1.1
     for rate, peak in ((5.0, found[3]), (20.0, found[5])):
-        assert broken_away(rate, "reference") == pytest.approx(peak, rel=1e-4)
+        assert broken_away(law(**SLOW), rate, "reference") == pytest.approx(peak, rel=1e-4)
 
 
 def test_friction_lags_behind_speed_the_more_the_faster_it_changes():
-    gaps = []
-    for omega in (1.0, 10.0, 25.0):
-        samples = 4000
-        phase = 2.0 * np.pi * np.arange(3 * samples) / samples
-        speed = 1.55e-3 - 1.45e-3 * np.cos(phase)
-        force = law(**SLOW).simulate(speed, 2.0 * np.pi / omega / samples)[2 * samples :]
-        rising, falling = force[: samples // 2], force[samples // 2 :][::-1]
-        assert np.all(rising[1:] > falling[1:] - 1e-12)
-        gaps.append(np.max(rising - falling))
-    assert 0.0 < gaps[0] < gaps[1] < gaps[2]
-
-
-def pulled(integrator, end, dt):
-    """Positions of the mass at the end of a spring whose other end moves on."""
-    motor = st.Motor(inertia=1.0, friction=law(**SLOW), integrator=integrator)
-    x, v, positions = 0.0, 0.0, []
-    for n in range(round(end / dt)):
-        middle = PULLING_SPEED * (n + 0.5) * dt
-        x, v = motor.step(PULLING_SPRING * (middle - x - 0.5 * v * dt), dt)
-        positions.append(x)
-    return np.array(positions)
-
-
-def period_of_two_phases():
-    """Stick-slip of a mass that breaks away at F_s and slides at F_c + sigma v."""
-    k, c, speed = PULLING_SPRING, SLOW["viscous"], PULLING_SPEED
-    t = np.linspace(0.0, 6.0, 600_001)
-    damp, omega = c / 2.0, np.sqrt(k - c**2 / 4.0)
-    b = (1.5 - 1.0 - c * speed) / k
-    wave = b * np.cos(omega * t) + (speed + damp * b) / omega * np.sin(omega * t)
-    x = speed * t + b - np.exp(-damp * t) * wave
-    stop = np.argmax(np.gradient(x, t)[100:] <= 0.0) + 100
-    left = 1.5 + k * (speed * t[stop] - x[stop])
-    return t[stop] + (1.5 - left) / (k * speed)
+    gaps = list(lags(law(**SLOW)))
+    assert all(np.all(gap[1:] > -1e-12) for gap in gaps)
+    slow, faster, fastest = (np.max(gap) for gap in gaps)
+    assert 0.0 < slow < faster < fastest
 
 
 def test_stick_slip_follows_the_oracle_and_has_the_period_of_its_two_phases():
     end, dt = 32.0, 2e-4
-    ours = pulled("fast", end, dt)
+    ours = pulled(law(**SLOW), "fast", end, dt)
     times = np.linspace(0.0, end, 16_001)
     exact = oracle.pulled_body(PULLING_SPEED, PULLING_SPRING, times, inertia=1.0, **SLOW)
     every = round((times[1] - times[0]) / dt)
@@ -206,7 +175,7 @@ def test_stick_slip_follows_the_oracle_and_has_the_period_of_its_two_phases():
     speed = np.diff(exact) / np.diff(times)
     starts = times[1:-1][(speed[:-1] < 0.05) & (speed[1:] >= 0.05)]
     assert starts[0] == pytest.approx(1.5 / (PULLING_SPRING * PULLING_SPEED), rel=0.03)
-    assert np.diff(starts) == pytest.approx(period_of_two_phases(), rel=0.03)
+    assert np.diff(starts) == pytest.approx(period_of_two_phases(SLOW["viscous"]), rel=0.03)
 
 
 def test_a_ripple_below_the_coulomb_level_leaves_no_drift():

@@ -2,6 +2,14 @@
 
 import numpy as np
 import pytest
+from tests.core.published import (
+    PULLING_SPEED,
+    PULLING_SPRING,
+    broken_away,
+    lags,
+    period_of_two_phases,
+    pulled,
+)
 from tests.reference.laws import leuven as oracle
 
 import stiction as st
@@ -22,7 +30,6 @@ SLOW = {
     "damping": np.sqrt(1e5),
     "viscous": 0.4,
 }
-PULLING_SPRING, PULLING_SPEED = 2.0, 0.1
 
 
 def law(**values):
@@ -129,68 +136,31 @@ def test_a_closed_inner_loop_goes_on_along_the_older_branch():
     assert seen[True][0] == pytest.approx(seen[False][0], rel=5e-3)
 
 
-def broken_away(rate, integrator):
-    """Greatest friction while the force rises at this rate, on a body of 1 kg."""
-    dt = min(1e-4, 1e-3 / rate)
-    motor = st.Motor(inertia=1.0, friction=law(**SLOW), integrator=integrator)
-    samples = int((2.0 / rate + 0.1) / dt)
-    run = motor.simulate(rate * (np.arange(samples) + 0.5) * dt, dt)
-    slid = np.argmax(np.abs(run.position) > 3e-4)
-    return run.friction[: slid + 1].max()
-
-
 def test_break_away_falls_with_the_rate_of_the_force():
-    found = np.array([broken_away(r, "fast") for r in (0.1, 1.0, 2.0, 5.0, 10.0, 20.0)])
+    found = np.array(
+        [broken_away(law(**SLOW), r, "fast") for r in (0.1, 1.0, 2.0, 5.0, 10.0, 20.0)]
+    )
     assert np.all(np.diff(found) < 0.0)
     assert found[0] == pytest.approx(1.5, rel=0.03)
     assert 1.0 < found[-1] < 1.05
     for rate, peak in ((5.0, found[3]), (20.0, found[5])):
-        assert broken_away(rate, "reference") == pytest.approx(peak, rel=1e-3)
+        assert broken_away(law(**SLOW), rate, "reference") == pytest.approx(peak, rel=1e-3)
 
 
 def test_friction_lags_behind_speed_the_more_the_faster_it_changes():
-    gaps = []
-    for omega in (1.0, 10.0, 25.0):
-        samples = 4000
-        phase = 2.0 * np.pi * np.arange(3 * samples) / samples
-        speed = 1.55e-3 - 1.45e-3 * np.cos(phase)
-        force = law(**SLOW).simulate(speed, 2.0 * np.pi / omega / samples)[2 * samples :]
-        gaps.append(np.max(force[: samples // 2] - force[samples // 2 :][::-1]))
-    assert 0.0 < gaps[0] < gaps[1] < gaps[2]
-
-
-def pulled(integrator, end, dt):
-    """Positions of the mass at the end of a spring whose other end moves on."""
-    motor = st.Motor(inertia=1.0, friction=law(**SLOW), integrator=integrator)
-    x, v, positions = 0.0, 0.0, []
-    for n in range(round(end / dt)):
-        middle = PULLING_SPEED * (n + 0.5) * dt
-        x, v = motor.step(PULLING_SPRING * (middle - x - 0.5 * v * dt), dt)
-        positions.append(x)
-    return np.array(positions)
-
-
-def period_of_two_phases():
-    """Stick-slip of a mass that breaks away at F_s and slides at F_c + sigma_2 v."""
-    k, c, speed = PULLING_SPRING, SLOW["viscous"], PULLING_SPEED
-    t = np.linspace(0.0, 6.0, 600_001)
-    damp, omega = c / 2.0, np.sqrt(k - c**2 / 4.0)
-    b = (1.5 - 1.0 - c * speed) / k
-    wave = b * np.cos(omega * t) + (speed + damp * b) / omega * np.sin(omega * t)
-    x = speed * t + b - np.exp(-damp * t) * wave
-    stop = np.argmax(np.gradient(x, t)[100:] <= 0.0) + 100
-    left = 1.5 + k * (speed * t[stop] - x[stop])
-    return t[stop] + (1.5 - left) / (k * speed)
+    gaps = list(lags(law(**SLOW)))
+    slow, faster, fastest = (np.max(gap) for gap in gaps)
+    assert 0.0 < slow < faster < fastest
 
 
 def test_stick_slip_has_the_period_of_its_two_phases():
     dt = 2e-4
-    speed = np.diff(pulled("fast", 32.0, dt)) / dt
+    speed = np.diff(pulled(law(**SLOW), "fast", 32.0, dt)) / dt
     starts = dt * np.flatnonzero((speed[:-1] < 0.05) & (speed[1:] >= 0.05))
     # It slips a little before it slides, and so breaks away somewhat below F_s.
     assert starts[0] == pytest.approx(1.5 / (PULLING_SPRING * PULLING_SPEED), rel=0.02)
-    assert np.diff(starts) == pytest.approx(period_of_two_phases(), rel=0.04)
-    finer = np.diff(pulled("reference", 8.0, dt / 2.0)) / (dt / 2.0)
+    assert np.diff(starts) == pytest.approx(period_of_two_phases(SLOW["viscous"]), rel=0.04)
+    finer = np.diff(pulled(law(**SLOW), "reference", 8.0, dt / 2.0)) / (dt / 2.0)
     start = dt / 2.0 * np.flatnonzero((finer[:-1] < 0.05) & (finer[1:] >= 0.05))[0]
     assert starts[0] == pytest.approx(start, abs=2e-3)
 

@@ -2,6 +2,14 @@
 
 import numpy as np
 import pytest
+from tests.core.published import (
+    PULLING_SPEED,
+    PULLING_SPRING,
+    broken_away,
+    lags,
+    period_of_two_phases,
+    pulled,
+)
 from tests.reference.laws import lugre as oracle
 from tests.reference.laws.lugre import PUBLISHED
 
@@ -10,7 +18,6 @@ import stiction as st
 DT = 1e-3
 # The oracle's own tolerance over some hundred samples, of F_s.
 ORACLE_SHARE = 1e-8
-PULLING_SPRING, PULLING_SPEED = 2.0, 0.1
 
 
 def law(**values):
@@ -75,20 +82,10 @@ def test_around_rest_it_is_a_spring_with_a_damper():
     assert slope == pytest.approx(stiffness * 1e-4 + damping, rel=1e-6)
 
 
-def broken_away(rate, integrator):
-    """Greatest friction while the force rises at this rate, on a body of 1 kg."""
-    dt = min(1e-4, 1e-3 / rate)
-    motor = st.Motor(inertia=1.0, friction=law(**PUBLISHED), integrator=integrator)
-    samples = int((2.0 / rate + 0.1) / dt)
-    run = motor.simulate(rate * (np.arange(samples) + 0.5) * dt, dt)
-    slid = np.argmax(np.abs(run.position) > 3e-4)
-    return run.friction[: slid + 1].max()
-
-
 def test_break_away_falls_with_the_rate_of_the_force():
     # The experiment behind their figure of break-away against force rate, 1 to 50 N/s.
     rates = [0.1, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0]
-    found = np.array([broken_away(rate, "fast") for rate in rates])
+    found = np.array([broken_away(law(**PUBLISHED), rate, "fast") for rate in rates])
     assert np.all(np.diff(found) < 0.0)
     assert found[0] == pytest.approx(1.5, rel=0.03)
     assert 1.0 < found[-1] < 1.25
@@ -101,17 +98,9 @@ def test_break_away_falls_with_the_rate_of_the_force():
 
 
 def test_friction_lags_behind_speed_the_more_the_faster_it_changes():
-    # Unidirectional motion as in their figure: 0.1 to 3 mm/s, at 1, 10 and 25 rad/s.
-    gaps = []
-    for omega in (1.0, 10.0, 25.0):
-        samples = 4000
-        phase = 2.0 * np.pi * np.arange(3 * samples) / samples
-        speed = 1.55e-3 - 1.45e-3 * np.cos(phase)
-        force = law(**PUBLISHED).simulate(speed, 2.0 * np.pi / omega / samples)[2 * samples :]
-        rising, falling = force[: samples // 2], force[samples // 2 :][::-1]
-        gaps.append(np.max(rising - falling))
-    assert gaps[0] > 0.0
-    assert gaps[0] < gaps[1] < gaps[2]
+    gaps = list(lags(law(**PUBLISHED)))
+    slow, faster, fastest = (np.max(gap) for gap in gaps)
+    assert 0.0 < slow < faster < fastest
 
 
 def test_a_pre_sliding_loop_is_hysteresis_about_its_turning_points():
@@ -125,43 +114,10 @@ def test_a_pre_sliding_loop_is_hysteresis_about_its_turning_points():
     assert 0.1 * np.ptp(x) * np.ptp(f) < lost < np.ptp(x) * np.ptp(f)
 
 
-def period_of_two_phases():
-    """Stick-slip of a mass that breaks away at F_s and slides at F_c + sigma_2 v."""
-    k, c, speed = PULLING_SPRING, PUBLISHED["viscous"], PULLING_SPEED
-    stretch = 1.5
-    # Slide: x'' + c x' + k x = k (speed t) + F_s - F_c from rest.
-    t = np.linspace(0.0, 6.0, 600_001)
-    damp, omega = c / 2.0, np.sqrt(k - c**2 / 4.0)
-    # Particular solution speed t + b, homogeneous part from x(0) = x'(0) = 0.
-    b = (stretch - 1.0 - c * speed) / k
-    wave = np.exp(-damp * t)
-    x = (
-        speed * t
-        + b
-        - wave * (b * np.cos(omega * t) + (speed + damp * b) / omega * np.sin(omega * t))
-    )
-    v = np.gradient(x, t)
-    stop = np.argmax(v[100:] <= 0.0) + 100
-    left = stretch + k * (speed * t[stop] - x[stop])
-    return t[stop] + (stretch - left) / (k * speed)
-
-
-def pulled(integrator, end, dt):
-    """Times and positions of the mass at the end of a spring whose other end moves on."""
-    motor = st.Motor(inertia=1.0, friction=law(**PUBLISHED), integrator=integrator)
-    x, v, positions = 0.0, 0.0, []
-    for n in range(round(end / dt)):
-        # The middle of the sample, where body and spring's end will be then.
-        middle = PULLING_SPEED * (n + 0.5) * dt
-        x, v = motor.step(PULLING_SPRING * (middle - x - 0.5 * v * dt), dt)
-        positions.append(x)
-    return np.array(positions)
-
-
 def test_stick_slip_follows_the_oracle_and_has_the_period_of_its_two_phases():
     # A mass of 1 kg on a spring of 2 N/m pulled at 0.1 m/s, as in their simulation.
     end, dt = 32.0, 2e-4
-    ours = pulled("fast", end, dt)
+    ours = pulled(law(**PUBLISHED), "fast", end, dt)
     times = np.linspace(0.0, end, 16_001)
     pull = lambda t, x: PULLING_SPRING * (PULLING_SPEED * t - x)  # noqa: E731
     exact = oracle.body(pull, times, inertia=1.0, **PUBLISHED)[0]
@@ -171,7 +127,7 @@ def test_stick_slip_follows_the_oracle_and_has_the_period_of_its_two_phases():
     starts = times[1:-1][(speed[:-1] < 0.05) & (speed[1:] >= 0.05)]
     # It sticks until the spring bears F_s.
     assert starts[0] == pytest.approx(1.5 / (PULLING_SPRING * PULLING_SPEED), rel=0.03)
-    assert np.diff(starts) == pytest.approx(period_of_two_phases(), rel=0.03)
+    assert np.diff(starts) == pytest.approx(period_of_two_phases(PUBLISHED["viscous"]), rel=0.03)
 
 
 def taken_from(model, length, speed):
