@@ -181,24 +181,8 @@ pub unsafe extern "C" fn stiction_friction_get_state(
     guarded(|| {
         // SAFETY: as promised by the caller.
         let friction = unsafe { held(friction, "friction") }?;
-        let entries = friction.0.entries();
-        let needed = state::length(&entries);
-        if values.is_null() {
-            return Err(Problem::Null("values"));
-        }
-        if room < needed {
-            let problem = format!("room = {room} is less than the {needed} doubles of the state");
-            return Err(Problem::Refused(problem));
-        }
-        let mut at = values;
-        state::write(&entries, |value| {
-            // SAFETY: `needed` doubles are written, and there is room for as many.
-            unsafe {
-                at.write(value);
-                at = at.add(1);
-            }
-        });
-        Ok(())
+        // SAFETY: as promised by the caller.
+        unsafe { state::copy(&friction.0.entries(), values, room) }
     })
 }
 

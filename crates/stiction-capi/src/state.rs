@@ -13,8 +13,35 @@ pub(crate) fn length(entries: &[(&'static str, Entry)]) -> usize {
     each.sum()
 }
 
-/// Fills an array that has room.
-pub(crate) fn write(entries: &[(&'static str, Entry)], mut target: impl FnMut(f64)) {
+/// Copies the entries into an array with room for `room` doubles.
+///
+/// # Safety
+/// `values` is NULL or has that room.
+pub(crate) unsafe fn copy(
+    entries: &[(&'static str, Entry)],
+    values: *mut f64,
+    room: usize,
+) -> Result<(), Problem> {
+    let needed = length(entries);
+    if values.is_null() {
+        return Err(Problem::Null("values"));
+    }
+    if room < needed {
+        let problem = format!("room = {room} is less than the {needed} doubles of the state");
+        return Err(Problem::Refused(problem));
+    }
+    let mut at = values;
+    write(entries, |value| {
+        // SAFETY: `needed` doubles are written, and there is room for as many.
+        unsafe {
+            at.write(value);
+            at = at.add(1);
+        }
+    });
+    Ok(())
+}
+
+fn write(entries: &[(&'static str, Entry)], mut target: impl FnMut(f64)) {
     for (_, entry) in entries {
         match entry {
             Entry::Number(x) => target(*x),

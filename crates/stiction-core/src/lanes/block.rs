@@ -8,7 +8,7 @@ use crate::scalar::Scalar;
 pub const WIDTH: usize = 8;
 
 /// One number for each lane.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
 pub struct Row(pub [f64; WIDTH]);
 
@@ -148,10 +148,8 @@ impl Bodies {
     }
 }
 
-/// Contacts of one law, one in each lane.
-pub trait Contacts<S: Scalar, L: FrictionLaw<S>>: Clone {
-    /// Lanes with nothing in them.
-    fn none() -> Self;
+/// Contacts of one law, one in each lane; by default lanes with nothing in them.
+pub trait Contacts<S: Scalar, L: FrictionLaw<S>>: Clone + Default {
     /// Takes the parameters of a contact whose body has this inertia and half step.
     fn fit(&mut self, lane: usize, law: &L, bodies: &Bodies);
     /// Takes the state of a contact.

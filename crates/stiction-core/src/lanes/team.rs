@@ -216,7 +216,7 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
     /// All motors in blocks; lanes that are left over do what the first motor does, unseen.
     fn blocks<C: Contacts<S, L>>(&mut self) -> Vec<Block<C>> {
         let count = self.members.len().div_ceil(WIDTH);
-        let mut blocks = vec![Block { bodies: Bodies::still(), contacts: C::none() }; count];
+        let mut blocks = vec![Block { bodies: Bodies::still(), contacts: C::default() }; count];
         for (k, member) in self.members.iter_mut().enumerate() {
             let Block { bodies, contacts } = &mut blocks[k / WIDTH];
             let lane = k % WIDTH;

@@ -10,7 +10,7 @@ use crate::scalar::{SHORT, Scalar, gone_share, second_share, sign};
 
 /// Contacts of [`HsiehPan`] whose limit of hardening is a square, whose level falls as a bell and
 /// whose damper sits beside the spring.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 #[repr(align(64))]
 pub struct Lanes {
     /// 0 sticks, ±1 slides.
@@ -66,46 +66,6 @@ pub fn fits<S: Scalar>(law: &HsiehPan<S>) -> bool {
 }
 
 impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
-    fn none() -> Self {
-        let zero = Row::ZERO;
-        Self {
-            mode: zero,
-            force: zero,
-            position: zero,
-            slope: zero,
-            steps: zero,
-            plastic: zero,
-            hardening: zero,
-            direction: zero,
-            target: zero,
-            per_displacement: zero,
-            origin: zero,
-            origin_force: zero,
-            stretch: zero,
-            scale: zero,
-            fading: zero,
-            faded_force: zero,
-            inverse_distance: zero,
-            initial_stiffness: zero,
-            final_stiffness: zero,
-            coefficient: zero,
-            twice_coefficient: zero,
-            progress: zero,
-            damping: zero,
-            share: zero,
-            braking: zero,
-            greatest: zero,
-            coulomb: zero,
-            excess: zero,
-            per_velocity: zero,
-            viscous: zero,
-            per_distance: zero,
-            least: zero,
-            sticks: true,
-            slides: false,
-        }
-    }
-
     fn fit(&mut self, lane: usize, law: &HsiehPan<S>, bodies: &Bodies) {
         let p = &law.parameters;
         let damping = p.damping.re();
