@@ -19,7 +19,7 @@ from stiction.diagnosis import loop
 from stiction.diagnosis.evidence import Evidence, SealedError
 from stiction.diagnosis.loop import replayed
 from stiction.diagnosis.result import CandidateRow
-from stiction.diagnosis.rounds import Search
+from stiction.diagnosis.selection import Search
 from stiction.diagnosis.words import loop_words, worse_loop_words
 from stiction.fitting.rows import Nuisances
 

@@ -21,7 +21,7 @@ from stiction.diagnosis.confirm import (
 from stiction.diagnosis.evidence import Cells
 from stiction.diagnosis.gain import HeldOut
 from stiction.diagnosis.result import CandidateRow
-from stiction.diagnosis.rounds import Search
+from stiction.diagnosis.selection import Search
 from stiction.diagnosis.words import no_machine
 
 BLOCKS, ROWS = 40, 50

@@ -5,7 +5,6 @@ The rows that test may speak against a name, or say as little of it as the fit d
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..trajectory import FloatArray
 from .evidence import Evidence
 from .gain import HeldOut, gain_of
 from .model import Model
-from .rounds import Search
+from .selection import Search
 
 __all__ = ["confirmed", "described", "lost", "lost_on_test"]
 
@@ -55,12 +54,9 @@ def described(selection: Search, evidence: Evidence, null: FloatArray) -> Search
         reason = NO_BETTER
     else:
         return selection
-    rows = dict(selection.rows)
-    for choice in selection.choices:
-        name = choice.winner.name
-        if name in rows:
-            rows[name] = replace(rows[name], reason=reason)
-    return replace(selection, models=selection.models[:1], choices=[], rows=rows)
+    while selection.choices:
+        selection = selection.without_last(reason)
+    return selection
 
 
 def lost(evidence: Evidence, model: Model, null: FloatArray) -> float:
@@ -114,19 +110,13 @@ def confirmed(selection: Search, test: HeldOut | None, seed: int) -> Search:
         Residuals of its models; without them nothing is taken away.
     seed : int
     """
-    choices, rows = list(selection.choices), dict(selection.rows)
-    while test is not None and choices:
-        last = len(choices) - 1
+    while test is not None and selection.choices:
+        last = len(selection.choices) - 1
         low, high = gain_of(test, last, last + 1, seed).ci95
-        winner = choices[last].winner
         if high < 0.0:
-            reason = AGAINST
-        elif low <= 0.0 and not selection.models[last + 1].knows(winner.candidate):
-            reason = NOT_KNOWN
+            selection = selection.without_last(AGAINST)
+        elif low <= 0.0 and not selection.models[-1].knows(selection.choices[-1].winner.candidate):
+            selection = selection.without_last(NOT_KNOWN)
         else:
             break
-        choices.pop()
-        if winner.name in rows:
-            rows[winner.name] = replace(rows[winner.name], reason=reason)
-    models = selection.models[: len(choices) + 1]
-    return replace(selection, models=models, choices=choices, rows=rows)
+    return selection

@@ -21,7 +21,7 @@ from .decide import DECIDED_Z, heldout_gain
 from .gain import Gain, HeldOut, gain_of
 from .model import Model
 from .result import Advice, LawRow
-from .rounds import Search
+from .selection import Search
 
 __all__ = ["THE_LAW", "Rival", "better_law", "law_names", "law_rows", "rivals_of"]
 

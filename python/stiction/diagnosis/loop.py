@@ -24,7 +24,7 @@ from .words import WORSE, worse_loop_words
 if TYPE_CHECKING:
     from .model import Model
     from .result import Diagnosis
-    from .rounds import Search
+    from .selection import Search
 
 __all__ = ["Replay", "borne_out", "replayed"]
 
@@ -126,17 +126,13 @@ def borne_out(selection: Search, evidence: Evidence) -> Search:
     errors = [
         _rms(evidence, _runs(evidence, model, wanted)[0], parts) for model in selection.models
     ]
-    choices, rows = list(selection.choices), dict(selection.rows)
-    while choices:
-        after = errors[len(choices)]
-        before = [error for error in errors[: len(choices)] if error is not None]
+    while selection.choices:
+        after = errors[len(selection.choices)]
+        before = [error for error in errors[: len(selection.choices)] if error is not None]
         if not before or (after is not None and after <= WORSE * min(before)):
             break
-        name = choices.pop().winner.name
-        if name in rows:
-            rows[name] = replace(rows[name], reason=LOOP_AGAINST)
-    models = selection.models[: len(choices) + 1]
-    return replace(selection, models=models, choices=choices, rows=rows)
+        selection = selection.without_last(LOOP_AGAINST)
+    return selection
 
 
 def _has_loop(plant: Plant, recording: Recording) -> bool:

@@ -43,7 +43,8 @@ from .regression import refitted
 from .remedies import meant
 from .replay import centre, surrogate_residuals
 from .result import Cause, Diagnosis, ModelSummary, Unexplained
-from .rounds import Search, friction_of, search
+from .rounds import friction_of, search
+from .selection import Search
 from .verdict import relatives, unnamed, verdict_of
 from .view import View
 from .words import no_machine, push_words, sentence, what

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -31,8 +31,9 @@ from .model import Model, fitted, power_of, stepped, with_effect, without_effect
 from .replay import centre
 from .result import CandidateRow
 from .screen import Problem, Score, Signatures, screen
+from .selection import Search
 
-__all__ = ["MOST_EFFECTS", "Search", "friction_of", "search"]
+__all__ = ["MOST_EFFECTS", "friction_of", "search"]
 
 MOST_EFFECTS: Final = 4
 """Effects added at most: who lacks more than that needs another law."""
@@ -64,34 +65,6 @@ MIMIC: Final = 5.0
 """What keeps less than one part in so many of its gain beside a later effect was its mimic."""
 
 _logger = logging.getLogger(__name__)
-
-
-@dataclass
-class Search:
-    """What the selection found.
-
-    Attributes
-    ----------
-    models : list of Model
-        The baseline, then the model after each accepted effect.
-    choices : list of Choice
-        One for each accepted effect.
-    rows : dict of str to CandidateRow
-        Every effect that was looked at.
-    blind : list of EffectRecord
-        Effects that these data could not show.
-    imitated : float
-        Held-out gain of the best of those that were refused last because they imitate something
-        else: so much is left that has no name.
-    interrupted : bool
-    """
-
-    models: list[Model]
-    choices: list[Choice] = field(default_factory=list)
-    rows: dict[str, CandidateRow] = field(default_factory=dict)
-    blind: list[EffectRecord] = field(default_factory=list)
-    imitated: float = 0.0
-    interrupted: bool = False
 
 
 def search(

@@ -15,7 +15,7 @@ from .model import Model
 from .omnibus import Rest
 from .periodic import FREQUENCY
 from .result import Unexplained, Verdict
-from .rounds import Search
+from .selection import Search
 from .view import LEAST_SIZE
 
 __all__ = ["relatives", "unnamed", "verdict_of"]

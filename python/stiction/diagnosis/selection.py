@@ -1,0 +1,49 @@
+"""What was selected, and how a name is taken back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from ..catalogue import EffectRecord
+from .decide import Choice
+from .model import Model
+from .result import CandidateRow
+
+__all__ = ["Search"]
+
+
+@dataclass
+class Search:
+    """What a search for effects found, and what is left of it.
+
+    Attributes
+    ----------
+    models : list of Model
+        The baseline, then the model after each accepted effect.
+    choices : list of Choice
+        One for each accepted effect.
+    rows : dict of str to CandidateRow
+        Every effect that was looked at.
+    blind : list of EffectRecord
+        Effects that these data could not show.
+    imitated : float
+        Held-out gain of the best of those that were refused last because they imitate something
+        else: so much is left that has no name.
+    interrupted : bool
+    """
+
+    models: list[Model]
+    choices: list[Choice] = field(default_factory=list)
+    rows: dict[str, CandidateRow] = field(default_factory=dict)
+    blind: list[EffectRecord] = field(default_factory=list)
+    imitated: float = 0.0
+    interrupted: bool = False
+
+    def without_last(self, reason: str) -> Search:
+        """The same without the last cause, which is refused for this reason."""
+        name = self.choices[-1].winner.name
+        rows = dict(self.rows)
+        if name in rows:
+            rows[name] = replace(rows[name], reason=reason)
+        choices = self.choices[:-1]
+        return replace(self, models=self.models[: len(choices) + 1], choices=choices, rows=rows)
