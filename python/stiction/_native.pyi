@@ -87,6 +87,7 @@ class Motion:
         load: npt.ArrayLike | None = None,
         temperature: npt.ArrayLike | None = None,
         enabled: npt.ArrayLike | None = None,
+        averaged: bool = False,
     ) -> Motion: ...
     def __len__(self) -> int: ...
 

@@ -67,6 +67,8 @@ keeps that out. Where they do not flicker it would only be late by half a count.
 TURNING_SHARE: Final = 0.1
 """Noise of the velocity over its rms above which a machine that is moved seems to turn round: its
 motion is then smoothed over up to the widest kernel."""
+MOSTLY: Final = 0.9
+"""Share of the kernel through which a machine with a rigid contact moves in rows that tell of noise."""
 BACKLASH_TIMES: Final = 4.0
 """Width of that backlash in standard deviations of the noise, a count at least: noise turns a slow
 motion round for a sample, and dry friction would turn with it."""
@@ -218,6 +220,7 @@ class WeakForm:
             self.input if current is None else current,
             self.dt,
             **around,
+            averaged=not self.prescribed,
         )
 
     def own(self, plant: Plant) -> Plant:
@@ -226,8 +229,19 @@ class WeakForm:
 
     @property
     def reached(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """Rows that noise of the effort reaches: all of them; shape (n,)."""
-        return np.ones(len(self), dtype=np.bool_)
+        """Rows that noise of the effort reaches; shape (n,).
+
+        All of them, but a rigid contact at rest answers whatever acts on it, noise as well.
+        """
+        reached: np.ndarray[Any, np.dtype[np.bool_]] = self._mean(self._answers) > MOSTLY
+        return reached
+
+    @cached_property
+    def _answers(self) -> FloatArray:
+        """Share of an effort to which the motion answers about each stamp; as ``position[1:]``."""
+        if self.springy or self.prescribed:
+            return np.ones(len(self.position) - 1)
+        return _centred(1.0 * (np.diff(self.position) != 0.0))
 
     @property
     def adapts(self) -> bool:
@@ -352,7 +366,7 @@ class WeakForm:
         limit = float(plant.drive.get("limit", np.inf))
         if not self.prescribed and np.isfinite(limit):
             rate = np.where(np.abs(self.effort[1:]) < limit, rate, 0.0)
-        return -gain * self._mean(rate)
+        return -gain * self._mean(rate * self._answers)
 
     def jacobian(self, plant: Plant, paths: Sequence[str], start: Start = None) -> FloatArray:
         """Derivatives of measured minus needed effort by parameters; shape (n, parameters).

@@ -9,6 +9,8 @@ use crate::integrate::{Along, Beyond, Machine, Run, through_events};
 use crate::model::CHUNK;
 use crate::motor::{PerSample, Running, Surroundings};
 use crate::scalar::Scalar;
+use crate::sensitivity::MeasuredMotion;
+use crate::track::Track;
 
 /// Efforts at the end of a sample.
 #[derive(Debug, Clone, Copy)]
@@ -19,6 +21,8 @@ pub struct Efforts<S> {
     pub ambient: S,
     /// Friction.
     pub friction: S,
+    /// Its mean over the sample, where the contact is rigid and that is asked for.
+    pub mean: Option<S>,
     /// How far the centre of mass is ahead of what the sensor reads.
     pub ahead: S,
 }
@@ -45,60 +49,6 @@ impl<S: Scalar> Whereabouts<'_, S> {
     }
 }
 
-/// The positions behind the readings, three in a row, and what is derived from them.
-pub(crate) struct Track<'a, S> {
-    readings: &'a [f64],
-    actual: &'a dyn Fn(f64) -> S,
-    /// Positions at the stamps before, at and after the present one.
-    at: [S; 3],
-    /// The present stamp.
-    stamp: usize,
-}
-
-impl<'a, S: Scalar> Track<'a, S> {
-    /// With this stamp as the present one.
-    pub(crate) fn new(readings: &'a [f64], actual: &'a dyn Fn(f64) -> S, stamp: usize) -> Self {
-        let last = readings.len() - 1;
-        let near = [stamp.saturating_sub(1), stamp, (stamp + 1).min(last)];
-        Self { readings, actual, at: near.map(|stamp| actual(readings[stamp])), stamp }
-    }
-
-    /// Position at the present stamp.
-    pub(crate) fn position(&self) -> S {
-        self.at[1]
-    }
-
-    #[inline(always)]
-    fn advance(&mut self) {
-        self.stamp += 1;
-        let next = (self.stamp + 1).min(self.readings.len() - 1);
-        let ahead =
-            if next == self.stamp { self.at[2] } else { (self.actual)(self.readings[next]) };
-        self.at = [self.at[1], self.at[2], ahead];
-    }
-
-    /// Slope between the neighbours, so that what depends on velocity is not half a sample late; at
-    /// the first and the last stamp there is only one side.
-    #[inline(always)]
-    pub(crate) fn velocity(&self, dt: &PerSample<'_>) -> S {
-        let last = self.readings.len() - 1;
-        let (before, after) = (self.stamp.saturating_sub(1), (self.stamp + 1).min(last));
-        let span: f64 = (before..after).map(|j| dt.at(j)).sum();
-        (self.at[2] - self.at[0]) / span
-    }
-
-    /// Second difference; 0 where a side is missing.
-    #[inline(always)]
-    fn acceleration(&self, dt: &PerSample<'_>) -> S {
-        if self.stamp == 0 || self.stamp + 1 >= self.readings.len() {
-            return S::constant(0.0);
-        }
-        let (before, after) = (dt.at(self.stamp - 1), dt.at(self.stamp));
-        let bend = (self.at[2] - self.at[1]) / after - (self.at[1] - self.at[0]) / before;
-        bend * 2.0 / (before + after)
-    }
-}
-
 impl<S: Scalar> Running<S> {
     /// The position at which the sensor reads this.
     pub fn actual(&self, reading: f64) -> f64 {
@@ -110,26 +60,43 @@ impl<S: Scalar> Running<S> {
     /// acceleration, which no difference of neighbouring samples gives.
     pub fn follow(
         &mut self,
-        positions: &[f64],
-        inputs: PerSample<'_>,
-        around: Surroundings<'_>,
-        dt: PerSample<'_>,
+        motion: &MeasuredMotion<'_>,
         row: impl FnMut(usize, Efforts<S>, Whereabouts<'_, S>),
     ) {
-        self.follow_on(positions, 0..positions.len() - 1, inputs, around, dt, row);
+        self.follow_on(motion, 0..motion.samples(), row);
+    }
+
+    /// The same with efforts that may be averaged about the end of each sample: friction of a rigid
+    /// contact, which jumps inside samples, is then its mean over the sample before and the one after,
+    /// as a held input is.
+    pub fn follow_about(
+        &mut self,
+        motion: &MeasuredMotion<'_>,
+        mut row: impl FnMut(usize, &Efforts<S>),
+    ) {
+        let mut waiting: Option<(usize, Efforts<S>)> = None;
+        self.follow(motion, |k, efforts, _| {
+            let Some(mean) = efforts.mean else { return row(k, &efforts) };
+            if let Some((before, last)) = &mut waiting {
+                last.friction = (last.friction + mean) * 0.5;
+                row(*before, last);
+            }
+            waiting = Some((k, Efforts { friction: mean, ..efforts }));
+        });
+        if let Some((k, last)) = waiting {
+            row(k, &last);
+        }
     }
 
     /// Follows some of the samples, from where the last one before them ended. A second mass swings
     /// in from rest.
     pub(crate) fn follow_on(
         &mut self,
-        positions: &[f64],
+        motion: &MeasuredMotion<'_>,
         samples: Range<usize>,
-        inputs: PerSample<'_>,
-        around: Surroundings<'_>,
-        dt: PerSample<'_>,
         row: impl FnMut(usize, Efforts<S>, Whereabouts<'_, S>),
     ) {
+        let MeasuredMotion { positions, inputs, around, dt, averaged } = *motion;
         let misreads = self.machine.effects.misreads();
         let sensor = self.machine.effects.clone();
         let actual = |reading: f64| {
@@ -155,6 +122,7 @@ impl<S: Scalar> Running<S> {
                 inputs,
                 around,
                 dt,
+                averaged,
                 row,
             }
             .run()
@@ -174,6 +142,7 @@ struct Following<'a, 'b, S: Scalar, L: FrictionLaw<S>, R> {
     inputs: PerSample<'a>,
     around: Surroundings<'a>,
     dt: PerSample<'a>,
+    averaged: bool,
     row: R,
 }
 
@@ -185,10 +154,14 @@ where
 {
     fn run(self) {
         let Self { mut way, machine, run, beyond, contact: (law, state), mut track, .. } = self;
-        let Self { samples, inputs, around, dt, mut row, .. } = self;
+        let Self { samples, inputs, around, dt, averaged, mut row, .. } = self;
+        let located = L::RIGID && averaged;
         let zero = S::constant(0.0);
         let misreads = machine.effects.misreads();
-        let mut velocity = track.velocity(&dt);
+        let slope = |track: &Track<'_, S>| {
+            if located { track.velocity_or_rest(&dt) } else { track.velocity(&dt) }
+        };
+        let mut velocity = slope(&track);
         for (passed, k) in samples.enumerate() {
             if passed % CHUNK == 0 {
                 state.make_room(CHUNK + CHUNK / 4);
@@ -198,7 +171,7 @@ where
             let load = S::constant(around.load.at(k));
             let before = velocity;
             track.advance();
-            velocity = track.velocity(&dt);
+            velocity = slope(&track);
             let displacement = track.at[1] - track.at[0];
             run.position = track.at[1];
             run.velocity = velocity;
@@ -222,18 +195,31 @@ where
                 run.relaxed = hardened;
                 at_contact -= crept;
             }
-            let mut held = Along::new(at_contact, span, (before, velocity), channels);
-            through_events(&mut held, law, state, span);
+            // Where a machine with a rigid contact stops, the rest of the sample is one at rest.
+            let stop = if located { track.stop(k) } else { None };
+            let share = stop.map_or(1.0, |stop| stop.left.min(1.0));
+            let (moving, rest) = (span * share, span * (1.0 - share));
+            let mut held = Along::new(at_contact, moving, (before, velocity), channels);
+            if share > 0.0 {
+                through_events(&mut held, law, state, moving);
+            }
+            if share < 1.0 {
+                let moved = held.mean * share;
+                held = Along::new(zero, rest, (zero, zero), channels);
+                through_events(&mut held, law, state, rest);
+                held.mean = moved + held.mean * (1.0 - share);
+            }
             run.friction = held.outcome.force;
             let mut ahead = zero;
             if misreads {
-                ahead += track.at[1] - track.readings[k + 1];
+                ahead += track.at[1] - track.reading();
             }
             for mass in &mut *beyond {
                 ahead += mass.advance(track.acceleration(&dt), duration);
             }
             let there = Whereabouts { machine: &*machine, at: &at, input, load };
-            row(k, Efforts { driven, ambient, friction: run.friction, ahead }, there);
+            let (friction, mean) = (run.friction, located.then_some(held.mean));
+            row(k, Efforts { driven, ambient, friction, mean, ahead }, there);
             machine.wind(run, input, duration);
         }
     }

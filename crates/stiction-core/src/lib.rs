@@ -29,5 +29,6 @@ pub mod sensor;
 pub mod servo;
 pub mod shoot;
 mod traces;
+mod track;
 pub mod trig;
 pub mod wave;

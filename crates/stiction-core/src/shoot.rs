@@ -1,10 +1,10 @@
 //! A machine started anew along a motion that was measured: where it gets to by itself.
 
 use crate::error::{Error, Result};
-use crate::follow::Track;
 use crate::motor::{MotorSpec, PerSample, Running};
 use crate::scalar::{COLUMNS, Dual, Scalar};
 use crate::sensitivity::{MeasuredMotion, Start, passes, seeded};
+use crate::track::Track;
 
 /// ω·h above which a sample of a window is divided: the phase error of the ring is then 0.4 % of the
 /// phase, and of a ring that fast the weights of a window keep nothing.
@@ -50,7 +50,7 @@ impl<S: Scalar> Running<S> {
         added: impl Fn(usize) -> S,
         mut land: impl FnMut(usize, S),
     ) -> Result<()> {
-        let MeasuredMotion { positions, inputs, around, dt } = *motion;
+        let MeasuredMotion { positions, inputs, around, dt, .. } = *motion;
         let held: Vec<f64>;
         let each = match inputs {
             PerSample::Each(values) => values,
@@ -65,7 +65,7 @@ impl<S: Scalar> Running<S> {
         let mut reached = 0;
         for window in 0..windows.number(motion.samples()) {
             let start = window * windows.stride.max(1);
-            self.follow_on(positions, reached..start, inputs, around, dt, |_, _, _| ());
+            self.follow_on(motion, reached..start, |_, _, _| ());
             reached = start;
             let end = start + length;
             let track = Track::new(positions, &actual, start);
@@ -107,7 +107,7 @@ impl Running<f64> {
         pull: Pull,
         mut row: impl FnMut(usize, f64, f64),
     ) -> Result<()> {
-        let MeasuredMotion { positions, inputs, around, dt } = *motion;
+        let MeasuredMotion { positions, inputs, around, dt, .. } = *motion;
         let sensor = self.machine.effects.clone();
         let actual = |reading: f64| sensor.behind(reading);
         for k in 0..motion.samples() {

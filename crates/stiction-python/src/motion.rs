@@ -46,6 +46,10 @@ impl Numbers {
 ///     In °C.
 /// enabled : array_like, shape (n,), optional
 ///     Whether the drive is on, 0 where it is off.
+/// averaged : bool
+///     Whether the friction of a rigid contact, which jumps inside samples, is its mean over the sample
+///     before each stamp and the one after, to be compared with inputs that are held; otherwise
+///     it is what it is at the stamp.
 ///
 /// Raises
 /// ------
@@ -59,6 +63,7 @@ pub struct Motion {
     load: Numbers,
     temperature: Option<Numbers>,
     enabled: Option<Numbers>,
+    averaged: bool,
 }
 
 impl Motion {
@@ -78,6 +83,7 @@ impl Motion {
                 enabled: self.enabled.as_ref().map(Numbers::per_sample),
             },
             dt: self.dt.per_sample(),
+            averaged: self.averaged,
         }
     }
 }
@@ -85,7 +91,7 @@ impl Motion {
 #[pymethods]
 impl Motion {
     #[new]
-    #[pyo3(signature = (position, current, dt, *, load=None, temperature=None, enabled=None))]
+    #[pyo3(signature = (position, current, dt, *, load=None, temperature=None, enabled=None, averaged=false))]
     fn new(
         position: &Bound<'_, PyAny>,
         current: &Bound<'_, PyAny>,
@@ -93,6 +99,7 @@ impl Motion {
         load: Option<&Bound<'_, PyAny>>,
         temperature: Option<&Bound<'_, PyAny>>,
         enabled: Option<&Bound<'_, PyAny>>,
+        averaged: bool,
     ) -> PyResult<Self> {
         let py = position.py();
         let position = one_row("position", position)?;
@@ -110,6 +117,7 @@ impl Motion {
             load: load.map_or(Ok(Numbers::Same(0.0)), |given| each("load", given))?,
             temperature: temperature.map(|given| each("temperature", given)).transpose()?,
             enabled: enabled.map(|given| each("enabled", given)).transpose()?,
+            averaged,
         })
     }
 

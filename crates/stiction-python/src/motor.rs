@@ -11,7 +11,7 @@ use stiction_core::integrate::Integrator;
 use stiction_core::motor::{Column, Motor as Core, MotorSpec};
 use stiction_core::segments::Segments;
 use stiction_core::sensitivity::{
-    EffortSensitivity, MeasuredMotion, Start, follow_columns, follow_sensitivity, sensitivity_into,
+    EffortSensitivity, Start, follow_columns, follow_sensitivity, sensitivity_into,
     signature_columns, signatures,
 };
 use stiction_core::servo::Servo;
@@ -315,14 +315,14 @@ impl Motor {
         let n = motion.samples();
         let mut efforts = [vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0.0; n]];
         {
-            let MeasuredMotion { positions, inputs, around, dt } = motion.measured();
+            let motion = motion.measured();
             let arrays = efforts.each_mut().map(Vec::as_mut_slice);
             py.detach(|| {
                 let mut core = self.lock();
                 if let Some(start) = &start {
                     core.prime(start);
                 }
-                core.follow(positions, inputs, around, dt, arrays)
+                core.follow(&motion, arrays)
             })
             .or_input_error(py)?;
         }

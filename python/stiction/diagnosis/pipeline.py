@@ -41,7 +41,7 @@ from .own import own_view
 from .pictures import Pictures, Stretch
 from .regression import refitted
 from .remedies import meant
-from .replay import centre, surrogate_residuals
+from .replay import centre, shared, surrogate_residuals
 from .result import Cause, Diagnosis, ModelSummary, Unexplained
 from .rounds import friction_of, search
 from .selection import Search
@@ -237,6 +237,7 @@ def _testable(
     scales = scales_of(evidence, base.plant)
     seen = looks(evidence, base.plant, clocks, scales.units["presliding"])
     bias, centred = centre(null)
+    bias = shared(bias, base.residual, evidence.cells.recording)
     friction = friction_of(evidence, base)
     orders = scales.orders
     left = rest(evidence, seen, orders, final.residual - bias, centred, friction)

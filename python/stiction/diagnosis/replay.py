@@ -19,7 +19,7 @@ from ..weak_form import Start, WeakForm
 from .evidence import Evidence
 from .noise import Noise, measure_noise
 
-__all__ = ["centre", "surrogate_residuals"]
+__all__ = ["centre", "shared", "surrogate_residuals"]
 
 _logger = logging.getLogger(__name__)
 
@@ -87,7 +87,9 @@ def _replayed(
     for k in range(number):
         readings = motion + noise.position * source.standard_normal(len(motion))
         if noise.count > 0.0:
-            readings = np.round(readings / noise.count) * noise.count
+            # Where a rigid contact stops between two counts changes what is read of the stop.
+            begin = 0.0 if form.springy else source.uniform(-0.5, 0.5)
+            readings = np.round(readings / noise.count + begin) * noise.count
         added = noise.effort * source.standard_normal(len(motion))
         columns[:, k] = residual(readings, added)[rows.mask]
     return columns
@@ -126,10 +128,13 @@ def _slid(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Resi
         _logger.info("followed instead of simulated: %s", error)
         return None
 
+    # A contact at rest answers whatever acts on it, noise as well.
+    moves = np.diff(motion) != 0.0
+
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
         position = form.driving(readings)
         drive, needed, ahead = form.along(plant, start, position=position, load=load)
-        left: FloatArray = form.given(drive, load) + form.mean(0.5 * (added[:-1] + added[1:]))
+        left = form.given(drive, load + added[1:] * moves)
         left -= form.mean(needed) + form.inertial(plant, readings, ahead)
         return left
 
@@ -154,6 +159,25 @@ def centre(null: FloatArray) -> tuple[FloatArray, FloatArray]:
     number = null.shape[1]
     bias: FloatArray = null.mean(axis=1)
     return bias, (null - bias[:, None]) * (number / (number - 1) if number > 1 else 1.0)
+
+
+def shared(bias: FloatArray, residual: FloatArray, recording: np.ndarray) -> FloatArray:
+    """What surrogates have in common, in each recording as far as the residual has it too.
+
+    Where a replay loses the machine, all of them lose it alike, and the residual knows nothing of it.
+
+    Parameters
+    ----------
+    bias, residual : numpy.ndarray, shape (n,)
+    recording : numpy.ndarray of int, shape (n,)
+        Of each row.
+    """
+    number = int(recording.max()) + 1
+    power = np.bincount(recording, bias**2, number)
+    along = np.bincount(recording, bias * residual, number)
+    share = np.clip(along / np.maximum(power, 1e-300), 0.0, 1.0)
+    found: FloatArray = share[recording] * bias
+    return found
 
 
 def true_motion(form: WeakForm) -> FloatArray:

@@ -28,7 +28,7 @@ from .decide import (
 )
 from .evidence import Evidence
 from .model import Model, fitted, power_of, stepped, with_effect, without_effect
-from .replay import centre
+from .replay import centre, shared
 from .result import CandidateRow
 from .screen import Problem, Score, Signatures, screen
 from .selection import Search
@@ -83,6 +83,7 @@ def search(
     """
     found = Search([base])
     bias, centred = centre(null)
+    bias = shared(bias, base.residual, evidence.cells.recording)
     try:
         tried = _candidates(evidence, base, without, found)
         if not tried:

@@ -80,19 +80,12 @@ impl Motor {
 
     /// Efforts along given positions, one more than there are samples: of the drive, of gravity and
     /// added efforts, and friction; then how far the centre of mass is ahead of the reading. Each is
-    /// as long as there are samples.
-    pub fn follow(
-        &mut self,
-        positions: &[f64],
-        inputs: PerSample<'_>,
-        around: Surroundings<'_>,
-        dt: PerSample<'_>,
-        efforts: [&mut [f64]; 4],
-    ) -> Result<()> {
-        let wanted = positions.len().saturating_sub(1);
-        inputs.check("input", wanted)?;
-        around.check(wanted)?;
-        dt.check("dt", wanted)?;
+    /// as long as there are samples, and about the end of each (see [`Running::follow_about`]).
+    pub fn follow(&mut self, motion: &MeasuredMotion<'_>, efforts: [&mut [f64]; 4]) -> Result<()> {
+        let wanted = motion.samples();
+        motion.inputs.check("input", wanted)?;
+        motion.around.check(wanted)?;
+        motion.dt.check("dt", wanted)?;
         let [driven, ambient, friction, ahead] = efforts;
         for array in [&driven, &ambient, &friction, &ahead] {
             if array.len() != wanted {
@@ -100,7 +93,7 @@ impl Motor {
                 return Err(Error::Length { name, given: array.len(), wanted });
             }
         }
-        self.running.follow(positions, inputs, around, dt, |k, efforts, _| {
+        self.running.follow_about(motion, |k, efforts| {
             driven[k] = efforts.driven;
             ambient[k] = efforts.ambient;
             friction[k] = efforts.friction;
