@@ -68,7 +68,8 @@ TURNING_SHARE: Final = 0.1
 """Noise of the velocity over its rms above which a machine that is moved seems to turn round: its
 motion is then smoothed over up to the widest kernel."""
 MOSTLY: Final = 0.9
-"""Share of the kernel through which a machine with a rigid contact moves in rows that tell of noise."""
+"""Share of the kernel through which a machine with a rigid contact moves in rows that tell of
+noise."""
 BACKLASH_TIMES: Final = 4.0
 """Width of that backlash in standard deviations of the noise, a count at least: noise turns a slow
 motion round for a sample, and dry friction would turn with it."""

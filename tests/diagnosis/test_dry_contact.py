@@ -1,4 +1,4 @@
-"""A dry contact stops and turns round between stamps: what that leaves is noise, and replays know it."""
+"""A dry contact stops and turns round between stamps: what that leaves is noise to replays too."""
 
 import numpy as np
 import pytest

@@ -164,7 +164,8 @@ def centre(null: FloatArray) -> tuple[FloatArray, FloatArray]:
 def shared(bias: FloatArray, residual: FloatArray, recording: np.ndarray) -> FloatArray:
     """What surrogates have in common, in each recording as far as the residual has it too.
 
-    Where a replay loses the machine, all of them lose it alike, and the residual knows nothing of it.
+    Where a replay loses the machine all of them lose it alike, and the residual knows nothing of
+    it.
 
     Parameters
     ----------
