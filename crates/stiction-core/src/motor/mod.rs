@@ -234,7 +234,7 @@ impl Motor {
 
     /// Branch counters.
     pub fn statistics(&self) -> Statistics {
-        with_state!(&self.running.state, |state| state.statistics())
+        self.running.statistics()
     }
 }
 
