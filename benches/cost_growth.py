@@ -47,7 +47,7 @@ def members(number: int) -> Run:
     """An ensemble on one core, reduced."""
     motor = st.Motor(0.0076, friction=st.FrictionModel("hsieh_pan", breakaway=0.5))
     sizes = np.resize(np.linspace(0.85, 1.15, 64), number)
-    rows = sizes[:, None] * efforts(2000)
+    rows = sizes[:, None] * efforts(20_000)
 
     def run() -> None:
         st.simulate_ensemble(motor, rows, DT, reduce="rms", threads=1)

@@ -236,7 +236,8 @@ def by_mujoco(kind: str) -> tuple[Run, int]:
 
 def bam(python: str, repeats: int) -> dict[str, list[float]]:
     """Nanoseconds a step of a log of better-actuator-models, in a Python of its own."""
-    script = [python, str(HERE / "bam_rollout.py"), str(repeats)]
+    # -E: what is on the path of this Python is not on that of the other.
+    script = [python, "-E", str(HERE / "bam_rollout.py"), str(repeats)]
     done = subprocess.run(script, capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError((done.stderr.strip().splitlines() or ["failed"])[-1])
