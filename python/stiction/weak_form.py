@@ -67,6 +67,8 @@ keeps that out. Where they do not flicker it would only be late by half a count.
 TURNING_SHARE: Final = 0.1
 """Noise of the velocity over its rms above which a machine that is moved seems to turn round: its
 motion is then smoothed over up to the widest kernel."""
+MOSTLY: Final = 0.9
+"""Share of the kernel through which a machine with a rigid contact moves in rows that tell of noise."""
 BACKLASH_TIMES: Final = 4.0
 """Width of that backlash in standard deviations of the noise, a count at least: noise turns a slow
 motion round for a sample, and dry friction would turn with it."""
@@ -226,8 +228,15 @@ class WeakForm:
 
     @property
     def reached(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """Rows that noise of the effort reaches: all of them; shape (n,)."""
-        return np.ones(len(self), dtype=np.bool_)
+        """Rows that noise of the effort reaches; shape (n,).
+
+        All of them, but a rigid contact at rest answers whatever acts on it, noise as well.
+        """
+        if self.springy or self.prescribed:
+            return np.ones(len(self), dtype=np.bool_)
+        moves = np.diff(self.position) != 0.0
+        reached: np.ndarray[Any, np.dtype[np.bool_]] = self._mean(1.0 * moves) > MOSTLY
+        return reached
 
     @property
     def adapts(self) -> bool:

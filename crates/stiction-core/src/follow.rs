@@ -9,6 +9,19 @@ use crate::integrate::{Along, Beyond, Machine, Run, through_events};
 use crate::model::CHUNK;
 use crate::motor::{PerSample, Running, Surroundings};
 use crate::scalar::Scalar;
+use crate::sensitivity::MeasuredMotion;
+
+/// Ratio of the ways of two samples of a machine that slows down steadily and stands at the end of the
+/// second: beyond it the machine stopped before.
+const FULL: f64 = 3.0;
+
+/// Where in a sample a machine stops.
+struct Stop {
+    /// Share of the sample.
+    share: f64,
+    /// Way that the velocity at its start would make in a whole sample.
+    way: f64,
+}
 
 /// Efforts at the end of a sample.
 #[derive(Debug, Clone, Copy)]
@@ -19,6 +32,8 @@ pub struct Efforts<S> {
     pub ambient: S,
     /// Friction.
     pub friction: S,
+    /// Its mean over the sample, where the contact is rigid: it jumps inside samples.
+    pub mean: Option<S>,
     /// How far the centre of mass is ahead of what the sensor reads.
     pub ahead: S,
 }
@@ -87,6 +102,66 @@ impl<'a, S: Scalar> Track<'a, S> {
         (self.at[2] - self.at[0]) / span
     }
 
+    /// Displacement that was read in a sample; 0 beyond the ends.
+    fn read(&self, sample: usize) -> f64 {
+        let ends = (self.readings.get(sample), self.readings.get(sample.wrapping_add(1)));
+        if let (Some(from), Some(to)) = ends { to - from } else { 0.0 }
+    }
+
+    /// Whether the machine rests in a sample: nothing moves in it, nor in one beside it. In slow
+    /// motion over counts there are single samples without one.
+    fn rests(&self, sample: usize) -> bool {
+        let still = |sample| self.read(sample) == 0.0;
+        still(sample) && (still(sample.wrapping_sub(1)) || still(sample + 1))
+    }
+
+    /// The same slope for a rigid contact: 0 where the machine rests before or after, and where it
+    /// stopped. Between the neighbours it would seem to slide on for a sample or two.
+    #[inline(always)]
+    fn velocity_or_rest(&self, dt: &PerSample<'_>) -> S {
+        let before = self.stamp.wrapping_sub(1);
+        if self.rests(before) || self.rests(self.stamp) || self.stop(before).is_some() {
+            return S::constant(0.0);
+        }
+        match self.stop(self.stamp) {
+            Some(stop) => S::constant(stop.way / dt.at(self.stamp)),
+            None => self.velocity(dt),
+        }
+    }
+
+    /// Where in a sample a machine stops that slowed down steadily until then and rests or goes back
+    /// afterwards; `None` where it does not.
+    ///
+    /// A dry contact slows a machine down faster than it lets it speed up again: the ways of the
+    /// samples before tell best where it stopped. Those of the last two are as 2τ + 1 to τ² where
+    /// the stop is in the second, at the share τ.
+    fn stop(&self, sample: usize) -> Option<Stop> {
+        let way = self.read(sample);
+        let [earlier, before] = [2, 1].map(|back| self.read(sample.wrapping_sub(back)));
+        if way * before > 0.0 {
+            let ratio = before / way;
+            if ratio <= FULL || !self.goes_no_further(sample + 1, way) {
+                return None;
+            }
+            let share = (1.0 + (1.0 + ratio).sqrt()) / ratio;
+            return Some(Stop { share, way: 2.0 * way / share });
+        }
+        let slowing = earlier * before > 0.0 && earlier.abs() > before.abs();
+        if !slowing || earlier / before > FULL || !self.goes_no_further(sample, before) {
+            return None;
+        }
+        let lost = earlier - before;
+        let way = before - 0.5 * lost;
+        Some(Stop { share: (way / lost).min(1.0), way })
+    }
+
+    /// Whether a machine that moved this way rests in a sample, or goes back as soon as it moves.
+    fn goes_no_further(&self, sample: usize, way: f64) -> bool {
+        let next = self.read(sample);
+        let next = if next == 0.0 { self.read(sample + 1) } else { next };
+        next * way < 0.0 || self.rests(sample)
+    }
+
     /// Second difference; 0 where a side is missing.
     #[inline(always)]
     fn acceleration(&self, dt: &PerSample<'_>) -> S {
@@ -117,6 +192,28 @@ impl<S: Scalar> Running<S> {
         row: impl FnMut(usize, Efforts<S>, Whereabouts<'_, S>),
     ) {
         self.follow_on(positions, 0..positions.len() - 1, inputs, around, dt, row);
+    }
+
+    /// The same with efforts about the end of each sample: friction of a rigid contact, which jumps
+    /// inside samples, is its mean over the sample before and the one after, as a held input is.
+    pub fn follow_about(
+        &mut self,
+        motion: &MeasuredMotion<'_>,
+        mut row: impl FnMut(usize, &Efforts<S>),
+    ) {
+        let mut waiting: Option<(usize, Efforts<S>)> = None;
+        let MeasuredMotion { positions, inputs, around, dt } = *motion;
+        self.follow(positions, inputs, around, dt, |k, efforts, _| {
+            let Some(mean) = efforts.mean else { return row(k, &efforts) };
+            if let Some((before, last)) = &mut waiting {
+                last.friction = (last.friction + mean) * 0.5;
+                row(*before, last);
+            }
+            waiting = Some((k, Efforts { friction: mean, ..efforts }));
+        });
+        if let Some((k, last)) = waiting {
+            row(k, &last);
+        }
     }
 
     /// Follows some of the samples, from where the last one before them ended. A second mass swings
@@ -188,7 +285,10 @@ where
         let Self { samples, inputs, around, dt, mut row, .. } = self;
         let zero = S::constant(0.0);
         let misreads = machine.effects.misreads();
-        let mut velocity = track.velocity(&dt);
+        let slope = |track: &Track<'_, S>| {
+            if L::RIGID { track.velocity_or_rest(&dt) } else { track.velocity(&dt) }
+        };
+        let mut velocity = slope(&track);
         for (passed, k) in samples.enumerate() {
             if passed % CHUNK == 0 {
                 state.make_room(CHUNK + CHUNK / 4);
@@ -198,7 +298,7 @@ where
             let load = S::constant(around.load.at(k));
             let before = velocity;
             track.advance();
-            velocity = track.velocity(&dt);
+            velocity = slope(&track);
             let displacement = track.at[1] - track.at[0];
             run.position = track.at[1];
             run.velocity = velocity;
@@ -222,8 +322,20 @@ where
                 run.relaxed = hardened;
                 at_contact -= crept;
             }
-            let mut held = Along::new(at_contact, span, (before, velocity), channels);
-            through_events(&mut held, law, state, span);
+            // Where a machine with a rigid contact stops, the rest of the sample is one at rest.
+            let stop = if L::RIGID { track.stop(k) } else { None };
+            let share = stop.map_or(1.0, |stop| stop.share);
+            let (moving, rest) = (span * share, span * (1.0 - share));
+            let mut held = Along::new(at_contact, moving, (before, velocity), channels);
+            if share > 0.0 {
+                through_events(&mut held, law, state, moving);
+            }
+            if share < 1.0 {
+                let moved = held.mean * share;
+                held = Along::new(zero, rest, (zero, zero), channels);
+                through_events(&mut held, law, state, rest);
+                held.mean = moved + held.mean * (1.0 - share);
+            }
             run.friction = held.outcome.force;
             let mut ahead = zero;
             if misreads {
@@ -233,7 +345,8 @@ where
                 ahead += mass.advance(track.acceleration(&dt), duration);
             }
             let there = Whereabouts { machine: &*machine, at: &at, input, load };
-            row(k, Efforts { driven, ambient, friction: run.friction, ahead }, there);
+            let (friction, mean) = (run.friction, L::RIGID.then_some(held.mean));
+            row(k, Efforts { driven, ambient, friction, mean, ahead }, there);
             machine.wind(run, input, duration);
         }
     }

@@ -200,7 +200,7 @@ impl MeasuredMotion<'_> {
         take: impl FnMut(usize, usize, Stretch<'_>),
     ) {
         let mut traces = traces.to(take);
-        running.follow(self.positions, self.inputs, self.around, self.dt, |k, efforts, _| {
+        running.follow_about(self, |k, efforts| {
             let short = efforts.friction - efforts.ambient;
             traces.put(k, [&short, &efforts.driven, &efforts.ahead]);
         });
@@ -425,8 +425,8 @@ const SMALL: f64 = 1e-6;
 struct Sample {
     at: Situation<f64>,
     passage: Passage<f64>,
-    /// ∂friction/∂(level of dry, of viscous friction).
-    by_levels: (f64, f64),
+    /// ∂friction/∂(level of dry, of viscous friction, effort): a contact at rest answers an effort.
+    by: [f64; 3],
     command: f64,
     /// ∂(effort of the drive)/∂command.
     gain: f64,
@@ -442,7 +442,8 @@ fn at_once(
     candidates: &[EffectSpec],
     targets: &mut [((usize, usize), impl Target)],
 ) {
-    let samples = samples_along(spec, start, motion);
+    let (samples, rigid) = samples_along(spec, start, motion);
+    let mut added = vec![0.0; samples.len()];
     let usual = samples.iter().map(|sample| sample.command.abs()).fold(0.0, f64::max);
     let mut traces = [(); 3].map(|()| vec![0.0; motion.samples()]);
     for ((index, gain), target) in targets {
@@ -453,29 +454,47 @@ fn at_once(
         own[*gain] = unit;
         let mut effects = Effects::new(AnyEffect::build(candidate.record.name, &own));
         let [needed, driven, _] = &mut traces;
-        for ((needed, driven), sample) in needed.iter_mut().zip(driven.iter_mut()).zip(&samples) {
+        for (k, sample) in samples.iter().enumerate() {
             effects.remember(&sample.passage);
             let (dry, viscous) = effects.levels(&sample.at);
-            let levels = (dry - 1.0) * sample.by_levels.0 + (viscous - 1.0) * sample.by_levels.1;
-            *needed = (levels - effects.effort(&sample.at)) / unit;
-            *driven = 0.0;
+            added[k] = effects.effort(&sample.at) / unit;
+            let mut moved = 0.0;
             if mapped {
-                let moved = effects.input(sample.command, &sample.at) - sample.command;
-                *driven = sample.gain * moved / unit;
+                let input = effects.input(sample.command, &sample.at) - sample.command;
+                moved = sample.gain * input / unit;
             }
+            let levels = (dry - 1.0) * sample.by[0] + (viscous - 1.0) * sample.by[1];
+            needed[k] = levels / unit + (added[k] + moved) * sample.by[2];
+            driven[k] = moved;
+        }
+        if rigid {
+            // As `Running::follow_about` has it.
+            for k in 1..needed.len() {
+                needed[k - 1] = 0.5 * (needed[k - 1] + needed[k]);
+            }
+        }
+        for (needed, added) in needed.iter_mut().zip(&added) {
+            *needed -= added;
         }
         target.take(0, traces.each_ref().map(Vec::as_slice));
     }
 }
 
-fn samples_along(spec: &MotorSpec, start: Start<'_>, motion: &MeasuredMotion<'_>) -> Vec<Sample> {
+/// The samples, and whether their friction is its mean over each of them.
+fn samples_along(
+    spec: &MotorSpec,
+    start: Start<'_>,
+    motion: &MeasuredMotion<'_>,
+) -> (Vec<Sample>, bool) {
     let values: Vec<f64> = spec.parameters().into_iter().map(|(_, value)| value).collect();
     let mut running = seeded(spec, start, &values, &[]);
-    let (level, viscous) = (Dual::variable(1.0, 0), Dual::variable(1.0, 1));
-    running.machine.effects.seed_levels(level, viscous);
+    let seeds = [1.0, 1.0, 0.0];
+    let [level, viscous, effort] = std::array::from_fn(|k| Dual::variable(seeds[k], k));
+    running.machine.effects.seed(level, viscous, effort);
     let drive = running.machine.drive;
     let mut before = (running.actual(motion.positions[0]), running.run.friction.re());
     let mut samples = Vec::with_capacity(motion.samples());
+    let mut rigid = false;
     running.follow(
         motion.positions,
         motion.inputs,
@@ -483,6 +502,8 @@ fn samples_along(spec: &MotorSpec, start: Start<'_>, motion: &MeasuredMotion<'_>
         motion.dt,
         |k, efforts, there| {
             let (friction, at) = (efforts.friction, there.situation());
+            rigid = efforts.mean.is_some();
+            let mean = efforts.mean.unwrap_or(friction);
             let position = at.position.re();
             let (displacement, span) = (position - before.0, motion.dt.at(k));
             let passage = Passage { displacement, friction: before.1, span };
@@ -502,13 +523,13 @@ fn samples_along(spec: &MotorSpec, start: Start<'_>, motion: &MeasuredMotion<'_>
                     enabled: at.enabled,
                 },
                 passage,
-                by_levels: (friction.partial(0), friction.partial(1)),
+                by: std::array::from_fn(|k| mean.partial(k)),
                 command,
                 gain: if at.enabled { drive.slope(command, at.velocity.re()) } else { 0.0 },
             });
         },
     );
-    samples
+    (samples, rigid)
 }
 
 /// The motor with the candidates of a pass, given as rows of candidate and place of its gain.

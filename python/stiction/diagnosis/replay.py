@@ -87,7 +87,9 @@ def _replayed(
     for k in range(number):
         readings = motion + noise.position * source.standard_normal(len(motion))
         if noise.count > 0.0:
-            readings = np.round(readings / noise.count) * noise.count
+            # Where a rigid contact stops between two counts changes what is read of the stop.
+            begin = 0.0 if form.springy else source.uniform(-0.5, 0.5)
+            readings = np.round(readings / noise.count + begin) * noise.count
         added = noise.effort * source.standard_normal(len(motion))
         columns[:, k] = residual(readings, added)[rows.mask]
     return columns
@@ -126,10 +128,13 @@ def _slid(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Resi
         _logger.info("followed instead of simulated: %s", error)
         return None
 
+    # A contact at rest answers whatever acts on it, noise as well.
+    moves = np.diff(motion) != 0.0
+
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
         position = form.driving(readings)
         drive, needed, ahead = form.along(plant, start, position=position, load=load)
-        left: FloatArray = form.given(drive, load) + form.mean(0.5 * (added[:-1] + added[1:]))
+        left = form.given(drive, load + added[1:] * moves)
         left -= form.mean(needed) + form.inertial(plant, readings, ahead)
         return left
 

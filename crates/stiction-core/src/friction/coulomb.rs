@@ -106,6 +106,7 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
     const PARAMETERS: &'static [ParameterSpec] = CoulombParameters::<f64>::SPECS;
     const OPTIONAL: &'static [&'static str] =
         &["breakaway", "stribeck_velocity", "stribeck_exponent"];
+    const RIGID: bool = true;
     const SUMMARY: &'static str =
         "dead zone with true stick; viscous friction and a Stribeck fall as options";
     const SOURCE: &'static str =

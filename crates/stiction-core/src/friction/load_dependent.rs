@@ -166,6 +166,7 @@ impl<S: Scalar> FrictionLaw<S> for LoadDependent<S> {
         "stribeck_velocity",
         "stribeck_exponent",
     ];
+    const RIGID: bool = true;
     const SUMMARY: &'static str =
         "true stick, and friction that grows with the effort of the motor and with the load";
     const SOURCE: &'static str =

@@ -207,6 +207,9 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     /// Whether a body without viscous friction on it makes much of little: it stops and breaks away
     /// where the phase of a ring says, so that two runs that differ by one part in 10⁹ go apart.
     const SENSITIVE: bool = false;
+    /// Whether it holds a body without giving way: then friction jumps inside samples, and along a
+    /// motion its mean over each says more than its value at the end.
+    const RIGID: bool = false;
     /// Options; the first choice of each is the default.
     const OPTIONS: &'static [OptionSpec] = &[];
     /// One sentence: what the law is.

@@ -87,6 +87,7 @@ impl<S: Scalar> FrictionLaw<S> for RigidPerfectlyPlastic<S> {
     type Trial = RigidPerfectlyPlasticTrial<S>;
 
     const PARAMETERS: &'static [ParameterSpec] = RigidPerfectlyPlasticParameters::<f64>::SPECS;
+    const RIGID: bool = true;
     const SUMMARY: &'static str =
         "true stick below a level of sliding that hardens with the way slid";
     const SOURCE: &'static str = "Fredriksson (1976) without its elastic part; from memory";

@@ -70,6 +70,9 @@ pub struct Along<S> {
     pub passed: S,
     /// Friction at the end.
     pub outcome: Outcome<S>,
+    /// Mean of the friction over what was passed, times its share of the sample; of a contact that is
+    /// rigid.
+    pub mean: S,
 }
 
 impl<S: Scalar> Along<S> {
@@ -77,7 +80,7 @@ impl<S: Scalar> Along<S> {
     pub fn new(displacement: S, duration: S, velocities: (S, S), channels: Channels<S>) -> Self {
         let zero = S::constant(0.0);
         let outcome = Outcome { force: zero, slope: zero, damping: zero };
-        Self { displacement, duration, velocities, channels, passed: zero, outcome }
+        Self { displacement, duration, velocities, channels, passed: zero, outcome, mean: zero }
     }
 
     fn velocity_at(&self, share: S) -> S {
@@ -104,9 +107,15 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Along<S> {
     }
 
     fn accept(&mut self, law: &L, state: &mut L::State, attempt: &Self::Attempt, _stopped: bool) {
+        let share = attempt.1.duration / self.duration;
+        if L::RIGID {
+            // Half-way: inside one mode friction is smooth, and at its ends it may jump.
+            let (trial, _) = Stepper::<S, L>::attempt(self, law, state, attempt.1.duration * 0.5);
+            self.mean += law.outcome(&trial).force * share;
+        }
         law.commit(state, &attempt.0);
         self.outcome = law.outcome(&attempt.0);
-        self.passed += attempt.1.duration / self.duration;
+        self.passed += share;
     }
 
     fn velocity(&self) -> S {

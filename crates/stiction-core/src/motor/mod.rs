@@ -80,7 +80,7 @@ impl Motor {
 
     /// Efforts along given positions, one more than there are samples: of the drive, of gravity and
     /// added efforts, and friction; then how far the centre of mass is ahead of the reading. Each is
-    /// as long as there are samples.
+    /// as long as there are samples, and about the end of each (see [`Running::follow_about`]).
     pub fn follow(
         &mut self,
         positions: &[f64],
@@ -100,7 +100,8 @@ impl Motor {
                 return Err(Error::Length { name, given: array.len(), wanted });
             }
         }
-        self.running.follow(positions, inputs, around, dt, |k, efforts, _| {
+        let motion = MeasuredMotion { positions, inputs, around, dt };
+        self.running.follow_about(&motion, |k, efforts| {
             driven[k] = efforts.driven;
             ambient[k] = efforts.ambient;
             friction[k] = efforts.friction;

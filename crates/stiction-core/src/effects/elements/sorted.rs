@@ -27,8 +27,8 @@ pub struct Effects<S: Scalar> {
     relaxations: Vec<Relaxation<S>>,
     second_masses: Vec<SecondMass<S>>,
     remembers: bool,
-    /// Levels without any effect: 1, and seeded where derivatives by a level are wanted.
-    unit: (S, S),
+    /// Levels and effort without any effect: 1, 1 and 0, seeded where derivatives by them are wanted.
+    unit: (S, S, S),
 }
 
 impl<S: Scalar> Effects<S> {
@@ -48,7 +48,7 @@ impl<S: Scalar> Effects<S> {
             relaxations: Vec::new(),
             second_masses: Vec::new(),
             remembers: false,
-            unit: (S::constant(1.0), S::constant(1.0)),
+            unit: (S::constant(1.0), S::constant(1.0), S::constant(0.0)),
         };
         for effect in effects {
             let place = sorted.kept.len();
@@ -88,7 +88,7 @@ impl<S: Scalar> Effects<S> {
     /// Multipliers of friction and of viscous friction.
     #[inline]
     pub fn levels(&self, at: &Situation<S>) -> (S, S) {
-        let (mut friction, mut viscous) = self.unit;
+        let (mut friction, mut viscous, _) = self.unit;
         for place in &self.levels {
             let Kept { effect, memory } = &self.kept[*place];
             let change = with_effect!(effect, |e| e.level(at, memory));
@@ -98,15 +98,16 @@ impl<S: Scalar> Effects<S> {
         (friction, viscous)
     }
 
-    /// Seeds the levels of dry and viscous friction, to differentiate by them.
-    pub fn seed_levels(&mut self, friction: S, viscous: S) {
-        self.unit = (friction, viscous);
+    /// Seeds the levels of dry and viscous friction and an added effort of 0, to differentiate by
+    /// them.
+    pub fn seed(&mut self, friction: S, viscous: S, effort: S) {
+        self.unit = (friction, viscous, effort);
     }
 
-    /// Whether there is no effect, nor a level seeded.
+    /// Whether there is no effect, and nothing seeded.
     pub fn nothing(&self) -> bool {
-        let seeded = self.unit.0.derivative_is_nonzero() || self.unit.1.derivative_is_nonzero();
-        self.kept.is_empty() && !seeded
+        let (friction, viscous, effort) = self.unit;
+        self.kept.is_empty() && ![friction, viscous, effort].iter().any(|seed| seed.derivative_is_nonzero())
     }
 
     /// Whether any effect remembers what happened before.
@@ -171,7 +172,7 @@ impl<S: Scalar> Effects<S> {
     /// Sum of the added efforts.
     #[inline]
     pub fn effort(&self, at: &Situation<S>) -> S {
-        let mut sum = S::constant(0.0);
+        let (_, _, mut sum) = self.unit;
         for place in &self.efforts {
             let Kept { effect, memory } = &self.kept[*place];
             sum += with_effect!(effect, |e| e.effort(at, memory));
@@ -182,7 +183,7 @@ impl<S: Scalar> Effects<S> {
     /// Whether any effect adds an effort.
     #[inline]
     pub fn adds_efforts(&self) -> bool {
-        !self.efforts.is_empty()
+        !self.efforts.is_empty() || self.unit.2.derivative_is_nonzero()
     }
 
     /// What the input becomes.
