@@ -35,11 +35,15 @@ FEW = 2000
 
 # What a row is a multiple of where it is not the loop in C of the first row.
 IN_TURN = f"C, {MEMBERS} members in turn"
+LOGS = 100
+OF_LOGS = f"simulate_ensemble, {LOGS}, x and v"
+BAM = "better-actuator-models"
 UNITS = {f"Motor.simulate, {law}": f"C, {law}" for law in ("lugre", "dahl")} | {
     f"{who}, {MEMBERS}, {cores}": IN_TURN
     for who in ("simulate_ensemble", "numba prange")
     for cores in ("one core", "two cores")
 }
+UNITS[f"{BAM}, {LOGS} batched"] = OF_LOGS
 
 Run = Callable[[], None]
 
@@ -135,9 +139,9 @@ def in_numba() -> tuple[Run, int]:
     return lambda: _drop(numba_loops.hsieh_pan(effort, x, v)), SAMPLES
 
 
-def many_efforts() -> np.ndarray:
+def many_efforts(members: int = MEMBERS) -> np.ndarray:
     """Those of an ensemble: the same at sizes from 0.85 to 1.15, so that events come apart."""
-    return np.linspace(0.85, 1.15, MEMBERS)[:, None] * efforts()
+    return np.linspace(0.85, 1.15, members)[:, None] * efforts()
 
 
 def many_in_c(folder: Path) -> tuple[Run, int]:
@@ -166,6 +170,15 @@ def many_own(threads: int) -> tuple[Run, int]:
         st.simulate_ensemble(motor, rows, DT, reduce="rms", threads=threads)
 
     return run, SAMPLES * MEMBERS
+
+
+def own_logs() -> tuple[Run, int]:
+    """`simulate_ensemble` of as many as the batch of `bam`, every position and velocity kept."""
+    motor = st.Motor(0.0076, friction=st.FrictionModel("hsieh_pan", breakaway=0.5))
+    rows = many_efforts(LOGS)[:, :FEW]
+    shown = ("position", "velocity")
+    work = lambda: st.simulate_ensemble(motor, rows, DT, outputs=shown, threads=1)  # noqa: E731
+    return lambda: _drop(work()), FEW * LOGS
 
 
 def many_in_numba(threads: int) -> tuple[Run, int]:
@@ -221,13 +234,15 @@ def by_mujoco(kind: str) -> tuple[Run, int]:
     return lambda: mujoco.mj_step(model, data, nstep=FEW), FEW
 
 
-def bam(python: str, repeats: int) -> list[float]:
-    """Nanoseconds a step of the simulator of better-actuator-models, in a Python of its own."""
-    script = [python, str(HERE / "bam_rollout.py"), str(repeats)]
+def bam(python: str, repeats: int) -> dict[str, list[float]]:
+    """Nanoseconds a step of a log of better-actuator-models, in a Python of its own."""
+    # -E: what is on the path of this Python is not on that of the other.
+    script = [python, "-E", str(HERE / "bam_rollout.py"), str(repeats)]
     done = subprocess.run(script, capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError((done.stderr.strip().splitlines() or ["failed"])[-1])
-    return [1e9 * s for s in json.loads(done.stdout.splitlines()[-1])["seconds"]]
+    found = json.loads(done.stdout.splitlines()[-1])["seconds"]
+    return {name: [1e9 * s for s in each] for name, each in found.items()}
 
 
 def contestants(folder: Path) -> tuple[dict[str, tuple[Run, int]], dict[str, str]]:
@@ -248,6 +263,7 @@ def contestants(folder: Path) -> tuple[dict[str, tuple[Run, int]], dict[str, str
         IN_TURN: lambda: many_in_c(folder),
         f"simulate_ensemble, {MEMBERS}, one core": lambda: many_own(1),
         f"simulate_ensemble, {MEMBERS}, two cores": lambda: many_own(2),
+        OF_LOGS: own_logs,
         f"numba prange, {MEMBERS}, one core": lambda: many_in_numba(1),
         f"numba prange, {MEMBERS}, two cores": lambda: many_in_numba(2),
         "SciPy LSODA (LuGre)": lambda: by_scipy("LSODA"),
@@ -297,13 +313,14 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         ready, missing = contestants(Path(folder))
         times = measured(ready, chosen.repeats)
-    name = "better-actuator-models"
     try:
         if chosen.bam_python is None:
             raise RuntimeError("no --bam-python: it needs a Python 3.12 of its own")
-        times[name] = bam(chosen.bam_python, chosen.repeats)
+        rollouts = bam(chosen.bam_python, chosen.repeats)
+        times[f"{BAM}, one log"] = rollouts["one"]
+        times[f"{BAM}, {LOGS} batched"] = rollouts["batched"]
     except (RuntimeError, OSError) as problem:
-        missing[name] = str(problem)
+        missing[BAM] = str(problem)
     usual = "C" if "C" in times else "Motor.simulate, x and v reused"
     print(f"{'':38}{'ns a sample':>12}{'against C':>12}{'spread':>18}")
     rows = {}

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use crate::error::{Error, Result};
-use crate::friction::Law;
+use crate::friction::{Law, Statistics};
 use crate::lanes::{self, Job, Width};
 use crate::model::LawSpec;
 use crate::motor::{Column, EffectSpec, Motor, MotorSpec, PerSample, Running, Surroundings};
@@ -162,6 +162,11 @@ impl Ensemble {
     /// The motor that all of them are copies of.
     pub fn spec(&self) -> &MotorSpec {
         &self.spec
+    }
+
+    /// Branch counters of each member.
+    pub fn statistics(&self) -> impl Iterator<Item = Statistics> {
+        self.members.iter().map(Running::statistics)
     }
 
     /// Number of members.

@@ -2,7 +2,7 @@
 #![allow(missing_docs)]
 
 use stiction_core::ensemble::{Changes, Ensemble, Inputs, Keep, Plan, Rows};
-use stiction_core::friction::{LAWS, law_record};
+use stiction_core::friction::{LAWS, Statistics, law_record};
 use stiction_core::lanes::Width;
 use stiction_core::model::LawSpec;
 use stiction_core::motor::{Column, Motor, MotorSpec, PerSample, Surroundings};
@@ -163,7 +163,56 @@ fn what_is_kept_is_made_of_the_same_samples() {
 }
 
 #[test]
+fn lighter_laws_do_the_same_side_by_side_with_other_values() {
+    agrees(&motor("dahl", &[("viscous", 0.05), ("coulomb", 0.2)]), 5e-4);
+    agrees(&motor("dahl", &[("exponent", 1.0)]), 2e-4);
+    agrees(&motor("coulomb", &[("coulomb", 0.4), ("viscous", 0.05)]), 5e-4);
+    agrees(&motor("coulomb", &[("coulomb", 0.1), ("stribeck_velocity", 0.02)]), 2e-4);
+    agrees(&motor("coulomb", &[("stribeck_exponent", 1.0)]), 2e-4);
+    agrees(&motor("lugre", &[("coulomb", 0.4), ("viscous", 0.05)]), 5e-4);
+    agrees(&motor("lugre", &[("damping", 0.0), ("stribeck_velocity", 0.02)]), 2e-4);
+    agrees(&motor("lugre", &[("damping_velocity", 0.1)]), 2e-4);
+}
+
+#[test]
+fn states_and_counters_end_the_same_side_by_side() {
+    for law in ["coulomb", "dahl", "hsieh_pan", "lugre"] {
+        let motor = motor(law, &[]);
+        let (masses, inputs) = (masses(), inputs());
+        let paths = ["body.inertia".to_owned()];
+        let changes = Changes { paths: &paths, values: &masses };
+        let ends = |wide: bool| {
+            // Columns of the law's own states, of every sample, are a matter of each motor alone.
+            let names = law_record(law).unwrap().outputs;
+            let mut ensemble = Ensemble::new(&motor, MEMBERS, changes).unwrap();
+            let plan = Plan {
+                samples: SAMPLES,
+                inputs: Inputs::Each(&inputs),
+                loads: Rows::Same(0.01),
+                dt: PerSample::Same(2e-4),
+                keep: if wide { Keep::Last } else { Keep::Every(SAMPLES) },
+                threads: 1,
+                width: Width::widest(),
+            };
+            let mut kept = vec![vec![0.0; MEMBERS]; names.len()];
+            let mut columns: Vec<_> = kept
+                .iter_mut()
+                .enumerate()
+                .map(|(k, values)| (Column::Law(k), values.as_mut_slice()))
+                .collect();
+            ensemble.run(&plan, &mut columns).unwrap();
+            // How often memory made room depends on how many steps were asked for at a time.
+            let alike = |counted| Statistics { memory_growths: 0, ..counted };
+            (kept, ensemble.statistics().map(alike).collect::<Vec<_>>())
+        };
+        assert_eq!(ends(true), ends(false), "{law}");
+    }
+}
+
+#[test]
 fn motors_without_effects_go_side_by_side() {
-    assert!(motor("hsieh_pan", &[]).running().law.goes_abreast());
+    for law in ["coulomb", "dahl", "hsieh_pan", "lugre"] {
+        assert!(motor(law, &[]).running().law.goes_abreast(), "{law}");
+    }
     assert!(!motor("hsieh_pan", &[("hardening_exponent", 1.7)]).running().law.goes_abreast());
 }

@@ -6,6 +6,8 @@
 
 #![deny(unsafe_op_in_unsafe_fn)]
 
+use std::sync::atomic::{AtomicU8, Ordering};
+
 /// Vectors to compile for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Width {
@@ -17,6 +19,9 @@ pub enum Width {
     Eight,
 }
 
+/// The widest that may be chosen.
+static MOST: AtomicU8 = AtomicU8::new(Width::Eight as u8);
+
 /// A loop; mark `run` as `#[inline(always)]`, or it is compiled for the baseline alone.
 pub trait Task {
     /// What it returns.
@@ -26,12 +31,19 @@ pub trait Task {
 }
 
 impl Width {
-    /// The widest that this processor has.
+    /// The widest that this processor has, of those that [`Self::limit`] allows.
     pub fn widest() -> Self {
+        let most = MOST.load(Ordering::Relaxed);
         [Self::Eight, Self::Four]
             .into_iter()
-            .find(|width| width.is_there())
+            .find(|width| *width as u8 <= most && width.is_there())
             .unwrap_or(Self::Baseline)
+    }
+
+    /// From now on nothing wider than this is [`Self::widest`], in the whole process: for those who
+    /// compare what comes out at each width.
+    pub fn limit(self) {
+        MOST.store(self as u8, Ordering::Relaxed);
     }
 
     /// Whether this processor has it.
@@ -81,6 +93,19 @@ fn eight<T: Task>(task: T) -> T::Output {
 #[target_feature(enable = "avx2")]
 fn four<T: Task>(task: T) -> T::Output {
     task.run()
+}
+
+/// Asks for the cache line of a number that is read soon. A hint: it changes nothing but time.
+#[inline(always)]
+pub fn fetch(ahead: &f64) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: the address is that of a number, and a hint neither reads nor writes it.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(ahead).cast()) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = ahead;
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Dry friction with true stick, viscous friction and, as an option, a Stribeck fall.
 
+mod abreast;
+
 use super::elements::rigid::{Rigid, held};
 use super::elements::stribeck::{check_levels, fall, steepest};
 use super::{
@@ -7,6 +9,7 @@ use super::{
     Statistics,
 };
 use crate::error::Result;
+use crate::lanes::{self, Abreast};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::{Scalar, sign};
@@ -188,6 +191,10 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
     #[inline]
     fn commit(&self, state: &mut CoulombState<S>, trial: &CoulombTrial<S>) {
         state.0.accept(trial.mode, trial.outcome.force);
+    }
+
+    fn abreast(&self) -> Option<Abreast<S, Self>> {
+        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
     }
 
     #[inline]

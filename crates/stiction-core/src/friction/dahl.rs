@@ -1,11 +1,14 @@
 //! Dahl's curve of any exponent, solved in closed form over a displacement.
 
+mod abreast;
+
 use super::elements::reachable::reachable;
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::Result;
 use crate::integrate::{Glide, Seen, glide_on};
+use crate::lanes::{self, Abreast};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::{Scalar, logarithmic_mean, sign};
@@ -214,6 +217,10 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
         glide: &mut Glide<S, E, V>,
     ) {
         glide_on(self, state, glide);
+    }
+
+    fn abreast(&self) -> Option<Abreast<S, Self>> {
+        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
     }
 
     // Where the body stays, so does the force.

@@ -1,11 +1,14 @@
 //! The LuGre model: bristles that slip more, the further they are bent.
 
+mod abreast;
+
 use super::elements::bristle::{self, Bent, Bristle, BristleState, BristleTrial, Slip};
 use super::elements::lag::follow;
 use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
 use crate::error::Result;
 use crate::integrate::{Glide, Seen};
+use crate::lanes::{self, Abreast};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::{Scalar, sign};
@@ -224,6 +227,10 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
             from = bristle.level.at(arrived);
             glide.accept(displacement, arrived, force + damping * (arrived - velocity), state);
         }
+    }
+
+    fn abreast(&self) -> Option<Abreast<S, Self>> {
+        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
     }
 
     // Where the body stays, so does the force.

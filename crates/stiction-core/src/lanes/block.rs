@@ -7,6 +7,16 @@ use crate::scalar::Scalar;
 /// Lanes of a block: one vector of the widest processors, two or four of others.
 pub const WIDTH: usize = 8;
 
+/// One number where `taken`, else the other.
+///
+/// By bits: a choice would become a load from either place, or a store under a mask, on which the
+/// next load has to wait.
+#[inline(always)]
+pub fn pick(taken: bool, new: f64, old: f64) -> f64 {
+    let mask = u64::from(taken).wrapping_neg();
+    f64::from_bits((new.to_bits() & mask) | (old.to_bits() & !mask))
+}
+
 /// One number for each lane.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
@@ -19,16 +29,14 @@ impl Row {
     /// Replaces the number of a lane where `taken`.
     #[inline(always)]
     pub fn take(&mut self, lane: usize, taken: bool, new: f64) {
-        // By bits: a choice would become a store under a mask, on which the next load has to wait.
-        let mask = u64::from(taken).wrapping_neg();
-        let old = self.0[lane].to_bits();
-        self.0[lane] = f64::from_bits((new.to_bits() & mask) | (old & !mask));
+        self.0[lane] = pick(taken, new, self.0[lane]);
     }
 
     /// Adds to the number of a lane where `taken`.
     #[inline(always)]
     pub fn add(&mut self, lane: usize, taken: bool, more: f64) {
-        self.take(lane, taken, self.0[lane] + more);
+        // −0 changes no number: a sum for all is written whole, and the next load need not wait.
+        self.0[lane] += pick(taken, more, -0.0);
     }
 }
 
@@ -63,6 +71,8 @@ pub struct Bodies {
     pub lever: Row,
     /// 1 where the last step was not plain, so that the lane did not take it.
     pub missed: [u64; WIDTH],
+    /// Not 0 where the contact has more to note of the last step than rows do.
+    pub changed: [u64; WIDTH],
     /// All bits where there is a body.
     pub alive: [u64; WIDTH],
 }
@@ -85,6 +95,7 @@ impl Bodies {
             pace: zero,
             lever: zero,
             missed: [0; WIDTH],
+            changed: [0; WIDTH],
             alive: [0; WIDTH],
         }
     }
@@ -122,11 +133,34 @@ impl Bodies {
         run.time = S::constant(self.time.0[lane]);
     }
 
+    /// [`Verlet::depart`] of a lane.
+    #[inline(always)]
+    pub fn depart(&self, lane: usize, net: f64) -> (f64, f64) {
+        let velocity = self.velocity.0[lane];
+        let displacement = self.span.0[lane] * velocity + self.lever.0[lane] * net;
+        (displacement, velocity + self.pace.0[lane] * net)
+    }
+
+    /// [`Verlet::arrive`] of a lane.
+    #[inline(always)]
+    pub fn arrive(&self, lane: usize, both: f64, damping: f64, undamped: f64) -> f64 {
+        let (inertia, half) = (self.inertia.0[lane], self.half.0[lane]);
+        let share = 1.0 / (inertia + half * damping);
+        (inertia * self.velocity.0[lane] + half * both) * share - half * share * undamped
+    }
+
     /// Whether the last step was not plain for some lane.
     #[inline(always)]
     pub fn misses(&self) -> bool {
         let lanes = self.missed.iter().zip(&self.alive);
         lanes.fold(0, |any, (missed, alive)| any | (missed & alive)) != 0
+    }
+
+    /// Whether the last step left some contact more to note than rows do.
+    #[inline(always)]
+    pub fn changes(&self) -> bool {
+        let lanes = self.changed.iter().zip(&self.alive);
+        lanes.fold(0, |any, (changed, alive)| any | (changed & alive)) != 0
     }
 
     /// Moves a lane on where `plain`, see `Glide::accept`.
@@ -156,7 +190,21 @@ pub trait Contacts<S: Scalar, L: FrictionLaw<S>>: Clone + Default {
     fn load(&mut self, lane: usize, law: &L, state: &L::State);
     /// Puts the state of a lane back.
     fn store(&self, lane: usize, state: &mut L::State);
-    /// Takes a step of all lanes under their efforts; those that it is not plain for stay where they
-    /// are and say so in `missed`. Compiled for several widths: mark it as `#[inline(always)]`.
-    fn step(&mut self, bodies: &mut Bodies);
+    /// Notes what a step of a lane has changed besides its rows, by what it left in
+    /// [`Bodies::changed`].
+    fn note(&mut self, _lane: usize, _what: u64, _law: &L, _state: &mut L::State) {}
+    /// Takes a step of all lanes of some blocks under their efforts; those that it is not plain for stay
+    /// where they are and say so in `missed`. Compiled for several widths: mark it as
+    /// `#[inline(always)]`. A processor looks a few hundred operations ahead, which is one block: what
+    /// takes as many stage by stage shares the waiting among them.
+    fn step<const N: usize>(blocks: &mut [Block<Self>; N]);
+}
+
+/// [`WIDTH`] motors.
+#[derive(Debug, Clone)]
+pub struct Block<C> {
+    /// Their bodies.
+    pub bodies: Bodies,
+    /// Their contacts.
+    pub contacts: C,
 }

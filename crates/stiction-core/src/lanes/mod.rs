@@ -2,9 +2,9 @@
 //! one loop.
 //!
 //! A law offers such a loop through [`FrictionLaw::abreast`]: its [`Contacts`] keep what runs from
-//! step to step of [`WIDTH`] contacts in rows and take a step of all of them without a choice. A
-//! lane whose step is not plain (the spring turns round, a mode changes) is left where it is, and
-//! takes that step alone, as a motor on its own would.
+//! step to step of [`WIDTH`] contacts in rows and take a step of all of them without a choice. What
+//! does not fit into rows (a point of a memory) is noted lane by lane. A lane whose step a law leaves out
+//! (a mode changes) stays where it is, and takes that step alone, as a motor on its own would.
 //!
 //! The equations are those of [`crate::integrate`], operation by operation, and no product is fused
 //! with a sum: results are the same to the bit as those of each motor alone, for any number of
@@ -18,7 +18,7 @@ mod team;
 
 pub use stiction_dispatch::Width;
 
-pub use block::{Bodies, Contacts, Row, WIDTH};
+pub use block::{Block, Bodies, Contacts, Row, WIDTH, pick};
 pub use team::{Job, LEAST, Member, Motor, Team};
 
 use crate::friction::FrictionLaw;

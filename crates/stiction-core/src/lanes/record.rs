@@ -4,7 +4,7 @@ use super::block::{Bodies, Row};
 use crate::motor::Column;
 
 /// Samples between two looks at what was recorded.
-pub const SAMPLES: usize = 32;
+pub const SAMPLES: usize = 64;
 
 /// Columns of the last few samples, lane by lane.
 #[derive(Debug)]

@@ -1,5 +1,9 @@
 //! Efforts of a team, a few samples ahead.
 
+use std::array::from_fn;
+
+use stiction_dispatch::{Task, fetch};
+
 use super::block::{Row, WIDTH};
 use super::record::SAMPLES;
 use super::team::Member;
@@ -10,6 +14,7 @@ use crate::scalar::Scalar;
 
 /// The drives of a team and what they are about to do.
 pub struct Supply {
+    members: Vec<usize>,
     gains: Vec<Row>,
     limits: Vec<Row>,
     weights: Vec<Row>,
@@ -30,7 +35,8 @@ impl Supply {
             limits[k / WIDTH].0[k % WIDTH] = limit;
             weights[k / WIDTH].0[k % WIDTH] = weight;
         }
-        Self { gains, limits, weights, efforts: many.clone(), loads: many }
+        let members = members.iter().map(|member| member.number).collect();
+        Self { members, gains, limits, weights, efforts: many.clone(), loads: many }
     }
 
     /// Efforts of each block in each sample.
@@ -38,48 +44,84 @@ impl Supply {
         &self.efforts
     }
 
+    /// Numbers of the members.
+    pub fn members(&self) -> &[usize] {
+        &self.members
+    }
+
     /// Works out the efforts of some samples.
-    pub fn fill(
-        &mut self,
-        plan: &Plan<'_>,
-        members: impl Iterator<Item = usize> + Clone,
-        first: usize,
-        length: usize,
-    ) {
-        let blocks = self.gains.len();
+    pub fn fill(&mut self, plan: &Plan<'_>, first: usize, length: usize) {
+        plan.width.run(Fill { supply: self, plan, first, length });
+    }
+}
+
+/// Efforts of some samples, as a loop to run.
+struct Fill<'a> {
+    supply: &'a mut Supply,
+    plan: &'a Plan<'a>,
+    first: usize,
+    length: usize,
+}
+
+impl Task for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { supply, plan, first, length } = self;
+        let Supply { members, gains, limits, weights, efforts, loads } = supply;
         let inputs = match plan.inputs {
             Inputs::Shared(values) => Rows::Shared(values),
             Inputs::Each(values) => Rows::Each(values),
         };
-        spread(&mut self.efforts, inputs, plan.samples, members.clone(), (first, length, blocks));
-        spread(&mut self.loads, plan.loads, plan.samples, members, (first, length, blocks));
-        for sample in 0..length {
-            for block in 0..blocks {
-                let place = sample * blocks + block;
-                let (input, load) = (self.efforts[place], self.loads[place]);
-                let (gain, limit, weight) =
-                    (self.gains[block], self.limits[block], self.weights[block]);
-                let mut effort = Row::ZERO;
-                for lane in 0..WIDTH {
-                    let (input, limit) = (input.0[lane], limit.0[lane]);
-                    let low = if input < -limit { -limit } else { input };
-                    let within = if input > limit { limit } else { low };
-                    effort.0[lane] = gain.0[lane] * within + (0.0 + load.0[lane]) + weight.0[lane];
+        spread(efforts, inputs, plan.samples, members, (first, length));
+        let drives = || gains.iter().zip(&*limits).zip(&*weights);
+        let samples = efforts.chunks_exact_mut(gains.len()).take(length);
+        if let Rows::Same(load) = plan.loads {
+            for efforts in samples {
+                for (effort, ((gain, limit), weight)) in efforts.iter_mut().zip(drives()) {
+                    *effort = driven(*effort, Row([load; WIDTH]), (*gain, *limit, *weight));
                 }
-                self.efforts[place] = effort;
+            }
+            return;
+        }
+        spread(loads, plan.loads, plan.samples, members, (first, length));
+        for (efforts, loads) in samples.zip(loads.chunks_exact(gains.len())) {
+            for ((effort, load), ((gain, limit), weight)) in
+                efforts.iter_mut().zip(loads).zip(drives())
+            {
+                *effort = driven(*effort, *load, (*gain, *limit, *weight));
             }
         }
     }
 }
 
+/// Efforts of some lanes. Copies, so that nobody has to ask whether they overlap.
+#[inline(always)]
+fn driven(input: Row, load: Row, (gain, limit, weight): (Row, Row, Row)) -> Row {
+    let mut effort = Row::ZERO;
+    for lane in 0..WIDTH {
+        let (input, limit) = (input.0[lane], limit.0[lane]);
+        let low = if input < -limit { -limit } else { input };
+        let within = if input > limit { limit } else { low };
+        effort.0[lane] = gain.0[lane] * within + (0.0 + load.0[lane]) + weight.0[lane];
+    }
+    effort
+}
+
+/// Samples that are put across lanes at a time: as many as are side by side in the caches.
+const TILE: usize = 8;
+
 /// Numbers of some samples, lane by lane.
+#[inline(always)]
 pub fn spread(
     rows: &mut [Row],
     numbers: Rows<'_>,
     samples: usize,
-    members: impl Iterator<Item = usize>,
-    (first, length, blocks): (usize, usize, usize),
+    members: &[usize],
+    (first, length): (usize, usize),
 ) {
+    let blocks = members.len().div_ceil(WIDTH);
     match numbers {
         Rows::Same(value) => rows[..length * blocks].fill(Row([value; WIDTH])),
         Rows::Shared(values) => {
@@ -89,11 +131,27 @@ pub fn spread(
             }
         }
         Rows::Each(values) => {
-            for (k, member) in members.enumerate() {
-                let begin = member * samples + first;
-                let given = &values[begin..begin + length];
-                for (rows, value) in rows.chunks_exact_mut(blocks).zip(given) {
-                    rows[k / WIDTH].0[k % WIDTH] = *value;
+            for (block, members) in members.chunks(WIDTH).enumerate() {
+                // Each member has its own place in memory, too short a way for the processor to see.
+                for member in members {
+                    let ahead = &values[member * samples + first + length..(member + 1) * samples];
+                    ahead.iter().take(SAMPLES).step_by(TILE).for_each(fetch);
+                }
+                // Lanes that are left over see what the first one sees.
+                let given: [_; WIDTH] = from_fn(|lane| {
+                    let member = members.get(lane).unwrap_or(&members[0]);
+                    values[member * samples + first..][..length].as_chunks::<TILE>()
+                });
+                for tile in 0..length / TILE {
+                    let tiles: [&[f64; TILE]; WIDTH] = given.map(|(tiles, _)| &tiles[tile]);
+                    for k in 0..TILE {
+                        let row = Row(tiles.map(|values| values[k]));
+                        rows[(tile * TILE + k) * blocks + block] = row;
+                    }
+                }
+                for k in 0..length % TILE {
+                    let row = Row(given.map(|(_, rest)| rest[k]));
+                    rows[(length - length % TILE + k) * blocks + block] = row;
                 }
             }
         }

@@ -1,10 +1,12 @@
 //! What is reduced on the way.
 
+use stiction_dispatch::Task;
+
 use super::block::{Row, WIDTH};
 use super::record::{Record, SAMPLES};
 use super::supply::spread;
 use super::team::{Job, Team};
-use crate::ensemble::Keep;
+use crate::ensemble::{Keep, Rows};
 use crate::friction::FrictionLaw;
 use crate::motor::Column;
 use crate::scalar::Scalar;
@@ -24,7 +26,10 @@ impl Tally {
             Keep::Extremes => [Row([f64::INFINITY; WIDTH]), Row([f64::NEG_INFINITY; WIDTH])],
             Keep::Every(_) | Keep::Last | Keep::Rms(_) => [Row::ZERO; 2],
         };
-        let targets = vec![Row::ZERO; SAMPLES * blocks];
+        let targets = match job.plan.keep {
+            Keep::Rms(Rows::Same(target)) => vec![Row([target; WIDTH])],
+            _ => vec![Row::ZERO; SAMPLES * blocks],
+        };
         Self { blocks, kept: vec![nothing; job.kinds.len() * blocks], targets }
     }
 
@@ -33,54 +38,87 @@ impl Tally {
         self.kept[column * self.blocks + member / WIDTH].map(|row| row.0[member % WIDTH])
     }
 
-    /// Takes in what was recorded of some samples.
+    /// Takes in what was recorded of some samples of these members.
     pub fn add<S: Scalar, L: FrictionLaw<S>>(
         &mut self,
         team: &Team<'_, S, L>,
         record: &Record,
-        first: usize,
-        length: usize,
+        members: &[usize],
+        (first, length): (usize, usize),
     ) {
-        let (blocks, plan) = (self.blocks, team.job.plan);
-        let squares = match plan.keep {
-            Keep::Rms(target) => {
-                let numbers = team.members.iter().map(|member| member.number);
-                let part = (first, length, blocks);
-                spread(&mut self.targets, target, plan.samples, numbers, part);
-                true
-            }
-            Keep::Extremes => false,
-            Keep::Every(_) | Keep::Last => return,
-        };
+        if matches!(team.job.plan.keep, Keep::Rms(_) | Keep::Extremes) {
+            team.job.plan.width.run(Add { tally: self, team, record, members, first, length });
+        }
+    }
+}
+
+/// Taking in some samples, as a loop to run.
+struct Add<'a, S: Scalar, L: FrictionLaw<S>> {
+    tally: &'a mut Tally,
+    team: &'a Team<'a, S, L>,
+    record: &'a Record,
+    members: &'a [usize],
+    first: usize,
+    length: usize,
+}
+
+impl<S: Scalar, L: FrictionLaw<S>> Task for Add<'_, S, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { tally, team, record, members, first, length } = self;
+        let (blocks, plan) = (tally.blocks, team.job.plan);
+        let squares = matches!(plan.keep, Keep::Rms(_));
+        // The same for all is there since the start.
+        if let Keep::Rms(target @ (Rows::Shared(_) | Rows::Each(_))) = plan.keep {
+            spread(&mut tally.targets, target, plan.samples, members, (first, length));
+        }
         for (column, kind) in team.job.kinds.iter().enumerate() {
-            let rows = record.of(*kind);
             for block in 0..blocks {
-                let [mut first, mut second] = self.kept[column * blocks + block];
-                for sample in 0..length {
-                    let place = sample * blocks + block;
-                    let mut seen = rows[place];
-                    if *kind == Column::Measured {
-                        for (lane, value) in seen.0.iter_mut().enumerate() {
-                            let Some(member) = team.members.get(block * WIDTH + lane) else {
-                                break;
-                            };
+                let kept = &mut tally.kept[column * blocks + block];
+                let targets = tally.targets.iter().skip(block % tally.targets.len());
+                let targets = targets.step_by(blocks).cycle();
+                let rows = record.of(*kind).iter().skip(block).step_by(blocks).take(length);
+                if *kind == Column::Measured {
+                    let members = team.members.iter().skip(block * WIDTH);
+                    let read = rows.map(|row| {
+                        let mut row = *row;
+                        for (value, member) in row.0.iter_mut().zip(members.clone()) {
                             *value = member.machine.measured(*value);
                         }
-                    }
-                    let target = self.targets[place];
-                    for lane in 0..WIDTH {
-                        let value = seen.0[lane];
-                        if squares {
-                            let beside = value - target.0[lane];
-                            first.0[lane] += beside * beside;
-                        } else {
-                            first.0[lane] = first.0[lane].min(value);
-                            second.0[lane] = second.0[lane].max(value);
-                        }
-                    }
+                        row
+                    });
+                    *kept = taken_in(*kept, read.zip(targets), squares);
+                } else {
+                    *kept = taken_in(*kept, rows.copied().zip(targets), squares);
                 }
-                self.kept[column * blocks + block] = [first, second];
             }
         }
     }
+}
+
+/// What is kept, with these values in it. Copies, so that they stay in registers.
+#[inline(always)]
+fn taken_in<'a>(
+    [mut first, mut second]: [Row; 2],
+    samples: impl Iterator<Item = (Row, &'a Row)>,
+    squares: bool,
+) -> [Row; 2] {
+    if squares {
+        for (seen, target) in samples {
+            for lane in 0..WIDTH {
+                let beside = seen.0[lane] - target.0[lane];
+                first.0[lane] += beside * beside;
+            }
+        }
+    } else {
+        for (seen, _) in samples {
+            for lane in 0..WIDTH {
+                first.0[lane] = first.0[lane].min(seen.0[lane]);
+                second.0[lane] = second.0[lane].max(seen.0[lane]);
+            }
+        }
+    }
+    [first, second]
 }

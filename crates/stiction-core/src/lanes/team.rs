@@ -1,10 +1,11 @@
 //! Takes a team of motors with one law through its samples.
 
-use std::marker::PhantomData;
+use std::array::from_mut;
+use std::slice::from_ref;
 
 use stiction_dispatch::Task;
 
-use super::block::{Bodies, Contacts, Row, WIDTH};
+use super::block::{Block, Bodies, Contacts, Row, WIDTH};
 use super::record::{Record, SAMPLES};
 use super::supply::{Supply, load_of};
 use super::tally::Tally;
@@ -15,8 +16,8 @@ use crate::model::CHUNK;
 use crate::motor::{Column, PerSample, Running};
 use crate::scalar::Scalar;
 
-/// Members of a team at most: as many as keep a processor busy while each waits for its own step.
-const MOST: usize = 4 * WIDTH;
+/// Members of a team at most: two blocks share the waiting, and more leave the nearest cache.
+const MOST: usize = 2 * WIDTH;
 /// Members of a team at least: fewer are done sooner one after the other.
 pub const LEAST: usize = 3;
 
@@ -46,6 +47,18 @@ pub struct Member<'a, S: Scalar, L: FrictionLaw<S>> {
     pub run: &'a mut Run<S>,
     /// Where its columns go.
     pub own: Vec<&'a mut [f64]>,
+}
+
+impl<S: Scalar, L: FrictionLaw<S>> Member<'_, S, L> {
+    /// Room for what the next step may leave in the contact's memory.
+    #[inline]
+    fn make_room(&mut self, left: &mut usize) {
+        if *left == 0 {
+            *left = CHUNK;
+            self.state.make_room(CHUNK + CHUNK / 4);
+        }
+        *left -= 1;
+    }
 }
 
 /// Motors that go side by side, all with samples divided alike.
@@ -103,57 +116,67 @@ impl<'a> Job<'a> {
     }
 }
 
-/// [`WIDTH`] motors.
-#[derive(Debug, Clone)]
-struct Block<C> {
-    bodies: Bodies,
-    contacts: C,
-}
-
-/// Plain steps in a row; ends early after a step that was not plain for some lane.
-struct Stretch<'a, S, L, C> {
+/// The steps of some samples.
+struct Stretch<'a, 'b, S: Scalar, L: FrictionLaw<S>, C> {
+    team: &'a mut Team<'b, S, L>,
     blocks: &'a mut [Block<C>],
+    /// Steps that each contact has room for.
+    room: &'a mut [usize],
     /// Efforts of each block in each sample of this stretch.
     efforts: &'a [Row],
     record: &'a mut Record,
-    /// The first step, counted from the first sample, and the first beyond.
-    steps: std::ops::Range<usize>,
-    parts: usize,
-    law: PhantomData<(S, L)>,
+    /// The first sample.
+    first: usize,
 }
 
-impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Task for Stretch<'_, S, L, C> {
-    /// Steps that were taken, the last of them not plain for all unless they are all there were.
-    type Output = usize;
+impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Task for Stretch<'_, '_, S, L, C> {
+    type Output = ();
 
     #[inline(always)]
-    fn run(self) -> usize {
-        let Self { blocks, efforts, record, steps, parts, .. } = self;
-        let count = blocks.len();
-        let mut sample = steps.start / parts;
-        let mut part = steps.start % parts;
-        for step in steps.clone() {
-            part += 1;
-            let ends = part == parts;
-            let mut missed = false;
-            let place = sample * count;
-            let Some(row) = efforts.get(place..place + count) else { return step };
-            for (k, (block, efforts)) in blocks.iter_mut().zip(row).enumerate() {
-                block.bodies.effort = *efforts;
-                block.contacts.step(&mut block.bodies);
-                missed |= block.bodies.misses();
-                if ends {
-                    record.take(place + k, &block.bodies);
+    fn run(mut self) {
+        let (count, parts) = (self.blocks.len(), self.team.job.parts);
+        let blocks = std::mem::take(&mut self.blocks);
+        for (sample, row) in self.efforts.chunks_exact(count).enumerate() {
+            for part in 1..=parts {
+                let ends = part == parts;
+                let (pairs, rest) = blocks.as_chunks_mut::<2>();
+                for (k, (pair, efforts)) in pairs.iter_mut().zip(row.chunks_exact(2)).enumerate() {
+                    self.step(pair, efforts, (2 * k, sample, count), ends);
+                }
+                for (block, effort) in rest.iter_mut().zip(row.last()) {
+                    let efforts = from_ref(effort);
+                    self.step(from_mut(block), efforts, (count - 1, sample, count), ends);
                 }
             }
-            if missed {
-                return step + 1;
+        }
+    }
+}
+
+impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Stretch<'_, '_, S, L, C> {
+    /// A step of some blocks, of which this is the first.
+    #[inline(always)]
+    fn step<const N: usize>(
+        &mut self,
+        blocks: &mut [Block<C>; N],
+        efforts: &[Row],
+        (first, sample, count): (usize, usize, usize),
+        ends: bool,
+    ) {
+        for (block, effort) in blocks.iter_mut().zip(efforts) {
+            block.bodies.effort = *effort;
+        }
+        C::step(blocks);
+        for (k, block) in blocks.iter_mut().enumerate() {
+            if block.bodies.changes() {
+                self.team.note(first + k, block, self.room);
+            }
+            if block.bodies.misses() {
+                self.team.make_up(first + k, self.first + sample, block, self.room);
             }
             if ends {
-                (sample, part) = (sample + 1, 0);
+                self.record.take(sample * count + first + k, &block.bodies);
             }
         }
-        steps.end
     }
 }
 
@@ -163,7 +186,6 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
         let mut blocks = self.blocks::<C>();
         let count = blocks.len();
         let samples = self.job.plan.samples;
-        let parts = self.job.parts as usize;
         let mut record = Record::new(self.kept(), count);
         let mut supply = Supply::new(&self.members);
         let mut tally = Tally::new(self.job, count);
@@ -171,38 +193,17 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
         let mut first = 0;
         while first < samples {
             let length = SAMPLES.min(samples - first);
-            let numbers = self.members.iter().map(|member| member.number);
-            supply.fill(self.job.plan, numbers, first, length);
-            let mut at = 0;
-            while at < length * parts {
-                let stretch = Stretch {
-                    blocks: &mut blocks,
-                    efforts: supply.efforts(),
-                    record: &mut record,
-                    steps: at..length * parts,
-                    parts,
-                    law: PhantomData::<(S, L)>,
-                };
-                at = self.job.plan.width.run(stretch);
-                let sample = (at - 1) / parts;
-                let ends = at % parts == 0;
-                for (k, block) in blocks.iter_mut().enumerate() {
-                    if !block.bodies.misses() {
-                        continue;
-                    }
-                    for lane in 0..WIDTH {
-                        if block.bodies.missed[lane] != 0 {
-                            self.step_alone(k * WIDTH + lane, first + sample, block, &mut room);
-                        }
-                    }
-                    block.bodies.missed = [0; WIDTH];
-                    if ends {
-                        record.take(sample * count + k, &block.bodies);
-                    }
-                }
-            }
+            supply.fill(self.job.plan, first, length);
+            self.job.plan.width.run(Stretch {
+                team: self,
+                blocks: &mut blocks,
+                room: &mut room,
+                efforts: &supply.efforts()[..length * count],
+                record: &mut record,
+                first,
+            });
             self.show(&record, first, length, count);
-            tally.add(self, &record, first, length);
+            tally.add(self, &record, supply.members(), (first, length));
             first += length;
         }
         for (k, member) in self.members.iter_mut().enumerate() {
@@ -211,6 +212,35 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
             block.contacts.store(k % WIDTH, member.state);
         }
         self.end(&tally);
+    }
+
+    /// Notes what the last step of a block has changed in contacts.
+    #[inline(never)]
+    fn note<C: Contacts<S, L>>(&mut self, k: usize, block: &mut Block<C>, room: &mut [usize]) {
+        let members = self.members.iter_mut().zip(room).skip(k * WIDTH);
+        for (lane, (member, room)) in members.take(WIDTH).enumerate() {
+            let what = block.bodies.changed[lane];
+            if what != 0 {
+                member.make_room(room);
+                block.contacts.note(lane, what, member.law, member.state);
+            }
+        }
+    }
+
+    /// Takes the last step of a block for those that missed it.
+    #[inline(never)]
+    fn make_up<C: Contacts<S, L>>(
+        &mut self,
+        k: usize,
+        sample: usize,
+        block: &mut Block<C>,
+        room: &mut [usize],
+    ) {
+        for lane in 0..WIDTH {
+            if block.bodies.missed[lane] != 0 {
+                self.step_alone(k * WIDTH + lane, sample, block, room);
+            }
+        }
     }
 
     /// All motors in blocks; lanes that are left over do what the first motor does, unseen.
@@ -229,7 +259,6 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
     }
 
     /// One step of one motor with all that may happen in it.
-    #[inline(never)]
     fn step_alone<C: Contacts<S, L>>(
         &mut self,
         k: usize,
@@ -241,11 +270,7 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
         let lane = k % WIDTH;
         block.bodies.store(lane, member.run);
         block.contacts.store(lane, member.state);
-        if room[k] == 0 {
-            room[k] = CHUNK;
-            member.state.make_room(CHUNK + CHUNK / 4);
-        }
-        room[k] -= 1;
+        member.make_room(&mut room[k]);
         let (input, load) = applied(self.job.plan, member.number, sample);
         let (input, load) = (S::constant(input), S::constant(load));
         let span = S::constant(self.job.span());

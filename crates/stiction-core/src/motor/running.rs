@@ -5,7 +5,7 @@ use super::{MotorSpec, PerSample, Surroundings};
 use crate::drive::Way;
 use crate::error::{Error, Result};
 use crate::follow::arriving;
-use crate::friction::{AnyState, FrictionLaw, Law, LawState};
+use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
 use crate::integrate::{Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, parts, sample};
 use crate::model::CHUNK;
 use crate::scalar::Scalar;
@@ -37,6 +37,11 @@ pub struct Running<S: Scalar> {
 }
 
 impl<S: Scalar> Running<S> {
+    /// Branch counters of the contact.
+    pub fn statistics(&self) -> Statistics {
+        with_state!(&self.state, |state| state.statistics())
+    }
+
     /// At rest at 0, never moved.
     pub fn new(spec: &MotorSpec, values: &[S]) -> Self {
         let (machine, law) = spec.build(values);

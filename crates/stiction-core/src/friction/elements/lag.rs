@@ -1,6 +1,6 @@
 //! First-order following of a target that changes linearly.
 
-use crate::exponential::faded_of;
+use crate::exponential::{faded, faded_of};
 use crate::scalar::Scalar;
 
 /// What [`follow`] returns.
@@ -29,6 +29,14 @@ pub fn follow<S: Scalar>(y: S, from: S, to: S, z: S) -> Followed<S> {
         end_share,
         remainder,
     }
+}
+
+/// e^(−z), and the share of the target at the end: what [`follow`] is made of.
+#[inline(always)]
+pub fn shares(z: f64) -> (f64, f64) {
+    let gone = faded(-z);
+    let mean = if z < 1e-5 { -(z * 0.5 - 1.0) } else { gone / z };
+    (-(gone - 1.0), -(mean - 1.0))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 pub mod approach;
 pub mod arcsinh;
+pub mod bell;
 pub mod bond;
 pub mod bristle;
 pub mod contact_age;

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::friction::{Entry, EntryReader, Statistics};
+use crate::lanes::{Row, pick};
 use crate::scalar::sign;
 
 /// Share of F_c from which a contact counts as sliding.
@@ -42,6 +43,13 @@ impl Slides {
         next
     }
 
+    /// All of it as numbers.
+    fn numbers(&self) -> [f64; 5] {
+        let counts = [self.reversals, self.breakaways, self.sticks].map(|count| count as f64);
+        let [reversals, breakaways, sticks] = counts;
+        [self.mode, self.direction, reversals, breakaways, sticks]
+    }
+
     /// As branch counters.
     pub fn statistics(&self) -> Statistics {
         Statistics {
@@ -72,5 +80,54 @@ impl Slides {
             breakaways: read.count("breakaways")?,
             sticks: read.count("sticks")?,
         })
+    }
+}
+
+/// [`Slides`] of several contacts, one in each lane.
+#[derive(Debug, Clone, Default)]
+pub struct SlidesAbreast {
+    mode: Row,
+    direction: Row,
+    reversals: Row,
+    breakaways: Row,
+    sticks: Row,
+}
+
+impl SlidesAbreast {
+    /// Takes those of a contact.
+    pub fn load(&mut self, lane: usize, slides: &Slides) {
+        let [mode, direction, reversals, breakaways, sticks] = slides.numbers();
+        self.mode.0[lane] = mode;
+        self.direction.0[lane] = direction;
+        self.reversals.0[lane] = reversals;
+        self.breakaways.0[lane] = breakaways;
+        self.sticks.0[lane] = sticks;
+    }
+
+    /// Puts them back.
+    pub fn store(&self, lane: usize, slides: &mut Slides) {
+        let count = |row: &Row| row.0[lane] as u64;
+        *slides = Slides {
+            mode: self.mode.0[lane],
+            direction: self.direction.0[lane],
+            reversals: count(&self.reversals),
+            breakaways: count(&self.breakaways),
+            sticks: count(&self.sticks),
+        };
+    }
+
+    /// [`Slides::after`] of a lane, where `taken`.
+    #[inline(always)]
+    pub fn step(&mut self, lane: usize, taken: bool, velocity: f64, force: f64, coulomb: f64) {
+        let (mode, direction) = (self.mode.0[lane], self.direction.0[lane]);
+        let moving = sign(velocity);
+        self.reversals.add(lane, taken & (moving * direction < 0.0), 1.0);
+        self.direction.take(lane, taken & (moving != 0.0), moving);
+        let sticks = (mode != 0.0) & (force * mode < STICKS * coulomb);
+        let mode = pick(sticks, 0.0, mode);
+        let slides = (mode == 0.0) & (force.abs() >= SLIDES * coulomb);
+        self.mode.take(lane, taken, pick(slides, sign(force), mode));
+        self.sticks.add(lane, taken & sticks, 1.0);
+        self.breakaways.add(lane, taken & slides, 1.0);
     }
 }

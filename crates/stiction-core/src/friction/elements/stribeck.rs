@@ -54,6 +54,12 @@ impl<S: Scalar> SlidingLevel<S> {
         (self.coulomb + self.excess * left, self.excess * steepness)
     }
 
+    /// F_c, F_s − F_c and v_s where the fall is a bell, or where there is none.
+    pub fn bell(&self) -> Option<[f64; 3]> {
+        let bell = !self.falls || self.exponent.re() == 2.0;
+        bell.then(|| [self.coulomb, self.excess, self.velocity].map(Scalar::re))
+    }
+
     /// F_s, the greatest.
     pub fn greatest(&self) -> S {
         self.coulomb + self.excess

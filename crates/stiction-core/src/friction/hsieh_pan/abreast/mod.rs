@@ -1,0 +1,230 @@
+//! Plain steps of eight contacts at once: what [`FrictionLaw::glide`] does, without a choice.
+//!
+//! Sticking and sliding lanes go through a pass each, which is left out where a block has none.
+
+mod slide;
+mod stick;
+
+use std::array::from_mut;
+
+use super::{HsiehPan, HsiehPanState};
+use crate::friction::elements::memory::ReversePoint;
+use crate::friction::elements::spring::{Loading, SpringState};
+use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH};
+use crate::scalar::Scalar;
+
+use slide::slide;
+use stick::stick;
+
+/// Contacts of [`HsiehPan`] whose limit of hardening is a square, whose level falls as a bell and
+/// whose damper sits beside the spring.
+#[derive(Debug, Clone, Default)]
+#[repr(align(64))]
+pub struct Lanes {
+    /// 0 sticks, ±1 slides.
+    mode: Row,
+    /// Force of spring and series.
+    force: Row,
+    position: Row,
+    slope: Row,
+    steps: Row,
+    plastic: Row,
+    hardening: Row,
+    /// Of the branch: its direction and the share of d_0 that a displacement is.
+    direction: Row,
+    per_displacement: Row,
+    /// 1 on the first loading, and where the first loop closes at the mirror of its reverse point.
+    first: Row,
+    mirrors: Row,
+    present: Course,
+    /// The branch that goes on where the present one closes.
+    older: Course,
+    /// Of the curve: k_0 − k_inf, that times d_0, and 1/d_0.
+    fading: Row,
+    faded_force: Row,
+    inverse_distance: Row,
+    initial_stiffness: Row,
+    final_stiffness: Row,
+    /// Creep: α, c, 2·c and α·h.
+    rate: Row,
+    coefficient: Row,
+    twice_coefficient: Row,
+    progress: Row,
+    damping: Row,
+    /// 1/(J + h/2·C_s) and h/2 of that.
+    share: Row,
+    braking: Row,
+    greatest: Row,
+    /// Of the slide.
+    coulomb: Row,
+    excess: Row,
+    per_velocity: Row,
+    viscous: Row,
+    per_distance: Row,
+    /// ℓ·k_inf.
+    least: Row,
+    sticks: bool,
+    slides: bool,
+}
+
+/// Branches, one in each lane.
+#[derive(Debug, Clone, Default)]
+struct Course {
+    /// Where each begins, the way along it per displacement and the force per force on it.
+    origin: Row,
+    force: Row,
+    stretch: Row,
+    scale: Row,
+    /// Where it closes.
+    target: Row,
+}
+
+impl Course {
+    /// Takes the branch of a spring that moves in this direction with these points remembered.
+    fn take(&mut self, lane: usize, points: &[ReversePoint<f64>], mirrors: bool, direction: f64) {
+        let never = f64::INFINITY * direction;
+        let (origin, target) = match points {
+            [] => (ReversePoint { position: 0.0, force: 0.0 }, never),
+            [only] => (*only, if mirrors { -only.position } else { never }),
+            [.., older, anchor] => (*anchor, older.position),
+        };
+        let twice = points.is_empty() && mirrors;
+        self.origin.0[lane] = origin.position;
+        self.force.0[lane] = origin.force;
+        self.stretch.0[lane] = if twice { 2.0 * direction } else { direction };
+        self.scale.0[lane] = if twice { 0.5 * direction } else { direction };
+        self.target.0[lane] = target;
+    }
+}
+
+/// What [`Bodies::changed`] says of a spring.
+const TURNED: u64 = 1;
+const CLOSED: u64 = 2;
+
+/// Whether these contacts can go through plain steps abreast.
+pub fn fits<S: Scalar>(law: &HsiehPan<S>) -> bool {
+    let p = &law.parameters;
+    let bell = p.stribeck_exponent.re() == 2.0 || p.breakaway.re().is_infinite();
+    bell && law.plastic.is_square() && !law.damper_on_spring && !law.rated
+}
+
+impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
+    fn fit(&mut self, lane: usize, law: &HsiehPan<S>, bodies: &Bodies) {
+        let p = &law.parameters;
+        let damping = p.damping.re();
+        let half = bodies.half.0[lane];
+        let share = 1.0 / (bodies.inertia.0[lane] + half * damping);
+        let [_, fading, distance] = law.curve.numbers();
+        self.fading.0[lane] = fading;
+        self.faded_force.0[lane] = fading * distance;
+        self.inverse_distance.0[lane] = 1.0 / distance;
+        self.initial_stiffness.0[lane] = law.curve.initial_stiffness().re();
+        self.final_stiffness.0[lane] = p.final_stiffness.re();
+        self.rate.0[lane] = law.plastic.rate.re();
+        self.coefficient.0[lane] = law.plastic.coefficient.re();
+        self.twice_coefficient.0[lane] = law.plastic.coefficient.re() * 2.0;
+        self.progress.0[lane] = law.plastic.rate.re() * bodies.span.0[lane];
+        self.damping.0[lane] = damping;
+        self.share.0[lane] = share;
+        self.braking.0[lane] = half * share;
+        self.greatest.0[lane] = p.breakaway.re();
+        self.coulomb.0[lane] = p.coulomb.re();
+        self.per_velocity.0[lane] = 1.0 / p.stribeck_velocity.re();
+        self.viscous.0[lane] = p.viscous.re();
+        self.per_distance.0[lane] = 1.0 / p.slip_distance.re();
+        self.least.0[lane] = p.slip_distance.re() * p.final_stiffness.re();
+        self.mirrors.0[lane] = f64::from(u8::from(law.curve.closes_at_mirror()));
+    }
+
+    #[inline]
+    fn load(&mut self, lane: usize, law: &HsiehPan<S>, state: &HsiehPanState<S>) {
+        let spring = &state.spring;
+        self.mode.0[lane] = state.mode;
+        self.force.0[lane] = if state.mode == 0.0 { spring.force } else { state.series }.re();
+        self.position.0[lane] = spring.position.re();
+        self.slope.0[lane] = spring.slope.re();
+        self.steps.0[lane] = f64::from(spring.steps);
+        self.plastic.0[lane] = state.plastic.re();
+        self.hardening.0[lane] = state.hardening.re();
+        self.follow(lane, law, spring);
+        self.excess.0[lane] = (state.latched - law.parameters.coulomb).re();
+        self.sticks = self.mode.0.contains(&0.0);
+        self.slides = self.mode.0.iter().any(|mode| *mode != 0.0);
+    }
+
+    #[inline]
+    fn store(&self, lane: usize, state: &mut HsiehPanState<S>) {
+        let number = |row: &Row| S::constant(row.0[lane]);
+        state.series = number(&self.force);
+        state.spring.force = number(&self.force);
+        if state.mode == 0.0 {
+            state.spring.position = number(&self.position);
+            state.spring.slope = number(&self.slope);
+            state.spring.steps = self.steps.0[lane] as u32;
+            state.plastic = number(&self.plastic);
+            state.hardening = number(&self.hardening);
+        }
+    }
+
+    fn note(&mut self, lane: usize, what: u64, law: &HsiehPan<S>, state: &mut HsiehPanState<S>) {
+        let (spring, statistics) = (&mut state.spring, &mut state.statistics);
+        if what == TURNED {
+            let position = S::constant(self.present.origin.0[lane]);
+            let force = S::constant(self.present.force.0[lane]);
+            spring.direction = self.direction.0[lane];
+            spring.memory.update(0, Some(ReversePoint { position, force }));
+            statistics.reversals += 1;
+        } else {
+            spring.memory.update(2, None);
+            statistics.closings += 1;
+        }
+        let held = spring.memory.points().len() as u64;
+        statistics.memory_peak = statistics.memory_peak.max(held);
+        self.follow(lane, law, spring);
+    }
+
+    #[inline(always)]
+    fn step<const N: usize>(blocks: &mut [Block<Self>; N]) {
+        for Block { bodies, .. } in &mut *blocks {
+            bodies.missed = [0; WIDTH];
+            bodies.changed = [0; WIDTH];
+        }
+        if blocks.iter().all(|block| block.contacts.sticks) {
+            stick::<false, N>(blocks);
+        } else {
+            for block in blocks.iter_mut().filter(|block| block.contacts.sticks) {
+                stick::<false, 1>(from_mut(block));
+            }
+        }
+        for block in blocks.iter_mut().filter(|block| block.bodies.misses()) {
+            stick::<true, 1>(from_mut(block));
+        }
+        if blocks.iter().all(|block| block.contacts.slides) {
+            slide(blocks);
+        } else {
+            for block in blocks.iter_mut().filter(|block| block.contacts.slides) {
+                slide(from_mut(block));
+            }
+        }
+    }
+}
+
+impl Lanes {
+    /// Takes the branch of a spring and the one that follows it.
+    fn follow<S: Scalar>(&mut self, lane: usize, law: &HsiehPan<S>, spring: &SpringState<S>) {
+        let (direction, mirrors) = (spring.direction, law.curve.closes_at_mirror());
+        let points = spring.memory.points();
+        let last = &points[points.len().saturating_sub(4)..];
+        let mut few = [ReversePoint { position: 0.0, force: 0.0 }; 4];
+        for (few, point) in few.iter_mut().zip(last) {
+            *few = ReversePoint { position: point.position.re(), force: point.force.re() };
+        }
+        let last = &few[..last.len()];
+        self.present.take(lane, last, mirrors, direction);
+        self.older.take(lane, &last[..last.len().saturating_sub(2)], mirrors, direction);
+        let branch = spring.present(&law.curve);
+        self.direction.0[lane] = direction;
+        self.first.0[lane] = f64::from(u8::from(points.is_empty()));
+        self.per_displacement.0[lane] = law.curve.per_displacement(&branch, direction).re();
+    }
+}

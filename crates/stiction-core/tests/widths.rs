@@ -1,0 +1,53 @@
+//! Exact derivatives of whole trajectories are the same to the bit on every processor. Alone in this
+//! file: the width is one of the whole process.
+#![allow(missing_docs)]
+
+use stiction_core::friction::LAWS;
+use stiction_core::lanes::Width;
+use stiction_core::model::LawSpec;
+use stiction_core::motor::{Motor, MotorSpec, PerSample, Surroundings};
+use stiction_core::sensitivity::sensitivity;
+
+const SAMPLES: usize = 4000;
+
+/// A ring, a ramp that breaks away, pulses and rests.
+fn inputs() -> Vec<f64> {
+    (0..SAMPLES)
+        .map(|k| {
+            let t = k as f64 * 2e-4;
+            let pulse = if t % 0.2 < 0.02 { 0.3 } else { 0.0 };
+            0.45 * (9.0 * t).sin() * t.min(1.0) + 0.1 * (120.0 * t).sin() + pulse
+        })
+        .collect()
+}
+
+#[test]
+fn derivatives_of_trajectories_are_the_same_at_every_width() {
+    let inputs = inputs();
+    for record in LAWS {
+        let stated = [("breakaway".to_owned(), 0.4)];
+        let law = LawSpec::new(record.name, &stated, &[])
+            .or_else(|_| LawSpec::new(record.name, &[], &[]))
+            .unwrap();
+        let spec = MotorSpec { weight: 0.02, ..MotorSpec::new(0.0076, 1.5, law) };
+        let known = spec.parameters();
+        let finite = known.iter().filter(|(_, value)| value.is_finite());
+        let paths: Vec<String> = finite.map(|(path, _)| path.clone()).collect();
+        let motor = Motor::new(spec.clone()).unwrap();
+        let at = |width: Width| {
+            width.limit();
+            assert!(Width::widest() <= width);
+            let around = Surroundings::from(PerSample::Same(0.01));
+            let found =
+                sensitivity(&spec, motor.running(), &inputs, around, PerSample::Same(2e-4), &paths)
+                    .unwrap();
+            let both = found.position.into_iter().chain(found.velocity);
+            both.map(f64::to_bits).collect::<Vec<_>>()
+        };
+        let plain = at(Width::Baseline);
+        assert!(plain.iter().any(|bits| *bits << 1 != 0), "{}", record.name);
+        for width in [Width::Four, Width::Eight] {
+            assert_eq!(at(width), plain, "{} {width:?}", record.name);
+        }
+    }
+}
