@@ -15,23 +15,33 @@ K_0, K_INF, D_0 = 3000.0, 810.0, 2.908882086657216e-4
 HARDENING, CREEP_RATE, C_S = 1.6e-3, 2.0, 0.45
 F_S, F_C, V_S, REACH = 0.5, 0.35, 0.1, 2e-5
 FADING, PER_D_0, PER_INERTIA = K_0 - K_INF, 1.0 / D_0, 1.0 / INERTIA
-SHORT, SYNCHRONISED = 0.02, 256
+LEVER = 0.5 * DT * DT * PER_INERTIA
+BRAKING = 0.5 * DT / (INERTIA + 0.5 * DT * C_S)
+KEPT = (INERTIA - 0.5 * DT * C_S) / (INERTIA + 0.5 * DT * C_S)
+SHORT, SHORTER, SYNCHRONISED = 0.02, 0.01, 256
 # Places of the state.
 X, V, MODE, AT, FORCE, SLOPE, WAY, HARD, STEPS, POINTS, BREAKS, STICKS = range(12)
 
 
 @njit(inline="always")
-def gone_share(z):
-    z2 = z * z
-    low = (1.0 - z / 2.0) + z2 * ((1.0 / 6.0) - z * (1.0 / 24.0))
-    return low + (z2 * z2) * (((1.0 / 120.0) - z * (1.0 / 720.0)) + z2 * (1.0 / 5040.0))
+def second_share(z):
+    return (0.49999999999989186 - z * 0.16666666632048885) + (z * z) * (
+        0.04166649351978712 - z * 0.008305611273979163
+    )
 
 
 @njit(inline="always")
-def second_share(z):
-    z2 = z * z
-    low = (0.5 - z * (1.0 / 6.0)) + z2 * ((1.0 / 24.0) - z * (1.0 / 120.0))
-    return low + (z2 * z2) * (((1.0 / 720.0) - z * (1.0 / 5040.0)) + z2 * (1.0 / 40320.0))
+def short_way(force, slope, displacement, z):
+    """Force and slope a short way further along a branch."""
+    near = 0.499999999998275 - z * 0.16666666390556875
+    far = 0.0416659759297064 - z * 0.008278000311740141
+    excess, square = slope - K_INF, z * z
+    bent, fallen = (excess * displacement) * z, excess * z
+    eased = fallen * z
+    return (
+        ((force + displacement * slope) - bent * near) - (bent * square) * far,
+        ((slope - fallen) + eased * near) + (eased * square) * far,
+    )
 
 
 @njit
@@ -72,15 +82,17 @@ def creep(force, slope, way, hardening, displacement, span):
     held = CREEP_RATE * span * margin if margin > 0.0 else 0.0
     net = displacement - s * held
     direction = math.copysign(1.0, net) if net != 0.0 else -s
-    gain = 2.0 * HARDENING * size * (slope if direction == way else K_0)
+    stiffness = slope if direction == way else K_0
+    gain = 2.0 * HARDENING * size * stiffness
+    pace = (CREEP_RATE * span * 2.0 * HARDENING) * size * stiffness
     risen = gain * displacement * s
-    z = CREEP_RATE * span * (1.0 + gain)
+    z = CREEP_RATE * span + pace
     if margin > 0.0:
-        second = second_share(z) if z < SHORT else (1.0 + math.expm1(-z) / z) / z
+        second = second_share(z) if z < SHORTER else (1.0 + math.expm1(-z) / z) / z
         mean = 1.0 - z * second
         if risen >= 0.0 or margin * (1.0 - z * mean) + risen * mean >= 0.0:
-            lagged = held * z - CREEP_RATE * span * risen
-            return held - second * lagged, (displacement - s * held) + second * (s * lagged)
+            lagged = second * (held * s * z - pace * displacement)
+            return held - lagged * s, (displacement - s * held) + lagged
     elif risen <= 0.0 or margin + risen <= 0.0:
         return 0.0, displacement
     rate, rise = CREEP_RATE * (1.0 + gain), risen / span
@@ -93,7 +105,7 @@ def creep(force, slope, way, hardening, displacement, span):
     else:
         left, start = span + margin / rise, 0.0
     z = rate * left
-    second = second_share(z)
+    second = second_share(z) if z < SHORTER else (1.0 + math.expm1(-z) / z) / z
     gained = (start * left * (1.0 - z * second) + rise * left * left * second) * CREEP_RATE
     return gained, displacement - s * gained
 
@@ -140,7 +152,7 @@ def slip(x, v, force, mode, effort, span):
     start, end = level(v), level(v + span * a)
     z = abs(displacement) * (1.0 / REACH)
     gone = -math.expm1(-z) if z < 0.5 else 1.0 - math.exp(-z)
-    share = 0.5 * z if z < 1e-5 else 1.0 - gone / z
+    share = 0.5 * z if z < 1e-5 else 1.0 - gone * (1.0 / z)
     sigma = start + (end - start) * share + (force * mode - start) * (1.0 - gone)
     after = v + 0.5 * span * PER_INERTIA * ((effort - force) + (effort - sigma * mode))
     return x + displacement, after, sigma * mode, end - sigma
@@ -240,22 +252,19 @@ def hsieh_pan(effort, position, velocity):
                 target = way * (-point[0, 0] if points == 1 else point[points - 2, 0])
             while k < samples:
                 u = effort[k]
-                a = (u - force) - C_S * v
-                displacement = DT * v + (0.5 * DT * DT * PER_INERTIA) * a
+                push = u - force
+                displacement = (DT - LEVER * C_S) * v + LEVER * push
                 gained, ds = creep(force, slope, way, hardening, displacement, DT)
                 z = ds * (way * per)
                 if not (0.0 < z < SHORT and (at + ds) * way < target and steps < SYNCHRONISED):
                     break
-                share, excess = gone_share(z), slope - K_INF
-                after = force + ds * (K_INF + excess * share)
-                arrived = (INERTIA * v + 0.5 * DT * (a + (u - after))) * (
-                    1.0 / (INERTIA + 0.5 * DT * C_S)
-                )
+                after, slope_after = short_way(force, slope, ds, z)
+                arrived = (KEPT * v + BRAKING * (push + u)) - BRAKING * after
                 if abs(after) >= F_S and arrived * after > 0.0:
                     break
                 x += displacement
                 v, force, at = arrived, after, at + ds
-                slope -= excess * (z * share)
+                slope = slope_after
                 hardening += gained
                 steps += 1
                 position[k], velocity[k] = x, v

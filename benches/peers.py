@@ -19,6 +19,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -38,7 +39,9 @@ IN_TURN = f"C, {MEMBERS} members in turn"
 LOGS = 100
 OF_LOGS = f"simulate_ensemble, {LOGS}, x and v"
 BAM = "better-actuator-models"
-UNITS = {f"Motor.simulate, {law}": f"C, {law}" for law in ("lugre", "dahl")} | {
+# Laws beside hsieh_pan with a loop in C, and what they state.
+LAWS = {"lugre": {}, "dahl": {}, "coulomb": {"breakaway": 0.5}, "maxwell_slip": {}}
+UNITS = {f"Motor.simulate, {law}": f"C, {law}" for law in LAWS} | {
     f"{who}, {MEMBERS}, {cores}": IN_TURN
     for who in ("simulate_ensemble", "numba prange")
     for cores in ("one core", "two cores")
@@ -56,7 +59,7 @@ def efforts() -> np.ndarray:
 
 def own_law(law: str) -> tuple[Run, int]:
     """`Motor.simulate` of another law, into reused arrays."""
-    motor = st.Motor(0.0076, friction=st.FrictionModel(law))
+    motor = st.Motor(0.0076, friction=st.FrictionModel(law, **LAWS[law]))
     effort, outputs = efforts(), {"position": np.zeros(SAMPLES), "velocity": np.zeros(SAMPLES)}
 
     def run() -> None:
@@ -256,10 +259,6 @@ def contestants(folder: Path) -> tuple[dict[str, tuple[Run, int]], dict[str, str
         "Motor.sensitivity, 16 columns, reused": lambda: jacobian(16, reused=True),
         "Motor.sensitivity, 16 columns, fresh": lambda: jacobian(16, reused=False),
         "numba, warm": in_numba,
-        "C, lugre": lambda: in_c("lugre", folder),
-        "Motor.simulate, lugre": lambda: own_law("lugre"),
-        "C, dahl": lambda: in_c("dahl", folder),
-        "Motor.simulate, dahl": lambda: own_law("dahl"),
         IN_TURN: lambda: many_in_c(folder),
         f"simulate_ensemble, {MEMBERS}, one core": lambda: many_own(1),
         f"simulate_ensemble, {MEMBERS}, two cores": lambda: many_own(2),
@@ -271,6 +270,9 @@ def contestants(folder: Path) -> tuple[dict[str, tuple[Run, int]], dict[str, str
         "MuJoCo mj_step, frictionloss": lambda: by_mujoco("frictionloss"),
         "MuJoCo mj_step, LuGre": lambda: by_mujoco("lugre"),
     }
+    for law in LAWS:
+        makers[f"C, {law}"] = partial(in_c, law, folder)
+        makers[f"Motor.simulate, {law}"] = partial(own_law, law)
     ready, missing = {}, {}
     for name, make in makers.items():
         try:

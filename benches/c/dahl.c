@@ -23,10 +23,11 @@ void dahl(const double *restrict effort, size_t samples, double *restrict positi
         for (int part = 0; part < PARTS; part++) {
             double net = u - dry;
             double displacement = SPAN * v + (SPAN * HALF * PER_INERTIA) * net;
+            double unbraked = v + (HALF * PER_INERTIA) * (net + u);
             double s = copysign(1.0, displacement);
             double r = 1.0 - dry * s * (1.0 / F_C);
             dry = (1.0 - r / (1.0 + fabs(displacement) * (GAMMA / F_C) * fabs(r))) * (F_C * s);
-            v += (HALF * PER_INERTIA) * (net + (u - dry));
+            v = unbraked - (HALF * PER_INERTIA) * dry;
             x += displacement;
         }
         position[k] = x;

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "exponential.h"
 #include "reference.h"
 
 #define SIGMA_0 3000.0
@@ -23,7 +24,7 @@
 INLINE double level(double v, double *steepness)
 {
     double share = v * (1.0 / V_S), power = share * share;
-    double left = exp(-power) * (F_S - F_C);
+    double left = fading(-power) * (F_S - F_C);
     *steepness = -2.0 * left * fabs(v) * (1.0 / (V_S * V_S));
     return F_C + left;
 }
@@ -32,21 +33,21 @@ void lugre(const double *restrict effort, size_t samples, double *restrict posit
     double *restrict velocity, long counted[2])
 {
     double x = 0.0, v = 0.0, bent = 0.0;
-    double from = F_S;
+    double from = F_S, per_from = 1.0 / F_S;
     for (size_t k = 0; k < samples; k++) {
         double u = effort[k];
         for (int part = 0; part < PARTS; part++) {
             double unused;
-            double net = u - (bent + SIGMA_1 * (v - bent * fabs(v) / from));
+            double net = u - (bent + SIGMA_1 * (v - bent * fabs(v) * per_from));
             double displacement = SPAN * v + (SPAN * HALF * PER_INERTIA) * net;
             double predicted = v + (SPAN * PER_INERTIA) * net;
             double steepness, to = level(predicted, &steepness), by_end = 0.0;
             double per_to = 1.0 / to;
             if (displacement != 0.0) {
                 double s = displacement > 0.0 ? 1.0 : -1.0;
-                double z = (SIGMA_0 * fabs(displacement)) * (0.5 / from + 0.5 * per_to);
-                double gone = z < 0.5 ? -expm1(-z) : 1.0 - exp(-z);
-                double share = z < 1e-5 ? 0.5 * z : 1.0 - gone / z;
+                double z = (SIGMA_0 * fabs(displacement)) * (0.5 * per_from + 0.5 * per_to);
+                double gone = faded(-z);
+                double share = z < 1e-5 ? 0.5 * z : 1.0 - gone * (1.0 / z);
                 bent = (from + (to - from) * share + (bent * s - from) * (1.0 - gone)) * s;
                 by_end = steepness * share;
             }
@@ -59,6 +60,7 @@ void lugre(const double *restrict effort, size_t samples, double *restrict posit
             v = (INERTIA * v + HALF * (net + u - left)) / (INERTIA + HALF * damping);
             x += displacement;
             from = level(v, &unused);
+            per_from = 1.0 / from;
         }
         position[k] = x;
         velocity[k] = v;

@@ -15,6 +15,10 @@ void hsieh_pan_direct(const double *restrict effort, size_t samples, double *res
     double *restrict velocity, long counted[2]);
 void lugre(const double *restrict effort, size_t samples, double *restrict position,
     double *restrict velocity, long counted[2]);
+void coulomb(const double *restrict effort, size_t samples, double *restrict position,
+    double *restrict velocity, long counted[2]);
+void maxwell_slip(const double *restrict effort, size_t samples, double *restrict position,
+    double *restrict velocity, long counted[2]);
 void dahl(const double *restrict effort, size_t samples, double *restrict position,
     double *restrict velocity, long counted[2]);
 

@@ -50,11 +50,18 @@ def reference(request, tmp_path_factory):
     return compiled(request.param, tmp_path_factory.mktemp("c"))
 
 
-@pytest.mark.parametrize("law", ["lugre", "dahl"])
-def test_the_loops_in_c_of_laws_without_modes_agree_with_the_core(law, tmp_path):
+@pytest.mark.parametrize(
+    ("law", "stated"),
+    [("lugre", {}), ("dahl", {}), ("maxwell_slip", {}), ("coulomb", {"breakaway": 0.5})],
+)
+def test_the_loops_in_c_of_other_laws_agree_with_the_core(law, stated, tmp_path):
     effort = efforts(20_000)
-    x, v, _ = compiled(law, tmp_path)(effort)
-    own = st.Motor(0.0076, friction=st.FrictionModel(law)).simulate(effort, DT)
+    x, v, counted = compiled(law, tmp_path)(effort)
+    motor = st.Motor(0.0076, friction=st.FrictionModel(law, **stated))
+    own = motor.simulate(effort, DT)
+    if law == "coulomb":
+        assert counted == (motor.statistics["breakaways"], motor.statistics["sticks"])
+        assert min(counted) > 1
     assert np.abs(own.position - x).max() <= ROUND_OFF * np.abs(x).max()
     assert np.abs(own.velocity - v).max() <= ROUND_OFF * np.abs(v).max()
 
