@@ -25,6 +25,9 @@ WORTH_SHARE: Final = 0.25
 MOST_EXCESS: Final = 0.75
 """Share of what is left that noise may fail to explain before it counts as unexplained, where it
 shows in no coordinate: a law is no exact image of a machine."""
+MOST_EXCESS_RIGID: Final = 0.4
+"""The same of a rigid contact beside a held input, which replays repeat: where nothing was hidden,
+noise failed to explain a third of it at most."""
 LEAST_EXCESS: Final = -3.0
 """Where noise alone would leave four times the power that is left, nothing of it is unexplained:
 the replays have lost the machine, as where a dry contact sticks and slips at random."""
@@ -62,7 +65,7 @@ def unnamed(
     if not told and selection.imitated > LEAST_GAIN:
         # What was refused as an imitation shows that there is something to imitate.
         told = (Unexplained(left.views[0].coordinate.name, selection.imitated),)
-    if not told and excess > MOST_EXCESS:
+    if not told and excess > _most_excess(evidence):
         bursts = _at_moments(evidence, selection.models[-1], null)
         told = (Unexplained(MOMENTS if bursts else NO_COORDINATE, excess),)
     return told
@@ -126,6 +129,13 @@ def _at_moments(evidence: Evidence, model: Model, null: FloatArray) -> bool:
         windows[1] += number
     few = windows[0] < FEW_WINDOWS * windows[1]
     return few and outstanding > MOST_EXCESS * excess > 0.0
+
+
+def _most_excess(evidence: Evidence) -> float:
+    """Share of what is left from which on noise fails to explain it."""
+    forms = [rows.form for rows in evidence.shown]
+    rigid = not any(form.springy or form.prescribed for form in forms)
+    return MOST_EXCESS_RIGID if rigid and not evidence.plant.servo else MOST_EXCESS
 
 
 def _excess(evidence: Evidence, model: Model, null: FloatArray) -> float:
