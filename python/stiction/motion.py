@@ -14,6 +14,8 @@ __all__ = ["Kernel", "count_of", "evenly", "held", "noise_of", "play", "smooth"]
 
 WIDEST: Final = 1e6
 """Samples; a wider kernel is a slip of the units."""
+STILL: Final = 20
+"""Samples for which a reading that has noise does not stay the same to the last digit."""
 
 
 class Kernel:
@@ -105,8 +107,13 @@ def smooth(values: FloatArray, dt: float, support: float, *, drifts: bool = Fals
 def noise_of(position: FloatArray) -> float:
     """Size of the white noise on a position: what its third differences hold.
 
-    A motion that a machine can make hardly shows there: jerk·dt³ is far below a count.
+    A motion that a machine can make hardly shows there: jerk·dt³ is far below a count. Readings
+    without counts that repeat to the last digit while the machine rests have no noise; what their
+    third differences hold are the jumps of its acceleration.
     """
+    moved = np.flatnonzero(np.diff(position))
+    if len(moved) > 1 and np.max(np.diff(moved)) > STILL and count_of(position) == 0.0:
+        return 0.0
     third = np.diff(position, 3)
     return float(np.sqrt(np.mean(third**2) / 20.0)) if len(third) else 0.0
 

@@ -135,6 +135,16 @@ def test_helpers_of_motion_do_what_they_say() -> None:
     assert values.tolist() == [1.0, 2.0, 3.0, 4.0]
 
 
+def test_readings_that_rest_to_the_last_digit_have_no_noise():
+    time = np.arange(2000) * 1e-3
+    stops = np.cumsum(np.maximum(np.sin(9.0 * time), 0.0)) * 1e-3
+    # Its acceleration jumps where it stops, which third differences would take for noise.
+    assert np.mean(np.diff(stops, 3) ** 2) > 0.0
+    assert noise_of(stops) == 0.0
+    counted = np.round(stops / 1e-5) * 1e-5
+    assert noise_of(counted) == pytest.approx(1e-5 / np.sqrt(12.0), rel=0.5)
+
+
 def test_too_short_or_lacking_recordings_are_refused() -> None:
     machine = plant(coulomb=0.3)
     time = np.arange(300) * DT

@@ -18,6 +18,8 @@ __all__ = ["Noise", "measure_noise"]
 LAG_SHARE: Final = 1.0 / 3.0
 """Lag of the second difference that tells noise from misfit, as a share of the kernel's support:
 motion and friction hardly change over it, white noise through the kernel does."""
+FEWEST_ROWS: Final = 50
+"""Second differences that have a median worth the name."""
 GAUSSIAN: Final = 1.4826
 """Standard deviation over median magnitude."""
 
@@ -54,7 +56,7 @@ def measure_noise(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
     white = max(noise_of(form.readings) ** 2 - count**2 / 12.0, 0.0)
     position = float(np.sqrt(white))
     lag = max(1, round(LAG_SHARE * form.kernel.support / (form.dt * form.stride)))
-    counted = (rows.mask & form.reached)[lag:-lag]
+    counted = _counted(rows, lag)
     if not counted.any():
         return Noise(position, count, 0.0)
     variance = _scatter(rows.residual(plant, nuisances), lag, counted)
@@ -70,6 +72,18 @@ def measure_noise(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
         made = form.own(plant).inertia ** 2 * moved * _bent(inertial, samples)
     effort = max(variance - made, 0.0) / _bent(weights, samples)
     return Noise(position, count, float(np.sqrt(effort)))
+
+
+def _counted(rows: Rows, lag: int) -> Mask:
+    """Rows whose second differences tell of noise, as the differences themselves are counted.
+
+    Where a rigid contact comes to rest, what is missing goes from the residual all at once: beside
+    that nothing is noise, unless the machine hardly moves for longer.
+    """
+    reached = rows.form.reached
+    counted: Mask = (rows.mask & reached)[lag:-lag]
+    within: Mask = counted & reached[: -2 * lag] & reached[2 * lag :]
+    return within if np.count_nonzero(within) >= FEWEST_ROWS else counted
 
 
 def _scatter(residual: FloatArray, lag: int, counted: Mask) -> float:
