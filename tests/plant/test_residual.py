@@ -80,8 +80,12 @@ def test_jitter_of_the_clock_does_not_shift_the_input() -> None:
     recording = recorded(machine)
     rng = np.random.default_rng(1)
     time = recording.time + rng.uniform(-2e-6, 2e-6, len(recording))
+    assert recording.position is not None
     jittered = Recording(time, recording.input, recording.position)
-    assert effort_residual(machine, jittered).rms < 2 * effort_residual(machine, recording).rms
+    # What the clock does to the position alone; a few inputs a sample late would leave more.
+    moved = np.interp(recording.time, time, recording.position)
+    alone = Recording(recording.time, recording.input, moved)
+    assert effort_residual(machine, jittered).rms < 1.05 * effort_residual(machine, alone).rms
 
 
 def test_prescribed_motion_needs_no_inertia() -> None:
