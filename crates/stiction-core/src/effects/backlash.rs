@@ -43,7 +43,13 @@ impl<S: Scalar> Effect<S> for Backlash<S> {
         plan: "chirp",
         gains: &["inertia_share"],
         shapes: &[
-            Shape { parameter: "gap", scale: Scale::Presliding, grid: &[1.0, 5.0, 25.0], fitted: true },
+            // A gap knows nothing of the contact; of one twice as wide a sixth is seen.
+            Shape {
+                parameter: "gap",
+                scale: Scale::Presliding,
+                grid: &[0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 25.0],
+                fitted: true,
+            },
         ],
         second: &[],
         law_terms: &[],
