@@ -4,9 +4,9 @@
 
 use super::{HsiehPan, HsiehPanState};
 use crate::exponential::{faded, fading};
-use crate::friction::elements::spring::{Loading, SYNCHRONISED};
+use crate::friction::elements::spring::{Loading, SYNCHRONISED, short_way};
 use crate::lanes::{Bodies, Contacts, Row, WIDTH};
-use crate::scalar::{SHORT, Scalar, gone_share, second_share, sign};
+use crate::scalar::{SHORT, SHORTER, Scalar, second_share, sign};
 
 /// Contacts of [`HsiehPan`] whose limit of hardening is a square, whose level falls as a bell and
 /// whose damper sits beside the spring.
@@ -37,11 +37,15 @@ pub struct Lanes {
     inverse_distance: Row,
     initial_stiffness: Row,
     final_stiffness: Row,
-    /// Creep: c, 2·c and α·h.
+    /// Creep: c, 2·c, α·h and the product of those two.
     coefficient: Row,
     twice_coefficient: Row,
     progress: Row,
+    pace: Row,
     damping: Row,
+    /// Displacement per velocity and inertia, less what damping at the start takes off: see `Verlet`.
+    stride: Row,
+    kept: Row,
     /// 1/(J + h/2·C_s) and h/2 of that.
     share: Row,
     braking: Row,
@@ -80,7 +84,10 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         self.coefficient.0[lane] = law.plastic.coefficient.re();
         self.twice_coefficient.0[lane] = law.plastic.coefficient.re() * 2.0;
         self.progress.0[lane] = law.plastic.rate.re() * bodies.span.0[lane];
+        self.pace.0[lane] = self.progress.0[lane] * self.twice_coefficient.0[lane];
         self.damping.0[lane] = damping;
+        self.stride.0[lane] = bodies.span.0[lane] - bodies.lever.0[lane] * damping;
+        self.kept.0[lane] = bodies.inertia.0[lane] - half * damping;
         self.share.0[lane] = share;
         self.braking.0[lane] = half * share;
         self.greatest.0[lane] = p.breakaway.re();
@@ -170,9 +177,8 @@ impl Lanes {
         let (effort, velocity) = (bodies.effort.0[lane], bodies.velocity.0[lane]);
         let (force, slope) = (self.force.0[lane], self.slope.0[lane]);
         let (damping, progress) = (self.damping.0[lane], self.progress.0[lane]);
-        let net = effort - (force + damping * velocity);
-        let displacement = bodies.span.0[lane] * velocity + bodies.lever.0[lane] * net;
-        let predicted = velocity + bodies.pace.0[lane] * net;
+        let push = effort - force;
+        let displacement = self.stride.0[lane] * velocity + bodies.lever.0[lane] * push;
 
         // `Plastic::plain_creep`.
         let s = 1.0_f64.copysign(force);
@@ -184,18 +190,19 @@ impl Lanes {
         let stiffness =
             if side == self.direction.0[lane] { slope } else { self.initial_stiffness.0[lane] };
         let gain = self.twice_coefficient.0[lane] * force.abs() * stiffness;
+        let pace = self.pace.0[lane] * force.abs() * stiffness;
         let risen = gain * (displacement * s);
-        let z = progress + progress * gain;
+        let z = progress + pace;
         let second = second_share(z);
         let mean = 1.0 - z * second;
         let outrun = (risen < 0.0) & (margin * (1.0 - z * mean) + risen * mean < 0.0);
         let overtakes = (risen > 0.0) & (margin + risen > 0.0);
-        let lagged = held * z - progress * risen;
-        let gained = held - second * lagged;
-        let rest = (displacement - held * s) + second * (lagged * s);
+        let lagged = second * (held * s * z - pace * displacement);
+        let gained = held - lagged * s;
+        let rest = (displacement - held * s) + lagged;
         let idle = (force == 0.0) | (self.coefficient.0[lane] == 0.0);
         let creeps = starts & !idle;
-        let long = z >= SHORT;
+        let long = z >= SHORTER;
         let creep_plain = if starts { !long & !outrun } else { !overtakes };
         let hardened = if creeps { gained } else { 0.0 };
         let crept = if creeps { gained * s } else { 0.0 };
@@ -213,10 +220,9 @@ impl Lanes {
             let stiffness = self.initial_stiffness.0[lane] - self.fading.0[lane] * gone;
             (self.origin_force.0[lane] + gained * self.scale.0[lane], stiffness)
         } else {
-            let share = gone_share(along);
             let excess = slope - self.final_stiffness.0[lane];
-            let gained = left * (self.final_stiffness.0[lane] + excess * share);
-            (force + gained, slope - excess * (along * share))
+            let [force, slope] = short_way(force, slope, excess, left, along);
+            (force, slope)
         };
         let back = direction * left < 0.0;
         let closes = direction * (position - self.target.0[lane]) >= 0.0;
@@ -226,7 +232,7 @@ impl Lanes {
             & !closes;
 
         let unbraked =
-            (bodies.inertia.0[lane] * velocity + bodies.half.0[lane] * (net + effort)) * self.share.0[lane];
+            (self.kept.0[lane] * velocity + bodies.half.0[lane] * (push + effort)) * self.share.0[lane];
         let arrived = unbraked - self.braking.0[lane] * onward;
         let breaks = (onward.abs() >= self.greatest.0[lane]) & (arrived * onward > 0.0);
 
@@ -239,7 +245,7 @@ impl Lanes {
         self.steps.take(lane, accepted, if AFRESH { 0.0 } else { counted });
         self.plastic.add(lane, accepted, crept);
         self.hardening.add(lane, accepted, hardened);
-        let friction = onward + damping * predicted + damping * (arrived - predicted);
+        let friction = onward + damping * arrived;
         bodies.accept(lane, accepted, displacement, arrived, friction);
         plain
     }
@@ -264,7 +270,7 @@ impl Lanes {
         };
         let (to, left, power) = level(predicted);
         let (from, _, _) = level(velocity);
-        let fall = if predicted == 0.0 { 0.0 } else { -(left * 2.0 * power / predicted.abs()) };
+        let fall = if predicted == 0.0 { 0.0 } else { -(left * (2.0 * power / predicted.abs())) };
         let steepness = excess * fall + viscous;
 
         // `follow`.
@@ -272,7 +278,7 @@ impl Lanes {
         let z = distance * self.per_distance.0[lane];
         let gone = faded(-z);
         let remainder = -(gone - 1.0);
-        let mean = if z < 1e-5 { -(z * 0.5 - 1.0) } else { gone / z };
+        let mean = if z < 1e-5 { -(z * 0.5 - 1.0) } else { gone * (1.0 / z) };
         let end_share = -(mean - 1.0);
         let behind = series * mode;
         let sigma = from + (to - from) * end_share + (behind - from) * remainder;
@@ -293,7 +299,7 @@ impl Lanes {
         let plain = follows & held & !turned & !stops;
         let accepted = here & plain;
         self.force.take(lane, accepted, force);
-        let friction = force + damping * (arrived - predicted);
+        let friction = undamped + damping * arrived;
         bodies.accept(lane, accepted, displacement, arrived, friction);
         plain
     }
