@@ -139,6 +139,8 @@ impl MulAssign for Dual {
 }
 
 impl Scalar for Dual {
+    const CARRIES: bool = true;
+
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self { slopes: [0.0; COLUMNS], re: value }
@@ -160,6 +162,10 @@ impl Scalar for Dual {
     #[inline(always)]
     fn chain(self, value: f64, slope: f64) -> Self {
         Self::new(value, |k| self.slopes[k] * slope)
+    }
+    #[inline(always)]
+    fn with_value(self, value: f64) -> Self {
+        Self::new(value, |k| self.slopes[k])
     }
     #[inline(always)]
     fn derivative_is_nonzero(self) -> bool {

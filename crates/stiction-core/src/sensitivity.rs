@@ -27,6 +27,11 @@ struct Slopes<'a> {
 }
 
 impl Rows<Dual> for Slopes<'_> {
+    #[inline(always)]
+    fn looks(&self) -> bool {
+        false
+    }
+
     #[inline(always)] // where it is called, the motion is in registers
     fn see(&mut self, k: usize, run: &Run<Dual>, _: &Machine<Dual>, _: impl Fn(usize) -> Dual) {
         put(self.position, self.samples, k, run.position.slopes());

@@ -6,7 +6,11 @@
 
 #![deny(unsafe_op_in_unsafe_fn)]
 
+mod pair;
+
 use std::sync::atomic::{AtomicU8, Ordering};
+
+pub use pair::{Numbers, Pair};
 
 /// Vectors to compile for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

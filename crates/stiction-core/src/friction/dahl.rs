@@ -62,6 +62,7 @@ pub struct DahlState<S> {
 pub struct DahlTrial<S> {
     after: DahlState<S>,
     outcome: Outcome<S>,
+    undamped: S,
 }
 
 impl<S: Scalar> DahlState<S> {
@@ -96,7 +97,7 @@ impl<S: Scalar> LawState<S> for DahlState<S> {
 }
 
 /// What is left of r₀ after η: the solution of dr/dη = −|r|^i·sgn r.
-#[inline]
+#[inline(always)]
 fn left_over<S: Scalar>(r: S, exponent: S, eta: S) -> S {
     if r.re() == 0.0 {
         return r;
@@ -115,7 +116,7 @@ fn left_over<S: Scalar>(r: S, exponent: S, eta: S) -> S {
 
 impl<S: Scalar> Dahl<S> {
     /// |r|^i, the slope by displacement as a share of γ.
-    #[inline]
+    #[inline(always)]
     fn share(&self, r: S) -> S {
         if r.re() == 0.0 { S::constant(0.0) } else { r.power_of_magnitude(self.0.exponent) * sign(r.re()) }
     }
@@ -167,12 +168,12 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
         self.0.viscous.re()
     }
 
-    #[inline]
+    #[inline(always)]
     fn force(&self, state: &DahlState<S>, velocity: S, channels: &Channels<S>) -> S {
         state.dry * channels.level + self.0.viscous * channels.viscous_level * velocity
     }
 
-    #[inline]
+    #[inline(always)]
     fn advance(
         &self,
         state: &DahlState<S>,
@@ -196,27 +197,49 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
         let direction = if moving == 0.0 { state.direction } else { moving };
         let turned = u64::from(direction * state.direction < 0.0);
         let slope = p.initial_stiffness * share * channels.level * motion.duration + damping;
-        let force = dry * channels.level + damping * motion.velocity;
+        let undamped = dry * channels.level;
+        let force = undamped + damping * motion.velocity;
         DahlTrial {
             after: DahlState { dry, direction, reversals: state.reversals + turned },
             outcome: Outcome { force, slope, damping },
+            undamped,
         }
     }
 
-    #[inline]
+    #[inline(always)]
+    fn friction(
+        &self,
+        state: &DahlState<S>,
+        _velocity: S,
+        channels: &Channels<S>,
+    ) -> (S, Option<S>) {
+        (state.dry * channels.level, Some(self.0.viscous * channels.viscous_level))
+    }
+
+    #[inline(always)]
     fn outcome(&self, trial: &DahlTrial<S>) -> Outcome<S> {
         trial.outcome
     }
 
+    #[inline(always)]
+    fn undamped(&self, trial: &DahlTrial<S>, _velocity: S) -> S {
+        trial.undamped
+    }
+
     const GLIDES: bool = true;
 
-    #[inline]
+    #[inline(always)]
     fn glide<E: Fn(usize) -> S, V: Seen<S, DahlState<S>>>(
         &self,
         state: &mut DahlState<S>,
         glide: &mut Glide<S, E, V>,
     ) {
-        glide_on(self, state, glide);
+        if S::CARRIES {
+            glide_on(self, state, glide);
+        } else {
+            // A copy, which no store into a column can be taken to change.
+            glide_on(&self.clone(), state, glide);
+        }
     }
 
     fn abreast(&self) -> Option<Abreast<S, Self>> {
@@ -228,7 +251,7 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
         Some(Rest::still(self, state, channels, duration))
     }
 
-    #[inline]
+    #[inline(always)]
     fn commit(&self, state: &mut DahlState<S>, trial: &DahlTrial<S>) {
         *state = trial.after;
     }

@@ -217,8 +217,10 @@ impl<S: Scalar> Gms<S> {
         Some(Departure { gone: zero, force: along, gone_by_speed: zero, force_by_speed: zero })
     }
 
-    /// Force along the motion, its derivative by |v| at a held velocity, and whether it slips.
-    #[inline]
+    /// Force along the motion, its derivative by |v| at a held velocity, and whether it slips. A call
+    /// for each element: all of them as one function over rows of derivatives are more than compilers
+    /// stand.
+    #[inline(never)]
     fn moved(&self, along: S, slips: bool, share: S, course: &Course<S>) -> (S, S, bool) {
         let most = along + course.reach;
         let spring = self.stiffness * course.duration;

@@ -59,24 +59,38 @@ parameters! {
 #[derive(Debug, Clone)]
 pub struct LuGre<S>(Bristle<S>);
 
+/// g at a velocity, its slope by speed and its reciprocal.
+#[derive(Debug, Clone, Copy)]
+struct Level<S> {
+    force: S,
+    steepness: S,
+    reciprocal: S,
+}
+
 impl<S: Scalar> LuGre<S> {
-    /// t = σ₀·|z|/g(v), signed by the direction of motion, from g and its slope.
-    #[inline]
-    fn slip(&self, force: S, velocity: S, (level, steepness): (S, S)) -> Slip<S> {
-        let share = force * sign(velocity.re()) / level;
-        let by_force = S::constant(1.0) / level;
-        Slip { share, by_force, by_speed: -(share * steepness / level) }
+    #[inline(always)]
+    fn level(&self, velocity: S) -> Level<S> {
+        let (force, steepness) = self.0.level.at(velocity);
+        Level { force, steepness, reciprocal: S::constant(1.0) / force }
+    }
+
+    /// t = σ₀·|z|/g(v), signed by the direction of motion.
+    #[inline(always)]
+    fn slip(force: S, velocity: S, level: &Level<S>) -> Slip<S> {
+        let by_force = level.reciprocal;
+        let share = force * sign(velocity.re()) * by_force;
+        Slip { share, by_force, by_speed: -(share * (level.steepness * by_force)) }
     }
 
     /// The bristles follow g over the path ∫σ₀·|dx|/g, exactly where the velocity is held; g at the
-    /// start, and at the end with its slope.
-    #[inline]
+    /// start and at the end.
+    #[inline(always)]
     fn bend(
         &self,
         state: &BristleState<S>,
         motion: &Motion<S>,
-        from: S,
-        (to, steepness): (S, S),
+        from: &Level<S>,
+        to: &Level<S>,
     ) -> Bent<S> {
         let bristle = &self.0;
         let force = bristle.stiffness * state.deflection;
@@ -87,19 +101,31 @@ impl<S: Scalar> LuGre<S> {
         }
         let path = bristle.stiffness * motion.displacement * s;
         if motion.start_velocity.re() == motion.velocity.re() {
-            let z = path / to;
-            let followed = follow(force * s, to, to, z);
-            let apart = (force * s - to) * followed.remainder;
-            let speed = motion.velocity.abs();
-            let by_speed = steepness * (-(followed.remainder - 1.0)) - apart * z / speed
-                + apart * z * steepness / to;
-            let by_end = steepness * followed.end_share;
-            return Bent { force: followed.value * s, by_velocity: by_speed, by_end };
+            return Self::bend_steadily(motion, force, s, path, (to.force, to.steepness));
         }
-        let z = path * (S::constant(0.5) / from + S::constant(0.5) / to);
-        let followed = follow(force * s, from, to, z);
-        let by_end = steepness * followed.end_share;
+        let z = path * (from.reciprocal * 0.5 + to.reciprocal * 0.5);
+        let followed = follow(force * s, from.force, to.force, z);
+        let by_end = to.steepness * followed.end_share;
         Bent { force: followed.value * s, by_velocity: by_end, by_end }
+    }
+
+    /// The same at a held velocity.
+    #[inline(never)]
+    fn bend_steadily(
+        motion: &Motion<S>,
+        force: S,
+        s: f64,
+        path: S,
+        (to, steepness): (S, S),
+    ) -> Bent<S> {
+        let z = path / to;
+        let followed = follow(force * s, to, to, z);
+        let apart = (force * s - to) * followed.remainder;
+        let speed = motion.velocity.abs();
+        let by_speed = steepness * (-(followed.remainder - 1.0)) - apart * z / speed
+            + apart * z * steepness / to;
+        let by_end = steepness * followed.end_share;
+        Bent { force: followed.value * s, by_velocity: by_speed, by_end }
     }
 }
 
@@ -170,8 +196,8 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
 
     #[inline]
     fn force(&self, state: &BristleState<S>, velocity: S, channels: &Channels<S>) -> S {
-        let level = self.0.level.at(velocity);
-        let slip = self.slip(self.0.stiffness * state.deflection, velocity, level);
+        let level = self.level(velocity);
+        let slip = Self::slip(self.0.stiffness * state.deflection, velocity, &level);
         self.0.force(state.deflection, &slip, velocity, channels)
     }
 
@@ -182,51 +208,54 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
         motion: &Motion<S>,
         channels: &Channels<S>,
     ) -> BristleTrial<S> {
-        let to = self.0.level.at(motion.velocity);
+        let to = self.level(motion.velocity);
         let held = motion.start_velocity.re() == motion.velocity.re();
-        let from = if held { to.0 } else { self.0.level.at(motion.start_velocity).0 };
-        let bent = self.bend(state, motion, from, to);
-        let slip = self.slip(bent.force, motion.velocity, to);
+        let from = if held { to } else { self.level(motion.start_velocity) };
+        let bent = self.bend(state, motion, &from, &to);
+        let slip = Self::slip(bent.force, motion.velocity, &to);
         self.0.settled(state, &bent, &slip, motion.velocity, channels)
     }
 
-    #[inline]
+    #[inline(always)]
     fn outcome(&self, trial: &BristleTrial<S>) -> Outcome<S> {
         trial.outcome
     }
 
     const GLIDES: bool = true;
 
-    #[inline]
+    #[inline(always)]
     fn glide<E: Fn(usize) -> S, V: Seen<S, BristleState<S>>>(
         &self,
         state: &mut BristleState<S>,
         glide: &mut Glide<S, E, V>,
     ) {
-        let (bristle, channels) = (&self.0, Channels::default());
+        // A copy, which no store into a column can be taken to change.
+        let own = self.clone();
+        let (bristle, verlet, channels) = (&own.0, glide.verlet, Channels::default());
         let duration = glide.verlet.span();
         // g at the end of a step is that at the start of the next.
         let (mut now, mut start_velocity) = (*state, glide.run.velocity);
-        let mut from = bristle.level.at(start_velocity);
+        let mut from = own.level(start_velocity);
         while let Some(effort) = glide.next() {
-            let slip = self.slip(bristle.stiffness * now.deflection, start_velocity, from);
+            let slip = Self::slip(bristle.stiffness * now.deflection, start_velocity, &from);
             let net = effort - bristle.force(now.deflection, &slip, start_velocity, &channels);
-            let (displacement, velocity) = glide.verlet.depart(start_velocity, net);
+            let displacement = verlet.displacement(start_velocity, net);
+            let velocity = verlet.predicted(start_velocity, net);
             let motion = Motion { displacement, duration, start_velocity, velocity };
-            let to = bristle.level.at(velocity);
-            let bent = self.bend(&now, &motion, from.0, to);
-            let slip = self.slip(bent.force, velocity, to);
+            let to = own.level(velocity);
+            let bent = own.bend(&now, &motion, &from, &to);
+            let slip = Self::slip(bent.force, velocity, &to);
             let BristleTrial { after, outcome } =
                 bristle.settled(&now, &bent, &slip, velocity, &channels);
             let Outcome { force, damping, .. } = outcome;
             let undamped = force - damping * velocity;
-            let arrived = glide.verlet.arrive(start_velocity, net + effort, damping, undamped);
+            let arrived = verlet.arrive(start_velocity, net + effort, damping, undamped);
             now = after;
-            *state = after;
             start_velocity = arrived;
-            from = bristle.level.at(arrived);
-            glide.accept(displacement, arrived, force + damping * (arrived - velocity), state);
+            from = own.level(arrived);
+            glide.accept(displacement, arrived, undamped + damping * arrived, &now);
         }
+        *state = now;
     }
 
     fn abreast(&self) -> Option<Abreast<S, Self>> {
@@ -238,7 +267,7 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
         Some(Rest::still(self, state, channels, duration))
     }
 
-    #[inline]
+    #[inline(always)]
     fn commit(&self, state: &mut BristleState<S>, trial: &BristleTrial<S>) {
         *state = trial.after;
     }

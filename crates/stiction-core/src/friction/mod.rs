@@ -252,6 +252,11 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
 
     /// Friction at the present state.
     fn force(&self, state: &Self::State, velocity: S, channels: &Channels<S>) -> S;
+    /// The same, where a part of it is damping times velocity without that part, and the damping.
+    #[inline(always)]
+    fn friction(&self, state: &Self::State, velocity: S, channels: &Channels<S>) -> (S, Option<S>) {
+        (self.force(state, velocity, channels), None)
+    }
     /// Evaluates a step inside the present contact mode.
     fn advance(
         &self,

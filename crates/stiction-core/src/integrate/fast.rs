@@ -56,9 +56,17 @@ impl<S: Scalar, L: FrictionLaw<S>, const BARE: bool> Stepper<S, L> for Fast<'_, 
         } else {
             machine.driven(self.input, &start) + self.load + run.ambient
         };
-        let friction = law.force(state, run.velocity, &self.channels(&start, effort));
-        let net = effort - friction;
-        let (displacement, predicted) = verlet.depart(run.velocity, net);
+        let (held, drag) = law.friction(state, run.velocity, &self.channels(&start, effort));
+        let push = effort - held;
+        let (verlet, friction, net) = match drag {
+            None => (verlet, held, push),
+            Some(damping) => {
+                let dragged = damping * run.velocity;
+                (verlet.dragged(damping), held + dragged, push - dragged)
+            }
+        };
+        let displacement = verlet.displacement(run.velocity, push);
+        let predicted = verlet.predicted(run.velocity, net);
         let end = start.after(displacement, predicted, span);
         let mut next = *run;
         next.position = end.position;
@@ -88,8 +96,8 @@ impl<S: Scalar, L: FrictionLaw<S>, const BARE: bool> Stepper<S, L> for Fast<'_, 
         let trial = law.advance(state, &motion, &self.channels(&end, effort_then));
         let outcome = law.outcome(&trial);
         let undamped = law.undamped(&trial, predicted);
-        next.velocity = verlet.arrive(run.velocity, net + effort_then, outcome.damping, undamped);
-        next.friction = outcome.force + outcome.damping * (next.velocity - predicted);
+        next.velocity = verlet.arrive(run.velocity, push + effort_then, outcome.damping, undamped);
+        next.friction = undamped + outcome.damping * next.velocity;
         motion.velocity = next.velocity;
         Attempt { run: next, trial, motion }
     }

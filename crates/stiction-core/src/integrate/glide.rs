@@ -20,6 +20,10 @@ pub struct Verlet<S> {
     /// Velocity and displacement per effort.
     pace: S,
     lever: S,
+    /// Displacement per velocity, and what is left of the inertia: less what damping at the start
+    /// takes off.
+    stride: S,
+    kept: S,
 }
 
 impl<S: Scalar> Verlet<S> {
@@ -28,13 +32,30 @@ impl<S: Scalar> Verlet<S> {
     pub fn new(span: S, inertia: S, lightness: S) -> Self {
         let half = span * 0.5;
         let pace = span * lightness;
-        Self { span, half, inertia, pace, lever: pace * half }
+        Self { span, half, inertia, pace, lever: pace * half, stride: span, kept: inertia }
     }
 
-    /// Displacement over the step and the velocity predicted for its end.
+    /// Steps of which friction at the start has a share damping·velocity, which no effort below
+    /// contains then. So nothing has to wait for it.
     #[inline(always)]
-    pub fn depart(&self, velocity: S, net: S) -> (S, S) {
-        (self.span * velocity + self.lever * net, velocity + self.pace * net)
+    pub fn dragged(self, damping: S) -> Self {
+        Self {
+            stride: self.span - self.lever * damping,
+            kept: self.inertia - self.half * damping,
+            ..self
+        }
+    }
+
+    /// Displacement over the step.
+    #[inline(always)]
+    pub fn displacement(&self, velocity: S, net: S) -> S {
+        self.stride * velocity + self.lever * net
+    }
+
+    /// Velocity predicted for the end of the step, `net` with all friction at the start.
+    #[inline(always)]
+    pub fn predicted(&self, velocity: S, net: S) -> S {
+        velocity + self.pace * net
     }
 
     /// Velocity at the end: `both` efforts, less friction at the start alone, and that at the end
@@ -43,15 +64,26 @@ impl<S: Scalar> Verlet<S> {
     /// (J·v₀ + h/2·(E₀ − F₀ + E₁ − F* + D·v*))/(J + h/2·D), F* last: the rest waits for nothing.
     #[inline(always)]
     pub fn arrive(&self, velocity: S, both: S, damping: S, undamped: S) -> S {
-        let (unbraked, braking) = self.unbraked(velocity, both, damping);
-        unbraked - braking * undamped
+        let share = self.share(damping);
+        self.unbraked(velocity, both, share) - self.braking(share) * undamped
     }
 
-    /// The velocity at the end without undamped friction there, and what that takes off for its unit.
+    /// 1/(J + h/2·D).
     #[inline(always)]
-    pub fn unbraked(&self, velocity: S, both: S, damping: S) -> (S, S) {
-        let share = S::constant(1.0) / (self.inertia + self.half * damping);
-        ((self.inertia * velocity + self.half * both) * share, self.half * share)
+    pub fn share(&self, damping: S) -> S {
+        S::constant(1.0) / (self.inertia + self.half * damping)
+    }
+
+    /// The velocity at the end without undamped friction there.
+    #[inline(always)]
+    pub fn unbraked(&self, velocity: S, both: S, share: S) -> S {
+        (self.kept * velocity + self.half * both) * share
+    }
+
+    /// What a unit of undamped friction at the end takes off the velocity there.
+    #[inline(always)]
+    pub fn braking(&self, share: S) -> S {
+        self.half * share
     }
 
     /// Duration of a step, half of it, inertia, velocity and displacement per effort, as plain numbers.
@@ -69,13 +101,15 @@ impl<S: Scalar> Verlet<S> {
 /// Who sees the body and the contact after each sample. A trait, for a closure cannot ask to be part
 /// of the loop.
 pub trait Seen<S: Scalar, T> {
-    /// Sees a sample.
+    /// Whether the contact is looked at.
+    fn looks(&self) -> bool;
+    /// Sees a sample; the contact is as it was before the first where it is not looked at.
     fn see(&mut self, sample: usize, run: &Run<S>, contact: &T);
 }
 
 /// Goes through all steps with a law that knows no events and asks for nothing but the motion: each
 /// of them is plain.
-#[inline]
+#[inline(always)]
 pub fn glide_on<S, L, E, V>(law: &L, state: &mut L::State, glide: &mut Glide<S, E, V>)
 where
     S: Scalar,
@@ -88,18 +122,24 @@ where
     // Copies that nobody else sees stay in registers.
     let (mut now, mut start_velocity) = (*state, glide.run.velocity);
     while let Some(effort) = glide.next() {
-        let net = effort - law.force(&now, start_velocity, &channels);
-        let (displacement, velocity) = glide.verlet.depart(start_velocity, net);
+        let (held, drag) = law.friction(&now, start_velocity, &channels);
+        let push = effort - held;
+        let (verlet, net) = match drag {
+            None => (glide.verlet, push),
+            Some(damping) => (glide.verlet.dragged(damping), push - damping * start_velocity),
+        };
+        let displacement = verlet.displacement(start_velocity, push);
+        let velocity = verlet.predicted(start_velocity, net);
         let motion = Motion { displacement, duration, start_velocity, velocity };
         let trial = law.advance(&now, &motion, &channels);
         let (outcome, undamped) = (law.outcome(&trial), law.undamped(&trial, velocity));
-        let arrived = glide.verlet.arrive(start_velocity, net + effort, outcome.damping, undamped);
+        let arrived = verlet.arrive(start_velocity, push + effort, outcome.damping, undamped);
         law.commit(&mut now, &trial);
-        *state = now;
         start_velocity = arrived;
-        let friction = outcome.force + outcome.damping * (arrived - velocity);
-        glide.accept(displacement, arrived, friction, state);
+        let friction = undamped + outcome.damping * arrived;
+        glide.accept(displacement, arrived, friction, &now);
     }
+    *state = now;
 }
 
 /// A row of plain steps.
@@ -157,8 +197,8 @@ pub struct Plain<'a, L, T, G> {
     pub law: &'a L,
     /// Its state.
     pub state: &'a mut T,
-    /// The body.
-    pub glide: &'a mut G,
+    /// The body: its own, so that nobody else can see it and it stays in registers.
+    pub glide: G,
 }
 
 impl<S, L, E, V> Task for Plain<'_, L, L::State, Glide<S, E, V>>
@@ -168,10 +208,12 @@ where
     E: Fn(usize) -> S,
     V: Seen<S, L::State>,
 {
-    type Output = ();
+    /// Where it ended.
+    type Output = Glide<S, E, V>;
 
     #[inline(always)]
-    fn run(self) {
-        self.law.glide(self.state, self.glide);
+    fn run(mut self) -> Self::Output {
+        self.law.glide(self.state, &mut self.glide);
+        self.glide
     }
 }

@@ -141,6 +141,18 @@ impl Bodies {
         (displacement, velocity + self.pace.0[lane] * net)
     }
 
+    /// What [`Verlet::dragged`] and a share of this damping are in a lane.
+    pub fn dragged(&self, lane: usize, damping: f64) -> Dragged {
+        let (inertia, half) = (self.inertia.0[lane], self.half.0[lane]);
+        let share = 1.0 / (inertia + half * damping);
+        Dragged {
+            stride: self.span.0[lane] - self.lever.0[lane] * damping,
+            kept: inertia - half * damping,
+            share,
+            braking: half * share,
+        }
+    }
+
     /// [`Verlet::arrive`] of a lane.
     #[inline(always)]
     pub fn arrive(&self, lane: usize, both: f64, damping: f64, undamped: f64) -> f64 {
@@ -180,6 +192,19 @@ impl Bodies {
         self.velocity.take(lane, plain, velocity);
         self.friction.take(lane, plain, friction);
     }
+}
+
+/// A body's share of steps against one damping, see [`Verlet`].
+#[derive(Debug, Clone, Copy)]
+pub struct Dragged {
+    /// Displacement per velocity.
+    pub stride: f64,
+    /// What is left of the inertia.
+    pub kept: f64,
+    /// 1/(J + h/2·D).
+    pub share: f64,
+    /// What a unit of friction at the end takes off the velocity there.
+    pub braking: f64,
 }
 
 /// Contacts of one law, one in each lane; by default lanes with nothing in them.

@@ -63,6 +63,8 @@ impl Column {
 
 /// Who sees body, machine and states of the law after each sample.
 pub(crate) trait Rows<S: Scalar> {
+    /// Whether states of the law are looked at.
+    fn looks(&self) -> bool;
     fn see(
         &mut self,
         sample: usize,
@@ -79,6 +81,11 @@ impl<S: Scalar, F> Rows<S> for Told<F>
 where
     F: FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
 {
+    #[inline(always)]
+    fn looks(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn see(
         &mut self,
@@ -129,6 +136,11 @@ fn taken<'a, 'b>(
 }
 
 impl Rows<f64> for Columns<'_, '_> {
+    #[inline(always)]
+    fn looks(&self) -> bool {
+        self.others.iter().any(|(column, _)| matches!(column, Column::Law(_)))
+    }
+
     #[inline(always)] // where it is called, the motion is in registers
     fn see(
         &mut self,
@@ -165,6 +177,11 @@ pub(super) struct Showing<'a, S: Scalar, R> {
 }
 
 impl<S: Scalar, T: LawState<S>, R: Rows<S>> Seen<S, T> for Showing<'_, S, R> {
+    #[inline(always)]
+    fn looks(&self) -> bool {
+        self.rows.looks()
+    }
+
     #[inline(always)]
     fn see(&mut self, sample: usize, run: &Run<S>, contact: &T) {
         self.rows.see(sample, run, self.machine, |column| contact.output(column));

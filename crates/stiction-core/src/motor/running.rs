@@ -165,12 +165,12 @@ impl<S: Scalar> Running<S> {
                     // Not to the end, which would be looked for anew after every event.
                     let end = inputs.len().min(index + 8 * CHUNK);
                     let samples = index..dt.same_until(index, end);
-                    let mut glide =
-                        machine.glide(self.run, applied, seen, samples, (span, divided));
-                    S::run(Plain { law, state: &mut *state, glide: &mut glide });
+                    let glide = machine.glide(self.run, applied, seen, samples, (span, divided));
+                    let glide = S::run(Plain { law, state: &mut *state, glide });
                     (index, passed) = (glide.samples.start, glide.part);
                     let more = index < glide.samples.end;
                     self.run = glide.run;
+                    room = 0; // what the glide has left of it nobody counted
                     if !more {
                         continue;
                     }

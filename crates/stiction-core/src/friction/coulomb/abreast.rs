@@ -62,7 +62,7 @@ impl Lanes {
         let damping = if slope > 0.0 { slope } else { 0.0 };
         let undamped = force - damping * velocity;
         let arrived = bodies.arrive(lane, net + effort, damping, undamped);
-        let friction = force + damping * (arrived - velocity);
+        let friction = undamped + damping * arrived;
 
         let sticks = mode == 0.0;
         let rests = sticks & (before == 0.0) & (effort.abs() <= self.breakaway.0[lane]);

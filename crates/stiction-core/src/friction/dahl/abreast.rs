@@ -15,6 +15,11 @@ pub struct Lanes {
     per_force: Row,
     pace: Row,
     viscous: Row,
+    /// See `Verlet::dragged`, and 1/(J + h/2·F_v) and h/2 of that.
+    stride: Row,
+    kept: Row,
+    share: Row,
+    braking: Row,
 }
 
 /// Whether these contacts can go abreast.
@@ -23,12 +28,17 @@ pub fn fits<S: Scalar>(law: &Dahl<S>) -> bool {
 }
 
 impl<S: Scalar> Contacts<S, Dahl<S>> for Lanes {
-    fn fit(&mut self, lane: usize, law: &Dahl<S>, _bodies: &Bodies) {
+    fn fit(&mut self, lane: usize, law: &Dahl<S>, bodies: &Bodies) {
         let per_force = 1.0 / law.0.coulomb.re();
         self.coulomb.0[lane] = law.0.coulomb.re();
         self.per_force.0[lane] = per_force;
         self.pace.0[lane] = law.0.initial_stiffness.re() * per_force;
         self.viscous.0[lane] = law.0.viscous.re();
+        let dragged = bodies.dragged(lane, law.0.viscous.re());
+        self.stride.0[lane] = dragged.stride;
+        self.kept.0[lane] = dragged.kept;
+        self.share.0[lane] = dragged.share;
+        self.braking.0[lane] = dragged.braking;
     }
 
     fn load(&mut self, lane: usize, _law: &Dahl<S>, state: &DahlState<S>) {
@@ -57,9 +67,9 @@ impl Lanes {
     #[inline(always)]
     fn step(&mut self, lane: usize, bodies: &mut Bodies) {
         let (dry, damping) = (self.dry.0[lane], self.viscous.0[lane]);
-        let effort = bodies.effort.0[lane];
-        let net = effort - (dry + damping * bodies.velocity.0[lane]);
-        let (displacement, velocity) = bodies.depart(lane, net);
+        let (effort, velocity) = (bodies.effort.0[lane], bodies.velocity.0[lane]);
+        let push = effort - dry;
+        let displacement = self.stride.0[lane] * velocity + bodies.lever.0[lane] * push;
         let s = sign(displacement);
         let eta = self.pace.0[lane] * (displacement * s);
         let before = -(dry * s * self.per_force.0[lane] - 1.0);
@@ -70,10 +80,11 @@ impl Lanes {
         let after = if stays { dry } else { moved };
         let old = self.direction.0[lane];
         let direction = if stays { old } else { s };
-        let force = after + damping * velocity;
-        let undamped = force - damping * velocity;
-        let arrived = bodies.arrive(lane, net + effort, damping, undamped);
-        let friction = force + damping * (arrived - velocity);
+        let both = push + effort;
+        let unbraked =
+            (self.kept.0[lane] * velocity + bodies.half.0[lane] * both) * self.share.0[lane];
+        let arrived = unbraked - self.braking.0[lane] * after;
+        let friction = after + damping * arrived;
         self.dry.0[lane] = after;
         self.direction.0[lane] = direction;
         self.reversals.0[lane] += if direction * old < 0.0 { 1.0 } else { 0.0 };

@@ -26,7 +26,7 @@ impl Bells {
         let share = velocity * self.per_velocity.0[lane];
         let power = share * share;
         let left = fading(-power);
-        let fall = -(left * 2.0 * power / velocity.abs());
+        let fall = -(left * (2.0 * power / velocity.abs()));
         let flat = (velocity == 0.0) | (excess == 0.0);
         (self.coulomb.0[lane] + excess * left, if flat { 0.0 } else { excess * fall })
     }

@@ -108,7 +108,7 @@ impl<S: Scalar> LawState<S> for BristleState<S> {
 
 impl<S: Scalar> Bristle<S> {
     /// σ₁ at this speed and its slope by speed.
-    #[inline]
+    #[inline(always)]
     fn damper(&self, velocity: S) -> (S, S) {
         if self.damping_velocity.re().is_infinite() {
             return (self.damping, S::constant(0.0));
@@ -124,13 +124,13 @@ impl<S: Scalar> Bristle<S> {
     }
 
     /// Friction at an instant.
-    #[inline]
+    #[inline(always)]
     pub fn force(&self, deflection: S, slip: &Slip<S>, velocity: S, channels: &Channels<S>) -> S {
         self.friction(self.stiffness * deflection, slip, velocity, channels)
     }
 
     /// Friction of bristles that bear this force.
-    #[inline]
+    #[inline(always)]
     pub fn friction(&self, borne: S, slip: &Slip<S>, velocity: S, channels: &Channels<S>) -> S {
         let pace = velocity * -(slip.share - 1.0);
         let bristles = borne + self.damper(velocity).0 * pace;
@@ -138,7 +138,7 @@ impl<S: Scalar> Bristle<S> {
     }
 
     /// The step that ends so.
-    #[inline]
+    #[inline(always)]
     pub fn settled(
         &self,
         state: &BristleState<S>,
@@ -150,12 +150,13 @@ impl<S: Scalar> Bristle<S> {
         let outcome = self.outcome(bent, slip, velocity, channels);
         let coulomb = self.level.coulomb.re();
         let slides = state.slides.after(velocity.re(), bent.force.re(), coulomb);
-        let after = BristleState { deflection: bent.force / self.stiffness, slides };
+        let after =
+            BristleState { deflection: bent.force * (S::constant(1.0) / self.stiffness), slides };
         BristleTrial { after, outcome }
     }
 
     /// Friction of a step that ends so.
-    #[inline]
+    #[inline(always)]
     pub fn outcome(
         &self,
         bent: &Bent<S>,

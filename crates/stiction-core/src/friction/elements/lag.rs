@@ -19,10 +19,20 @@ pub struct Followed<S> {
 /// y(z) = to − (to − from)·(1 − e^(−z))/z + (y₀ − from)·e^(−z), exact and stable for any z ≥ 0.
 #[inline(always)]
 pub fn follow<S: Scalar>(y: S, from: S, to: S, z: S) -> Followed<S> {
-    let gone = faded_of(-z);
+    follow_by(y, from, to, z, faded_of(-z))
+}
+
+/// The same with 1 − e^(−z) known.
+#[inline(always)]
+pub fn follow_by<S: Scalar>(y: S, from: S, to: S, z: S, gone: S) -> Followed<S> {
     let remainder = -(gone - 1.0);
     // (1 − e^(−z))/z loses digits below 1e-5; the series error there is under z²/6 ≈ 2e-11.
-    let mean_share = if z.re() < 1e-5 { -(z * 0.5 - 1.0) } else { gone / z };
+    let mean_share = if z.re() < 1e-5 {
+        -(z * 0.5 - 1.0)
+    } else {
+        // The reciprocal waits for no exponential.
+        gone * (S::constant(1.0) / z)
+    };
     let end_share = -(mean_share - 1.0);
     Followed {
         value: from + (to - from) * end_share + (y - from) * remainder,
@@ -35,7 +45,7 @@ pub fn follow<S: Scalar>(y: S, from: S, to: S, z: S) -> Followed<S> {
 #[inline(always)]
 pub fn shares(z: f64) -> (f64, f64) {
     let gone = faded(-z);
-    let mean = if z < 1e-5 { -(z * 0.5 - 1.0) } else { gone / z };
+    let mean = if z < 1e-5 { -(z * 0.5 - 1.0) } else { gone * (1.0 / z) };
     (-(gone - 1.0), -(mean - 1.0))
 }
 

@@ -58,6 +58,12 @@ impl<S: Scalar> ReverseMemory<S> {
         }
     }
 
+    /// Whether a point more needs no room to be made.
+    #[inline]
+    pub fn has_room(&self) -> bool {
+        self.points.capacity() > self.points.len()
+    }
+
     /// Forgets the newest `wiped_out` points, then remembers `added`.
     #[inline]
     pub fn update(&mut self, wiped_out: usize, added: Option<ReversePoint<S>>) {

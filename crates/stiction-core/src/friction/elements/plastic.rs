@@ -4,7 +4,7 @@
 //! (Hsieh & Pan, Wear 242 (2000), §2.2.3 and §3.1: the behaviour is stated, the form of f is a
 //! reconstruction.)
 
-use crate::scalar::{COLUMNS, SHORT, Scalar, logarithmic_mean, second_share, sign};
+use crate::scalar::{COLUMNS, SHORTER, Scalar, logarithmic_mean, second_share, sign};
 
 /// Parameters of the plastic module.
 #[derive(Debug, Clone, Copy)]
@@ -112,34 +112,38 @@ impl<S: Scalar> Plastic<S> {
         // Creep that outruns the displacement takes the spring back, onto its steepest branch.
         let net = displacement.re() - s * held.re();
         let stiffness = stiffness(if net == 0.0 { -s } else { sign(net) });
-        // f'·k: the limit that a unit of spring elongation adds.
-        let limit_slope =
-            if SQUARE { self.coefficient * 2.0 * force.abs() } else { self.limit_slope(force) };
-        let gain = limit_slope * stiffness;
+        // f'·k, the limit that a unit of spring elongation adds, and α·T times that.
+        let (gain, pace) = if SQUARE || self.is_square() {
+            let doubled = self.coefficient * 2.0;
+            let size = force.abs();
+            (doubled.re() * size.re() * stiffness.re(), (progress * doubled) * size * stiffness)
+        } else {
+            let gain = self.limit_slope(force) * stiffness;
+            (gain.re(), progress * gain)
+        };
         // By how much the displacement raises the limit.
-        let risen = gain * (displacement * s);
+        let risen = gain * (displacement.re() * s);
         if !starts {
             // The limit overtakes the hardening inside the step or not at all.
-            let overtakes = risen.re() > 0.0 && (margin + risen).re() > 0.0;
+            let overtakes = risen > 0.0 && margin.re() + risen > 0.0;
             return if overtakes { None } else { Some(none) };
         }
-        let z = progress + progress * gain;
-        if z.re() >= SHORT {
+        let z = progress + pace;
+        if z.re() >= SHORTER {
             return None;
         }
         let second = second_share(z);
-        if risen.re() < 0.0 {
+        if risen < 0.0 {
             let mean = 1.0 - z.re() * second.re();
-            if margin.re() * (1.0 - z.re() * mean) + risen.re() * mean < 0.0 {
+            if margin.re() * (1.0 - z.re() * mean) + risen * mean < 0.0 {
                 return None;
             }
         }
         // Written so that what waits longest, φ₂, comes in last.
-        let lagged = held * z - progress * risen;
-        let gained = held - second * lagged;
-        let left = (displacement - held * s) + second * (lagged * s);
-        let share = gain * progress * second;
-        Some(Creep { hardening: gained, displacement: gained * s, left, share })
+        let lagged = second * (held * s * z - pace * displacement);
+        let gained = held - lagged * s;
+        let left = (displacement - held * s) + lagged;
+        Some(Creep { hardening: gained, displacement: gained * s, left, share: pace * second })
     }
 
     /// Any creep but none.
@@ -243,7 +247,7 @@ impl<S: Scalar> Plastic<S> {
 /// φ₁(z) = (1 − e^(−z))/z and φ₂(z) = (1 − φ₁)/z.
 #[inline(always)]
 fn exponential_means<S: Scalar>(z: S) -> (S, S) {
-    if z.re() < SHORT {
+    if z.re() < SHORTER {
         let second = second_share(z);
         return (-(z * second - 1.0), second);
     }
@@ -291,8 +295,8 @@ mod tests {
 
     #[test]
     fn the_means_agree_where_series_and_formula_meet() {
-        let (a, b) = exponential_means(0.02 - 1e-12);
-        let (c, d) = exponential_means(0.02 + 1e-12);
+        let (a, b) = exponential_means(SHORTER - 1e-12);
+        let (c, d) = exponential_means(SHORTER + 1e-12);
         assert!((a - c).abs() < 1e-12 && (b - d).abs() < 2e-12);
     }
 

@@ -24,7 +24,7 @@ pub struct Slides {
 
 impl Slides {
     /// The count once the velocity and the dry force at level 1 are these.
-    #[inline]
+    #[inline(always)]
     pub fn after(self, velocity: f64, force: f64, coulomb: f64) -> Self {
         let mut next = self;
         let moving = sign(velocity);

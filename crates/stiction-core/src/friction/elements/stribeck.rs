@@ -10,12 +10,25 @@ use crate::scalar::Scalar;
 /// Source: Bo, Pavelescu, Wear 82 (1982).
 #[inline(always)]
 pub fn fall<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> (S, S) {
-    let power = (velocity * (S::constant(1.0) / stribeck_velocity)).power_of_magnitude(exponent);
+    let power = fall_power(velocity, stribeck_velocity, exponent);
     let left = fading_of(-power);
+    (left, fall_slope(velocity, exponent, power, left))
+}
+
+/// |v/v_s|^δ.
+#[inline(always)]
+pub fn fall_power<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> S {
+    (velocity * (S::constant(1.0) / stribeck_velocity)).power_of_magnitude(exponent)
+}
+
+/// The slope of [`fall`], of which `left` is what is left at this power.
+#[inline(always)]
+pub fn fall_slope<S: Scalar>(velocity: S, exponent: S, power: S, left: S) -> S {
     if velocity.re() == 0.0 {
-        return (left, S::constant(0.0));
+        return S::constant(0.0);
     }
-    (left, -(left * exponent * power / velocity.abs()))
+    // The quotient waits for no exponential.
+    -(left * (exponent * power / velocity.abs()))
 }
 
 /// About the steepest fall by speed of `excess` times that: sets how far a step may reach.

@@ -228,6 +228,17 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
     }
 
     #[inline(always)]
+    fn friction(
+        &self,
+        state: &HsiehPanState<S>,
+        _velocity: S,
+        channels: &Channels<S>,
+    ) -> (S, Option<S>) {
+        let beside = state.mode == 0.0 && !self.damper_on_spring;
+        (state.series * channels.level, beside.then_some(self.parameters.damping))
+    }
+
+    #[inline(always)]
     fn advance(
         &self,
         state: &HsiehPanState<S>,
@@ -316,14 +327,11 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         if self.damper_on_spring || self.rated {
             return;
         }
-        if state.mode == 0.0 {
-            if self.plastic.is_square() {
-                self.glide_sticking::<true, _, _>(state, glide);
-            } else {
-                self.glide_sticking::<false, _, _>(state, glide);
-            }
+        if S::CARRIES {
+            self.glide_in_mode(state, glide);
         } else {
-            self.glide_sliding(state, glide);
+            // A copy, which no store into a column can be taken to change.
+            self.clone().glide_in_mode(state, glide);
         }
     }
 

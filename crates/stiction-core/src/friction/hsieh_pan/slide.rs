@@ -1,11 +1,12 @@
 //! Steps of a sliding hook.
 
-use super::super::elements::lag::follow;
+use super::super::elements::lag::follow_by;
 use super::super::elements::spring::Loading;
-use super::super::elements::stribeck::fall;
+use super::super::elements::stribeck::{fall_power, fall_slope};
 use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;
 use super::state::{HsiehPanState, HsiehPanTrial, Mode};
+use crate::exponential::fading_twice_and_faded_of;
 use crate::scalar::{Scalar, sign};
 
 /// A step of a slide.
@@ -18,11 +19,18 @@ pub(super) struct Slide<S> {
 }
 
 impl<S: Scalar> HsiehPan<S> {
-    /// Sliding level T at this speed and its slope by speed, at level 1.
+    /// Sliding level T at this speed and its slope by speed, at level 1, where this is left of the
+    /// fall.
     #[inline(always)]
-    pub(super) fn sliding_level(&self, latched: S, velocity: S, channels: &Channels<S>) -> (S, S) {
+    fn sliding_level(
+        &self,
+        latched: S,
+        velocity: S,
+        (power, left): (S, S),
+        channels: &Channels<S>,
+    ) -> (S, S) {
         let p = &self.parameters;
-        let (left, steepness) = fall(velocity, p.stribeck_velocity, p.stribeck_exponent);
+        let steepness = fall_slope(velocity, p.stribeck_exponent, power, left);
         let excess = latched - p.coulomb;
         let viscous = p.viscous * channels.viscous_level / channels.level;
         (p.coulomb + excess * left + viscous * velocity.abs(), excess * steepness + viscous)
@@ -37,6 +45,12 @@ impl<S: Scalar> HsiehPan<S> {
         if to.re() <= least.re() {
             return (to, None);
         }
+        self.held_back(from, to, distance)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn held_back(&self, from: S, to: S, distance: S) -> (S, Option<S>) {
         let limit = self.curve.virgin(self.curve.virgin_inverse(from) + distance);
         if to.re() <= limit.force.re() { (to, None) } else { (limit.force, Some(limit.slope)) }
     }
@@ -72,15 +86,18 @@ impl<S: Scalar> HsiehPan<S> {
         motion: &Motion<S>,
         channels: &Channels<S>,
     ) -> Slide<S> {
-        let (to, steepness) = self.sliding_level(latched, motion.velocity, channels);
-        let (from, from_steepness) = if motion.start_velocity.re() == motion.velocity.re() {
-            (to, steepness)
-        } else {
-            self.sliding_level(latched, motion.start_velocity, channels)
-        };
+        let p = &self.parameters;
+        let power = |velocity| fall_power(velocity, p.stribeck_velocity, p.stribeck_exponent);
+        let (before, after) = (power(motion.start_velocity), power(motion.velocity));
         let distance = motion.displacement.abs();
-        let per_distance = S::constant(1.0) / self.parameters.slip_distance;
-        let followed = follow(series * s, from, to, distance * per_distance);
+        let per_distance = S::constant(1.0) / p.slip_distance;
+        let z = distance * per_distance;
+        let [left, left_before, gone] = fading_twice_and_faded_of(-after, -before, -z);
+        let (to, steepness) =
+            self.sliding_level(latched, motion.velocity, (after, left), channels);
+        let (from, from_steepness) =
+            self.sliding_level(latched, motion.start_velocity, (before, left_before), channels);
+        let followed = follow_by(series * s, from, to, z, gone);
         let (sigma, held_back) =
             self.no_faster_than_the_spring(series * s, followed.value, distance);
         let turning = sign(motion.velocity.re());

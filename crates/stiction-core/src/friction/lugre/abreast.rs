@@ -14,6 +14,8 @@ pub struct Lanes {
     deflection: Row,
     slides: SlidesAbreast,
     stiffness: Row,
+    /// 1/σ₀.
+    compliance: Row,
     damping: Row,
     viscous: Row,
     coulomb: Row,
@@ -32,6 +34,7 @@ impl<S: Scalar> Contacts<S, LuGre<S>> for Lanes {
             self.level.fit(lane, bell);
         }
         self.stiffness.0[lane] = bristle.stiffness.re();
+        self.compliance.0[lane] = 1.0 / bristle.stiffness.re();
         self.damping.0[lane] = bristle.damping.re();
         self.viscous.0[lane] = bristle.viscous.re();
         self.coulomb.0[lane] = bristle.level.coulomb.re();
@@ -65,7 +68,8 @@ impl Lanes {
         let viscous = self.viscous.0[lane];
         let (from, _) = self.level.at(lane, before);
         let borne = stiffness * self.deflection.0[lane];
-        let slipping = borne * sign(before) / from;
+        let per_from = 1.0 / from;
+        let slipping = borne * sign(before) * per_from;
         let bristles = borne + damper * (before * -(slipping - 1.0));
         let net = effort - (bristles + viscous * before);
         let (displacement, velocity) = bodies.depart(lane, net);
@@ -74,7 +78,8 @@ impl Lanes {
         let (to, steepness) = self.level.at(lane, velocity);
         let s = sign(displacement);
         let path = stiffness * displacement * s;
-        let z = path * (0.5 / from + 0.5 / to);
+        let per_to = 1.0 / to;
+        let z = path * (per_from * 0.5 + per_to * 0.5);
         let (remainder, end_share) = shares(z);
         let followed = from + (to - from) * end_share + (borne * s - from) * remainder;
         let stays = s == 0.0;
@@ -83,21 +88,21 @@ impl Lanes {
 
         // `Bristle::outcome`.
         let towards = sign(velocity);
-        let share = bent * towards / to;
-        let by_speed = -(share * steepness / to);
+        let share = bent * towards * per_to;
+        let by_speed = -(share * (steepness * per_to));
         let bends = -(share - 1.0);
-        let slips = (1.0 / to * by_end + by_speed) * towards;
+        let slips = (per_to * by_end + by_speed) * towards;
         let implicit = by_end + damper * (bends - velocity * slips) + viscous;
         let damping = if implicit > 0.0 { implicit } else { 0.0 };
         let force = bent + damper * (velocity * bends) + viscous * velocity;
         let undamped = force - damping * velocity;
         let arrived = bodies.arrive(lane, net + effort, damping, undamped);
-        let friction = force + damping * (arrived - velocity);
+        let friction = undamped + damping * arrived;
 
         // A velocity that is held has a formula of its own.
         let plain = stays | (before != velocity);
         bodies.missed[lane] = u64::from(!plain);
-        self.deflection.take(lane, plain, bent / stiffness);
+        self.deflection.take(lane, plain, bent * self.compliance.0[lane]);
         self.slides.step(lane, plain, velocity, bent, self.coulomb.0[lane]);
         bodies.accept(lane, plain, displacement, arrived, friction);
     }

@@ -45,13 +45,16 @@ pub struct Lanes {
     inverse_distance: Row,
     initial_stiffness: Row,
     final_stiffness: Row,
-    /// Creep: α, c, 2·c and α·h.
+    /// Creep: α, c, 2·c, α·h and the product of the last two.
     rate: Row,
     coefficient: Row,
     twice_coefficient: Row,
     progress: Row,
+    pace: Row,
     damping: Row,
-    /// 1/(J + h/2·C_s) and h/2 of that.
+    /// See `Verlet::dragged`, and 1/(J + h/2·C_s) and h/2 of that.
+    stride: Row,
+    kept: Row,
     share: Row,
     braking: Row,
     greatest: Row,
@@ -112,8 +115,7 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
     fn fit(&mut self, lane: usize, law: &HsiehPan<S>, bodies: &Bodies) {
         let p = &law.parameters;
         let damping = p.damping.re();
-        let half = bodies.half.0[lane];
-        let share = 1.0 / (bodies.inertia.0[lane] + half * damping);
+        let dragged = bodies.dragged(lane, damping);
         let [_, fading, distance] = law.curve.numbers();
         self.fading.0[lane] = fading;
         self.faded_force.0[lane] = fading * distance;
@@ -124,9 +126,12 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         self.coefficient.0[lane] = law.plastic.coefficient.re();
         self.twice_coefficient.0[lane] = law.plastic.coefficient.re() * 2.0;
         self.progress.0[lane] = law.plastic.rate.re() * bodies.span.0[lane];
+        self.pace.0[lane] = self.progress.0[lane] * self.twice_coefficient.0[lane];
         self.damping.0[lane] = damping;
-        self.share.0[lane] = share;
-        self.braking.0[lane] = half * share;
+        self.stride.0[lane] = dragged.stride;
+        self.kept.0[lane] = dragged.kept;
+        self.share.0[lane] = dragged.share;
+        self.braking.0[lane] = dragged.braking;
         self.greatest.0[lane] = p.breakaway.re();
         self.coulomb.0[lane] = p.coulomb.re();
         self.per_velocity.0[lane] = 1.0 / p.stribeck_velocity.re();

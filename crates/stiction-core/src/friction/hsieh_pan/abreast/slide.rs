@@ -53,7 +53,7 @@ impl Lanes {
         let (left, left_before) = (fading(-power), fading(-power_before));
         let to = coulomb + excess * left + viscous * predicted.abs();
         let from = coulomb + excess * left_before + viscous * velocity.abs();
-        let fall = if predicted == 0.0 { 0.0 } else { -(left * 2.0 * power / predicted.abs()) };
+        let fall = if predicted == 0.0 { 0.0 } else { -(left * (2.0 * power / predicted.abs())) };
         let steepness = excess * fall + viscous;
         Levels { net, displacement, predicted, from, to, steepness }
     }
@@ -90,7 +90,7 @@ impl Lanes {
         let accepted = here & plain;
         bodies.missed[lane] |= u64::from(here & !plain);
         self.force.take(lane, accepted, force);
-        let friction = force + damping * (arrived - predicted);
+        let friction = undamped + damping * arrived;
         bodies.accept(lane, accepted, displacement, arrived, friction);
     }
 }

@@ -2,9 +2,9 @@
 
 use super::{CLOSED, Lanes, TURNED};
 use crate::exponential::faded;
-use crate::friction::elements::spring::SYNCHRONISED;
+use crate::friction::elements::spring::{SYNCHRONISED, short_way};
 use crate::lanes::{Block, Bodies, WIDTH, pick};
-use crate::scalar::{SHORT, gone_share, second_share};
+use crate::scalar::{SHORT, SHORTER, second_share};
 
 /// Steps of sticking hooks in one block or two, stage by stage: while one waits the other goes on.
 /// With `ANY`, for those that missed the plain step.
@@ -32,15 +32,15 @@ pub(super) fn stick<const ANY: bool, const N: usize>(blocks: &mut [Block<Lanes>;
 /// How a sticking hook begins a step, and what drives its creep.
 #[derive(Clone, Copy)]
 struct Departure {
-    net: f64,
+    push: f64,
     displacement: f64,
-    predicted: f64,
     /// Sign of the force, limit less hardening, and what a held force would gain.
     side: f64,
     margin: f64,
     held: f64,
-    /// What a displacement adds to the limit, and this one.
+    /// What a displacement adds to the limit, α·h times that, and this one.
     gain: f64,
+    pace: f64,
     risen: f64,
 }
 
@@ -85,8 +85,8 @@ impl Lanes {
     fn depart(&self, lane: usize, bodies: &Bodies) -> Departure {
         let velocity = bodies.velocity.0[lane];
         let (force, slope) = (self.force.0[lane], self.slope.0[lane]);
-        let net = bodies.effort.0[lane] - (force + self.damping.0[lane] * velocity);
-        let (displacement, predicted) = bodies.depart(lane, net);
+        let push = bodies.effort.0[lane] - force;
+        let displacement = self.stride.0[lane] * velocity + bodies.lever.0[lane] * push;
         let side = 1.0_f64.copysign(force);
         let margin = self.coefficient.0[lane] * (force * force) - self.hardening.0[lane];
         let held = if margin > 0.0 { self.progress.0[lane] * margin } else { 0.0 };
@@ -95,27 +95,28 @@ impl Lanes {
         let stiffness =
             if moving == self.direction.0[lane] { slope } else { self.initial_stiffness.0[lane] };
         let gain = self.twice_coefficient.0[lane] * force.abs() * stiffness;
+        let pace = self.pace.0[lane] * force.abs() * stiffness;
         let risen = gain * (displacement * side);
-        Departure { net, displacement, predicted, side, margin, held, gain, risen }
+        Departure { push, displacement, side, margin, held, gain, pace, risen }
     }
 
     /// `Plastic::plain_creep`. With `ANY`, also where creep begins or ends inside the step.
     #[inline(always)]
     fn creep<const ANY: bool>(&self, lane: usize, begun: &Departure, bodies: &Bodies) -> Crept {
-        let Departure { displacement, side, margin, held, gain, risen, .. } = *begun;
+        let Departure { displacement, side, margin, held, gain, pace, risen, .. } = *begun;
         let progress = self.progress.0[lane];
         let starts = margin > 0.0;
-        let z = progress + progress * gain;
+        let z = progress + pace;
         let second = second_share(z);
         let mean = 1.0 - z * second;
         let outrun = (risen < 0.0) & (margin * (1.0 - z * mean) + risen * mean < 0.0);
         let overtakes = (risen > 0.0) & (margin + risen > 0.0);
-        let lagged = held * z - progress * risen;
-        let gained = held - second * lagged;
-        let rest = (displacement - held * side) + second * (lagged * side);
+        let lagged = second * (held * side * z - pace * displacement);
+        let gained = held - lagged * side;
+        let rest = (displacement - held * side) + lagged;
         let idle = (self.force.0[lane] == 0.0) | (self.coefficient.0[lane] == 0.0);
         let creeps = starts & !idle;
-        let long = z >= SHORT;
+        let long = z >= SHORTER;
         let plain = idle | if starts { !long & !outrun } else { !overtakes };
         let crept = Crept {
             hardening: if creeps { gained } else { 0.0 },
@@ -126,6 +127,10 @@ impl Lanes {
         if !ANY {
             return crept;
         }
+        // `Plastic::any_creep`, whose sums have another order.
+        let z = progress + progress * gain;
+        let mean = 1.0 - z * second_share(z);
+        let outrun = margin * (1.0 - z * mean) + risen * mean < 0.0;
         // `Plastic::overtaken` and `Plastic::outrun`.
         let (span, rate) = (bodies.span.0[lane], self.rate.0[lane]);
         let rise = gain * displacement * side / span;
@@ -141,7 +146,7 @@ impl Lanes {
         let gained = (if starts { sooner } else { later }) * rate;
         let taken = gained * side;
         let left = displacement - taken;
-        let short = (z < SHORT) & (!starts | (!long & (x.abs() < 1e-3)));
+        let short = (z < SHORTER) & (!starts | (!long & outrun & (x.abs() < 1e-3)));
         Crept {
             hardening: pick(plain, crept.hardening, gained),
             displacement: pick(plain, crept.displacement, taken),
@@ -160,16 +165,15 @@ impl Lanes {
         let position = from + left;
         let along = left * self.per_displacement.0[lane];
         let far = (self.steps.0[lane] >= f64::from(SYNCHRONISED)) | (along >= SHORT);
-        let share = gone_share(along);
         let excess = slope - self.final_stiffness.0[lane];
-        let gained = left * (self.final_stiffness.0[lane] + excess * share);
+        let [there, steepness] = short_way(force, slope, excess, left, along);
         let back = direction * left < 0.0;
         let closes = direction * (position - self.present.target.0[lane]) >= 0.0;
         let plain = !far & !back & !closes;
         let onward = Pulled {
             position,
-            force: force + gained,
-            slope: slope - excess * (along * share),
+            force: there,
+            slope: steepness,
             steps: self.steps.0[lane] + if left != 0.0 { 1.0 } else { 0.0 },
             found: plain & (direction != 0.0),
             back,
@@ -215,10 +219,10 @@ impl Lanes {
         pulled: &Pulled,
         bodies: &mut Bodies,
     ) {
-        let Departure { net, displacement, predicted, .. } = *begun;
+        let Departure { push, displacement, .. } = *begun;
         let (effort, velocity) = (bodies.effort.0[lane], bodies.velocity.0[lane]);
         let (force, damping) = (pulled.force, self.damping.0[lane]);
-        let unbraked = (bodies.inertia.0[lane] * velocity + bodies.half.0[lane] * (net + effort))
+        let unbraked = (self.kept.0[lane] * velocity + bodies.half.0[lane] * (push + effort))
             * self.share.0[lane];
         let arrived = unbraked - self.braking.0[lane] * force;
         let breaks = (force.abs() >= self.greatest.0[lane]) & (arrived * force > 0.0);
@@ -241,7 +245,7 @@ impl Lanes {
         self.steps.take(lane, accepted, pulled.steps);
         self.plastic.add(lane, accepted, crept.displacement);
         self.hardening.add(lane, accepted, crept.hardening);
-        let friction = force + damping * predicted + damping * (arrived - predicted);
+        let friction = force + damping * arrived;
         bodies.accept(lane, accepted, displacement, arrived, friction);
     }
 }
