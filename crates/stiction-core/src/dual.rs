@@ -7,7 +7,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use stiction_dispatch::{Task, Width};
+use stiction_dispatch::{Task, Width, alone};
 
 use crate::scalar::Scalar;
 
@@ -30,7 +30,8 @@ impl Dual {
         for (column, place) in slopes.iter_mut().enumerate() {
             *place = slope(column);
         }
-        Self { slopes, re }
+        // Among vectors that the compiler makes of values, rows would come apart.
+        Self { slopes, re: alone(re) }
     }
 
     /// All derivatives.

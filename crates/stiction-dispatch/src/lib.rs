@@ -10,7 +10,7 @@ mod pair;
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
-pub use pair::{Numbers, Pair};
+pub use pair::{Numbers, Pair, alone};
 
 /// Vectors to compile for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -3,6 +3,26 @@
 
 use std::ops::{Add, Mul, Sub};
 
+/// The number, as one that the compiler puts into no vector. In a chain of results that wait for one
+/// another it makes vectors of two whose sums look alike; then the sooner waits for the later.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub fn alone(number: f64) -> f64 {
+    let mut number = number;
+    // SAFETY: no instruction at all.
+    unsafe {
+        std::arch::asm!("/* {0} */", inout(xmm_reg) number, options(pure, nomem, nostack, preserves_flags));
+    }
+    number
+}
+
+/// The number.
+#[cfg(not(target_arch = "x86_64"))]
+#[inline(always)]
+pub fn alone(number: f64) -> f64 {
+    number
+}
+
 /// Numbers with the operations that an exponential is made of.
 pub trait Numbers: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// This number in each place.
