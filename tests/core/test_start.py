@@ -143,12 +143,14 @@ def test_derivatives_by_the_start_equal_differences(kind, direction, force, hard
             return (high - low) / (2.0 * width)
 
         near, wide = chord(step), chord(2.0 * step)
-        scale = np.abs(exact[k]).max()
+        # A few units in the last place of the forces, which a difference divides by its width.
+        rounding = 4.0 * np.finfo(float).eps * np.abs(needed(motor, start, path)).max() / step
+        allowed = DIFFERENCE * np.abs(exact[k]).max() + rounding
         # Samples in which a branch changes have no difference.
-        smooth = np.abs(near - wide) <= DIFFERENCE * scale
+        smooth = np.abs(near - wide) <= allowed
         assert smooth.mean() > 0.97
         difference = (4.0 * near - wide) / 3.0
-        assert np.abs(exact[k] - difference)[smooth].max() <= DIFFERENCE * scale
+        assert np.abs(exact[k] - difference)[smooth].max() <= allowed
 
 
 @pytest.mark.parametrize("force", [0.2, 0.345])

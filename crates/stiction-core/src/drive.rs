@@ -1,6 +1,7 @@
 //! Drive: from a recording's input to effort.
 
 use std::collections::VecDeque;
+use std::ops::Mul;
 
 use crate::error::{Error, Result};
 use crate::friction::{Entry, EntryReader};
@@ -29,8 +30,11 @@ impl<S: Scalar> Drive<S> {
     }
 
     /// Effort for an input that no servo stands before.
-    #[inline]
-    pub fn direct(&self, input: S) -> S {
+    #[inline(always)]
+    pub fn direct<N: Scalar>(&self, input: N) -> S
+    where
+        S: Mul<N, Output = S>,
+    {
         self.gain * within(input, self.limit)
     }
 

@@ -5,7 +5,7 @@
 //! interpolates (e^r − 1 − r)/r² at the nodes of Chebyshev, which is off by 1.1e-16 at most. It is
 //! summed in pairs, and so that what takes longest, Q, comes in last.
 
-use stiction_dispatch::{Numbers, Pair};
+use stiction_dispatch::{Numbers, Pair, alone};
 
 use crate::scalar::Scalar;
 
@@ -30,9 +30,10 @@ const Q: [f64; 10] = [
     2.510_521_769_568_451_6e-8,
 ];
 
-/// 2^n, 2^n·r and 2^n·r²·Q for x = n·ln 2 + r, [`LEAST`] ≤ x ≤ 0, each times `sign`.
+/// 2^n, 2^n·r and 2^n·r²·Q for x = n·ln 2 + r, [`LEAST`] ≤ x ≤ 0, each times `sign`; `kept` may keep
+/// the compiler from vectors of its own.
 #[inline(always)]
-fn parts<N: Numbers>(x: N, sign: N) -> (N, N, N) {
+fn parts<N: Numbers>(x: N, sign: N, kept: impl Fn(N) -> N) -> (N, N, N) {
     let q = |k: usize| N::all(Q[k]);
     let rounded = x * N::all(std::f64::consts::LOG2_E) + N::all(ROUNDER);
     let n = rounded - N::all(ROUNDER);
@@ -41,7 +42,7 @@ fn parts<N: Numbers>(x: N, sign: N) -> (N, N, N) {
     let square = r * r;
     let fourth = square * square;
     let low = (q(0) + r * q(1)) + square * (q(2) + r * q(3));
-    let middle = (q(4) + r * q(5)) + square * (q(6) + r * q(7));
+    let middle = kept((q(4) + r * q(5)) + square * (q(6) + r * q(7)));
     let high = (fourth * fourth) * (q(8) + r * q(9));
     (scale, scale * r, (scale * square) * ((low + high) + fourth * middle))
 }
@@ -49,14 +50,14 @@ fn parts<N: Numbers>(x: N, sign: N) -> (N, N, N) {
 /// e^x for x ≤ 0, to 1.5 units in the last place.
 #[inline(always)]
 pub fn fading(x: f64) -> f64 {
-    let (scale, first, rest) = parts(x, 1.0);
+    let (scale, first, rest) = parts(x, 1.0, |sum| sum);
     ((scale + first) + rest).unless_below(x, LEAST, 0.0)
 }
 
 /// 1 − e^x for x ≤ 0, to 2 units in the last place.
 #[inline(always)]
 pub fn faded(x: f64) -> f64 {
-    let (scale, first, rest) = parts(x, 1.0);
+    let (scale, first, rest) = parts(x, 1.0, |sum| sum);
     (((1.0 - scale) - first) - rest).unless_below(x, LEAST, 1.0)
 }
 
@@ -64,19 +65,40 @@ pub fn faded(x: f64) -> f64 {
 #[inline(always)]
 fn fading_and_faded(first: f64, second: f64) -> (f64, f64) {
     let (x, whole) = (Pair::new(first, second), Pair::new(0.0, 1.0));
-    let (scale, once, rest) = parts(x, Pair::new(1.0, -1.0));
+    let (scale, once, rest) = parts(x, Pair::new(1.0, -1.0), |sum| sum);
     (((whole + scale) + once) + rest).unless_below(x, LEAST, whole).split()
+}
+
+/// [`fading`], to the bit.
+#[inline(always)]
+fn fading_one(x: f64) -> f64 {
+    if x < LEAST {
+        // A branch for certain, which a processor foresees: a choice made without one is waited for.
+        return alone(0.0);
+    }
+    let (scale, first, rest) = parts(x, 1.0, alone);
+    (scale + first) + rest
+}
+
+/// [`faded`], to the bit.
+#[inline(always)]
+fn faded_one(x: f64) -> f64 {
+    if x < LEAST {
+        return alone(1.0);
+    }
+    let (scale, first, rest) = parts(x, 1.0, alone);
+    ((1.0 - scale) - first) - rest
 }
 
 // A loop that takes more than a few of these in has no registers left for what runs in it.
 #[inline(never)]
 fn fading_apart(x: f64) -> f64 {
-    fading(x)
+    fading_one(x)
 }
 
 #[inline(never)]
 fn faded_apart(x: f64) -> f64 {
-    faded(x)
+    faded_one(x)
 }
 
 /// [`fading`] of any number type.
@@ -93,6 +115,26 @@ pub fn faded_of<S: Scalar>(x: S) -> S {
     x.chain(value, value - 1.0)
 }
 
+/// [`fading_of`], as part of the loop that asks for it where it is one of plain numbers.
+#[inline(always)]
+pub fn fading_within<S: Scalar>(x: S) -> S {
+    if S::CARRIES {
+        return fading_of(x);
+    }
+    let value = fading_one(x.re());
+    x.chain(value, value)
+}
+
+/// [`faded_of`] likewise.
+#[inline(always)]
+pub fn faded_within<S: Scalar>(x: S) -> S {
+    if S::CARRIES {
+        return faded_of(x);
+    }
+    let value = faded_one(x.re());
+    x.chain(value, value - 1.0)
+}
+
 /// [`fading_of`] the first two and [`faded_of`] the third, as part of the loop that asks for them where
 /// it is one of plain numbers.
 #[inline(always)]
@@ -101,7 +143,7 @@ pub fn fading_twice_and_faded_of<S: Scalar>(one: S, other: S, third: S) -> [S; 3
         return [fading_of(one), fading_of(other), faded_of(third)];
     }
     let (other_left, gone) = fading_and_faded(other.re(), third.re());
-    let left = fading(one.re());
+    let left = fading_one(one.re());
     [one.chain(left, left), other.chain(other_left, other_left), third.chain(gone, gone - 1.0)]
 }
 
@@ -124,9 +166,10 @@ mod tests {
     }
 
     #[test]
-    fn two_at_once_have_the_bits_of_each_alone() {
+    fn every_way_to_the_same_number_has_its_bits() {
         for k in 0..40_000 {
             let x = -1e-9 * 1.001_f64.powi(k);
+            assert_eq!((fading_one(x), faded_one(x)), (fading(x), faded(x)), "{x}");
             for y in [-0.0, 0.3 * x, -3.0, -1e9] {
                 assert_eq!(fading_and_faded(x, y), (fading(x), faded(y)), "{x} {y}");
                 assert_eq!(fading_and_faded(y, x), (fading(y), faded(x)), "{x} {y}");

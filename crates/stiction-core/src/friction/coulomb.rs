@@ -1,6 +1,7 @@
 //! Dry friction with true stick, viscous friction and, as an option, a Stribeck fall.
 
 mod abreast;
+mod plain;
 
 use super::elements::rigid::{Rigid, held};
 use super::elements::stribeck::{check_levels, fall, steepest};
@@ -9,6 +10,7 @@ use super::{
     Statistics,
 };
 use crate::error::Result;
+use crate::integrate::{Efforts, Glide, Seen};
 use crate::lanes::{self, Abreast};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -191,6 +193,25 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
     #[inline]
     fn commit(&self, state: &mut CoulombState<S>, trial: &CoulombTrial<S>) {
         state.0.accept(trial.mode, trial.outcome.force);
+    }
+
+    #[inline(always)]
+    fn glides(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn glide<E: Efforts<S>, V: Seen<S, CoulombState<S>>>(
+        &self,
+        state: &mut CoulombState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) {
+        if S::CARRIES {
+            self.glide_on(state, glide);
+        } else {
+            // A copy, which no store into a column can be taken to change.
+            self.clone().glide_on(state, glide);
+        }
     }
 
     fn abreast(&self) -> Option<Abreast<S, Self>> {

@@ -7,7 +7,7 @@ use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::Result;
-use crate::integrate::{Glide, Seen, glide_on};
+use crate::integrate::{Efforts, Glide, Seen, glide_on};
 use crate::lanes::{self, Abreast};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -107,6 +107,13 @@ fn left_over<S: Scalar>(r: S, exponent: S, eta: S) -> S {
         // The same in a quotient.
         return r / (pace + 1.0);
     }
+    any_left_over(r, exponent, pace)
+}
+
+/// The same of any exponent, η·|r₀|^(i−1) known.
+#[cold]
+#[inline(never)]
+fn any_left_over<S: Scalar>(r: S, exponent: S, pace: S) -> S {
     let u = pace * (-(exponent - 1.0));
     if u.re() >= 1.0 {
         return S::constant(0.0);
@@ -182,17 +189,20 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
     ) -> DahlTrial<S> {
         let p = &self.0;
         let damping = p.viscous * channels.viscous_level;
-        let moving = sign(motion.displacement.re());
+        // ±1: a product with it is exact in any order, this one waits least.
+        let way = motion.displacement.re();
+        let moving = if way == 0.0 { 0.0 } else { 1.0_f64.copysign(way) };
         let per_force = S::constant(1.0) / p.coulomb;
-        let remaining = |s: f64, dry: S| -(dry * s * per_force - 1.0);
+        let share = state.dry * per_force;
+        let remaining = |s: f64| -(share * s - 1.0);
         let (dry, share) = if moving == 0.0 {
             // The slope differs to either side: the mean of the two.
-            let (up, down) = (remaining(1.0, state.dry), remaining(-1.0, state.dry));
+            let (up, down) = (remaining(1.0), remaining(-1.0));
             (state.dry, (self.share(up) + self.share(down)) * 0.5)
         } else {
-            let eta = p.initial_stiffness * per_force * (motion.displacement * moving);
-            let r = left_over(remaining(moving, state.dry), p.exponent, eta);
-            (-(r - 1.0) * p.coulomb * moving, self.share(r))
+            let eta = p.initial_stiffness * per_force * motion.displacement.abs();
+            let r = left_over(remaining(moving), p.exponent, eta);
+            (-(r - 1.0) * (p.coulomb * moving), self.share(r))
         };
         let direction = if moving == 0.0 { state.direction } else { moving };
         let turned = u64::from(direction * state.direction < 0.0);
@@ -226,10 +236,13 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
         trial.undamped
     }
 
-    const GLIDES: bool = true;
+    #[inline(always)]
+    fn glides(&self) -> bool {
+        true
+    }
 
     #[inline(always)]
-    fn glide<E: Fn(usize) -> S, V: Seen<S, DahlState<S>>>(
+    fn glide<E: Efforts<S>, V: Seen<S, DahlState<S>>>(
         &self,
         state: &mut DahlState<S>,
         glide: &mut Glide<S, E, V>,

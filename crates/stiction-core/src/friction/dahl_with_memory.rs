@@ -3,6 +3,7 @@
 use super::maxwell_slip::{MaxwellSlip, MaxwellSlipState, MaxwellSlipTrial};
 use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
 use crate::error::Result;
+use crate::integrate::{Efforts, Glide, Seen};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -100,9 +101,38 @@ impl<S: Scalar> FrictionLaw<S> for DahlWithMemory<S> {
         self.0.advance(state, motion, channels)
     }
 
+    #[inline(always)]
+    fn friction(
+        &self,
+        state: &MaxwellSlipState<S>,
+        velocity: S,
+        channels: &Channels<S>,
+    ) -> (S, Option<S>) {
+        self.0.friction(state, velocity, channels)
+    }
+
     #[inline]
     fn outcome(&self, trial: &MaxwellSlipTrial<S>) -> Outcome<S> {
         self.0.outcome(trial)
+    }
+
+    #[inline(always)]
+    fn undamped(&self, trial: &MaxwellSlipTrial<S>, velocity: S) -> S {
+        self.0.undamped(trial, velocity)
+    }
+
+    #[inline(always)]
+    fn glides(&self) -> bool {
+        self.0.glides()
+    }
+
+    #[inline(always)]
+    fn glide<E: Efforts<S>, V: Seen<S, MaxwellSlipState<S>>>(
+        &self,
+        state: &mut MaxwellSlipState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) {
+        self.0.glide(state, glide);
     }
 
     // Where the body stays, so does the force.

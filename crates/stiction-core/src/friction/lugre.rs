@@ -3,11 +3,11 @@
 mod abreast;
 
 use super::elements::bristle::{self, Bent, Bristle, BristleState, BristleTrial, Slip};
-use super::elements::lag::follow;
+use super::elements::lag::{follow, follow_within};
 use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
 use crate::error::Result;
-use crate::integrate::{Glide, Seen};
+use crate::integrate::{Efforts, Glide, Seen};
 use crate::lanes::{self, Abreast};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -74,6 +74,13 @@ impl<S: Scalar> LuGre<S> {
         Level { force, steepness, reciprocal: S::constant(1.0) / force }
     }
 
+    /// The same as part of the loop that asks for it.
+    #[inline(always)]
+    fn level_within(&self, velocity: S) -> Level<S> {
+        let (force, steepness) = self.0.level.at_within(velocity);
+        Level { force, steepness, reciprocal: S::constant(1.0) / force }
+    }
+
     /// t = σ₀·|z|/g(v), signed by the direction of motion.
     #[inline(always)]
     fn slip(force: S, velocity: S, level: &Level<S>) -> Slip<S> {
@@ -99,12 +106,12 @@ impl<S: Scalar> LuGre<S> {
             let by_velocity = bristle.stiffness * motion.duration;
             return Bent { force, by_velocity, by_end: S::constant(0.0) };
         }
-        let path = bristle.stiffness * motion.displacement * s;
+        let path = bristle.stiffness * motion.displacement.abs();
         if motion.start_velocity.re() == motion.velocity.re() {
             return Self::bend_steadily(motion, force, s, path, (to.force, to.steepness));
         }
         let z = path * (from.reciprocal * 0.5 + to.reciprocal * 0.5);
-        let followed = follow(force * s, from.force, to.force, z);
+        let followed = follow_within(force * s, from.force, to.force, z);
         let by_end = to.steepness * followed.end_share;
         Bent { force: followed.value * s, by_velocity: by_end, by_end }
     }
@@ -221,10 +228,13 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
         trial.outcome
     }
 
-    const GLIDES: bool = true;
+    #[inline(always)]
+    fn glides(&self) -> bool {
+        true
+    }
 
     #[inline(always)]
-    fn glide<E: Fn(usize) -> S, V: Seen<S, BristleState<S>>>(
+    fn glide<E: Efforts<S>, V: Seen<S, BristleState<S>>>(
         &self,
         state: &mut BristleState<S>,
         glide: &mut Glide<S, E, V>,
@@ -235,14 +245,14 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
         let duration = glide.verlet.span();
         // g at the end of a step is that at the start of the next.
         let (mut now, mut start_velocity) = (*state, glide.run.velocity);
-        let mut from = own.level(start_velocity);
+        let mut from = own.level_within(start_velocity);
         while let Some(effort) = glide.next() {
             let slip = Self::slip(bristle.stiffness * now.deflection, start_velocity, &from);
             let net = effort - bristle.force(now.deflection, &slip, start_velocity, &channels);
             let displacement = verlet.displacement(start_velocity, net);
             let velocity = verlet.predicted(start_velocity, net);
             let motion = Motion { displacement, duration, start_velocity, velocity };
-            let to = own.level(velocity);
+            let to = own.level_within(velocity);
             let bent = own.bend(&now, &motion, &from, &to);
             let slip = Self::slip(bent.force, velocity, &to);
             let BristleTrial { after, outcome } =
@@ -252,7 +262,7 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
             let arrived = verlet.arrive(start_velocity, net + effort, damping, undamped);
             now = after;
             start_velocity = arrived;
-            from = own.level(arrived);
+            from = own.level_within(arrived);
             glide.accept(displacement, arrived, undamped + damping * arrived, &now);
         }
         *state = now;

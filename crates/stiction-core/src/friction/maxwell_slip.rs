@@ -1,5 +1,7 @@
 //! Parallel elasto-slide elements without number: pre-sliding hysteresis that ends in sliding.
 
+mod plain;
+
 use super::elements::spring::{SpringState, Walk};
 use super::elements::yield_curve::YieldCurve;
 use super::{
@@ -7,6 +9,7 @@ use super::{
     Rest, Statistics,
 };
 use crate::error::Result;
+use crate::integrate::{Efforts, Glide, Seen};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -71,6 +74,7 @@ pub struct MaxwellSlipState<S> {
 pub struct MaxwellSlipTrial<S> {
     walk: Walk<S>,
     outcome: Outcome<S>,
+    undamped: S,
 }
 
 impl<S: Scalar> MaxwellSlipState<S> {
@@ -117,9 +121,10 @@ impl<S: Scalar> MaxwellSlip<S> {
     ) -> MaxwellSlipTrial<S> {
         let walk = state.spring.walk(&self.curve, motion.displacement);
         let damping = self.parameters.viscous * channels.viscous_level;
-        let force = walk.end.force * channels.level + damping * motion.velocity;
+        let undamped = walk.end.force * channels.level;
+        let force = undamped + damping * motion.velocity;
         let slope = walk.end.slope * channels.level * motion.duration + damping;
-        MaxwellSlipTrial { walk, outcome: Outcome { force, slope, damping } }
+        MaxwellSlipTrial { walk, outcome: Outcome { force, slope, damping }, undamped }
     }
 }
 
@@ -199,9 +204,44 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
         self.moved(state, motion, channels)
     }
 
+    #[inline(always)]
+    fn friction(
+        &self,
+        state: &MaxwellSlipState<S>,
+        _velocity: S,
+        channels: &Channels<S>,
+    ) -> (S, Option<S>) {
+        let damping = self.parameters.viscous * channels.viscous_level;
+        (state.spring.force * channels.level, Some(damping))
+    }
+
     #[inline]
     fn outcome(&self, trial: &MaxwellSlipTrial<S>) -> Outcome<S> {
         trial.outcome
+    }
+
+    #[inline(always)]
+    fn undamped(&self, trial: &MaxwellSlipTrial<S>, _velocity: S) -> S {
+        trial.undamped
+    }
+
+    #[inline(always)]
+    fn glides(&self) -> bool {
+        self.curve.is_exponential()
+    }
+
+    #[inline(always)]
+    fn glide<E: Efforts<S>, V: Seen<S, MaxwellSlipState<S>>>(
+        &self,
+        state: &mut MaxwellSlipState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) {
+        if S::CARRIES {
+            self.glide_on(state, glide);
+        } else {
+            // A copy, which no store into a column can be taken to change.
+            self.clone().glide_on(state, glide);
+        }
     }
 
     // Where the body stays, so does the force.

@@ -6,7 +6,7 @@
 pub mod elements;
 
 use crate::error::{Error, Result};
-use crate::integrate::{Glide, Seen};
+use crate::integrate::{Efforts, Glide, Seen};
 use crate::lanes::Abreast;
 use crate::parameter::{OptionSpec, ParameterSpec};
 use crate::scalar::Scalar;
@@ -273,13 +273,16 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         let outcome = self.outcome(trial);
         outcome.force - outcome.damping * velocity
     }
-    /// Whether the law has [`FrictionLaw::glide`].
-    const GLIDES: bool = false;
+    /// Whether a contact like this one has [`FrictionLaw::glide`].
+    #[inline(always)]
+    fn glides(&self) -> bool {
+        false
+    }
     /// Goes on through plain steps of a bare body for as long as there are any: steps in which
     /// nothing turns round and no mode changes, at level 1. The same to the bit as `advance` and
     /// `commit` step by step, in a loop that the law keeps short.
     #[inline]
-    fn glide<E: Fn(usize) -> S, V: Seen<S, Self::State>>(
+    fn glide<E: Efforts<S>, V: Seen<S, Self::State>>(
         &self,
         _state: &mut Self::State,
         _glide: &mut Glide<S, E, V>,

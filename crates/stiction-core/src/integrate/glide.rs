@@ -8,6 +8,8 @@
 use stiction_dispatch::Task;
 
 use super::machine::Run;
+use std::ops::Range;
+
 use crate::friction::{Channels, FrictionLaw, Motion};
 use crate::scalar::Scalar;
 
@@ -24,6 +26,8 @@ pub struct Verlet<S> {
     /// takes off.
     stride: S,
     kept: S,
+    /// Whether derivatives of the duration are carried along.
+    located: bool,
 }
 
 impl<S: Scalar> Verlet<S> {
@@ -32,7 +36,8 @@ impl<S: Scalar> Verlet<S> {
     pub fn new(span: S, inertia: S, lightness: S) -> Self {
         let half = span * 0.5;
         let pace = span * lightness;
-        Self { span, half, inertia, pace, lever: pace * half, stride: span, kept: inertia }
+        let located = S::CARRIES && span.derivative_is_nonzero();
+        Self { span, half, inertia, pace, lever: pace * half, stride: span, kept: inertia, located }
     }
 
     /// Steps of which friction at the start has a share damping·velocity, which no effort below
@@ -71,19 +76,25 @@ impl<S: Scalar> Verlet<S> {
     /// 1/(J + h/2·D).
     #[inline(always)]
     pub fn share(&self, damping: S) -> S {
-        S::constant(1.0) / (self.inertia + self.half * damping)
+        S::constant(1.0) / (self.inertia + self.over_half(damping))
     }
 
     /// The velocity at the end without undamped friction there.
     #[inline(always)]
     pub fn unbraked(&self, velocity: S, both: S, share: S) -> S {
-        (self.kept * velocity + self.half * both) * share
+        (self.kept * velocity + self.over_half(both)) * share
+    }
+
+    /// Times half the duration. That depends on no parameter but where an event is located.
+    #[inline(always)]
+    fn over_half(&self, number: S) -> S {
+        if S::CARRIES && !self.located { number * self.half.re() } else { number * self.half }
     }
 
     /// What a unit of undamped friction at the end takes off the velocity there.
     #[inline(always)]
     pub fn braking(&self, share: S) -> S {
-        self.half * share
+        self.over_half(share)
     }
 
     /// Duration of a step, half of it, inertia, velocity and displacement per effort, as plain numbers.
@@ -103,8 +114,18 @@ impl<S: Scalar> Verlet<S> {
 pub trait Seen<S: Scalar, T> {
     /// Whether the contact is looked at.
     fn looks(&self) -> bool;
+    /// Sees samples during which nothing changes but friction and time, where it can see them at once;
+    /// it has seen none of them where it cannot.
+    fn still(&mut self, samples: Range<usize>, run: &Run<S>, friction: impl Fn(usize) -> S)
+    -> bool;
     /// Sees a sample; the contact is as it was before the first where it is not looked at.
     fn see(&mut self, sample: usize, run: &Run<S>, contact: &T);
+}
+
+/// All effort but friction, sample by sample. A trait, for a closure cannot ask to be part of the loop.
+pub trait Efforts<S> {
+    /// During this sample.
+    fn at(&self, sample: usize) -> S;
 }
 
 /// Goes through all steps with a law that knows no events and asks for nothing but the motion: each
@@ -114,7 +135,7 @@ pub fn glide_on<S, L, E, V>(law: &L, state: &mut L::State, glide: &mut Glide<S, 
 where
     S: Scalar,
     L: FrictionLaw<S, State: Copy>,
-    E: Fn(usize) -> S,
+    E: Efforts<S>,
     V: Seen<S, L::State>,
 {
     let channels = Channels::default();
@@ -154,18 +175,53 @@ pub struct Glide<S, E, V> {
     /// Sees the body and the contact after each sample.
     pub seen: V,
     /// The present sample, and the first beyond.
-    pub samples: std::ops::Range<usize>,
+    pub samples: Range<usize>,
     /// The present step of it, of so many.
     pub part: u32,
     /// Steps of a sample.
     pub parts: u32,
 }
 
-impl<S: Scalar, E: Fn(usize) -> S, V> Glide<S, E, V> {
+impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
     /// All effort but friction during the next step, where there is one.
     #[inline(always)]
     pub fn next(&self) -> Option<S> {
-        (self.samples.start < self.samples.end).then(|| (self.efforts)(self.samples.start))
+        (self.samples.start < self.samples.end).then(|| self.efforts.at(self.samples.start))
+    }
+
+    /// Accepts samples at rest while the contact, which looks the same all the time, holds the effort;
+    /// friction at their end, where there are any.
+    #[inline(always)]
+    pub fn hold<T>(&mut self, greatest: f64, contact: &T) -> Option<S>
+    where
+        V: Seen<S, T>,
+    {
+        let Range { start, end } = self.samples;
+        let held = (start..end).take_while(|k| self.efforts.at(*k).re().abs() <= greatest).count();
+        if held == 0 {
+            return None;
+        }
+        let samples = start..start + held;
+        let steps = |samples: usize, part: u32| samples * self.parts as usize - part as usize;
+        let (mut time, part) = (self.run.time, self.part);
+        if self.seen.still(samples.clone(), &self.run, |k| self.efforts.at(k)) {
+            for _ in 0..steps(held, part) {
+                time += self.verlet.span;
+            }
+        } else {
+            for k in samples.clone() {
+                for _ in 0..steps(1, if k == start { part } else { 0 }) {
+                    time += self.verlet.span;
+                }
+                self.run.time = time;
+                self.run.friction = self.efforts.at(k);
+                self.seen.see(k, &self.run, contact);
+            }
+        }
+        self.run.time = time;
+        self.run.friction = self.efforts.at(samples.end - 1);
+        (self.samples.start, self.part) = (samples.end, 0);
+        Some(self.run.friction)
     }
 
     /// Accepts a step.
@@ -197,7 +253,8 @@ pub struct Plain<'a, L, T, G> {
     pub law: &'a L,
     /// Its state.
     pub state: &'a mut T,
-    /// The body: its own, so that nobody else can see it and it stays in registers.
+    /// The body: its own, so that nobody else can see it and it stays in registers; or a place in
+    /// memory, for numbers that carry derivatives, of which compilers would make a thousand pieces.
     pub glide: G,
 }
 
@@ -205,15 +262,32 @@ impl<S, L, E, V> Task for Plain<'_, L, L::State, Glide<S, E, V>>
 where
     S: Scalar,
     L: FrictionLaw<S>,
-    E: Fn(usize) -> S,
+    E: Efforts<S>,
     V: Seen<S, L::State>,
 {
-    /// Where it ended.
-    type Output = Glide<S, E, V>;
+    /// The body where it ended, the sample and the step of it.
+    type Output = (Run<S>, usize, u32);
 
     #[inline(always)]
-    fn run(mut self) -> Self::Output {
-        self.law.glide(self.state, &mut self.glide);
-        self.glide
+    fn run(self) -> Self::Output {
+        // A place that nobody else sees, not even should the loop panic.
+        let mut glide = self.glide;
+        self.law.glide(self.state, &mut glide);
+        (glide.run, glide.samples.start, glide.part)
+    }
+}
+
+impl<S, L, E, V> Task for Plain<'_, L, L::State, &mut Glide<S, E, V>>
+where
+    S: Scalar,
+    L: FrictionLaw<S>,
+    E: Efforts<S>,
+    V: Seen<S, L::State>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.law.glide(self.state, self.glide);
     }
 }

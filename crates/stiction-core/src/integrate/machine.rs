@@ -259,21 +259,22 @@ impl<S: Scalar> Machine<S> {
         self.sensor.read(self.effects.sensor(S::constant(position)).re())
     }
 
-    /// A row of plain steps of this bare machine from where a run is; `applied` says input and load
-    /// of a sample, `parts` in how many steps of `span` it is divided.
-    pub fn glide<E: Fn(usize) -> (S, S), V>(
+    /// All effort but friction on this bare machine under an input and a load.
+    #[inline(always)]
+    pub fn bare_effort(&self, input: f64, load: S) -> S {
+        self.drive.direct(input) + load + self.weight()
+    }
+
+    /// A row of plain steps of this bare machine from where a run is; `efforts` says all effort but
+    /// friction in a sample, `parts` in how many steps of `span` it is divided.
+    pub fn glide<E, V>(
         &self,
         run: Run<S>,
-        applied: E,
+        efforts: E,
         seen: V,
         samples: std::ops::Range<usize>,
         (span, parts): (S, u32),
-    ) -> Glide<S, impl Fn(usize) -> S, V> {
-        let weight = self.weight();
-        let efforts = move |k| {
-            let (input, load) = applied(k);
-            self.drive.direct(input) + load + weight
-        };
+    ) -> Glide<S, E, V> {
         let verlet = self.verlet(span);
         Glide { verlet, run, efforts, seen, samples, part: 0, parts }
     }

@@ -1,5 +1,7 @@
 //! What a trajectory shows.
 
+use std::ops::Range;
+
 use crate::error::{Error, Result};
 use crate::friction::LawState;
 use crate::integrate::{Machine, Run, Seen};
@@ -55,7 +57,7 @@ impl Column {
             Self::Position => run.position,
             Self::Velocity => run.velocity,
             Self::Friction => run.friction,
-            Self::Measured => machine.sensor.read(machine.effects.sensor(run.position)),
+            Self::Measured => machine.measured(run.position),
             Self::Law(index) => output(index),
         }
     }
@@ -65,6 +67,16 @@ impl Column {
 pub(crate) trait Rows<S: Scalar> {
     /// Whether states of the law are looked at.
     fn looks(&self) -> bool;
+    /// Sees samples during which nothing changes but friction, where it can see them at once.
+    fn still(
+        &mut self,
+        _samples: Range<usize>,
+        _run: &Run<S>,
+        _friction: impl Fn(usize) -> S,
+    ) -> bool {
+        false
+    }
+    /// Sees a sample.
     fn see(
         &mut self,
         sample: usize,
@@ -103,6 +115,7 @@ pub(super) struct Columns<'a, 'b> {
     position: &'a mut [f64],
     velocity: &'a mut [f64],
     friction: &'a mut [f64],
+    measured: &'a mut [f64],
     others: &'a mut [(Column, &'b mut [f64])],
 }
 
@@ -113,13 +126,15 @@ impl<'a, 'b> Columns<'a, 'b> {
             Column::Position => 0,
             Column::Velocity => 1,
             Column::Friction => 2,
-            Column::Measured | Column::Law(_) => 3,
+            Column::Measured => 3,
+            Column::Law(_) => 4,
         };
         columns.sort_unstable_by_key(|(column, _)| rank(*column));
         let (position, columns) = taken(columns, Column::Position);
         let (velocity, columns) = taken(columns, Column::Velocity);
-        let (friction, others) = taken(columns, Column::Friction);
-        Self { position, velocity, friction, others }
+        let (friction, columns) = taken(columns, Column::Friction);
+        let (measured, others) = taken(columns, Column::Measured);
+        Self { position, velocity, friction, measured, others }
     }
 }
 
@@ -141,6 +156,28 @@ impl Rows<f64> for Columns<'_, '_> {
         self.others.iter().any(|(column, _)| matches!(column, Column::Law(_)))
     }
 
+    #[inline(always)]
+    fn still(
+        &mut self,
+        samples: Range<usize>,
+        run: &Run<f64>,
+        friction: impl Fn(usize) -> f64,
+    ) -> bool {
+        if !self.others.is_empty() || !self.measured.is_empty() {
+            return false;
+        }
+        if let Some(values) = self.position.get_mut(samples.clone()) {
+            values.fill(run.position);
+        }
+        if let Some(values) = self.velocity.get_mut(samples.clone()) {
+            values.fill(run.velocity);
+        }
+        if let Some(values) = self.friction.get_mut(samples.clone()) {
+            values.iter_mut().zip(samples).for_each(|(value, k)| *value = friction(k));
+        }
+        true
+    }
+
     #[inline(always)] // where it is called, the motion is in registers
     fn see(
         &mut self,
@@ -158,16 +195,28 @@ impl Rows<f64> for Columns<'_, '_> {
         if let Some(place) = self.friction.get_mut(sample) {
             *place = run.friction;
         }
+        if let Some(place) = self.measured.get_mut(sample) {
+            *place = read(machine, run.position);
+        }
         for (column, values) in self.others.iter_mut() {
             values[sample] = match column {
+                Column::Law(index) => output(*index),
+                // Asked for twice.
                 Column::Position => run.position,
                 Column::Velocity => run.velocity,
                 Column::Friction => run.friction,
-                Column::Measured => machine.sensor.read(machine.effects.sensor(run.position)),
-                Column::Law(index) => output(*index),
+                Column::Measured => read(machine, run.position),
             };
         }
     }
+}
+
+/// What the sensor reads. A cold call, for the sine of an eccentric encoder would take the registers of
+/// the loop that asks.
+#[cold]
+#[inline(never)]
+fn read(machine: &Machine<f64>, position: f64) -> f64 {
+    machine.measured(position)
 }
 
 /// Shows the samples of a glide.
@@ -180,6 +229,16 @@ impl<S: Scalar, T: LawState<S>, R: Rows<S>> Seen<S, T> for Showing<'_, S, R> {
     #[inline(always)]
     fn looks(&self) -> bool {
         self.rows.looks()
+    }
+
+    #[inline(always)]
+    fn still(
+        &mut self,
+        samples: Range<usize>,
+        run: &Run<S>,
+        friction: impl Fn(usize) -> S,
+    ) -> bool {
+        self.rows.still(samples, run, friction)
     }
 
     #[inline(always)]

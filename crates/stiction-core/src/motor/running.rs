@@ -6,7 +6,9 @@ use crate::drive::Way;
 use crate::error::{Error, Result};
 use crate::follow::arriving;
 use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
-use crate::integrate::{Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, parts, sample};
+use crate::integrate::{
+    Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, parts, sample,
+};
 use crate::model::CHUNK;
 use crate::scalar::Scalar;
 
@@ -142,10 +144,11 @@ impl<S: Scalar> Running<S> {
         let mut way = self.way.as_mut();
         let plain = BARE && self.integrator == Integrator::Fast && around.is_steady();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
-            let glides = plain && glides(law);
+            let glides = plain && law.glides();
             let mut known = f64::NAN;
             let mut divided = 1;
             let mut room = 0;
+            let mut ahead = Ahead::default();
             let mut index = 0;
             while index < inputs.len() {
                 let dt_now = dt.at(index);
@@ -159,19 +162,29 @@ impl<S: Scalar> Running<S> {
                 let mut passed = 0;
                 if glides && self.machine.glides(&self.run) {
                     let span = S::constant(dt_now / f64::from(divided));
-                    let applied = |k: usize| (S::constant(inputs[k]), added(k) + around.load.at(k));
                     let machine = &self.machine;
+                    if !S::CARRIES {
+                        let load = |k| added(k) + around.load.at(k);
+                        let effort = |k| machine.bare_effort(inputs[k], load(k)).re();
+                        ahead.reach(index, inputs.len(), effort);
+                    }
+                    let efforts = Applied { machine, inputs, around, added: &added, ahead: &ahead };
                     let seen = Showing { machine, rows: &mut rows };
                     // Not to the end, which would be looked for anew after every event.
-                    let end = inputs.len().min(index + 8 * CHUNK);
-                    let samples = index..dt.same_until(index, end);
-                    let glide = machine.glide(self.run, applied, seen, samples, (span, divided));
-                    let glide = S::run(Plain { law, state: &mut *state, glide });
-                    (index, passed) = (glide.samples.start, glide.part);
-                    let more = index < glide.samples.end;
-                    self.run = glide.run;
+                    let end =
+                        if S::CARRIES { inputs.len().min(index + AHEAD) } else { ahead.end() };
+                    let end = dt.same_until(index, end);
+                    let mut glide =
+                        machine.glide(self.run, efforts, seen, index..end, (span, divided));
+                    let state = &mut *state;
+                    (self.run, index, passed) = if S::CARRIES {
+                        S::run(Plain { law, state, glide: &mut glide });
+                        (glide.run, glide.samples.start, glide.part)
+                    } else {
+                        S::run(Plain { law, state, glide })
+                    };
                     room = 0; // what the glide has left of it nobody counted
-                    if !more {
+                    if index == end {
                         continue;
                     }
                 }
@@ -206,6 +219,64 @@ impl<S: Scalar> Running<S> {
     }
 }
 
-fn glides<S: Scalar, L: FrictionLaw<S>>(_law: &L) -> bool {
-    L::GLIDES
+/// All effort but friction on a bare machine.
+struct Applied<'a, S: Scalar, A> {
+    machine: &'a Machine<S>,
+    inputs: &'a [f64],
+    around: Surroundings<'a>,
+    added: &'a A,
+    ahead: &'a Ahead,
+}
+
+impl<S: Scalar, A: Fn(usize) -> S> Efforts<S> for Applied<'_, S, A> {
+    #[inline(always)]
+    fn at(&self, sample: usize) -> S {
+        if !S::CARRIES {
+            return S::constant(self.ahead.at(sample));
+        }
+        let load = (self.added)(sample) + self.around.load.at(sample);
+        self.machine.bare_effort(self.inputs[sample], load)
+    }
+}
+
+/// Samples that a row of plain steps goes on at most.
+const AHEAD: usize = 8 * CHUNK;
+
+/// Efforts of some samples, made before the loop that asks for them one by one: by themselves they
+/// become vectors.
+struct Ahead {
+    from: usize,
+    number: usize,
+    efforts: [f64; AHEAD],
+}
+
+impl Default for Ahead {
+    fn default() -> Self {
+        Self { from: 0, number: 0, efforts: [0.0; AHEAD] }
+    }
+}
+
+impl Ahead {
+    /// Has the effort of this sample and of those behind it.
+    #[inline(always)]
+    fn reach(&mut self, sample: usize, samples: usize, effort: impl Fn(usize) -> f64) {
+        if self.from <= sample && sample < self.end() {
+            return;
+        }
+        self.from = sample;
+        self.number = AHEAD.min(samples - sample);
+        for (k, place) in self.efforts[..self.number].iter_mut().enumerate() {
+            *place = effort(sample + k);
+        }
+    }
+
+    /// The first sample that it does not have.
+    fn end(&self) -> usize {
+        self.from + self.number
+    }
+
+    #[inline(always)]
+    fn at(&self, sample: usize) -> f64 {
+        self.efforts[sample - self.from]
+    }
 }

@@ -1,6 +1,6 @@
 //! First-order following of a target that changes linearly.
 
-use crate::exponential::{faded, faded_of};
+use crate::exponential::{faded, faded_of, faded_within};
 use crate::scalar::Scalar;
 
 /// What [`follow`] returns.
@@ -20,6 +20,12 @@ pub struct Followed<S> {
 #[inline(always)]
 pub fn follow<S: Scalar>(y: S, from: S, to: S, z: S) -> Followed<S> {
     follow_by(y, from, to, z, faded_of(-z))
+}
+
+/// The same as part of the loop that asks for it.
+#[inline(always)]
+pub fn follow_within<S: Scalar>(y: S, from: S, to: S, z: S) -> Followed<S> {
+    follow_by(y, from, to, z, faded_within(-z))
 }
 
 /// The same with 1 − e^(−z) known.

@@ -4,6 +4,7 @@ pub mod approach;
 pub mod arcsinh;
 pub mod bell;
 pub mod bond;
+pub mod branch;
 pub mod bristle;
 pub mod contact_age;
 pub mod lag;

@@ -30,6 +30,18 @@ pub struct Creep<S> {
     pub share: S,
 }
 
+/// What steps of one duration have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct Pacing<S> {
+    /// α·T.
+    progress: S,
+    /// 2·c, and α·T times that.
+    doubled: f64,
+    pace: S,
+    /// Whether nothing can creep.
+    still: bool,
+}
+
 impl<S: Scalar> Plastic<S> {
     /// Greatest hardening that a force of this magnitude can cause.
     #[inline(always)]
@@ -50,10 +62,14 @@ impl<S: Scalar> Plastic<S> {
             if self.is_square() {
                 return slope;
             }
-            let by_exponent = self.coefficient * size * (size.re().ln() * 2.0 + 1.0);
-            return slope + (self.exponent - 2.0) * by_exponent;
+            return slope + self.beyond_square(size);
         }
         self.exponent * self.limit(force) / size
+    }
+
+    /// What a seeded exponent of 2 adds to that slope: a derivative.
+    fn beyond_square(&self, size: S) -> S {
+        (self.exponent - 2.0) * (self.coefficient * size * (size.re().ln() * 2.0 + 1.0))
     }
 
     /// Whether f is a plain square, which costs no power.
@@ -78,11 +94,22 @@ impl<S: Scalar> Plastic<S> {
         displacement: S,
         duration: S,
     ) -> Creep<S> {
-        let plain = self.plain_creep::<false>(hardening, force, &stiffness, displacement, duration);
+        let pacing = self.pacing(duration);
+        let plain = self.plain_creep::<false>(hardening, force, &stiffness, displacement, &pacing);
         match plain {
             Some(creep) => creep,
             None => self.any_creep(hardening, force, stiffness, displacement, duration),
         }
+    }
+
+    /// What steps of this duration have in common.
+    #[inline(always)]
+    pub fn pacing(&self, duration: S) -> Pacing<S> {
+        let progress = self.rate * duration;
+        let doubled = self.coefficient * 2.0;
+        let off = self.coefficient.re() == 0.0 && !self.coefficient.derivative_is_nonzero();
+        let still = off || duration.re() <= 0.0;
+        Pacing { progress, doubled: doubled.re(), pace: progress * doubled, still }
     }
 
     /// The same where creep goes on through a short step or has none: nearly every one. `SQUARE`
@@ -94,29 +121,31 @@ impl<S: Scalar> Plastic<S> {
         force: S,
         stiffness: impl Fn(f64) -> S,
         displacement: S,
-        duration: S,
+        pacing: &Pacing<S>,
     ) -> Option<Creep<S>> {
         let zero = S::constant(0.0);
         let none = Creep { hardening: zero, displacement: zero, left: displacement, share: zero };
-        let off = self.coefficient.re() == 0.0 && !self.coefficient.derivative_is_nonzero();
-        if force.re() == 0.0 || off || duration.re() <= 0.0 {
+        if force.re() == 0.0 || pacing.still {
             return Some(none);
         }
         let s = 1.0_f64.copysign(force.re());
         let limit = if SQUARE { self.coefficient * (force * force) } else { self.limit(force) };
         let margin = limit - hardening;
         let starts = self.sign_of(margin) > 0.0;
-        let progress = self.rate * duration;
+        let progress = pacing.progress;
         // What would be gained under a held force, to first order.
         let held = if starts { progress * margin } else { zero };
         // Creep that outruns the displacement takes the spring back, onto its steepest branch.
         let net = displacement.re() - s * held.re();
         let stiffness = stiffness(if net == 0.0 { -s } else { sign(net) });
         // f'·k, the limit that a unit of spring elongation adds, and α·T times that.
-        let (gain, pace) = if SQUARE || self.is_square() {
-            let doubled = self.coefficient * 2.0;
+        let (gain, pace) = if SQUARE || self.exponent.re() == 2.0 {
             let size = force.abs();
-            (doubled.re() * size.re() * stiffness.re(), (progress * doubled) * size * stiffness)
+            let mut pace = pacing.pace * size * stiffness;
+            if !SQUARE && !self.is_square() {
+                pace += progress * self.beyond_square(size) * stiffness;
+            }
+            (pacing.doubled * size.re() * stiffness.re(), pace)
         } else {
             let gain = self.limit_slope(force) * stiffness;
             (gain.re(), progress * gain)

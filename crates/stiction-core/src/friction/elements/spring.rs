@@ -5,11 +5,12 @@
 //! (2000), §2.2, property i.) Reaching an earlier reverse point of the same direction closes the
 //! loop: both its points are forgotten and motion goes on along the older branch (property ii).
 
+use super::branch::{Branch, Fading, Here, SYNCHRONISED};
 use super::memory::{ReverseMemory, ReversePoint};
 use crate::error::{Error, Result};
 use crate::exponential::faded_of;
 use crate::friction::{Entry, EntryReader, Statistics};
-use crate::scalar::{SECOND, SHORT, Scalar, gone_share, sign};
+use crate::scalar::{Scalar, sign};
 
 /// The first loading curve, before any reversal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,68 +36,13 @@ pub trait Loading<S: Scalar> {
     fn virgin(&self, x: S) -> Response<S>;
     /// Whether the first loop closes at the mirror of its reverse point.
     fn closes_at_mirror(&self) -> bool;
-    /// Where the present branch gets on a short way from here, without asking for its reverse
-    /// point. None where that would cost digits, or save no time.
+    /// How a branch in this direction fades, where it does so exponentially: then a short way along it
+    /// needs no asking for its reverse point.
     #[inline(always)]
-    fn onward(&self, _here: &Here<S>, _branch: &Branch, _displacement: S) -> Option<Response<S>> {
+    fn fading(&self, _branch: &Branch, _direction: f64) -> Option<Fading<S>> {
         None
     }
 }
-
-/// Where a spring is, without its memory.
-#[derive(Debug, Clone, Copy)]
-pub struct Here<S> {
-    /// Elongation.
-    pub position: S,
-    /// Force.
-    pub force: S,
-    /// Stiffness.
-    pub slope: S,
-    /// Direction of the last motion: −1, 1, or 0 before any.
-    pub direction: f64,
-    /// Steps since the force was last evaluated from a reverse point.
-    pub steps: u32,
-}
-
-/// The branch on which a spring is.
-#[derive(Debug, Clone, Copy)]
-pub struct Branch {
-    /// The first loading, before any reversal.
-    pub first: bool,
-    /// Elongation at its reverse point; 0 for the first loading.
-    pub origin: f64,
-    /// Elongation at which it closes its loop.
-    pub target: f64,
-}
-
-impl<S: Scalar> Here<S> {
-    /// A motion along a branch that neither turns round nor closes its loop, where it is that.
-    #[inline(always)]
-    pub fn onward(
-        &self,
-        curve: &impl Loading<S>,
-        branch: &Branch,
-        displacement: S,
-    ) -> Option<Self> {
-        let position = self.position + displacement;
-        let back = self.direction * displacement.re() < 0.0 || self.direction == 0.0;
-        if back
-            || self.steps >= SYNCHRONISED
-            || self.direction * (position.re() - branch.target) >= 0.0
-        {
-            return None;
-        }
-        let Response { force, slope } = curve.onward(self, branch, displacement)?;
-        // A spring that is held changes no bit, however long.
-        let steps = self.steps + u32::from(displacement.re() != 0.0);
-        Some(Self { position, force, slope, direction: self.direction, steps })
-    }
-}
-
-/// Steps of a spring that go on from the one before until it is evaluated from its reverse point
-/// again. Each adds at most 1.5 units in the last place of the force and of the slope, together
-/// below 1e-13 of them.
-pub const SYNCHRONISED: u32 = 256;
 
 /// The virgin curve that goes with a branch under Masing's rule: half its size.
 #[inline(always)]
@@ -253,38 +199,10 @@ impl<S: Scalar> Loading<S> for Curve<S> {
     // 1 − e^(−(d + δ)/d_0) = M + (1 − M)·(1 − e^(−δ/d_0)), and (k_0 − k_inf)·(1 − M) is the slope
     // here less k_inf.
     #[inline(always)]
-    fn onward(&self, here: &Here<S>, branch: &Branch, displacement: S) -> Option<Response<S>> {
-        let z = displacement * self.per_displacement(branch, here.direction);
-        if z.re() >= SHORT {
-            return None;
-        }
-        let excess = here.slope - self.final_stiffness;
-        let (way, along) = (displacement.re(), z.re());
-        let [force, slope] = short_way(here.force.re(), here.slope.re(), excess.re(), way, along);
-        // The same, with fewer products of rows of derivatives.
-        let share = gone_share(z);
-        let gained = displacement * (self.final_stiffness + excess * share);
-        Some(Response {
-            force: (here.force + gained).with_value(force),
-            slope: (here.slope - excess * (z * share)).with_value(slope),
-        })
+    fn fading(&self, branch: &Branch, direction: f64) -> Option<Fading<S>> {
+        let share = self.per_displacement(branch, direction);
+        Some(Fading { target: branch.target, last: self.final_stiffness, share })
     }
-}
-
-/// Force and slope a short way further along a branch that is `excess` steeper than its end, z·d_0
-/// being the way at full size: F + δ·(k − E·z·φ₂) and k − E·z·(1 − z·φ₂), to 4e-14 of what they gain,
-/// summed so that as little as can be waits for the displacement.
-#[inline(always)]
-pub fn short_way(force: f64, slope: f64, excess: f64, displacement: f64, z: f64) -> [f64; 2] {
-    let (near, far) = (SECOND[0] + SECOND[1] * z, SECOND[2] + SECOND[3] * z);
-    let square = z * z;
-    let bent = (excess * displacement) * z;
-    let fallen = excess * z;
-    let eased = fallen * z;
-    [
-        ((force + displacement * slope) - bent * near) - (bent * square) * far,
-        ((slope - fallen) + eased * near) + (eased * square) * far,
-    ]
 }
 
 /// Elongation, force and memory of the spring.
@@ -366,7 +284,8 @@ impl<S: Scalar> SpringState<S> {
     /// Read-only walk to another elongation.
     #[inline(always)]
     pub fn walk(&self, curve: &impl Loading<S>, displacement: S) -> Walk<S> {
-        let onward = self.here().onward(curve, &self.present(curve), displacement);
+        let fading = curve.fading(&self.present(curve), self.direction);
+        let onward = fading.and_then(|fading| self.here().onward(&fading, displacement));
         let Some(there) = onward else { return self.walk_through_points(curve, displacement) };
         Walk {
             position: there.position,

@@ -1,7 +1,7 @@
 //! The fall of friction with speed that several laws share.
 
 use crate::error::{Error, Result};
-use crate::exponential::fading_of;
+use crate::exponential::{fading_of, fading_within};
 use crate::scalar::Scalar;
 
 /// e^(−|v/v_s|^δ) and its slope by speed |v|; the slope is taken as 0 at v = 0, where it is not
@@ -12,6 +12,14 @@ use crate::scalar::Scalar;
 pub fn fall<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> (S, S) {
     let power = fall_power(velocity, stribeck_velocity, exponent);
     let left = fading_of(-power);
+    (left, fall_slope(velocity, exponent, power, left))
+}
+
+/// [`fall`] as part of the loop that asks for it.
+#[inline(always)]
+fn fall_within<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> (S, S) {
+    let power = fall_power(velocity, stribeck_velocity, exponent);
+    let left = fading_within(-power);
     (left, fall_slope(velocity, exponent, power, left))
 }
 
@@ -64,6 +72,16 @@ impl<S: Scalar> SlidingLevel<S> {
             return (self.coulomb, S::constant(0.0));
         }
         let (left, steepness) = fall(velocity, self.velocity, self.exponent);
+        (self.coulomb + self.excess * left, self.excess * steepness)
+    }
+
+    /// [`Self::at`] as part of the loop that asks for it.
+    #[inline(always)]
+    pub fn at_within(&self, velocity: S) -> (S, S) {
+        if !self.falls {
+            return (self.coulomb, S::constant(0.0));
+        }
+        let (left, steepness) = fall_within(velocity, self.velocity, self.exponent);
         (self.coulomb + self.excess * left, self.excess * steepness)
     }
 

@@ -1,7 +1,9 @@
 //! First loading of elasto-slide elements without number, their yield points spread as one likes.
 
+use super::branch::{Branch, Fading, Here};
 use super::reachable::reachable;
-use super::spring::{Loading, Response, masing};
+use super::spring::{Loading, Response, SpringState, masing};
+use crate::exponential::{faded_of, faded_within};
 use crate::scalar::{Scalar, logarithmic_mean};
 
 /// Edges of the groups of elements, in units of the mean yield displacement of the plain curve.
@@ -32,6 +34,8 @@ pub struct YieldCurve<S> {
     force: S,
     /// y per displacement.
     inverse_distance: S,
+    /// Whether it is 1 − e^(−y), and no derivative asks what else it could be.
+    exponential: bool,
 }
 
 impl<S: Scalar> YieldCurve<S> {
@@ -60,15 +64,32 @@ impl<S: Scalar> YieldCurve<S> {
             reached += weights[k] * (beyond - yielded) + slope * width;
             group
         });
-        let force = coulomb / reached;
-        let inverse_distance = stiffness / (force * left);
-        Self { coulomb, stiffness, shape, groups, force, inverse_distance }
+        let is = |number: S, given: f64| number.re() == given && !number.derivative_is_nonzero();
+        let exponential = is(shape, 0.0) && weights.iter().all(|weight| is(*weight, 1.0));
+        let force = if exponential { coulomb } else { coulomb / reached };
+        let inverse_distance = stiffness / if exponential { coulomb } else { force * left };
+        Self { coulomb, stiffness, shape, groups, force, inverse_distance, exponential }
+    }
+
+    /// Whether it is 1 − e^(−y), and no derivative asks what else it could be.
+    pub fn is_exponential(&self) -> bool {
+        self.exponential
     }
 
     /// Force and slope of the first loading at x ≥ 0.
     #[inline]
     fn loading(&self, x: S) -> Response<S> {
         let y = x * self.inverse_distance;
+        if self.exponential {
+            let yielded = faded_of(-y);
+            let slope = self.stiffness - self.stiffness * yielded;
+            return Response { force: self.coulomb * yielded, slope };
+        }
+        self.any_loading(y)
+    }
+
+    #[inline(never)]
+    fn any_loading(&self, y: S) -> Response<S> {
         if (self.shape * y).re() >= 1.0 {
             return Response { force: self.coulomb, slope: S::constant(0.0) };
         }
@@ -126,6 +147,50 @@ impl<S: Scalar> YieldCurve<S> {
     }
 }
 
+/// The exponential branch on which a spring is, as numbers.
+#[derive(Debug, Clone, Copy)]
+pub struct Course<S> {
+    /// Reverse point, or 0 on the first loading.
+    origin: S,
+    force: S,
+    /// Way on the first loading per elongation, and force per force there.
+    stretch: f64,
+    scale: f64,
+    fading: Fading<S>,
+}
+
+impl<S: Scalar> YieldCurve<S> {
+    /// The branch on which this spring is, where it is an exponential one.
+    pub fn course(&self, spring: &SpringState<S>) -> Option<Course<S>> {
+        let (branch, direction) = (spring.present(self), spring.direction);
+        let zero = S::constant(0.0);
+        let anchor = spring.memory.points().last();
+        let (origin, force) = anchor.map_or((zero, zero), |p| (p.position, p.force));
+        let size = if branch.first { 1.0 } else { 0.5 };
+        let fading = self.fading(&branch, direction)?;
+        let (stretch, scale) = (size * direction, direction / size);
+        Some(Course { origin, force, stretch, scale, fading })
+    }
+
+    /// Where a motion gets that neither turns round nor closes its loop: what
+    /// [`SpringState::walk`] finds, to the bit.
+    #[inline(always)]
+    pub fn along(&self, course: &Course<S>, here: &Here<S>, displacement: S) -> Option<Here<S>> {
+        if let Some(there) = here.onward(&course.fading, displacement) {
+            return Some(there);
+        }
+        if here.leaves(course.fading.target, displacement.re()) {
+            return None;
+        }
+        let position = here.position + displacement;
+        let y = (position - course.origin) * course.stretch * self.inverse_distance;
+        let yielded = faded_within(-y);
+        let force = course.force + self.coulomb * yielded * course.scale;
+        let slope = self.stiffness - self.stiffness * yielded;
+        Some(Here { position, force, slope, direction: here.direction, steps: 0 })
+    }
+}
+
 /// v(y) and its slope, for κ·y < 1; beyond, everything slides.
 #[inline]
 fn plain<S: Scalar>(y: S, shape: S) -> (S, S) {
@@ -158,5 +223,16 @@ impl<S: Scalar> Loading<S> for YieldCurve<S> {
     #[inline]
     fn closes_at_mirror(&self) -> bool {
         true
+    }
+
+    #[inline(always)]
+    fn fading(&self, branch: &Branch, direction: f64) -> Option<Fading<S>> {
+        if !self.exponential {
+            return None;
+        }
+        // Branches have twice the size of the first loading.
+        let share = self.inverse_distance * if branch.first { 1.0 } else { 0.5 };
+        let last = S::constant(0.0);
+        Some(Fading { target: branch.target, last, share: share * direction })
     }
 }

@@ -17,7 +17,7 @@ use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::{Error, Result};
-use crate::integrate::{Glide, Seen};
+use crate::integrate::{Efforts, Glide, Seen};
 use crate::lanes::{self, Abreast};
 use crate::parameter::{OptionSpec, ParameterSpec};
 use crate::scalar::{Scalar, sign};
@@ -316,17 +316,17 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         Some(Rest { trial, displacement: creep.displacement, velocity })
     }
 
-    const GLIDES: bool = true;
+    #[inline(always)]
+    fn glides(&self) -> bool {
+        !self.damper_on_spring && !self.rated
+    }
 
     #[inline(always)]
-    fn glide<E: Fn(usize) -> S, V: Seen<S, HsiehPanState<S>>>(
+    fn glide<E: Efforts<S>, V: Seen<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,
         glide: &mut Glide<S, E, V>,
     ) {
-        if self.damper_on_spring || self.rated {
-            return;
-        }
         if S::CARRIES {
             self.glide_in_mode(state, glide);
         } else {

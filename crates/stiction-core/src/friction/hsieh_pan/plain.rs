@@ -1,10 +1,12 @@
 //! Steps of a bare body in which no mode changes, in loops of their own.
 
-use super::super::elements::spring::{Branch, Curve, Here, Loading};
+use super::super::elements::branch::{Fading, Here};
+use super::super::elements::plastic::Creep;
+use super::super::elements::spring::{Curve, Loading, SpringState};
 use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;
 use super::state::HsiehPanState;
-use crate::integrate::{Glide, Seen};
+use crate::integrate::{Efforts, Glide, Seen};
 use crate::scalar::Scalar;
 
 /// The slope right after a reversal: rare, and a function so that nobody waits for the choice.
@@ -12,6 +14,11 @@ use crate::scalar::Scalar;
 #[inline(never)]
 fn after_reversal<S: Scalar>(curve: &Curve<S>) -> S {
     curve.initial_stiffness()
+}
+
+/// The branch on which a spring is.
+fn branch_of<S: Scalar>(curve: &Curve<S>, spring: &SpringState<S>) -> Option<Fading<S>> {
+    curve.fading(&spring.present(curve), spring.direction)
 }
 
 /// What a sticking hook changes from step to step.
@@ -28,6 +35,13 @@ impl<S: Scalar> Sticking<S> {
         Self { here: state.spring.here(), plastic: state.plastic, hardening: state.hardening }
     }
 
+    /// What it is after a step.
+    #[inline(always)]
+    fn after(&self, here: Here<S>, creep: &Creep<S>) -> Self {
+        let plastic = self.plastic + creep.displacement;
+        Self { here, plastic, hardening: self.hardening + creep.hardening }
+    }
+
     #[inline(always)]
     fn keep(&self, state: &mut HsiehPanState<S>) {
         state.spring.slide(&self.here);
@@ -40,7 +54,7 @@ impl<S: Scalar> Sticking<S> {
 impl<S: Scalar> HsiehPan<S> {
     /// Steps of a hook, whose damper sits beside the spring, in its present mode.
     #[inline(always)]
-    pub(super) fn glide_in_mode<E: Fn(usize) -> S, V: Seen<S, HsiehPanState<S>>>(
+    pub(super) fn glide_in_mode<E: Efforts<S>, V: Seen<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,
         glide: &mut Glide<S, E, V>,
@@ -54,11 +68,11 @@ impl<S: Scalar> HsiehPan<S> {
         }
     }
 
-    /// Steps of a sticking hook in which creep neither sets in nor ends.
+    /// Steps of a sticking hook until it breaks away.
     #[inline(always)]
     fn glide_sticking<
         const SQUARE: bool,
-        E: Fn(usize) -> S,
+        E: Efforts<S>,
         V: Seen<S, HsiehPanState<S>>,
     >(
         &self,
@@ -71,8 +85,8 @@ impl<S: Scalar> HsiehPan<S> {
         let looks = glide.seen.looks();
         let verlet = glide.verlet.dragged(damping);
         let share = verlet.share(damping);
-        let (span, braking) = (verlet.span(), verlet.braking(share));
-        let mut branch = state.spring.present(curve);
+        let (pacing, braking) = (module.pacing(verlet.span()), verlet.braking(share));
+        let Some(mut branch) = branch_of(curve, &state.spring) else { return };
         let mut now = Sticking::of(state);
         let mut velocity = glide.run.velocity;
         while let Some(effort) = glide.next() {
@@ -83,24 +97,25 @@ impl<S: Scalar> HsiehPan<S> {
                 if direction == here.direction { here.slope } else { after_reversal(curve) }
             };
             let creep =
-                module.plain_creep::<SQUARE>(now.hardening, here.force, towards, displacement, span);
-            let Some(creep) = creep else { break };
+                module.plain_creep::<SQUARE>(now.hardening, here.force, towards, displacement, &pacing);
             let unbraked = verlet.unbraked(velocity, push + effort, share);
+            let plain = creep.and_then(|creep| Some((creep, here.onward(&branch, creep.left)?)));
             let arrived;
-            if let Some(there) = here.onward(curve, &branch, creep.left) {
+            if let Some((creep, there)) = plain {
                 arrived = unbraked - braking * there.force;
                 if breaks(there.force, greatest, arrived) {
                     break;
                 }
-                now.here = there;
+                now = now.after(there, &creep);
             } else {
-                let turned = self.turned(state, &now, creep.left, (unbraked, braking));
-                let Some(turned) = turned else { break };
-                (now.here, branch, arrived) = turned;
+                // A copy for the call: what it may look at could not stay in registers.
+                let begun = now;
+                let rest = (unbraked, braking);
+                let apart = self.step_apart(state, &begun, displacement, verlet.span(), rest);
+                let Some(apart) = apart else { break };
+                (now, branch, arrived) = apart;
             }
             velocity = arrived;
-            now.plastic += creep.displacement;
-            now.hardening += creep.hardening;
             if looks {
                 now.keep(state);
             }
@@ -109,32 +124,39 @@ impl<S: Scalar> HsiehPan<S> {
         now.keep(state);
     }
 
-    /// Where the spring gets through its reverse points, or evaluated from the last of them, and the
-    /// velocity then; nowhere where the hook breaks away or a point more needs room.
+    /// A step in which creep sets in or ends, or the spring gets through its reverse points or is
+    /// evaluated from the last of them, and the velocity then; nowhere where the hook breaks away or a
+    /// point more needs room.
     #[cold]
     #[inline(never)]
-    fn turned(
+    fn step_apart(
         &self,
         state: &mut HsiehPanState<S>,
         now: &Sticking<S>,
         displacement: S,
+        duration: S,
         (unbraked, braking): (S, S),
-    ) -> Option<(Here<S>, Branch, S)> {
+    ) -> Option<(Sticking<S>, Fading<S>, S)> {
         now.keep(state);
-        let walk = state.spring.walk(&self.curve, displacement);
+        let spring = &mut state.spring;
+        let towards = |direction| spring.slope_towards(&self.curve, direction);
+        let force = now.here.force;
+        let creep = self.plastic.creep(now.hardening, force, towards, displacement, duration);
+        let walk = spring.walk(&self.curve, creep.left);
         let arrived = unbraked - braking * walk.end.force;
-        let crowded = walk.added.is_some() && !state.spring.memory.has_room();
+        let crowded = walk.added.is_some() && !spring.memory.has_room();
         if crowded || breaks(walk.end.force, self.parameters.breakaway.re(), arrived) {
             return None;
         }
-        state.spring.accept(&walk);
-        state.spring.count(&walk, &mut state.statistics);
-        Some((state.spring.here(), state.spring.present(&self.curve), arrived))
+        spring.accept(&walk);
+        spring.count(&walk, &mut state.statistics);
+        let there = now.after(spring.here(), &creep);
+        Some((there, branch_of(&self.curve, spring)?, arrived))
     }
 
     /// Plain steps of a sliding hook.
     #[inline(always)]
-    fn glide_sliding<E: Fn(usize) -> S, V: Seen<S, HsiehPanState<S>>>(
+    fn glide_sliding<E: Efforts<S>, V: Seen<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,
         glide: &mut Glide<S, E, V>,

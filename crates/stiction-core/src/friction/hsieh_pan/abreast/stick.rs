@@ -2,7 +2,7 @@
 
 use super::{CLOSED, Lanes, TURNED};
 use crate::exponential::faded;
-use crate::friction::elements::spring::{SYNCHRONISED, short_way};
+use crate::friction::elements::branch::{SYNCHRONISED, short_way};
 use crate::lanes::{Block, Bodies, WIDTH, pick};
 use crate::scalar::{SHORT, SHORTER, second_share};
 
@@ -166,7 +166,7 @@ impl Lanes {
         let along = left * self.per_displacement.0[lane];
         let far = (self.steps.0[lane] >= f64::from(SYNCHRONISED)) | (along >= SHORT);
         let excess = slope - self.final_stiffness.0[lane];
-        let [there, steepness] = short_way(force, slope, excess, left, along);
+        let [there, steepness] = short_way(force, slope, excess, left, along, |x| x);
         let back = direction * left < 0.0;
         let closes = direction * (position - self.present.target.0[lane]) >= 0.0;
         let plain = !far & !back & !closes;

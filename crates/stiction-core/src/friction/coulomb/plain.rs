@@ -1,0 +1,99 @@
+//! Rests that hold and slides that go on, in loops of their own.
+
+use super::{Coulomb, CoulombState};
+use crate::exponential::fading_within;
+use crate::friction::elements::stribeck::{fall_power, fall_slope};
+use crate::integrate::{Efforts, Glide, Seen};
+use crate::scalar::{Scalar, sign};
+
+impl<S: Scalar> Coulomb<S> {
+    /// Steps until a slide ends, through break-aways.
+    #[inline(always)]
+    pub(super) fn glide_on<E: Efforts<S>, V: Seen<S, CoulombState<S>>>(
+        &self,
+        state: &mut CoulombState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) {
+        if state.0.mode == 0.0 && !self.glide_at_rest(state, glide) {
+            return;
+        }
+        self.glide_sliding(state, glide);
+    }
+
+    /// Steps at rest; whether the contact has broken away.
+    #[inline(always)]
+    fn glide_at_rest<E: Efforts<S>, V: Seen<S, CoulombState<S>>>(
+        &self,
+        state: &mut CoulombState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) -> bool {
+        let greatest = self.parameters.breakaway;
+        if glide.run.velocity.re() != 0.0 {
+            return false;
+        }
+        if let Some(force) = glide.hold(greatest.re(), state) {
+            state.0.force = force;
+        }
+        glide.next().is_some_and(|effort| !state.0.holds(effort, greatest))
+    }
+
+    /// Steps of a slide.
+    #[inline(always)]
+    fn glide_sliding<E: Efforts<S>, V: Seen<S, CoulombState<S>>>(
+        &self,
+        state: &mut CoulombState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) {
+        let verlet = glide.verlet;
+        let free = verlet.share(S::constant(0.0));
+        let freely = verlet.braking(free);
+        let (mode, mut force, mut velocity) = (state.0.mode, state.0.force, glide.run.velocity);
+        let looks = glide.seen.looks();
+        if mode * velocity.re() < 0.0 {
+            return;
+        }
+        while let Some(effort) = glide.next() {
+            let net = effort - self.sliding_within(mode, velocity).0;
+            let displacement = verlet.displacement(velocity, net);
+            let predicted = verlet.predicted(velocity, net);
+            let (there, slope) = self.sliding_within(mode, predicted);
+            // Mostly nothing damps: then nothing waits for what would, and for no division.
+            let (damping, share, braking, undamped) = if slope.re() > 0.0 {
+                let share = verlet.share(slope);
+                (slope, share, verlet.braking(share), there - slope * predicted)
+            } else {
+                (S::constant(0.0), free, freely, there)
+            };
+            let arrived = verlet.unbraked(velocity, net + effort, share) - braking * undamped;
+            if mode * arrived.re() <= 0.0 {
+                break;
+            }
+            (force, velocity) = (there, arrived);
+            if looks {
+                state.0.force = force;
+            }
+            glide.accept(displacement, velocity, undamped + damping * velocity, state);
+        }
+        state.0.force = force;
+    }
+
+    /// As `sliding`, with nothing else to reach the contact and as part of the loop that asks.
+    #[inline(always)]
+    fn sliding_within(&self, mode: f64, velocity: S) -> (S, S) {
+        let p = &self.parameters;
+        if !self.falls {
+            return (p.coulomb * mode + p.viscous * velocity, p.viscous);
+        }
+        let power = fall_power(velocity, p.stribeck_velocity, p.stribeck_exponent);
+        let left = fading_within(-power);
+        let excess = p.breakaway - p.coulomb;
+        let level = (p.coulomb + excess * left) * mode;
+        if !S::CARRIES && p.viscous.re() == 0.0 && mode * velocity.re() > 0.0 {
+            // It falls, whatever its slope; and nothing waits for a sum with 0.
+            return (level, S::constant(0.0));
+        }
+        let force = level + p.viscous * velocity;
+        let steepness = fall_slope(velocity, p.stribeck_exponent, power, left);
+        (force, excess * steepness * (mode * sign(velocity.re())) + p.viscous)
+    }
+}

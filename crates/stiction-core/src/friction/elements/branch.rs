@@ -1,0 +1,108 @@
+//! Where a spring gets along the branch on which it is.
+
+use stiction_dispatch::alone;
+
+use crate::scalar::{SECOND, SHORT, Scalar, gone_share};
+
+/// Where a spring is, without its memory.
+#[derive(Debug, Clone, Copy)]
+pub struct Here<S> {
+    /// Elongation.
+    pub position: S,
+    /// Force.
+    pub force: S,
+    /// Stiffness.
+    pub slope: S,
+    /// Direction of the last motion: −1, 1, or 0 before any.
+    pub direction: f64,
+    /// Steps since the force was last evaluated from a reverse point.
+    pub steps: u32,
+}
+
+/// The branch on which a spring is.
+#[derive(Debug, Clone, Copy)]
+pub struct Branch {
+    /// The first loading, before any reversal.
+    pub first: bool,
+    /// Elongation at its reverse point; 0 for the first loading.
+    pub origin: f64,
+    /// Elongation at which it closes its loop.
+    pub target: f64,
+}
+
+/// The slope towards which that of a branch fades exponentially, and over which way.
+#[derive(Debug, Clone, Copy)]
+pub struct Fading<S> {
+    /// Elongation at which the branch closes its loop.
+    pub target: f64,
+    /// The last slope.
+    pub last: S,
+    /// Share of the distance over which it fades, per displacement.
+    pub share: S,
+}
+
+impl<S: Scalar> Here<S> {
+    /// Whether a motion turns round or closes the loop of a branch that does so at `target`.
+    #[inline(always)]
+    pub fn leaves(&self, target: f64, displacement: f64) -> bool {
+        self.direction * displacement < 0.0
+            || self.direction == 0.0
+            || self.direction * (self.position.re() + displacement - target) >= 0.0
+    }
+
+    /// Any other motion, where it is a short one.
+    #[inline(always)]
+    pub fn onward(&self, branch: &Fading<S>, displacement: S) -> Option<Self> {
+        if self.leaves(branch.target, displacement.re()) || self.steps >= SYNCHRONISED {
+            return None;
+        }
+        let z = displacement * branch.share;
+        if z.re() >= SHORT {
+            return None;
+        }
+        let excess = self.slope - branch.last;
+        let (way, along) = (displacement.re(), z.re());
+        let [force, slope] =
+            short_way(self.force.re(), self.slope.re(), excess.re(), way, along, alone);
+        // The same, with fewer products of rows of derivatives.
+        let share = gone_share(z);
+        let gained = displacement * (branch.last + excess * share);
+        Some(Self {
+            position: self.position + displacement,
+            force: (self.force + gained).with_value(force),
+            slope: (self.slope - excess * (z * share)).with_value(slope),
+            direction: self.direction,
+            // A spring that is held changes no bit, however long.
+            steps: self.steps + u32::from(way != 0.0),
+        })
+    }
+}
+
+/// Steps of a spring that go on from the one before until it is evaluated from its reverse point
+/// again. Each adds at most 1.5 units in the last place of the force and of the slope, together
+/// below 1e-13 of them.
+pub const SYNCHRONISED: u32 = 256;
+
+/// Force and slope a short way further along a branch that is `excess` steeper than its end, z·d_0
+/// being the way at full size: F + δ·(k − E·z·φ₂) and k − E·z·(1 − z·φ₂), to 4e-14 of what they gain,
+/// summed so that as little as can be waits for the displacement. `kept` is [`alone`] for one spring
+/// and nothing for springs side by side.
+#[inline(always)]
+pub fn short_way(
+    force: f64,
+    slope: f64,
+    excess: f64,
+    displacement: f64,
+    z: f64,
+    kept: impl Fn(f64) -> f64,
+) -> [f64; 2] {
+    let (near, far) = (kept(SECOND[0] + SECOND[1] * z), SECOND[2] + SECOND[3] * z);
+    let square = z * z;
+    let bent = (excess * displacement) * z;
+    let fallen = excess * z;
+    let eased = fallen * z;
+    [
+        ((force + displacement * slope) - kept(bent * near)) - (bent * square) * far,
+        ((slope - fallen) + kept(eased * near)) + (eased * square) * far,
+    ]
+}

@@ -1,0 +1,60 @@
+//! Steps of a bare body, in a loop of their own.
+
+use super::{MaxwellSlip, MaxwellSlipState};
+use crate::friction::elements::yield_curve::{Course, YieldCurve};
+use crate::integrate::{Efforts, Glide, Seen};
+use crate::scalar::Scalar;
+
+impl<S: Scalar> MaxwellSlip<S> {
+    /// Steps along exponential branches until a reverse point more needs room.
+    #[inline(always)]
+    pub(super) fn glide_on<E: Efforts<S>, V: Seen<S, MaxwellSlipState<S>>>(
+        &self,
+        state: &mut MaxwellSlipState<S>,
+        glide: &mut Glide<S, E, V>,
+    ) {
+        let (curve, damping) = (&self.curve, self.parameters.viscous);
+        let looks = glide.seen.looks();
+        let verlet = glide.verlet.dragged(damping);
+        let share = verlet.share(damping);
+        let braking = verlet.braking(share);
+        let Some(mut course) = curve.course(&state.spring) else { return };
+        let (mut here, mut velocity) = (state.spring.here(), glide.run.velocity);
+        while let Some(effort) = glide.next() {
+            let push = effort - here.force;
+            let displacement = verlet.displacement(velocity, push);
+            let unbraked = verlet.unbraked(velocity, push + effort, share);
+            if let Some(there) = curve.along(&course, &here, displacement) {
+                here = there;
+            } else {
+                state.spring.slide(&here);
+                let Some(turned) = Self::turned(curve, state, displacement) else { break };
+                course = turned;
+                here = state.spring.here();
+            }
+            velocity = unbraked - braking * here.force;
+            if looks {
+                state.spring.slide(&here);
+            }
+            glide.accept(displacement, velocity, here.force + damping * velocity, state);
+        }
+        state.spring.slide(&here);
+    }
+
+    /// Takes the spring through its reverse points; nowhere where one more needs room.
+    #[cold]
+    #[inline(never)]
+    fn turned(
+        curve: &YieldCurve<S>,
+        state: &mut MaxwellSlipState<S>,
+        displacement: S,
+    ) -> Option<Course<S>> {
+        let walk = state.spring.walk(curve, displacement);
+        if walk.added.is_some() && !state.spring.memory.has_room() {
+            return None;
+        }
+        state.spring.accept(&walk);
+        state.spring.count(&walk, &mut state.statistics);
+        curve.course(&state.spring)
+    }
+}
