@@ -7,7 +7,7 @@ use crate::kernel::RowKernel;
 /// Samples of a stretch, or as many as a kernel covers where that is more.
 const STRETCH: usize = 512;
 
-/// Derivatives by one parameter in some samples: needed, driven, ahead.
+/// Derivatives by one parameter in some samples: needed, driven, ahead; empty where all are 0.
 pub type Stretch<'a> = [&'a [f64]; 3];
 
 /// Room for the samples of a stretch and for those before it that a kernel still asks for.

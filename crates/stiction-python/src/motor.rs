@@ -12,10 +12,10 @@ use stiction_core::motor::{Column, Motor as Core, MotorSpec};
 use stiction_core::segments::Segments;
 use stiction_core::sensitivity::{
     EffortSensitivity, Start, follow_columns, follow_sensitivity, sensitivity_into,
-    signature_columns, signatures,
 };
 use stiction_core::servo::Servo;
 use stiction_core::shoot::{Pull, shoot_response, shoot_sensitivity};
+use stiction_core::signatures::{signature_columns, signatures};
 
 use crate::arguments::{
     Shots, candidates_of, effects_of, gains_of, integrator_of, numbers_of, servo_of, threads_of,
