@@ -192,6 +192,14 @@ impl MeasuredMotion<'_> {
         self.positions.len().saturating_sub(1)
     }
 
+    /// Checks that there is a value for every sample.
+    pub fn check(&self) -> Result<()> {
+        let wanted = self.samples();
+        self.inputs.check("input", wanted)?;
+        self.around.check(wanted)?;
+        self.dt.check("dt", wanted)
+    }
+
     /// Follows the motion and hands over the traces of a pass, stretch by stretch.
     pub(crate) fn differentiate(
         &self,

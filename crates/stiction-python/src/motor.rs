@@ -331,6 +331,30 @@ impl Motor {
         Ok((driven, ambient, friction, ahead))
     }
 
+    /// Measured minus needed effort along a measured motion, seen through a kernel; shape (rows,).
+    /// The load and the inertia term of what the sensor shows are the caller's. Starts as in
+    /// ``follow``.
+    #[pyo3(signature = (motion, kernel, *, start=None))]
+    fn follow_rows<'py>(
+        &self,
+        py: Python<'py>,
+        motion: &Bound<'py, Motion>,
+        kernel: &Bound<'py, RowKernel>,
+        start: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let motion = motion.get().measured();
+        let kernel = kernel.get().core();
+        let start = self.start(py, start)?;
+        let rows = py.detach(|| {
+            let mut core = self.lock();
+            if let Some(start) = &start {
+                core.prime(start);
+            }
+            core.follow_rows(&motion, &kernel)
+        });
+        Ok(PyArray1::from_vec(py, rows.or_input_error(py)?))
+    }
+
     /// Exact derivatives by parameters along a measured motion: of friction less gravity and added
     /// efforts, of the effort of the drive, and of how far the centre of mass is ahead of the
     /// reading; each of shape (parameters, n).

@@ -50,6 +50,11 @@ class Base:
 
     def off(self, fit: FloatArray) -> FloatArray:
         """Columns of the fitted rows alone, without what the base explains; same shape."""
+        if fit.flags.f_contiguous:
+            # Each column stays in one piece.
+            explained: FloatArray = (fit.T @ self._left) @ self._left.T
+            np.subtract(fit.T, explained, out=explained)
+            return explained.T
         return fit - self._left @ (self._left.T @ fit)
 
     def project(self, columns: FloatArray) -> Projected:
