@@ -15,6 +15,8 @@ __all__ = ["Base", "Projected", "project", "refitted", "step"]
 
 FLAT: Final = 1e-8
 """Directions of the base with less than this share of the strongest one are dropped."""
+TOGETHER: Final = 32
+"""Columns from which the base is taken off at a time: they stay in the cache."""
 
 
 @dataclass(frozen=True)
@@ -50,12 +52,13 @@ class Base:
 
     def off(self, fit: FloatArray) -> FloatArray:
         """Columns of the fitted rows alone, without what the base explains; same shape."""
-        if fit.flags.f_contiguous:
-            # Each column stays in one piece.
-            explained: FloatArray = (fit.T @ self._left) @ self._left.T
-            np.subtract(fit.T, explained, out=explained)
-            return explained.T
         return fit - self._left @ (self._left.T @ fit)
+
+    def take_off(self, fit: FloatArray) -> None:
+        """The same of many columns, each in one piece, in their place."""
+        for first in range(0, fit.shape[1], TOGETHER):
+            some = fit.T[first : first + TOGETHER]
+            some -= (some @ self._left) @ self._left.T
 
     def project(self, columns: FloatArray) -> Projected:
         """Columns of all rows, shape (n, k) or (n,), without what the base explains."""

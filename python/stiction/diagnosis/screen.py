@@ -181,8 +181,9 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     base = project(problem.base, Plan(problem.fitted, problem.fitted))
     fitted = problem.fitted
     residual, null = base.off(problem.residual[fitted]), base.off(problem.null[fitted])
-    raw = signatures.columns.T[:, fitted].T
-    columns = base.off(raw)
+    # Tens of megabytes: one copy, which is changed in its place.
+    columns = np.compress(fitted, signatures.columns.T, axis=1).T
+    base.take_off(columns)
     power = max(float(residual @ residual), 1e-300)
     scan = _Scan.of(columns, signatures)
     gains, explained = scan.regressed(columns.T @ residual)
@@ -204,7 +205,8 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     thresholds = {name: _threshold(noise[names == name], turned[names == name]) for name in best}
     scores = []
     for name, index in best.items():
-        part, whole = columns[:, signatures.slices[index]], raw[:, signatures.slices[index]]
+        part = columns[:, signatures.slices[index]]
+        whole = signatures.columns[:, signatures.slices[index]][fitted]
         total = float(np.sum(whole**2))
         left = float(np.sum(part**2)) / total if total > 0.0 else 0.0
         scores.append(
