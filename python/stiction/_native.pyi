@@ -142,6 +142,9 @@ class Motor:
     def follow(
         self, motion: Motion, *, start: dict[str, float] | None = None
     ) -> tuple[_Floats, _Floats, _Floats, _Floats]: ...
+    def follow_rows(
+        self, motion: Motion, kernel: RowKernel, *, start: dict[str, float] | None = None
+    ) -> _Floats: ...
     def follow_sensitivity(
         self, motion: Motion, parameters: Sequence[str], *, start: dict[str, float] | None = None
     ) -> tuple[_Floats, _Floats, _Floats]: ...

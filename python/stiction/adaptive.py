@@ -60,30 +60,35 @@ def adaptively_smoothed(readings: FloatArray, dt: float, noise: float) -> FloatA
     high = np.full(len(readings), np.inf)
     level = np.zeros(len(readings))
     agrees = np.ones(len(readings), dtype=bool)
+    edge = halves[-1]
+    padded = np.pad(readings, edge, "edge")
     for k, half in enumerate(halves):
-        weights = _parabola(half)
-        estimates[k] = np.convolve(np.pad(readings, half, "edge"), weights, "valid")
-        error = TRUSTED * noise * float(np.linalg.norm(weights))
-        low = np.maximum(low, estimates[k] - error)
-        high = np.minimum(high, estimates[k] + error)
+        weights, size = _parabola(half)
+        reached = padded[edge - half : len(padded) - edge + half]
+        estimates[k] = np.convolve(reached, weights, "valid")
+        error = TRUSTED * noise * size
+        np.maximum(low, estimates[k] - error, out=low)
+        np.minimum(high, estimates[k] + error, out=high)
         agrees &= low <= high
-        level[agrees] = k
+        if k > 0:
+            level += agrees
     level = uniform_filter1d(minimum_filter1d(level, BLENDED), BLENDED)
     below = np.minimum(level.astype(np.int64), len(halves) - 2)
-    share, each = level - below, np.arange(len(readings))
-    narrow, wide = estimates[below, each], estimates[below + 1, each]
+    share, each = level - below, np.arange(len(readings)) + below * len(readings)
+    narrow, wide = estimates.take(each), estimates.take(each + len(readings))
     smoothed: FloatArray = narrow + share * (wide - narrow)
     return smoothed
 
 
 @cache
-def _parabola(half: int) -> FloatArray:
-    """Weights that give the value in the middle of a parabola through 2·half + 1 samples.
+def _parabola(half: int) -> tuple[FloatArray, float]:
+    """Weights that give the value in the middle of a parabola through 2·half + 1 samples, and their
+    2-norm.
 
     Narrower than three samples it goes through all of them: there is nothing to smooth by.
     """
     if half == 0:
-        return np.ones(1)
+        return np.ones(1), 1.0
     steps = np.arange(-half, half + 1)
     weights: FloatArray = np.linalg.pinv(np.vander(steps, 3, increasing=True))[0]
-    return weights
+    return weights, float(np.linalg.norm(weights))

@@ -60,6 +60,10 @@ class LoopForm(WeakForm):
     def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
         """Measured effort, and that less the residual; shape (n,) each."""
         measured = self.measured(plant)
+        return measured, measured - self.residual(plant, start)
+
+    def residual(self, plant: Plant, start: Start = None) -> FloatArray:
+        """The effort by which the servo would pull the simulated position to the measured one."""
         motor = self._begun(plant, start)
         try:
             reached = motor.simulate(
@@ -68,8 +72,8 @@ class LoopForm(WeakForm):
         except InputError:
             # A trial of a fit that is too stiff for the sample time: it must look bad, not end it.
             reached = np.full(len(self.input), np.nan)
-        missed = self.stiffness * (self.readings[1:] - reached)
-        return measured, measured - missed
+        missed: FloatArray = self.stiffness * (self.readings[1:] - reached)
+        return missed
 
     def late(self, plant: Plant) -> FloatArray:
         """0: where goal and position are stamped hardly matters to a loop that is simulated."""

@@ -92,6 +92,10 @@ class ShootingForm(WeakForm):
         measured = self.measured(plant)
         return measured, measured - self.own(plant).inertia * self._missed(plant, start)
 
+    def residual(self, plant: Plant, start: Start = None) -> FloatArray:
+        """Measured minus needed effort of every row; NaN as for ``efforts``."""
+        return self.own(plant).inertia * self._missed(plant, start)
+
     def late(self, plant: Plant) -> FloatArray:
         """As for the weak form where the machine moves; at rest a timing offset shows nothing."""
         return np.where(self.moves, super().late(plant), 0.0)

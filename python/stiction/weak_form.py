@@ -303,6 +303,34 @@ class WeakForm:
         inertial = self.own(plant).inertia * (self.acceleration + self._bent(ahead))
         return self._mean(measured), inertial + self._mean(needed)
 
+    def residual(self, plant: Plant, start: Start = None) -> FloatArray:
+        """Measured minus needed effort of every row, starts as in ``efforts``; shape (n,)."""
+        return self.short(plant, start) + self._known - self.own(plant).inertia * self.acceleration
+
+    @cached_property
+    def _known(self) -> FloatArray:
+        """What was measured of efforts beside that of a drive; shape (n,)."""
+        load = _centred(self.load[:-1])
+        return self._mean(self.effort[1:] + load if self.prescribed else load)
+
+    def short(
+        self,
+        plant: Plant,
+        start: Start = None,
+        *,
+        position: FloatArray | None = None,
+        load: FloatArray | None = None,
+        driven: bool = True,
+    ) -> FloatArray:
+        """What a drive gives less what is needed beside the load and the motion that shows.
+
+        ``position`` and ``load`` as in ``along``; with ``driven`` False the drive is left out.
+        """
+        measured = position is None and load is None
+        motion = self.motion if measured else self.moved(position, load=load)
+        motor = self.begun(plant, self.position if position is None else position)
+        return motor.follow_rows(motion, self._rows(plant, driven=driven), start=start)
+
     def along(
         self,
         plant: Plant,
@@ -322,10 +350,6 @@ class WeakForm:
         motor = self.begun(plant, self.position if position is None else position)
         drive, ambient, friction, ahead = motor.follow(motion, start=start)
         return drive, friction - ambient, ahead
-
-    def inertial(self, plant: Plant, position: FloatArray, ahead: FloatArray) -> FloatArray:
-        """Inertia term of a motion whose centre of mass is that far ahead of the sensor."""
-        return self.own(plant).inertia * (self.accelerations(position) + self._bent(ahead))
 
     def _turned(self, readings: FloatArray) -> float:
         """Support, s, over which noise of a machine that is moved no longer turns its motion round.
@@ -408,14 +432,14 @@ class WeakForm:
         columns: FloatArray = found.T
         return columns
 
-    def _rows(self, plant: Plant) -> RowKernel:
-        """What the core needs to see its derivatives as rows."""
+    def _rows(self, plant: Plant, *, driven: bool = True) -> RowKernel:
+        """What the core needs to see efforts and their derivatives as rows."""
         return RowKernel(
             self.kernel.weights[::-1].copy(),
             self.kernel.second,
             self.stride,
             self.own(plant).inertia,
-            held=not self.prescribed,
+            held=driven and not self.prescribed,
         )
 
     def _bent(self, ahead: FloatArray) -> FloatArray:

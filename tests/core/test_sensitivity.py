@@ -286,7 +286,7 @@ def test_efforts_along_a_motion_are_differentiated_by_every_parameter(kind):
 
 @pytest.mark.parametrize("held", [True, False])
 @pytest.mark.parametrize("effects", [None, EFFECTS])
-def test_columns_are_derivatives_seen_through_the_kernel(held, effects):
+def test_rows_and_columns_are_efforts_and_derivatives_seen_through_the_kernel(held, effects):
     machine = motor("hook", effects=effects, gravity_amplitude=0.05)
     time = np.arange(601) * 1e-3
     path = 0.02 * np.sin(9.0 * time) + 1e-3 * np.sin(41.0 * time)
@@ -306,6 +306,10 @@ def test_columns_are_derivatives_seen_through_the_kernel(held, effects):
     expected = seen(machine.follow_sensitivity(st.Motion(path, current, 1e-3), paths))
     assert columns.shape == expected.shape
     assert np.allclose(columns, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
+    drive, ambient, friction, ahead = machine.copy().follow(st.Motion(path, current, 1e-3))
+    (expected,) = seen((np.array([friction - ambient]), np.array([drive]), np.array([ahead])))
+    found = machine.copy().follow_rows(st.Motion(path, current, 1e-3), rows)
+    assert np.allclose(found, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
     columns = machine.signature_columns(st.Motion(path, current, 1e-3), CANDIDATES, rows)
     expected = seen(machine.signatures(st.Motion(path, current, 1e-3), CANDIDATES))
     assert np.allclose(columns, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
@@ -320,6 +324,7 @@ CANDIDATES = [
     ("cogging", {}),
     ("direction_asymmetry", {}),
     ("position_dependent_friction", {"order": 2.0}),
+    ("torque_constant_ripple", {"order": 3.0}),
     ("viscous_quadratic", {}),
     ("encoder_eccentricity", {}),
 ]

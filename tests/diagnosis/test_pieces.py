@@ -22,12 +22,14 @@ from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import Gain, HeldOut, gain_of
 from stiction.diagnosis.model import LEAST_GIVEN, Model, fitted, with_effect
 from stiction.diagnosis.noise import measure_noise
+from stiction.diagnosis.periodic import waves_of
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.replay import centre, surrogate_residuals
 from stiction.diagnosis.result import Cause, Diagnosis
 from stiction.diagnosis.screen import Signatures
 from stiction.diagnosis.verdict import relatives
 from stiction.diagnosis.words import joined, sentence, value_words
+from stiction.finite import finite
 from stiction.fitting.levenberg import escaped, levenberg_marquardt
 from stiction.fitting.result import FitParameter
 from stiction.fitting.rows import Nuisances
@@ -133,6 +135,28 @@ def test_projection_takes_off_what_the_base_explains_and_the_same_from_held_rows
     assert np.allclose(projected.held, 0.0, atol=1e-10)
     other = project(base, Plan(fit, ~fit)).project(source.standard_normal(200))
     assert np.allclose(base[fit].T @ other.fit, 0.0, atol=1e-10)
+    many = source.standard_normal((70, 120)).T
+    expected = project(base, Plan(fit, ~fit)).off(many)
+    project(base, Plan(fit, ~fit)).take_off(many)
+    assert np.allclose(many, expected, rtol=0.0, atol=1e-12)
+
+
+def test_waves_of_multiples_of_an_order_are_those_of_each_alone() -> None:
+    position = np.linspace(-7.0, 9.0, 301)
+    orders = [0.35 * k for k in range(1, 81)]
+    together = waves_of(orders, position)
+    each = np.stack([waves_of([0.1, order], position)[:, 1] for order in orders], axis=1)
+    assert np.abs(together - each).max() < 1e-12
+
+
+def test_numbers_stay_and_what_ran_away_becomes_numbers() -> None:
+    whole = np.array([1.0, -2.0])
+    assert finite(whole) is whole
+    assert whole.tolist() == [1.0, -2.0]
+    ran = np.array([np.nan, np.inf, -np.inf, 3.0])
+    assert finite(ran.copy(), 1e6).tolist() == [1e6, 1e6, -1e6, 3.0]
+    assert np.all(np.isfinite(finite(ran)))
+    assert ran[0] == 0.0
 
 
 def test_every_effect_has_candidates_within_its_bounds(evidence: Evidence) -> None:

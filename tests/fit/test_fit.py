@@ -222,18 +222,16 @@ def test_interrupting_a_fit_keeps_the_best_so_far(
     recording: Recording, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     calls = 0
-    efforts = WeakForm.efforts
+    residual = WeakForm.residual
 
-    def interrupted(
-        self: WeakForm, machine: Plant, start: Start = None
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def interrupted(self: WeakForm, machine: Plant, start: Start = None) -> np.ndarray:
         nonlocal calls
         calls += 1
         if calls == 3:
             raise KeyboardInterrupt
-        return efforts(self, machine, start)
+        return residual(self, machine, start)
 
-    monkeypatch.setattr(WeakForm, "efforts", interrupted)
+    monkeypatch.setattr(WeakForm, "residual", interrupted)
     found = fit(plant(), recording)
     assert not found.success
     assert "interrupted" in found.message

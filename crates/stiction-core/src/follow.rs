@@ -99,16 +99,14 @@ impl<S: Scalar> Running<S> {
         let MeasuredMotion { positions, inputs, around, dt, averaged } = *motion;
         let misreads = self.machine.effects.misreads();
         let sensor = self.machine.effects.clone();
-        let actual = |reading: f64| {
-            let reading = S::constant(reading);
-            if misreads { sensor.behind(reading) } else { reading }
-        };
+        let behind = |reading: f64| sensor.behind(S::constant(reading));
+        let actual: Option<&dyn Fn(f64) -> S> = if misreads { Some(&behind) } else { None };
         let inertia = self.machine.body.inertia;
         let masses = self.machine.effects.second_masses().iter();
         let mut beyond: Vec<Beyond<S>> = masses.map(|mass| Beyond::new(mass, inertia)).collect();
         let (way, machine, run) = (self.way.as_mut(), &mut self.machine, &mut self.run);
         let beyond = beyond.as_mut_slice();
-        let track = Track::new(positions, &actual, samples.start);
+        let track = Track::new(positions, actual, samples.start);
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let contact = (law, state);
             Following {
@@ -162,6 +160,8 @@ where
             if located { track.velocity_or_rest(&dt) } else { track.velocity(&dt) }
         };
         let mut velocity = slope(&track);
+        let mut at = run.situation();
+        let some = !samples.is_empty();
         for (passed, k) in samples.enumerate() {
             if passed % CHUNK == 0 {
                 state.make_room(CHUNK + CHUNK / 4);
@@ -172,20 +172,17 @@ where
             let before = velocity;
             track.advance();
             velocity = slope(&track);
-            let displacement = track.at[1] - track.at[0];
-            run.position = track.at[1];
-            run.velocity = velocity;
-            run.time += span;
-            run.path += displacement.abs();
-            run.temperature = around.temperature_at(k);
-            run.enabled = around.enabled_at(k);
-            run.second_position = run.position;
-            run.second_velocity = velocity;
+            let displacement = track.displacement();
+            at.position = track.position();
+            at.velocity = velocity;
+            at.time += span;
+            at.path += displacement.abs();
+            at.temperature = around.temperature_at(k);
+            at.enabled = around.enabled_at(k);
             if machine.effects.remembers() {
                 let passage = Passage { displacement, friction: run.friction, span };
                 machine.effects.remember(&passage);
             }
-            let at = run.situation();
             let input = arriving(&mut way, inputs.at(k), duration);
             let (effort, driven, ambient) = machine.efforts(&at, input, load);
             let channels = machine.channels(&at, effort, load);
@@ -198,13 +195,13 @@ where
             // Where a machine with a rigid contact stops, the rest of the sample is one at rest.
             let stop = if located { track.stop(k) } else { None };
             let share = stop.map_or(1.0, |stop| stop.left.min(1.0));
-            let (moving, rest) = (span * share, span * (1.0 - share));
+            let moving = if share < 1.0 { span * share } else { span };
             let mut held = Along::new(at_contact, moving, (before, velocity), channels);
             if share > 0.0 {
                 through_events(&mut held, law, state, moving);
             }
             if share < 1.0 {
-                let moved = held.mean * share;
+                let (moved, rest) = (held.mean * share, span * (1.0 - share));
                 held = Along::new(zero, rest, (zero, zero), channels);
                 through_events(&mut held, law, state, rest);
                 held.mean = moved + held.mean * (1.0 - share);
@@ -212,7 +209,7 @@ where
             run.friction = held.outcome.force;
             let mut ahead = zero;
             if misreads {
-                ahead += track.at[1] - track.reading();
+                ahead += at.position - track.reading();
             }
             for mass in &mut *beyond {
                 ahead += mass.advance(track.acceleration(&dt), duration);
@@ -220,8 +217,29 @@ where
             let there = Whereabouts { machine: &*machine, at: &at, input, load };
             let (friction, mean) = (run.friction, located.then_some(held.mean));
             row(k, Efforts { driven, ambient, friction, mean, ahead }, there);
-            machine.wind(run, input, duration);
+            if machine.drive.servo.is_some() {
+                run.stand(&at);
+                machine.wind(run, input, duration);
+                at.wound = run.wound;
+            }
         }
+        if some {
+            run.stand(&at);
+        }
+    }
+}
+
+impl<S: Scalar> Run<S> {
+    /// Where a motion that is given has come to.
+    fn stand(&mut self, at: &Situation<S>) {
+        self.position = at.position;
+        self.velocity = at.velocity;
+        self.time = at.time;
+        self.path = at.path;
+        self.temperature = at.temperature;
+        self.enabled = at.enabled;
+        self.second_position = at.position;
+        self.second_velocity = at.velocity;
     }
 }
 

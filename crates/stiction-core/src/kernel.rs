@@ -1,5 +1,7 @@
 //! The kernel through which efforts are compared: means about stamps, every so many samples.
 
+use stiction_dispatch::{Task, Width};
+
 use crate::error::{Error, Result};
 
 /// A kernel over the samples of a motion.
@@ -30,44 +32,75 @@ impl RowKernel<'_> {
     }
 
     /// Measured minus needed effort, from derivatives at the sample ends: `needed` and `driven`
-    /// efforts, and how far the centre of mass is `ahead` of the reading.
+    /// efforts, and how far the centre of mass is `ahead` of the reading; empty where all are 0.
     pub fn column(&self, [needed, driven, ahead]: [&[f64]; 3], column: &mut [f64]) {
-        let any = |values: &[f64]| values.iter().any(|value| *value != 0.0);
-        for (place, value) in column.iter_mut().enumerate() {
-            let first = place * self.every + 1;
-            *value = -inner(&needed[first..first + self.mean.len()], self.mean);
+        Width::widest().run(Seen { kernel: self, needed, driven, ahead, column });
+    }
+}
+
+/// A column that is being filled.
+struct Seen<'a> {
+    kernel: &'a RowKernel<'a>,
+    needed: &'a [f64],
+    driven: &'a [f64],
+    ahead: &'a [f64],
+    column: &'a mut [f64],
+}
+
+impl Task for Seen<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { kernel, needed, driven, ahead, column } = self;
+        let RowKernel { mean, second, every, inertia, held } = *kernel;
+        let mut short = Vec::new();
+        if held && any(driven) {
+            // What is held counts half a sample later.
+            let next = driven.iter().skip(1).chain(driven.last());
+            let both = driven.iter().zip(next).zip(needed);
+            short.extend(both.map(|((one, next), needed)| needed - 0.5 * (one + next)));
         }
-        if self.held && any(driven) {
-            let last = driven.len() - 1;
-            let centred: Vec<f64> =
-                (0..=last).map(|k| 0.5 * (driven[k] + driven[last.min(k + 1)])).collect();
-            for (place, value) in column.iter_mut().enumerate() {
-                let first = place * self.every + 1;
-                *value += inner(&centred[first..first + self.mean.len()], self.mean);
-            }
+        let needed = if short.is_empty() { needed } else { &short };
+        for (place, value) in column.iter_mut().enumerate() {
+            let first = place * every + 1;
+            *value = -inner(&needed[first..first + mean.len()], mean);
         }
         if any(ahead) {
             for (place, value) in column.iter_mut().enumerate() {
-                let first = place * self.every;
-                let bent = inner(&ahead[first..first + self.second.len()], self.second);
-                *value -= self.inertia * bent;
+                let first = place * every;
+                *value -= inertia * inner(&ahead[first..first + second.len()], second);
             }
         }
     }
 }
 
+/// Whether any value is not 0.
+#[inline(always)]
+fn any(values: &[f64]) -> bool {
+    let whole = |some: &[f64]| some.iter().fold(false, |any, value| any | (*value != 0.0));
+    values.chunks(256).any(whole)
+}
+
 /// Sum of products, in eight sums side by side.
-#[inline]
+#[inline(always)]
 fn inner(values: &[f64], weights: &[f64]) -> f64 {
     const LANES: usize = 8;
+    let (some, left) = values.as_chunks::<LANES>();
+    let (other, right) = weights.as_chunks::<LANES>();
     let mut sums = [0.0; LANES];
-    let (some, other) = (values.chunks_exact(LANES), weights.chunks_exact(LANES));
-    let rest: f64 = some.remainder().iter().zip(other.remainder()).map(|(v, w)| v * w).sum();
-    for (v, w) in some.zip(other) {
+    for (v, w) in some.iter().zip(other) {
         for lane in 0..LANES {
             sums[lane] += v[lane] * w[lane];
         }
     }
+    let ((some, left), (other, right)) = (left.as_chunks::<4>(), right.as_chunks::<4>());
+    for (v, w) in some.iter().zip(other) {
+        for lane in 0..4 {
+            sums[lane] += v[lane] * w[lane];
+        }
+    }
+    let rest: f64 = left.iter().zip(right).map(|(v, w)| v * w).sum();
     sums.iter().sum::<f64>() + rest
 }
 

@@ -28,6 +28,7 @@ pub mod sensitivity;
 pub mod sensor;
 pub mod servo;
 pub mod shoot;
+pub mod signatures;
 mod traces;
 mod track;
 pub mod trig;

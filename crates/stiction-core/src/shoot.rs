@@ -60,7 +60,9 @@ impl<S: Scalar> Running<S> {
             }
         };
         let sensor = self.machine.effects.clone();
-        let actual = |reading: f64| sensor.behind(S::constant(reading));
+        let behind = |reading: f64| sensor.behind(S::constant(reading));
+        let actual: Option<&dyn Fn(f64) -> S> =
+            if sensor.misreads() { Some(&behind) } else { None };
         let length = windows.weights.len();
         let mut reached = 0;
         for window in 0..windows.number(motion.samples()) {
@@ -68,7 +70,7 @@ impl<S: Scalar> Running<S> {
             self.follow_on(motion, reached..start, |_, _, _| ());
             reached = start;
             let end = start + length;
-            let track = Track::new(positions, &actual, start);
+            let track = Track::new(positions, actual, start);
             let mut shot = self.clone();
             shot.longest_phase = shot.longest_phase.max(COARSE_PHASE);
             shot.run.position = track.position();
@@ -110,8 +112,10 @@ impl Running<f64> {
         let MeasuredMotion { positions, inputs, around, dt, .. } = *motion;
         let sensor = self.machine.effects.clone();
         let actual = |reading: f64| sensor.behind(reading);
+        let actual: Option<&dyn Fn(f64) -> f64> =
+            if sensor.misreads() { Some(&actual) } else { None };
         for k in 0..motion.samples() {
-            let track = Track::new(positions, &actual, k);
+            let track = Track::new(positions, actual, k);
             let behind = track.position() - self.run.position;
             let slower = track.velocity(&dt) - self.run.velocity;
             let effort = pull.stiffness * behind + pull.damping * slower;

@@ -3,11 +3,12 @@
 
 use crate::dual::{COLUMNS, Dual};
 use crate::kernel::RowKernel;
+use crate::scalar::Scalar;
 
 /// Samples of a stretch, or as many as a kernel covers where that is more.
 const STRETCH: usize = 512;
 
-/// Derivatives by one parameter in some samples: needed, driven, ahead.
+/// Derivatives by one parameter in some samples: needed, driven, ahead; empty where all are 0.
 pub type Stretch<'a> = [&'a [f64]; 3];
 
 /// Room for the samples of a stretch and for those before it that a kernel still asks for.
@@ -15,6 +16,8 @@ pub type Stretch<'a> = [&'a [f64]; 3];
 pub struct Traces {
     /// Of needed, driven, ahead: all samples of the first column, then all of the next.
     rows: [Vec<f64>; 3],
+    /// Which of them held anything but 0 so far; needed is there in any case.
+    there: [bool; 3],
     /// Samples of the motion, and how many of them there is room for.
     samples: usize,
     room: usize,
@@ -29,7 +32,8 @@ impl Traces {
         let reach = kernel.map(|kernel| (kernel.second.len(), kernel.every));
         let covered = reach.map_or(0, |(width, every)| width + every);
         let room = samples.min(covered + STRETCH.max(covered));
-        Self { rows: Default::default(), samples, room, reach, columns: 0 }
+        let there = [true, false, false];
+        Self { rows: Default::default(), there, samples, room, reach, columns: 0 }
     }
 
     /// The same for so many columns.
@@ -43,6 +47,7 @@ impl Traces {
 
     /// Ready for the first sample; `take` is given column, first sample and stretch.
     pub fn to<F: FnMut(usize, usize, Stretch<'_>)>(&mut self, take: F) -> Filling<'_, F> {
+        self.there = [true, false, false];
         Filling { traces: self, begin: 0, end: 0, take }
     }
 
@@ -69,8 +74,16 @@ impl<F: FnMut(usize, usize, Stretch<'_>)> Filling<'_, F> {
     /// Takes the derivatives of the next sample.
     #[inline(always)]
     pub fn put(&mut self, sample: usize, of: [&Dual; 3]) {
-        let Traces { rows, room, columns, .. } = &mut *self.traces;
-        for (rows, dual) in rows.iter_mut().zip(of) {
+        let Traces { rows, there, room, columns, .. } = &mut *self.traces;
+        for ((rows, there), dual) in rows.iter_mut().zip(there).zip(of) {
+            if !*there {
+                if !dual.derivative_is_nonzero() {
+                    continue;
+                }
+                // What is there from before is of another pass.
+                rows.fill(0.0);
+                *there = true;
+            }
             put(&mut rows[..*columns * *room], *room, sample - self.begin, dual.slopes());
         }
         self.end = sample + 1;
@@ -82,11 +95,13 @@ impl<F: FnMut(usize, usize, Stretch<'_>)> Filling<'_, F> {
     /// Hands over what is there, and keeps what is asked for again.
     #[inline(never)]
     pub fn hand_over(&mut self) {
-        let Traces { rows, room, columns, samples, .. } = &mut *self.traces;
+        let Traces { rows, there, room, columns, samples, .. } = &mut *self.traces;
         let (begin, end) = (self.begin, self.end);
         for column in 0..*columns {
             let own = column * *room..column * *room + (end - begin);
-            (self.take)(column, begin, rows.each_ref().map(|rows| &rows[own.clone()]));
+            let stretch =
+                std::array::from_fn(|k| if there[k] { &rows[k][own.clone()] } else { &[] });
+            (self.take)(column, begin, stretch);
         }
         if end == *samples {
             return;
@@ -118,7 +133,6 @@ pub fn put(rows: &mut [f64], samples: usize, k: usize, slopes: &[f64; COLUMNS]) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scalar::Scalar;
 
     #[test]
     fn stretches_end_where_the_next_begins_or_a_kernel_still_reaches_back() {
@@ -138,10 +152,10 @@ mod tests {
             let mut places = 0;
             let mut filling = traces.of(2).to(|column, begin, [needed, driven, _]| {
                 assert!(begin <= seen[column]);
-                for (k, (needed, driven)) in needed.iter().zip(driven).enumerate() {
+                for (k, needed) in needed.iter().enumerate() {
                     assert_eq!(*needed, (begin + k) as f64 * [1.0, 2.0][column]);
-                    assert_eq!(*driven, 0.0);
                 }
+                assert!(driven.is_empty());
                 seen[column] = begin + needed.len();
                 if let (Some(kernel), 0) = (kernel, column) {
                     assert!(begin <= places * kernel.every);
@@ -155,6 +169,24 @@ mod tests {
             }
             filling.hand_over();
             assert_eq!(seen, [samples; 2]);
+        }
+    }
+    #[test]
+    fn what_was_0_until_now_is_0_there_whatever_was_put_before() {
+        let zero = Dual::constant(0.0);
+        let one = Dual::variable(0.0, 0);
+        let mut traces = Traces::new(1200, None);
+        for begins in [0, 300, 700, 1200] {
+            let mut seen = vec![0.0; 1200];
+            let mut filling = traces.of(1).to(|_, begin, [_, driven, ahead]| {
+                seen[begin..begin + driven.len()].copy_from_slice(driven);
+                assert!(ahead.is_empty());
+            });
+            for k in 0..1200 {
+                filling.put(k, [&one, if k < begins { &zero } else { &one }, &zero]);
+            }
+            filling.hand_over();
+            assert!((0..1200).all(|k| seen[k] == f64::from(k >= begins)), "{begins}");
         }
     }
 }

@@ -12,9 +12,10 @@ const LATE: isize = 3;
 /// The positions behind the readings, three in a row, and what is derived from them.
 pub struct Track<'a, S> {
     readings: &'a [f64],
-    actual: &'a dyn Fn(f64) -> S,
-    /// Positions at the stamps before, at and after the present one.
-    pub at: [S; 3],
+    /// The position behind a reading, where that is another one.
+    actual: Option<&'a dyn Fn(f64) -> S>,
+    /// Positions at the stamps before, at and after the present one; kept where readings err.
+    at: [S; 3],
     /// The present stamp.
     stamp: usize,
 }
@@ -29,31 +30,61 @@ pub struct Stop {
 }
 
 impl<'a, S: Scalar> Track<'a, S> {
-    /// With this stamp as the present one.
-    pub fn new(readings: &'a [f64], actual: &'a dyn Fn(f64) -> S, stamp: usize) -> Self {
-        let last = readings.len() - 1;
-        let near = [stamp.saturating_sub(1), stamp, (stamp + 1).min(last)];
-        Self { readings, actual, at: near.map(|stamp| actual(readings[stamp])), stamp }
+    /// With this stamp as the present one. What readings show as it is depends on no parameter.
+    pub fn new(readings: &'a [f64], actual: Option<&'a dyn Fn(f64) -> S>, stamp: usize) -> Self {
+        let zero = S::constant(0.0);
+        let mut track = Self { readings, actual, at: [zero; 3], stamp };
+        if let Some(actual) = actual {
+            track.at = track.near().map(actual);
+        }
+        track
+    }
+
+    /// Readings at the stamps before, at and after the present one.
+    #[inline(always)]
+    fn near(&self) -> [f64; 3] {
+        let last = self.readings.len() - 1;
+        [self.stamp.saturating_sub(1), self.stamp, (self.stamp + 1).min(last)]
+            .map(|stamp| self.readings[stamp])
     }
 
     /// Position at the present stamp.
+    #[inline(always)]
     pub fn position(&self) -> S {
-        self.at[1]
+        if self.actual.is_some() { self.at[1] } else { S::constant(self.reading()) }
     }
 
     /// What the sensor reads at the present stamp.
+    #[inline(always)]
     pub fn reading(&self) -> f64 {
         self.readings[self.stamp]
+    }
+
+    /// Displacement since the stamp before.
+    #[inline(always)]
+    pub fn displacement(&self) -> S {
+        self.between(0, 1)
+    }
+
+    /// Displacement from one of the three stamps to another.
+    #[inline(always)]
+    fn between(&self, from: usize, to: usize) -> S {
+        if self.actual.is_some() {
+            return self.at[to] - self.at[from];
+        }
+        let near = self.near();
+        S::constant(near[to] - near[from])
     }
 
     /// On to the next stamp.
     #[inline(always)]
     pub fn advance(&mut self) {
         self.stamp += 1;
-        let next = (self.stamp + 1).min(self.readings.len() - 1);
-        let ahead =
-            if next == self.stamp { self.at[2] } else { (self.actual)(self.readings[next]) };
-        self.at = [self.at[1], self.at[2], ahead];
+        if let Some(actual) = self.actual {
+            let next = self.stamp + 1;
+            let ahead = self.readings.get(next).map_or(self.at[2], |reading| actual(*reading));
+            self.at = [self.at[1], self.at[2], ahead];
+        }
     }
 
     /// Slope between the neighbours, so that what depends on velocity is not half a sample late; at
@@ -63,7 +94,10 @@ impl<'a, S: Scalar> Track<'a, S> {
         let last = self.readings.len() - 1;
         let (before, after) = (self.stamp.saturating_sub(1), (self.stamp + 1).min(last));
         let span: f64 = (before..after).map(|j| dt.at(j)).sum();
-        (self.at[2] - self.at[0]) / span
+        if self.actual.is_some() {
+            return (self.at[2] - self.at[0]) / span;
+        }
+        S::constant((self.readings[after] - self.readings[before]) / span)
     }
 
     /// The same slope for a rigid contact: 0 where the machine rests before or after, and where it
@@ -86,14 +120,27 @@ impl<'a, S: Scalar> Track<'a, S> {
             return S::constant(0.0);
         }
         let (before, after) = (dt.at(self.stamp - 1), dt.at(self.stamp));
-        let bend = (self.at[2] - self.at[1]) / after - (self.at[1] - self.at[0]) / before;
+        let bend = self.between(1, 2) / after - self.between(0, 1) / before;
         bend * 2.0 / (before + after)
     }
 
     /// When a machine stops that slows down and then rests or goes back; `None` where it does not do so
     /// in this sample, nor in those after it that show no motion any more: the last of its way is less
     /// than a count.
+    #[inline(always)]
     pub fn stop(&self, sample: usize) -> Option<Stop> {
+        // In most samples the machine goes on as before and after: there is nothing to look at.
+        if let Some([one, two, three, four]) =
+            self.readings.get(sample.wrapping_sub(1)..).and_then(|left| left.first_chunk())
+            && ((one < two && two < three && three < four)
+                || (one > two && two > three && three > four))
+        {
+            return None;
+        }
+        self.stop_near(sample)
+    }
+
+    fn stop_near(&self, sample: usize) -> Option<Stop> {
         for back in -1..=LATE {
             // The first sample without a way forward.
             let turn = sample.wrapping_add_signed(-back);
@@ -185,10 +232,9 @@ mod tests {
 
     #[test]
     fn a_steady_deceleration_tells_where_a_machine_stopped() {
-        let actual = |reading: f64| reading;
         for (stop, half) in [(6.3, 2.0), (6.0, 1.0), (6.0 + 1e-7, 1.0), (6.9, 1e-6), (5.5, 1e3)] {
             let readings = coasting(stop, half);
-            let track = Track::new(&readings, &actual, 0);
+            let track = Track::<f64>::new(&readings, None, 0);
             let found: Vec<(usize, Stop)> =
                 (0..11).filter_map(|k| track.stop(k).map(|stop| (k, stop))).collect();
             let [(sample, Stop { left, way })] = found[..] else { panic!("{found:?}") };
@@ -199,10 +245,9 @@ mod tests {
 
     #[test]
     fn the_last_way_of_a_machine_may_be_less_than_a_count() {
-        let actual = |reading: f64| reading;
         let readings: Vec<f64> = coasting(8.4, 0.3).iter().map(|x| x.round()).collect();
         // -21, -16, -12, -9, -6, -3, -2, -1, 0, 0 ...
-        let track = Track::new(&readings, &actual, 0);
+        let track = Track::<f64>::new(&readings, None, 0);
         let stop = track.stop(8).expect("it stops");
         assert!((stop.left - 0.4).abs() < 0.3, "{stop:?}");
         assert_eq!(track.stop(9), None);
@@ -210,12 +255,11 @@ mod tests {
 
     #[test]
     fn what_goes_on_does_not_stop() {
-        let actual = |reading: f64| reading;
         let steady: Vec<f64> = (0..20).map(f64::from).collect();
         let slow: Vec<f64> = (0..20).map(|k| f64::from(k / 2)).collect();
         let once = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         for readings in [&steady[..], &slow, &once, &[0.0; 5], &[0.0, 1.0]] {
-            let track = Track::new(readings, &actual, 0);
+            let track = Track::<f64>::new(readings, None, 0);
             assert!((0..readings.len()).all(|k| track.stop(k).is_none()), "{readings:?}");
         }
     }

@@ -1,5 +1,7 @@
 //! Sine and cosine together, inlined: effects over position ask for them at every sample.
 
+use stiction_dispatch::{Task, Width};
+
 /// Beyond this the reduction by parts of π/2 loses digits, and the library takes over.
 const WIDEST: f64 = 1e5;
 /// Added and taken off again, this rounds to a whole number, which then stands in the last bits.
@@ -16,6 +18,37 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.is_nan() || x.abs() > WIDEST {
         return x.sin_cos();
     }
+    within_reach(x)
+}
+
+/// cos(order·x) and sin(order·x) of many x.
+pub fn waves(order: f64, values: &[f64], cosines: &mut [f64], sines: &mut [f64]) {
+    Width::widest().run(Waves { order, values, cosines, sines });
+}
+
+struct Waves<'a> {
+    order: f64,
+    values: &'a [f64],
+    cosines: &'a mut [f64],
+    sines: &'a mut [f64],
+}
+
+impl Task for Waves<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { order, values, cosines, sines } = self;
+        // Without a choice among the numbers they are vectors.
+        let near = values.iter().fold(true, |near, x| near & ((order * x).abs() <= WIDEST));
+        for ((x, cosine), sine) in values.iter().zip(cosines).zip(sines) {
+            (*sine, *cosine) = if near { within_reach(order * x) } else { sin_cos(order * x) };
+        }
+    }
+}
+
+#[inline(always)]
+fn within_reach(x: f64) -> (f64, f64) {
     let shifted = x * std::f64::consts::FRAC_2_PI + ROUNDING;
     let quarter = shifted.to_bits();
     let turns = shifted - ROUNDING;
@@ -62,6 +95,18 @@ mod tests {
             }
         }
         assert!(worst <= 2e-16, "{worst}");
+    }
+
+    #[test]
+    fn many_at_once_are_what_each_is_alone() {
+        for order in [0.0, 0.37, 80.0, 1e4] {
+            let values: Vec<f64> = (0..501).map(|k| 0.1 * f64::from(k) - 20.0).collect();
+            let (mut cosines, mut sines) = (vec![0.0; 501], vec![0.0; 501]);
+            waves(order, &values, &mut cosines, &mut sines);
+            for (k, x) in values.iter().enumerate() {
+                assert_eq!((sines[k], cosines[k]), sin_cos(order * x), "{order} {x}");
+            }
+        }
     }
 
     #[test]

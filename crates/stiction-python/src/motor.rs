@@ -12,10 +12,10 @@ use stiction_core::motor::{Column, Motor as Core, MotorSpec};
 use stiction_core::segments::Segments;
 use stiction_core::sensitivity::{
     EffortSensitivity, Start, follow_columns, follow_sensitivity, sensitivity_into,
-    signature_columns, signatures,
 };
 use stiction_core::servo::Servo;
 use stiction_core::shoot::{Pull, shoot_response, shoot_sensitivity};
+use stiction_core::signatures::{signature_columns, signatures};
 
 use crate::arguments::{
     Shots, candidates_of, effects_of, gains_of, integrator_of, numbers_of, servo_of, threads_of,
@@ -329,6 +329,30 @@ impl Motor {
         let [driven, ambient, friction, ahead] =
             efforts.map(|values| PyArray1::from_vec(py, values));
         Ok((driven, ambient, friction, ahead))
+    }
+
+    /// Measured minus needed effort along a measured motion, seen through a kernel; shape (rows,).
+    /// The load and the inertia term of what the sensor shows are the caller's. Starts as in
+    /// ``follow``.
+    #[pyo3(signature = (motion, kernel, *, start=None))]
+    fn follow_rows<'py>(
+        &self,
+        py: Python<'py>,
+        motion: &Bound<'py, Motion>,
+        kernel: &Bound<'py, RowKernel>,
+        start: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let motion = motion.get().measured();
+        let kernel = kernel.get().core();
+        let start = self.start(py, start)?;
+        let rows = py.detach(|| {
+            let mut core = self.lock();
+            if let Some(start) = &start {
+                core.prime(start);
+            }
+            core.follow_rows(&motion, &kernel)
+        });
+        Ok(PyArray1::from_vec(py, rows.or_input_error(py)?))
     }
 
     /// Exact derivatives by parameters along a measured motion: of friction less gravity and added

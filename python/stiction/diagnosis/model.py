@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from ..catalogue import effects
+from ..finite import finite
 from ..fitting.minimise import Solution, minimise
 from ..fitting.result import FitResult
 from ..fitting.rows import Nuisances, Rows, timing_bound
@@ -68,7 +69,7 @@ class Model:
     @cached_property
     def residual(self) -> FloatArray:
         """Weighted residual of the rows that may be looked at; shape (n,)."""
-        return np.nan_to_num(self.evidence.residual(self.plant, self.nuisances))
+        return finite(self.evidence.residual(self.plant, self.nuisances))
 
     @cached_property
     def columns(self) -> FloatArray:
@@ -87,7 +88,7 @@ class Model:
     def _slopes(self, rows: Sequence[Rows]) -> FloatArray:
         paths = self.solution.variables.paths
         blocks = self.evidence.each(lambda r: slopes(r, self.plant, paths, self.nuisances), rows)
-        return self._timed(np.nan_to_num(np.concatenate(blocks)))
+        return self._timed(finite(np.concatenate(blocks)))
 
     def _timed(self, columns: FloatArray) -> FloatArray:
         if not self._timing_is_free:
@@ -180,7 +181,7 @@ class Model:
                 start = self.nuisances.start(rows.index)
                 return rows.form.mean(rows.form.along(plant, start)[0])
 
-            return float(np.sum(np.nan_to_num(self.evidence.stack(driven)) ** 2))
+            return float(np.sum(finite(self.evidence.stack(driven)) ** 2))
 
         powers = power(self.plant), power(bare)
         left = powers[0] / powers[1] if powers[1] > 0.0 else 1.0

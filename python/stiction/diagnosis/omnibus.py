@@ -11,7 +11,7 @@ import numpy as np
 from ..trajectory import FloatArray
 from .coordinates import COORDINATES, Look
 from .evidence import Evidence
-from .periodic import COUPLED, ORDERS, frequency_view, order_view, waves_of
+from .periodic import COUPLED, ORDERS, Asked, frequency_view, order_views
 from .response import response_columns, response_view
 from .smoother import smoother, stacked
 from .view import LEAST_SIZE, View
@@ -70,38 +70,19 @@ def rest(
     direction = stacked(evidence, [look.direction for look in seen])
     position = stacked(evidence, [look.position for look in seen])
     both = np.column_stack([residual, null])
-    waves = waves_of(orders, position)
     views = [
         smoother(coordinate, evidence, seen, both, friction)
         for coordinate in COORDINATES
         if evidence.plant.motion == "rotary" or not coordinate.name.startswith("angle")
         if any(np.any(np.isfinite(coordinate.values(look))) for look in seen)
     ]
-    views += [
-        order_view(
-            coordinate,
-            orders,
-            waves,
-            evidence.plans,
-            both * (direction[:, None] if coordinate.odd else 1.0),
-            evidence.weights,
-            friction,
-        )
-        for coordinate in ORDERS
-    ]
-    views += [
-        order_view(
-            coordinate,
-            orders,
-            waves,
-            evidence.plans,
-            both,
-            evidence.weights,
-            friction,
-            stacked(evidence, [coordinate.values(look) for look in seen]),
-        )
+    along = both * direction[:, None]
+    asked = [Asked(coordinate, along if coordinate.odd else both) for coordinate in ORDERS]
+    asked += [
+        Asked(coordinate, both, stacked(evidence, [coordinate.values(look) for look in seen]))
         for coordinate in COUPLED
     ]
+    views += order_views(asked, orders, position, evidence.plans, evidence.weights, friction)
     form = evidence.shown[0].form
     spacing = form.dt * form.stride
     moved = stacked(evidence, [response_columns(look) for look in seen])

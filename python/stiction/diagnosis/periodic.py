@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -12,7 +13,7 @@ from .coordinates import Coordinate, Look
 from .evidence import Cells, Plan
 from .view import FLAG_ABOVE, View, limit, means
 
-__all__ = ["COUPLED", "FREQUENCY", "ORDERS", "frequency_view", "order_view", "waves_of"]
+__all__ = ["COUPLED", "FREQUENCY", "ORDERS", "Asked", "frequency_view", "order_views", "waves_of"]
 
 PHASES: Final = 24
 """Stretches of a period."""
@@ -58,77 +59,129 @@ FREQUENCY: Final = Coordinate("frequency", "frequency, Hz", False, _phase)
 
 def waves_of(orders: Sequence[float], position: FloatArray) -> FloatArray:
     """Cosine and sine of each order at each position; shape (2, orders, n)."""
-    angle = np.outer(orders, position)
-    return np.stack([np.cos(angle), np.sin(angle)])
+    if list(orders) != [orders[0] * k for k in range(1, len(orders) + 1)]:
+        angle = np.outer(orders, position)
+        return np.stack([np.cos(angle), np.sin(angle)])
+    # Multiples of the first one: each is the one before, turned on by it.
+    waves = np.empty((2, len(orders), len(position)))
+    turn = np.exp(1j * orders[0] * position)
+    turned = np.ones_like(turn)
+    for k in range(len(orders)):
+        turned = turned * turn
+        waves[0, k], waves[1, k] = turned.real, turned.imag
+    return waves
 
 
-def order_view(
-    coordinate: Coordinate,
-    orders: Sequence[float],
-    waves: FloatArray,
-    plans: Sequence[Plan],
-    both: FloatArray,
-    weights: FloatArray,
-    friction: float,
-    factor: FloatArray | None = None,
-) -> View:
-    """The best order over position: fitted rows choose it, those held out judge it.
+@dataclass(frozen=True)
+class Asked:
+    """A residual that is asked for orders over position.
 
-    Parameters
+    Attributes
     ----------
     coordinate : Coordinate
-    orders : sequence of float
-        Tried, 1/rad or 1/m.
-    waves : numpy.ndarray, shape (2, orders, n)
-        From ``waves_of``.
-    plans : sequence of Plan
     both : numpy.ndarray, shape (n, 1 + surrogates)
         Weighted residual, then those of the surrogates; each chooses its own best order.
-    weights : numpy.ndarray, shape (n,)
-    friction : float
-        Weighted rms of the friction.
     factor : numpy.ndarray, shape (n,), optional
         What the wave grows with.
     """
-    grown = weights if factor is None else weights * factor / np.sqrt(np.mean(factor**2) + 1e-300)
-    explained = np.zeros((len(orders), both.shape[1]))
-    removed = np.zeros_like(explained)
-    total = np.zeros(both.shape[1])
-    rows = 0
+
+    coordinate: Coordinate
+    both: FloatArray
+    factor: FloatArray | None = None
+
+
+def order_views(
+    asked: Sequence[Asked],
+    orders: Sequence[float],
+    position: FloatArray,
+    plans: Sequence[Plan],
+    weights: FloatArray,
+    friction: float,
+) -> list[View]:
+    """The best order over position for each: fitted rows choose it, those held out judge it.
+
+    Parameters
+    ----------
+    asked : sequence of Asked
+    orders : sequence of float
+        Tried, 1/rad or 1/m.
+    position : numpy.ndarray, shape (n,)
+    plans : sequence of Plan
+    weights : numpy.ndarray, shape (n,)
+    friction : float
+        Weighted rms of the friction.
+    """
+    waves = waves_of(orders, position)
+    scans = [_Scan(each, orders, weights) for each in asked]
     for plan in plans:
-        held = both[plan.held]
-        total += np.sum(held**2, axis=0)
-        rows += len(held)
-        normal, pushed = _products(waves[:, :, plan.fit], grown[plan.fit], both[plan.fit])
+        fit, held = _Waves(waves[:, :, plan.fit]), _Waves(waves[:, :, plan.held])
+        for scan in scans:
+            scan.add(plan, fit, held)
+    return [scan.view(waves, weights, friction) for scan in scans]
+
+
+class _Waves:
+    """Waves over some rows, and their products."""
+
+    def __init__(self, waves: FloatArray) -> None:
+        self.waves = waves
+        self.squared, self.crossed = waves[0] ** 2, waves[0] * waves[1]
+
+    def products(self, grown: FloatArray, both: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Normal matrices of each order, shape (orders, 2, 2), and products with the residuals."""
+        moved = grown[:, None] * both
+        pushed = np.stack([wave @ moved for wave in self.waves], axis=1)
+        square = grown**2
+        normal = np.empty((self.waves.shape[1], 2, 2))
+        normal[:, 0, 0] = self.squared @ square
+        normal[:, 1, 1] = np.sum(square) - normal[:, 0, 0]
+        normal[:, 0, 1] = normal[:, 1, 0] = self.crossed @ square
+        return normal, pushed
+
+
+class _Scan:
+    """What each order explains of a residual and its surrogates."""
+
+    def __init__(self, asked: Asked, orders: Sequence[float], weights: FloatArray) -> None:
+        self.asked = asked
+        factor = asked.factor
+        self.grown = weights
+        if factor is not None:
+            self.grown = weights * factor / np.sqrt(np.mean(factor**2) + 1e-300)
+        self.explained = np.zeros((len(orders), asked.both.shape[1]))
+        self.removed = np.zeros_like(self.explained)
+        self.total = np.zeros(asked.both.shape[1])
+        self.rows = 0
+
+    def add(self, plan: Plan, fit: _Waves, held: _Waves) -> None:
+        """Adds what one plan tells."""
+        both, grown = self.asked.both, self.grown
+        left = both[plan.held]
+        self.total += np.sum(left**2, axis=0)
+        self.rows += len(left)
+        normal, pushed = fit.products(grown[plan.fit], both[plan.fit])
         gains = np.linalg.pinv(normal, rcond=1e-10, hermitian=True) @ pushed
-        explained += np.sum(gains * pushed, axis=1)
-        normal, pushed = _products(waves[:, :, plan.held], grown[plan.held], held)
-        removed += np.sum(gains * (2.0 * pushed - normal @ gains), axis=1)
-    best = np.argmax(explained, axis=0)
-    own = removed[best, np.arange(both.shape[1])]
-    shares = own / np.maximum(total, 1e-300)
-    cosine, sine = waves[:, int(best[0])]
-    phase = np.mod(np.arctan2(sine, cosine), 2.0 * np.pi)
-    index = np.minimum((phase / (2.0 * np.pi) * PHASES).astype(np.int64), PHASES - 1)
-    # In units of effort: of what grows with something, at its usual size.
-    curves = means(index, both / weights[:, None] * _sign_of(factor)[:, None], PHASES)
-    low, high = np.quantile(curves[:, 1:], [0.025, 0.975], axis=1)
-    at = (np.arange(PHASES) + 0.5) * 2.0 * np.pi / PHASES
-    size = float(np.sqrt(max(own[0], 0.0) / max(rows, 1))) / max(friction, 1e-300)
-    return View(coordinate, at, curves[:, 0], low, high, float(shares[0]), limit(shares[1:]), size)
+        self.explained += np.sum(gains * pushed, axis=1)
+        normal, pushed = held.products(grown[plan.held], left)
+        self.removed += np.sum(gains * (2.0 * pushed - normal @ gains), axis=1)
 
-
-def _products(
-    waves: FloatArray, grown: FloatArray, both: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Normal matrices of each order, shape (orders, 2, 2), and products with the residuals."""
-    pushed = np.stack([wave @ (grown[:, None] * both) for wave in waves], axis=1)
-    square = grown**2
-    crossed = (waves[0] * waves[1]) @ square
-    normal = np.empty((waves.shape[1], 2, 2))
-    normal[:, 0, 0], normal[:, 1, 1] = (waves[0] ** 2) @ square, (waves[1] ** 2) @ square
-    normal[:, 0, 1] = normal[:, 1, 0] = crossed
-    return normal, pushed
+    def view(self, waves: FloatArray, weights: FloatArray, friction: float) -> View:
+        """The order that explains most."""
+        both = self.asked.both
+        best = np.argmax(self.explained, axis=0)
+        own = self.removed[best, np.arange(both.shape[1])]
+        shares = own / np.maximum(self.total, 1e-300)
+        cosine, sine = waves[:, int(best[0])]
+        phase = np.mod(np.arctan2(sine, cosine), 2.0 * np.pi)
+        index = np.minimum((phase / (2.0 * np.pi) * PHASES).astype(np.int64), PHASES - 1)
+        # In units of effort: of what grows with something, at its usual size.
+        curves = means(index, both * (_sign_of(self.asked.factor) / weights)[:, None], PHASES)
+        low, high = np.quantile(curves[:, 1:], [0.025, 0.975], axis=1)
+        at = (np.arange(PHASES) + 0.5) * 2.0 * np.pi / PHASES
+        size = float(np.sqrt(max(own[0], 0.0) / max(self.rows, 1))) / max(friction, 1e-300)
+        mean, threshold = curves[:, 0], limit(shares[1:])
+        coordinate = self.asked.coordinate
+        return View(coordinate, at, mean, low, high, float(shares[0]), threshold, size)
 
 
 def _sign_of(factor: FloatArray | None) -> FloatArray:

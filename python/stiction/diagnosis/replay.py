@@ -97,16 +97,18 @@ def _replayed(
 
 def _followed(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
     """The smoothed motion, which the plant follows, and the residual around it."""
+    inertia = form.own(plant).inertia
+
+    def needed(position: FloatArray, readings: FloatArray) -> FloatArray:
+        short = form.short(plant, start, position=position, driven=False)
+        return inertia * form.accelerations(readings) - short
+
     motion = true_motion(form)
-    _, needed, ahead = form.along(plant, start, position=motion)
-    inertial = form.inertial(plant, motion, ahead)
+    acted = needed(motion, motion)
 
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
-        _, followed, ahead = form.along(plant, start, position=form.driving(readings))
-        noise = 0.5 * (added[:-1] + added[1:])
-        left = form.mean(needed - followed + noise)
-        left += inertial - form.inertial(plant, readings, ahead)
-        return left
+        noise = form.mean(0.5 * (added[:-1] + added[1:]))
+        return acted + noise - needed(form.driving(readings), readings)
 
     return motion, residual
 
@@ -130,13 +132,12 @@ def _slid(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Resi
 
     # A contact at rest answers whatever acts on it, noise as well.
     moves = np.diff(motion) != 0.0
+    inertia = form.own(plant).inertia
 
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
-        position = form.driving(readings)
-        drive, needed, ahead = form.along(plant, start, position=position, load=load)
-        left = form.given(drive, load + added[1:] * moves)
-        left -= form.mean(needed) + form.inertial(plant, readings, ahead)
-        return left
+        short = form.short(plant, start, position=form.driving(readings), load=load)
+        acted = form.given(np.zeros_like(load), load + added[1:] * moves)
+        return short + acted - inertia * form.accelerations(readings)
 
     return motion, residual
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 
-from ..fitting.rows import Nuisances
+from ..finite import finite
+from ..fitting.rows import Nuisances, Rows
 from ..plant import Effect, Plant
 from ..trajectory import FloatArray
 from .candidates import Candidate
@@ -40,7 +42,7 @@ class Signatures:
     ----------
     candidates : tuple of Candidate
     columns : numpy.ndarray, shape (n, gains)
-        Weighted, of the rows that may be looked at.
+        Weighted, of the rows that may be looked at; each in one piece.
     slices : tuple of slice
         Columns of each candidate.
     """
@@ -59,14 +61,22 @@ class Signatures:
     ) -> Signatures:
         """Signatures along the measured motion of every recording."""
         wanted = [(each.name, dict(each.shape)) for each in candidates]
-        columns = evidence.stack(
-            lambda rows: rows.form.signatures(plant, wanted, nuisances.start(rows.index))
-        )
         slices, at = [], 0
         for each in candidates:
             slices.append(slice(at, at + len(each.record.gains)))
             at += len(each.record.gains)
-        return cls(tuple(candidates), -np.nan_to_num(columns), tuple(slices))
+        # Hundreds of columns: each is written once, in one piece, and never copied whole.
+        columns = np.empty((at, len(evidence.weights)))
+
+        def fill(place: tuple[Rows, slice]) -> None:
+            rows, own = place
+            found = rows.form.signatures(plant, wanted, nuisances.start(rows.index))
+            np.multiply(found.T[:, rows.mask], -rows.weight, out=columns[:, own])
+
+        ends = np.cumsum([np.count_nonzero(rows.mask) for rows in evidence.shown]).tolist()
+        places = [slice(*ends) for ends in pairwise([0, *ends])]
+        evidence.each(fill, list(zip(evidence.shown, places, strict=True)))
+        return cls(tuple(candidates), finite(columns).T, tuple(slices))
 
     def second_of(self, effect: Effect) -> Signatures:
         """Second waves of an effect: at zero amplitude they look like first ones.
@@ -171,8 +181,9 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     base = project(problem.base, Plan(problem.fitted, problem.fitted))
     fitted = problem.fitted
     residual, null = base.off(problem.residual[fitted]), base.off(problem.null[fitted])
-    raw = signatures.columns[fitted]
-    columns = base.off(raw)
+    # Tens of megabytes: one copy, which is changed in its place.
+    columns = np.compress(fitted, signatures.columns.T, axis=1).T
+    base.take_off(columns)
     power = max(float(residual @ residual), 1e-300)
     scan = _Scan.of(columns, signatures)
     gains, explained = scan.regressed(columns.T @ residual)
@@ -194,7 +205,8 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     thresholds = {name: _threshold(noise[names == name], turned[names == name]) for name in best}
     scores = []
     for name, index in best.items():
-        part, whole = columns[:, signatures.slices[index]], raw[:, signatures.slices[index]]
+        part = columns[:, signatures.slices[index]]
+        whole = signatures.columns[:, signatures.slices[index]][fitted]
         total = float(np.sum(whole**2))
         left = float(np.sum(part**2)) / total if total > 0.0 else 0.0
         scores.append(

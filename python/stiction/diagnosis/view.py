@@ -68,8 +68,7 @@ def limit(at_null: FloatArray) -> float:
 def means(index: np.ndarray, columns: FloatArray, bins: int) -> FloatArray:
     """Mean of each column in each stretch, 0 where there are too few rows; shape (bins, k)."""
     counts = np.bincount(index, minlength=bins)
-    sums = np.zeros((bins, columns.shape[1]))
-    np.add.at(sums, index, columns)
+    sums = np.column_stack([np.bincount(index, column, bins) for column in columns.T])
     found: FloatArray = np.where(
         counts[:, None] >= FEWEST_ROWS, sums / np.maximum(counts, 1)[:, None], 0.0
     )

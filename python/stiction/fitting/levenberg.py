@@ -92,6 +92,9 @@ def levenberg_marquardt(
     slopes, normal, uses = np.empty(0), np.empty(0), MOST_USES
     while True:
         if uses >= MOST_USES:
+            if spent >= most and cost > 0.0:
+                # Slopes of which no step may be tried.
+                return Minimum(x, cost, False)
             slopes, uses = jacobian(x), 0
             normal = slopes.T @ slopes
         uses += 1

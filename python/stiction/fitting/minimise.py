@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from ..finite import finite
 from ..plant import Plant
 from ..trajectory import FloatArray
 from .levenberg import Minimum, escaped, levenberg_marquardt
@@ -141,6 +142,7 @@ class _Minimiser:
         self.starts = places_of(given)
         self.evaluations = 0
         self._slopes: FloatArray | None = None
+        self._last: tuple[FloatArray, FloatArray] | None = None
         self._best: tuple[float, FloatArray] | None = None
         known = records(plant)
         neutral = [known[path].neutral if path in known else None for path in paths]
@@ -256,12 +258,7 @@ class _Minimiser:
         return plant, Nuisances(float(full[count]), starts)
 
     def residual(self, full: FloatArray) -> FloatArray:
-        plant, nuisances = self.split(full)
-        rows = [each.weight * each.residual(plant, nuisances)[each.mask] for each in self.rows]
-        # A runaway trial must look bad, not break the optimiser.
-        residual: FloatArray = np.nan_to_num(
-            np.concatenate(rows), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY
-        )
+        residual = self._left(full)
         if len(self.shrunk):
             residual = np.append(
                 residual, self.pull * (full[self.shrunk] - self.centres) / self.widths
@@ -273,10 +270,20 @@ class _Minimiser:
         _logger.debug("evaluation %d: %g", self.evaluations, power)
         return residual
 
+    def _left(self, full: FloatArray) -> FloatArray:
+        """What is left of the rows; kept, for a descent asks for its start once more."""
+        if self._last is None or not np.array_equal(self._last[0], full):
+            plant, nuisances = self.split(full)
+            rows = [each.weight * each.residual(plant, nuisances)[each.mask] for each in self.rows]
+            # A runaway trial must look bad, not break the optimiser.
+            left = finite(np.concatenate(rows), RUNAWAY)
+            self._last = np.array(full), left
+        return self._last[1]
+
     def jacobian(self, full: FloatArray) -> FloatArray:
         plant, nuisances = self.split(full)
         count, paths = len(self.begin), self.variables.paths
-        self._slopes = np.nan_to_num(
+        self._slopes = finite(
             np.vstack([slopes(each, plant, paths, nuisances) for each in self.rows])
         )
         found: FloatArray = self._slopes.copy()

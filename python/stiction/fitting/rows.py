@@ -83,8 +83,8 @@ class Rows:
 
     def residual(self, plant: Plant, nuisances: Nuisances) -> FloatArray:
         """Measured minus needed effort of every row; shape (n,)."""
-        measured, model = self.form.efforts(plant, nuisances.start(self.index))
-        return measured + nuisances.timing * self.late - model
+        left = self.form.residual(plant, nuisances.start(self.index))
+        return left + nuisances.timing * self.late
 
     def jacobian(self, plant: Plant, paths: Sequence[str], nuisances: Nuisances) -> FloatArray:
         """Derivatives of the residual by parameters and start quantities; shape (n, paths).

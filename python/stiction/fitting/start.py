@@ -213,10 +213,10 @@ def _stiffness(
 
 def _likeliest(plants: Sequence[Plant], forms: Sequence[WeakForm]) -> list[Plant]:
     """Those that leave the least residual, the best first."""
-    powers = [sum(_power(form.efforts(p, begun(p, form))) for form in forms) for p in plants]
+    powers = [sum(_power(form.residual(p, begun(p, form))) for form in forms) for p in plants]
     return [plants[k] for k in np.argsort(powers, kind="stable")[:TRIED]]
 
 
-def _power(efforts: tuple[FloatArray, FloatArray]) -> float:
-    power = float(np.sum((efforts[0] - efforts[1]) ** 2))
+def _power(residual: FloatArray) -> float:
+    power = float(np.sum(residual**2))
     return power if np.isfinite(power) else float("inf")

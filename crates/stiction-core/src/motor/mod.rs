@@ -9,6 +9,7 @@ use crate::drive::Way;
 use crate::effects::Effects;
 use crate::error::{Error, Result};
 use crate::friction::{AnyState, Entry, LawState, Statistics};
+use crate::kernel::RowKernel;
 use crate::sensitivity::MeasuredMotion;
 use crate::shoot::{Pull, Windows};
 
@@ -82,10 +83,8 @@ impl Motor {
     /// added efforts, and friction; then how far the centre of mass is ahead of the reading. Each is
     /// as long as there are samples, and about the end of each (see [`Running::follow_about`]).
     pub fn follow(&mut self, motion: &MeasuredMotion<'_>, efforts: [&mut [f64]; 4]) -> Result<()> {
+        motion.check()?;
         let wanted = motion.samples();
-        motion.inputs.check("input", wanted)?;
-        motion.around.check(wanted)?;
-        motion.dt.check("dt", wanted)?;
         let [driven, ambient, friction, ahead] = efforts;
         for array in [&driven, &ambient, &friction, &ahead] {
             if array.len() != wanted {
@@ -100,6 +99,26 @@ impl Motor {
             ahead[k] = efforts.ahead;
         });
         Ok(())
+    }
+
+    /// Measured minus needed effort along given positions, seen through a kernel: all of an effort
+    /// residual but the load and the inertia term of what the sensor shows.
+    pub fn follow_rows(
+        &mut self,
+        motion: &MeasuredMotion<'_>,
+        kernel: &RowKernel<'_>,
+    ) -> Result<Vec<f64>> {
+        motion.check()?;
+        let mut traces = [(); 3].map(|()| vec![0.0; motion.samples()]);
+        let [needed, driven, ahead] = &mut traces;
+        self.running.follow_about(motion, |k, efforts| {
+            needed[k] = efforts.friction - efforts.ambient;
+            driven[k] = efforts.driven;
+            ahead[k] = efforts.ahead;
+        });
+        let mut rows = vec![0.0; kernel.rows(motion.samples())];
+        kernel.column(traces.each_ref().map(Vec::as_slice), &mut rows);
+        Ok(rows)
     }
 
     /// What each window along given positions comes to (see [`Running::shoot`]).

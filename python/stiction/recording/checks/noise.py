@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -127,9 +128,16 @@ def noise(recording: Recording) -> list[Check]:
 
 def _path(values: FloatArray) -> tuple[float, float, float]:
     """Change over a stretch, bend of its path, and scatter about the parabola."""
-    at = np.linspace(-1.0, 1.0, len(values))
-    # Legendre polynomials are orthogonal here to within a part in the number of rows.
-    basis = np.stack([np.ones_like(at), at, 1.5 * at**2 - 0.5], axis=1)
-    fitted = np.linalg.lstsq(basis, values, rcond=None)[0]
+    basis, inverse = _parabolas(len(values))
+    fitted = inverse @ values
     scatter = float(np.std(values - basis @ fitted))
     return 2.0 * float(fitted[1]), 1.5 * float(fitted[2]), scatter
+
+
+@lru_cache(maxsize=16)
+def _parabolas(rows: int) -> tuple[FloatArray, FloatArray]:
+    """Legendre polynomials over so many rows, and their pseudoinverse."""
+    at = np.linspace(-1.0, 1.0, rows)
+    # They are orthogonal here to within a part in the number of rows.
+    basis = np.stack([np.ones_like(at), at, 1.5 * at**2 - 0.5], axis=1)
+    return basis, np.asarray(np.linalg.pinv(basis), dtype=np.float64)

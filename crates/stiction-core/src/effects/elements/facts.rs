@@ -122,3 +122,14 @@ pub struct EffectFacts {
     /// Whether only a machine that turns can have it.
     pub rotary_only: bool,
 }
+
+impl EffectFacts {
+    /// The shape that holds the order of a wave over position, where the two gains are amplitudes of
+    /// its cosine and of its sine: such an effect is proportional to the wave.
+    pub const fn wave(&self) -> Option<&'static str> {
+        match (self.gains, self.shapes) {
+            ([_, _], [Shape { parameter, scale: Scale::Order, .. }]) => Some(parameter),
+            _ => None,
+        }
+    }
+}
