@@ -42,22 +42,19 @@ pub struct Fading<S> {
 }
 
 impl<S: Scalar> Here<S> {
-    /// Whether a motion turns round or closes the loop of a branch that does so at `target`.
+    /// Whether a motion, as a share of the distance over which the branch fades, neither turns round nor
+    /// closes the loop; false before any motion, where the target is no number.
     #[inline(always)]
-    pub fn leaves(&self, target: f64, displacement: f64) -> bool {
-        self.direction * displacement < 0.0
-            || self.direction == 0.0
-            || self.direction * (self.position.re() + displacement - target) >= 0.0
+    pub fn stays(&self, branch: &Fading<S>, position: f64, share: f64) -> bool {
+        share >= 0.0 && self.direction * (position - branch.target) < 0.0
     }
 
-    /// Any other motion, where it is a short one.
+    /// Such a motion where it is a short one.
     #[inline(always)]
     pub fn onward(&self, branch: &Fading<S>, displacement: S) -> Option<Self> {
-        if self.leaves(branch.target, displacement.re()) || self.steps >= SYNCHRONISED {
-            return None;
-        }
-        let z = displacement * branch.share;
-        if z.re() >= SHORT {
+        let (position, z) = (self.position + displacement, displacement * branch.share);
+        let short = z.re() < SHORT && self.steps < SYNCHRONISED;
+        if !short || !self.stays(branch, position.re(), z.re()) {
             return None;
         }
         let excess = self.slope - branch.last;
@@ -68,7 +65,7 @@ impl<S: Scalar> Here<S> {
         let share = gone_share(z);
         let gained = displacement * (branch.last + excess * share);
         Some(Self {
-            position: self.position + displacement,
+            position,
             force: (self.force + gained).with_value(force),
             slope: (self.slope - excess * (z * share)).with_value(slope),
             direction: self.direction,

@@ -179,10 +179,10 @@ impl<S: Scalar> YieldCurve<S> {
         if let Some(there) = here.onward(&course.fading, displacement) {
             return Some(there);
         }
-        if here.leaves(course.fading.target, displacement.re()) {
+        let (position, share) = (here.position + displacement, displacement * course.fading.share);
+        if !here.stays(&course.fading, position.re(), share.re()) {
             return None;
         }
-        let position = here.position + displacement;
         let y = (position - course.origin) * course.stretch * self.inverse_distance;
         let yielded = faded_within(-y);
         let force = course.force + self.coulomb * yielded * course.scale;
