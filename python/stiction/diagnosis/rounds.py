@@ -49,6 +49,8 @@ LATE_SHARE: Final = 0.5
 """Of the kernel's support: a follower that keeps noise from friction is late by less."""
 SHARES: Final = (0.1, 0.3, 0.6, 1.0, 1.7, 3.0)
 """Shares of the screened gain among which a refit by simulation picks its start."""
+KEPT: Final = 0.75
+"""Share of what the screening promises that a refit keeps, unless it is caught."""
 CAUTIOUS: Final = 0.1
 """Share of the screened gain to start from where the whole of it leads astray."""
 
@@ -420,10 +422,11 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
         plants = [begun(share) for share in SHARES]
         start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
     model = _fitted(evidence, start, base.nuisances)
-    if model.power < base.power:
+    if model.power < (1.0 - KEPT * score.score) * base.power:
         return model
-    # A contact that all but loses its track has a kink on every side: then the effect alone moves
-    # first, and the base follows.
+    # Short of what the screening promised it is caught: a base that has bent itself towards the
+    # effect jumps too far at once, and a contact that all but loses its track has a kink on every
+    # side. Then the effect alone moves first, and the base follows.
     tried = [model]
     for share in (1.0, CAUTIOUS):
         start = with_effect(base.plant, score.candidate, (share * score.gains).tolist())
