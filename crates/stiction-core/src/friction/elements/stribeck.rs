@@ -15,14 +15,6 @@ pub fn fall<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> (S, S)
     (left, fall_slope(velocity, exponent, power, left))
 }
 
-/// [`fall`] as part of the loop that asks for it.
-#[inline(always)]
-fn fall_within<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> (S, S) {
-    let power = fall_power(velocity, stribeck_velocity, exponent);
-    let left = fading_within(-power);
-    (left, fall_slope(velocity, exponent, power, left))
-}
-
 /// |v/v_s|^δ.
 #[inline(always)]
 pub fn fall_power<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> S {
@@ -68,20 +60,23 @@ impl<S: Scalar> SlidingLevel<S> {
     /// g and its slope by speed |v|.
     #[inline(always)]
     pub fn at(&self, velocity: S) -> (S, S) {
-        if !self.falls {
-            return (self.coulomb, S::constant(0.0));
-        }
-        let (left, steepness) = fall(velocity, self.velocity, self.exponent);
-        (self.coulomb + self.excess * left, self.excess * steepness)
+        self.at_by(velocity, fading_of)
     }
 
     /// [`Self::at`] as part of the loop that asks for it.
     #[inline(always)]
     pub fn at_within(&self, velocity: S) -> (S, S) {
+        self.at_by(velocity, fading_within)
+    }
+
+    #[inline(always)]
+    fn at_by(&self, velocity: S, fading: impl Fn(S) -> S) -> (S, S) {
         if !self.falls {
             return (self.coulomb, S::constant(0.0));
         }
-        let (left, steepness) = fall_within(velocity, self.velocity, self.exponent);
+        let power = fall_power(velocity, self.velocity, self.exponent);
+        let left = fading(-power);
+        let steepness = fall_slope(velocity, self.exponent, power, left);
         (self.coulomb + self.excess * left, self.excess * steepness)
     }
 
