@@ -206,12 +206,7 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
         state: &mut CoulombState<S>,
         glide: &mut Glide<S, E, V>,
     ) {
-        if S::CARRIES {
-            self.glide_on(state, glide);
-        } else {
-            // A copy, which no store into a column can be taken to change.
-            self.clone().glide_on(state, glide);
-        }
+        self.glide_on(state, glide);
     }
 
     fn abreast(&self) -> Option<Abreast<S, Self>> {

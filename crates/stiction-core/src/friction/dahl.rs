@@ -247,12 +247,7 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
         state: &mut DahlState<S>,
         glide: &mut Glide<S, E, V>,
     ) {
-        if S::CARRIES {
-            glide_on(self, state, glide);
-        } else {
-            // A copy, which no store into a column can be taken to change.
-            glide_on(&self.clone(), state, glide);
-        }
+        glide_on(self, state, glide);
     }
 
     fn abreast(&self) -> Option<Abreast<S, Self>> {

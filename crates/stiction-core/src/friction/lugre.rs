@@ -239,21 +239,19 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
         state: &mut BristleState<S>,
         glide: &mut Glide<S, E, V>,
     ) {
-        // A copy, which no store into a column can be taken to change.
-        let own = self.clone();
-        let (bristle, verlet, channels) = (&own.0, glide.verlet, Channels::default());
+        let (bristle, verlet, channels) = (&self.0, glide.verlet, Channels::default());
         let duration = glide.verlet.span();
         // g at the end of a step is that at the start of the next.
         let (mut now, mut start_velocity) = (*state, glide.run.velocity);
-        let mut from = own.level_within(start_velocity);
+        let mut from = self.level_within(start_velocity);
         while let Some(effort) = glide.next() {
             let slip = Self::slip(bristle.stiffness * now.deflection, start_velocity, &from);
             let net = effort - bristle.force(now.deflection, &slip, start_velocity, &channels);
             let displacement = verlet.displacement(start_velocity, net);
             let velocity = verlet.predicted(start_velocity, net);
             let motion = Motion { displacement, duration, start_velocity, velocity };
-            let to = own.level_within(velocity);
-            let bent = own.bend(&now, &motion, &from, &to);
+            let to = self.level_within(velocity);
+            let bent = self.bend(&now, &motion, &from, &to);
             let slip = Self::slip(bent.force, velocity, &to);
             let BristleTrial { after, outcome } =
                 bristle.settled(&now, &bent, &slip, velocity, &channels);
@@ -262,7 +260,7 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
             let arrived = verlet.arrive(start_velocity, net + effort, damping, undamped);
             now = after;
             start_velocity = arrived;
-            from = own.level_within(arrived);
+            from = self.level_within(arrived);
             glide.accept(displacement, arrived, undamped + damping * arrived, &now);
         }
         *state = now;

@@ -236,12 +236,7 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
         state: &mut MaxwellSlipState<S>,
         glide: &mut Glide<S, E, V>,
     ) {
-        if S::CARRIES {
-            self.glide_on(state, glide);
-        } else {
-            // A copy, which no store into a column can be taken to change.
-            self.clone().glide_on(state, glide);
-        }
+        self.glide_on(state, glide);
     }
 
     // Where the body stays, so does the force.

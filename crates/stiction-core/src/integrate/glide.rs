@@ -272,7 +272,9 @@ where
     fn run(self) -> Self::Output {
         // A place that nobody else sees, not even should the loop panic.
         let mut glide = self.glide;
-        self.law.glide(self.state, &mut glide);
+        // A copy, which no store into a column can be taken to change.
+        let law = self.law.clone();
+        law.glide(self.state, &mut glide);
         (glide.run, glide.samples.start, glide.part)
     }
 }

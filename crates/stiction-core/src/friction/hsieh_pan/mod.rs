@@ -327,12 +327,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         state: &mut HsiehPanState<S>,
         glide: &mut Glide<S, E, V>,
     ) {
-        if S::CARRIES {
-            self.glide_in_mode(state, glide);
-        } else {
-            // A copy, which no store into a column can be taken to change.
-            self.clone().glide_in_mode(state, glide);
-        }
+        self.glide_in_mode(state, glide);
     }
 
     fn abreast(&self) -> Option<Abreast<S, Self>> {
