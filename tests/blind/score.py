@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from datetime import UTC, datetime
+from typing import NamedTuple
 
 import numpy as np
 
@@ -93,7 +94,7 @@ def scored(case, made, threads=1):
     found = st.diagnose(plant, session, without=case.without, threads=threads)
     families = {record.name: record.family for record in st.effects()}
     names = [effect.name for effect in made.effects]
-    known = oracle(plant, session, made, found.baseline) if names else (0.0, 0.0)
+    known = oracle(plant, session, made, found.baseline) if names else Known(0.0, [], 0.0)
     return {
         "key": case.key,
         "at": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -108,8 +109,9 @@ def scored(case, made, threads=1):
         "found": [_cause(cause, families) for cause in found.effects],
         "unexplained": [[each.coordinate, each.share] for each in found.unexplained],
         "gain": None if found.gain is None else found.gain.value,
-        "clair": known[0],
-        "distance": known[1],
+        "clair": known.clair,
+        "own_clairs": known.own_clairs,
+        "distance": known.distance,
         "intervals": _intervals(made, found),
         "left": _left(found),
         "candidates": [row.to_dict() for row in found.candidates],
@@ -119,28 +121,50 @@ def scored(case, made, threads=1):
     }
 
 
-def oracle(plant, session, made, baseline):
-    """What can be gained and seen by who knows the hidden torque: `clair` and `distance`.
+class Known(NamedTuple):
+    """What can be gained and seen by who knows the hidden torque."""
 
-    clair: gain once it is taken off the input and the base is refitted; same weights, test rows.
-    distance: its signal-to-noise ratio over the rows of train, the base projected off: the square
-    root of its power per sample over the noise of the torque.
-    """
-    torque = [r.torque_nm + r.truth["hidden"] for r in made.recordings]
+    clair: float
+    """Gain once the hidden torque is taken off the input and the base is refitted; same weights,
+    test rows."""
+    own_clairs: list[float]
+    """That of each effect alone, the others taken off already."""
+    distance: float
+    """Signal-to-noise ratio of the hidden torque over the rows of train, the base projected off:
+    the square root of its power per sample over the noise of the torque."""
+
+
+def oracle(plant, session, made, baseline):
+    """What there is to be found in a session; `baseline` is where fits start from."""
     seen = Evidence(plant, session.recordings, threads=1)
-    clean = Evidence(plant, as_session(made, torque).recordings, threads=1)
+    clean = _without_hidden(plant, made)
     base = fitted(seen, baseline.plant)
     reweighted(seen.train, base.plant, base.nuisances)
-    for rows, own in zip(clean.train, seen.train, strict=True):
-        rows.weight = own.weight
     seen.weigh()
-    clean.weigh()
     base = fitted(seen, base.plant, base.nuisances)
-    known = fitted(clean, base.plant, base.nuisances)
-    before = open_residuals(seen, [(base.plant, base.nuisances)])
-    after = open_residuals(clean, [(known.plant, known.nuisances)])
-    gain = 1.0 - float(np.sum(after.residuals[0] ** 2) / np.sum(before.residuals[0] ** 2))
-    return gain, _distance(made, seen, clean, base)
+
+    def power(evidence):
+        for rows, own in zip(evidence.train, seen.train, strict=True):
+            rows.weight = own.weight
+        evidence.weigh()
+        best = fitted(evidence, base.plant, base.nuisances)
+        opened = open_residuals(evidence, [(best.plant, best.nuisances)])
+        return float(np.sum(opened.residuals[0] ** 2))
+
+    least = power(clean)
+    clair = 1.0 - least / power(seen)
+    kept = range(len(made.effects)) if len(made.effects) > 1 else ()
+    own = [1.0 - least / power(_without_hidden(plant, made, kept=k)) for k in kept] or [clair]
+    return Known(clair, own, _distance(made, seen, clean, base))
+
+
+def _without_hidden(plant, made, kept=None):
+    """The session with hidden torques taken off the input, all but that of effect `kept`."""
+    torque = []
+    for r in made.recordings:
+        hidden = r.truth["hidden"]
+        torque.append(r.torque_nm + (hidden if kept is None else hidden - r.truth["parts"][kept]))
+    return Evidence(plant, as_session(made, torque).recordings, threads=1)
 
 
 def _distance(made, seen, clean, base):

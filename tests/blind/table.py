@@ -192,6 +192,8 @@ def _rates(kinds):
         ("foreign, clair ≥ .15: coordinate in the first two", rate(foreign, shown)),
         ("pairs: both classes, no third", rate(pair, _both)),
         ("pairs, every clair ≥ .25: both classes, no third", rate(_within(pair, *LARGE), _both)),
+        ("pairs: classes of what has an own clair ≥ .02, no third", rate(pair, _seen)),
+        ("pairs, both own clairs ≥ .02: both classes, no third", rate(_plain(pair), _both)),
         ("intervals of gains that cover the truth", _share(covered, len(intervals))),
         ("control: name with labels shuffled", rate(shuffled(clear), named)),
         ("gain ÷ clair, right class", _quantiles(ratio)),
@@ -212,6 +214,28 @@ def _sure(row):
 
 def _both(row):
     return classed(row) and len(row["found"]) == 2
+
+
+def _seen(row):
+    """Whether the classes of what can be seen are told and nothing that is not there."""
+    if row["verdict"] == "unexplained" or wrong_names(row):
+        return False
+    classes = {cause["classes"][0] for cause in row["found"] if len(cause["classes"]) == 1}
+    return _visible(row) <= classes and len(row["found"]) <= len(row["names"])
+
+
+def _visible(row):
+    """Classes of the hidden effects about which silence would be wrong."""
+    families = {record.name: record.family for record in st.effects()}
+    return {
+        families[name]
+        for name, clair in zip(row["names"], row["own_clairs"], strict=True)
+        if clair >= SILENCE_IS_RIGHT
+    }
+
+
+def _plain(pairs):
+    return [row for row in pairs if min(row["own_clairs"]) >= SILENCE_IS_RIGHT]
 
 
 def _has_twin(name):

@@ -286,6 +286,7 @@ def tried(
     by_blocks: bool = False,
     family: str = "alone",
     uneven: float = 0.0,
+    gain: float = 0.3,
 ) -> Trial:
     """A trial that explains what all others explain."""
     blocks = (np.linspace(1.0, 2.0, 30), np.linspace(2.0, 1.0, 30))
@@ -298,7 +299,7 @@ def tried(
         signature=np.ones(5), candidate=candidate, score=0.1, threshold=0.05, heldout=0.1
     )
     model = SimpleNamespace(blocks=blocks)
-    return Trial(score, model, 0.3, 3.0, worth, 9.0, 0.1, reason, by_blocks, uneven)
+    return Trial(score, model, gain, 3.0, worth, 9.0, 0.1, reason, by_blocks, uneven)
 
 
 def test_no_stranger_is_named_where_what_explains_most_imitates() -> None:
@@ -310,6 +311,17 @@ def test_no_stranger_is_named_where_what_explains_most_imitates() -> None:
     chosen = choose([imitates, relative])
     assert chosen is not None
     assert chosen.winner is relative
+
+
+def test_rows_that_do_not_excite_an_effect_do_not_tell_it_from_the_winner() -> None:
+    winner, relative = tried(1.0, 1), tried(0.95, 2, "hardly excited", by_blocks=True, gain=-0.01)
+    chosen = choose([winner, relative])
+    assert chosen is not None
+    assert (chosen.winner, chosen.rivals) == (winner, (relative,))
+    # What the rows held out do speak about and against is no rival.
+    chosen = choose([winner, tried(0.95, 2, "does not help on rows held out", gain=-0.01)])
+    assert chosen is not None
+    assert chosen.decided
 
 
 def test_a_second_wave_has_another_order() -> None:

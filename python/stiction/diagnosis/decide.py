@@ -25,6 +25,8 @@ LEAST_Z: Final = 2.0
 """Held-out gain over its standard error over blocks of 1 s."""
 FEWEST_RECORDINGS: Final = 4
 """Fewer recordings held out have no best one to do without."""
+FEWEST_BLOCKS: Final = 2
+"""Held-out blocks in which an effect acts, for their gain to say anything of it."""
 TELLING: Final = 0.01
 """Blocks that change by less than this share of the mean change count for neither side."""
 TOUCHED: Final = 0.01
@@ -77,7 +79,10 @@ class Trial:
     reason : str
         Why it was refused, "" where it was not.
     by_blocks : bool
-        Refused because its held-out gain varies too much over blocks, and for nothing else.
+        Refused because its held-out gain varies too much over blocks, or because it can do nothing
+        in them, and for nothing else.
+    unseen : bool
+        The rows held out are none of its business: they can speak neither for nor against it.
     uneven : float
         What strengths of their own by kind of recording would add, as a share of its gain; 1
         where its shape says that it is something else.
@@ -93,6 +98,7 @@ class Trial:
     reason: str
     by_blocks: bool = False
     uneven: float = 0.0
+    unseen: bool = False
 
     @property
     def imitates(self) -> bool:
@@ -138,7 +144,9 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     """
     block = base.evidence.cells.block
     power = np.bincount(block, contributed**2, int(block.max()) + 1)
-    gain, z = heldout_gain(base, model, power > TOUCHED * float(np.mean(power)))
+    touched = power > TOUCHED * float(np.mean(power))
+    gain, z = heldout_gain(base, model, touched)
+    unseen = int(np.sum(touched & (base.blocks[1] > 0.0))) < FEWEST_BLOCKS
     explained = 1.0 - model.power / base.power if base.power > 0.0 else 0.0
     reason = ""
     by_blocks = False
@@ -154,6 +162,9 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             f"explains {100 * explained:.2f} % of the residual, and noise alone reaches "
             f"{100 * score.threshold:.2f} %"
         )
+    elif unseen:
+        reason = "the rows held out hardly excite it"
+        by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
     elif gain <= 0.0:
         reason = "does not help on rows held out"
     elif gain <= LEAST_GAIN:
@@ -182,7 +193,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             f"{100 * uneven:.0f} % to its gain"
         )
     worth = log_gain(base, model) - PENALTY * score.candidate.parameters
-    return Trial(score, model, gain, z, worth, strength, size, reason, by_blocks, uneven)
+    return Trial(score, model, gain, z, worth, strength, size, reason, by_blocks, uneven, unseen)
 
 
 def _out_of_its_range(candidate: Candidate, model: Model) -> str:
@@ -213,7 +224,7 @@ def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tupl
     total = float(before.sum())
     gained = float((before - after)[seen].sum())
     difference = (before - after)[seen if touched is None else seen & touched]
-    if total <= 0.0 or len(difference) < 2:
+    if total <= 0.0:
         return 0.0, 0.0
     return gained / total, max(_z(difference), _sign_z(difference))
 
@@ -271,7 +282,7 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
         other
         for other in ranked
         if other is not winner
-        and other.gain > 0.0
+        and (other.gain > 0.0 or other.by_blocks)
         and not other.imitates
         and ((_alike(winner, other) and not _told(winner, other)) or _kin(winner, other))
     ]

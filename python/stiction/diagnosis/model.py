@@ -18,6 +18,7 @@ from ..fitting.rows import Nuisances, Rows, timing_bound
 from ..fitting.slopes import slopes
 from ..fitting.solve import evaluate
 from ..fitting.start import free_paths
+from ..fitting.statistics import covariance, differ, jackknife
 from ..parameter import Parameter
 from ..plant import Effect, Plant
 from ..trajectory import FloatArray
@@ -110,10 +111,25 @@ class Model:
         )
 
     def knows(self, candidate: Candidate) -> bool:
-        """Whether the interval of one of the gains of an effect leaves 0 out."""
-        paths = (f"effects.{candidate.name}.{name}" for name in candidate.gains)
-        intervals = (self.told.parameters[path].ci95 for path in paths)
-        return any(low > 0.0 or high < 0.0 for low, high in intervals)
+        """Whether the gains of an effect, taken together, differ from 0 on both ways to be wrong.
+
+        Over blocks of 1 s, and from one recording to the next.
+        """
+        paths = list(self.solution.variables.paths)
+        own = [paths.index(f"effects.{candidate.name}.{name}") for name in candidate.gains]
+        if not all(np.isfinite(self.told.parameters[paths[k]].stderr) for k in own):
+            return False
+        train = self.evidence.train
+        jacobians = [slopes(each, self.plant, paths, self.nuisances) for each in train]
+        residuals = [
+            each.weight * each.residual(self.plant, self.nuisances)[each.mask] for each in train
+        ]
+        ways = [covariance(jacobians, residuals, [each.per_block for each in train])]
+        between = jackknife(jacobians, residuals)
+        if between is not None:
+            ways.append((between, len(train)))
+        gains, part = self.gains(candidate), np.ix_(own, own)
+        return all(differ(gains, matrix[part], pieces) for matrix, pieces in ways)
 
     def strength(self, candidate: Candidate) -> float:
         """Gains of an effect over their standard errors: √(γᵀC⁻¹γ), C over blocks of 1 s.
@@ -138,12 +154,12 @@ class Model:
         np.add.at(pushes, index, scaled * residual[:, None])
         # A block in which the model has lost the machine would make every gain uncertain.
         pushes *= np.sqrt(kept / np.maximum(power, 1e-300))[:, None]
-        covariance = bread @ pushes.T @ pushes @ bread
+        spread = bread @ pushes.T @ pushes @ bread
         places = [int(np.flatnonzero(live == k)[0]) for k in own if k in live]
         if len(places) < len(own):
             return 0.0
         gains = self.gains(candidate) * scale[own]
-        matrix = covariance[np.ix_(places, places)]
+        matrix = spread[np.ix_(places, places)]
         return float(np.sqrt(max(gains @ np.linalg.pinv(matrix, hermitian=True) @ gains, 0.0)))
 
     def gains(self, candidate: Candidate) -> FloatArray:

@@ -266,7 +266,7 @@ def evaluate(
     between = jackknife(jacobians, residuals)
     if between is not None:
         # Of the two ways to be wrong, the wider one, with the few degrees that recordings leave.
-        wider = between[: len(paths)] * (interval_width(len(jacobians)) / width)
+        wider = np.sqrt(np.diag(between)[: len(paths)]) * (interval_width(len(jacobians)) / width)
         errors = np.maximum(errors, wider)
     parameters = {}
     for k, path in enumerate(paths):

@@ -13,6 +13,7 @@ __all__ = [
     "CORRELATED_S",
     "correlations",
     "covariance",
+    "differ",
     "echoes",
     "interval_width",
     "jackknife",
@@ -73,9 +74,9 @@ def covariance(
 def jackknife(
     jacobians: Sequence[FloatArray], residuals: Sequence[FloatArray]
 ) -> FloatArray | None:
-    """Standard errors from how the parameters move when each recording is left out; shape (p,).
+    """Covariance from how the parameters move when each recording is left out; shape (p, p).
 
-    s² = (R − 1)/R·Σ_r Δ_r², Δ_r = (JᵀJ − J_rᵀJ_r)⁻¹·J_rᵀ·r_r, one Gauss-Newton step (Miller,
+    C = (R − 1)/R·Σ_r Δ_r·Δ_rᵀ, Δ_r = (JᵀJ − J_rᵀJ_r)⁻¹·J_rᵀ·r_r, one Gauss-Newton step (Miller,
     Biometrika 61 (1974)). What a law's curve misses is not noise that blocks of a second average
     out: it pulls one way through a whole experiment, and another way in the next. None where there
     are fewer than four recordings.
@@ -93,11 +94,12 @@ def jackknife(
     scale[scale == 0.0] = 1.0
     normals = [(j / scale).T @ (j / scale) for j in jacobians]
     whole = np.sum(normals, axis=0)
-    moved = np.zeros(len(scale))
+    moved = np.zeros((len(scale), len(scale)))
     for jacobian, residual, normal in zip(jacobians, residuals, normals, strict=True):
         bread = np.linalg.pinv(whole - normal, rcond=ALONE, hermitian=True)
-        moved += (bread @ ((jacobian / scale).T @ residual)) ** 2
-    return np.asarray(np.sqrt((number - 1) / number * moved) / scale)
+        step = bread @ ((jacobian / scale).T @ residual)
+        moved += np.outer(step, step)
+    return np.asarray((number - 1) / number * moved / np.outer(scale, scale))
 
 
 def interval_width(blocks: int) -> float:
@@ -108,6 +110,29 @@ def interval_width(blocks: int) -> float:
     from scipy.special import stdtrit
 
     return float(stdtrit(max(1, blocks - 1), 0.975))
+
+
+def differ(values: FloatArray, covariance: FloatArray, blocks: int) -> bool:
+    """Whether values, taken together, differ from 0: outside their 95 % region.
+
+    Hotelling's T² = vᵀC⁻¹v against q·ν/(ν − q + 1)·F(q, ν − q + 1), ν = B − 1 (Annals of
+    Mathematical Statistics 2 (1931)). Of two that exchange for each other neither may be known, and
+    still there may be no doubt that one of them is there. One value alone differs where
+    its interval of `interval_width` leaves 0 out.
+    """
+    from scipy.special import fdtri
+
+    number, degrees = len(values), max(1, blocks - 1)
+    if number == 0 or degrees < number or not np.all(np.isfinite(covariance)):
+        return False
+    size = np.sqrt(np.diag(covariance))
+    if not np.all(size > 0.0):
+        return False
+    scaled = values / size
+    inverse = np.linalg.pinv(covariance / np.outer(size, size), rcond=FLAT, hermitian=True)
+    rest = degrees - number + 1
+    bound = number * degrees / rest * float(fdtri(number, rest, 0.95))
+    return float(scaled @ inverse @ scaled) > bound
 
 
 def correlations(covariance: FloatArray) -> FloatArray:
