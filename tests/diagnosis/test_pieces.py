@@ -419,7 +419,7 @@ def test_an_interrupted_refit_ends_the_search(monkeypatch: pytest.MonkeyPatch) -
     ]
     plant = true_plant()
     assert st.diagnose(plant, recordings, surrogates=4).effects
-    monkeypatch.setattr("stiction.diagnosis.rounds.fitted", interrupted)
+    monkeypatch.setattr("stiction.diagnosis.trials.fitted", interrupted)
     found = st.diagnose(plant, recordings, surrogates=4)
     assert not found.success
     assert found.effects == ()
@@ -432,7 +432,7 @@ def test_an_interrupted_diagnosis_keeps_the_best_so_far(
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("stiction.diagnosis.rounds.screen", interrupted)
+    monkeypatch.setattr("stiction.diagnosis.trials.screen", interrupted)
     recordings = [recorded(k, role=role) for k, role in enumerate(("train", "select", "test"))]
     found = st.diagnose(true_plant(), recordings, surrogates=4)
     assert not found.success

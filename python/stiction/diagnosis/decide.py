@@ -17,7 +17,16 @@ from .influence import limited
 from .model import LEAST_GIVEN, Model
 from .screen import Score
 
-__all__ = ["Choice", "Trial", "choose", "heldout_gain", "judge", "log_gain", "strangers"]
+__all__ = [
+    "Choice",
+    "Trial",
+    "choose",
+    "heldout_gain",
+    "judge",
+    "log_gain",
+    "parallel",
+    "strangers",
+]
 
 LEAST_GAIN: Final = 0.025
 """Held-out gain below which an effect is not worth a name."""
@@ -348,8 +357,12 @@ def _alike(one: Trial, other: Trial) -> bool:
 
 
 def _cosine(one: Trial, other: Trial) -> float:
-    """Magnitude of the cosine of two contributions; 0 where one contributes nothing."""
-    a, b = one.score.signature, other.score.signature
+    """Magnitude of the cosine of what two candidates add to the base."""
+    return parallel(one.score.signature, other.score.signature)
+
+
+def parallel(a: FloatArray, b: FloatArray) -> float:
+    """Magnitude of the cosine of two contributions, shape (n,) each; 0 where one is 0."""
     norm = float(np.linalg.norm(a) * np.linalg.norm(b))
     return abs(float(a @ b)) / norm if norm > 0.0 else 0.0
 

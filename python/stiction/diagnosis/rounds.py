@@ -10,9 +10,7 @@ from typing import Final
 import numpy as np
 
 from ..catalogue import EffectRecord, effects
-from ..fitting.rows import Nuisances
 from ..plant import Plant
-from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from . import listing
 from .candidates import Candidate, candidates, present, scales_of
@@ -23,15 +21,16 @@ from .decide import (
     Trial,
     choose,
     heldout_gain,
-    judge,
+    parallel,
     strangers,
 )
 from .evidence import Evidence
-from .model import Model, fitted, power_of, stepped, with_effect, without_effect
+from .model import Model, without_effect
 from .replay import centre, shared
 from .result import CandidateRow
-from .screen import Problem, Score, Signatures, screen
+from .screen import Score, Signatures
 from .selection import Search
+from .trials import Screening, promises, whole_fit
 
 __all__ = ["MOST_EFFECTS", "friction_of", "search"]
 
@@ -45,26 +44,14 @@ MOST_RENEWALS: Final = 2
 """Times that the base is replaced by a better fit of itself."""
 WORTH_RENEWING: Final = 0.005
 """Share of its residual's power that makes that worth while."""
-LATE_SHARE: Final = 0.5
-"""Of the kernel's support: a follower that keeps noise from friction is late by less."""
-SHARES: Final = (0.1, 0.3, 0.6, 1.0, 1.7, 3.0)
-"""Shares of the screened gain among which a refit by simulation picks its start."""
-KEPT: Final = 0.75
-"""Share of what the screening promises that a refit keeps, unless it is caught."""
-CAUTIOUS: Final = 0.1
-"""Share of the screened gain to start from where the whole of it leads astray."""
-
-MUCH: Final = 0.05
-MANY_TIMES: Final = 5.0
-"""A score of this size, and so many times its threshold, is refitted whatever it does held out."""
-
 AT_THE_DRIVE: Final = frozenset({"input map", "input delay", "input lag"})
 """Hooks of effects that a machine without a drive cannot have."""
-LEAST_OF_NOISE: Final = 0.01
-"""What leaves a smaller share of the power that noise alone leaves explains nothing: it makes what
-was measured vanish."""
+RELATED: Final = 0.2
+"""Cosine from which on one member of a family may be a part of another; waves of different orders
+have next to none."""
 MIMIC: Final = 5.0
-"""What keeps less than one part in so many of its gain beside a later effect was its mimic."""
+"""What keeps less than one part in so many of its gain beside a later effect was its mimic; what
+explains less than that of a relative that was found may be the rest of it."""
 
 _logger = logging.getLogger(__name__)
 
@@ -91,12 +78,12 @@ def search(
         if not tried:
             return found
         signatures = Signatures.of(evidence, base.plant, base.nuisances, tried)
-        friction = friction_of(evidence, base)
+        screening = Screening(evidence, signatures, centred, bias, friction_of(evidence, base))
         evidence.floor = float(np.mean(np.sum(null[evidence.fitted] ** 2, axis=0)))
         dropped: set[str] = set()
         renewed = 0
         while len(found.choices) < MOST_EFFECTS:
-            choice = _round(evidence, found, signatures, centred, bias, friction)
+            choice = _round(screening, found)
             if choice is not None and renewed < MOST_RENEWALS and _renew(evidence, found, choice):
                 renewed += 1
                 continue
@@ -105,10 +92,10 @@ def search(
             found.choices.append(choice)
             found.models.append(choice.winner.model)
             _logger.info("found %s", choice.winner.name)
-            _sharpen(evidence, found, signatures, centred, bias, friction)
+            _sharpen(screening, found)
             dropped |= _drop(evidence, found)
         for place in range(len(found.choices) - 1):
-            _swap(evidence, found, place, signatures, centred, bias, friction)
+            _swap(screening, found, place)
     except KeyboardInterrupt:
         found.interrupted = True
     return found
@@ -151,38 +138,32 @@ def _where(plant: Plant, record: EffectRecord) -> str:
     return "part of the body" if body else "part of the law"
 
 
-def _round(
-    evidence: Evidence,
-    found: Search,
-    signatures: Signatures,
-    centred: FloatArray,
-    bias: FloatArray,
-    friction: float,
-) -> Choice | None:
+def _round(screening: Screening, found: Search) -> Choice | None:
     taken = {choice.winner.name for choice in found.choices}
-    problem = _problem(evidence, found.models[-1], centred, bias)
-    scores = [
-        score
-        for score in screen(problem, signatures, friction)
-        if score.candidate.name not in taken
-    ]
+    scores = screening.scores(found.models[-1])
+    scores = [score for score in scores if score.candidate.name not in taken]
     for score in scores:
         # Later rounds tell of what is left; what an effect is told by is its first one.
         if not found.choices:
             found.rows[score.candidate.name] = listing.screened(score)
             if not score.testable:
                 found.blind.append(score.candidate.record)
-    passing = [score for score in scores if _promises(score)]
+    passing = [score for score in scores if promises(score)]
     trials: list[Trial] = []
     for score in passing[:REFITTED]:
         if not _hopeless(score, trials):
-            trials.append(_trial(evidence, found.models[-1], signatures, score, friction))
+            trials.append(screening.trial(found.models[-1], score))
+    trials = [_not_the_rest(screening, found, trial) for trial in trials]
     tried = {trial.name for trial in trials}
     for score in passing:
         if score.candidate.name not in tried:
             row = found.rows[score.candidate.name]
             found.rows[row.name] = replace(row, reason="others explain more")
-    choice = choose(trials) or _beside(evidence, trials, signatures, centred, bias, friction)
+    choice = (
+        choose(trials)
+        or _beside(screening, trials)
+        or _together(screening, found.models[-1], trials)
+    )
     found.imitated = max((t.gain for t in trials if t.imitates and choice is None), default=0.0)
     for trial in trials:
         if choice is not None or not found.choices:
@@ -190,14 +171,7 @@ def _round(
     return choice
 
 
-def _beside(
-    evidence: Evidence,
-    trials: Sequence[Trial],
-    signatures: Signatures,
-    centred: FloatArray,
-    bias: FloatArray,
-    friction: float,
-) -> Choice | None:
+def _beside(screening: Screening, trials: Sequence[Trial]) -> Choice | None:
     """What would pass, had not another trial looked like the cause that it imitates.
 
     Two causes at once make each other's strength uneven: the one that was refused for that is asked
@@ -211,38 +185,11 @@ def _beside(
     if choice is None:
         return None
     model = choice.winner.model
-    scores = screen(_problem(evidence, model, centred, bias), signatures, friction)
-    score = next(each for each in scores if each.candidate.name == other.name)
-    if not _promises(score) or _trial(evidence, model, signatures, score, friction).reason:
+    score = next(each for each in screening.scores(model) if each.candidate.name == other.name)
+    if not promises(score) or screening.trial(model, score).reason:
         return None
     _logger.info("%s passes beside %s", other.name, choice.winner.name)
     return choice
-
-
-def _fitted(evidence: Evidence, plant: Plant, nuisances: Nuisances, *, only: str = "") -> Model:
-    """The plant fitted, whole or not at all.
-
-    A fit keeps its best at Ctrl-C and goes on from there; one of several that make a decision must
-    end all of them.
-    """
-    model = fitted(evidence, plant, nuisances, only=only)
-    if model.solution.interrupted:
-        raise KeyboardInterrupt
-    return model
-
-
-def _promises(score: Score) -> bool:
-    """Whether a candidate is worth a refit: it explains more than noise, and it carries over.
-
-    Gains of a base that has lost a recording carry over badly; what explains much and far more than
-    noise is worth a look with everything fitted anew.
-    """
-    if not score.testable or score.score <= score.threshold:
-        return False
-    if score.candidate.record.late:
-        # By more than a sample the slope at no delay tells that something is late, not by how much.
-        return True
-    return score.heldout > 0.0 or score.score > max(MUCH, MANY_TIMES * score.threshold)
 
 
 def _hopeless(score: Score, trials: Sequence[Trial]) -> bool:
@@ -257,39 +204,55 @@ def _hopeless(score: Score, trials: Sequence[Trial]) -> bool:
     return any(score.score < SLIGHT * trial.score.score for trial in passed)
 
 
-def _problem(evidence: Evidence, model: Model, centred: FloatArray, bias: FloatArray) -> Problem:
-    """What a model leaves, to be screened."""
-    return Problem(
-        model.residual - bias,
-        model.columns,
-        centred,
-        evidence.cells.block,
-        evidence.fitted,
-        evidence.plans,
-    )
+def _together(screening: Screening, base: Model, trials: Sequence[Trial]) -> Choice | None:
+    """The best of what is refused for its spread over blocks, where it passes beside another.
+
+    Each of two causes is left in the residual that judges the other one. If the second passes
+    beside the first, and the first beside the second, both are causes.
+    """
+    spread = [trial for trial in trials if trial.by_blocks and not trial.unseen]
+    first = max(spread, key=lambda t: t.worth, default=None)
+    if first is None or any(trial.worth > first.worth for trial in trials):
+        return None
+    for score in screening.scores(first.model):
+        if score.candidate.name == first.name or not promises(score):
+            continue
+        second = screening.trial(first.model, score)
+        if second.reason:
+            continue
+        alone = whole_fit(
+            screening.evidence, without_effect(second.model.plant, first.name), base.nuisances
+        )
+        again = next(s for s in screening.scores(alone) if s.candidate.name == first.name)
+        if promises(again) and not screening.trial(alone, again).reason:
+            _logger.info("%s and %s pass together", first.name, second.name)
+            passed = replace(first, reason="", by_blocks=False)
+            return choose([passed if trial is first else trial for trial in trials])
+        break
+    return None
 
 
-def _trial(
-    evidence: Evidence, base: Model, signatures: Signatures, score: Score, friction: float
-) -> Trial:
-    """A candidate refitted together with a model, and judged."""
-    _logger.info("refitting with %s", score.candidate.name)
-    model = _refit(evidence, base, signatures, score)
-    contributed = _contributed(signatures, score, model)
-    size = float(np.sqrt(np.mean(contributed**2))) / max(friction, 1e-300)
-    trial = judge(base, score, model, contributed, size)
-    reason = trial.reason or _too_good(evidence, model) or _friction_is_late(evidence, model)
-    return replace(trial, reason=reason)
+def _not_the_rest(screening: Screening, found: Search, trial: Trial) -> Trial:
+    """Refuses what may be the rest of a relative that was found already.
+
+    No catalogue has the form of a machine's own friction: what the named one leaves of it
+    looks like another of its kind, and is small beside it.
+    """
+    if trial.reason:
+        return trial
+    explained = screening.contributed(trial.score, trial.model)
+    for choice in found.choices:
+        other = choice.winner
+        if other.candidate.record.family != trial.candidate.record.family:
+            continue
+        before = screening.contributed(other.score, other.model)
+        if trial.worth < other.worth / MIMIC and parallel(explained, before) > RELATED:
+            reason = f"small beside {other.name}, and may be what its form leaves unexplained"
+            return replace(trial, reason=reason)
+    return trial
 
 
-def _sharpen(
-    evidence: Evidence,
-    found: Search,
-    signatures: Signatures,
-    centred: FloatArray,
-    bias: FloatArray,
-    friction: float,
-) -> None:
+def _sharpen(screening: Screening, found: Search) -> None:
     """Gives the effect that was found last a second wave where that passes like an effect.
 
     What repeats with position is seldom a sine, and the rest of it would be taken for another
@@ -299,15 +262,16 @@ def _sharpen(
     if not choice.winner.candidate.record.second:
         return
     model = found.models[-1]
-    own = signatures.second_of(
+    own = screening.signatures.second_of(
         next(each for each in model.plant.effects if each.name == choice.winner.name)
     )
     if not own.candidates:
         return
-    (score,) = screen(_problem(evidence, model, centred, bias), own, friction)
-    if not _promises(score):
+    second = screening.with_signatures(own)
+    (score,) = second.scores(model)
+    if not promises(score):
         return
-    trial = _trial(evidence, model, own, score, friction)
+    trial = second.trial(model, score)
     if not trial.reason:
         _logger.info("%s has a second wave", choice.winner.name)
         found.models[-1] = trial.model
@@ -322,7 +286,7 @@ def _renew(evidence: Evidence, found: Search, choice: Choice) -> bool:
     effect's gain.
     """
     model, base = choice.winner.model, found.models[-1]
-    alone = _fitted(evidence, without_effect(model.plant, choice.winner.name), model.nuisances)
+    alone = whole_fit(evidence, without_effect(model.plant, choice.winner.name), model.nuisances)
     if alone.power > (1.0 - WORTH_RENEWING) * base.power:
         return False
     _logger.info("the base does better from another start")
@@ -342,7 +306,7 @@ def _drop(evidence: Evidence, found: Search) -> set[str]:
         weak = whole.strength(choice.winner.candidate) < LEAST_STRENGTH
         if not weak and choice.winner.gain <= MIMIC * LEAST_GAIN:
             continue
-        less = _fitted(evidence, without_effect(whole.plant, name), whole.nuisances)
+        less = whole_fit(evidence, without_effect(whole.plant, name), whole.nuisances)
         left = heldout_gain(less, whole)[0]
         # Of what it was taken for, a mimic keeps next to nothing beside its cause.
         if left > LEAST_GAIN or not (weak or left < choice.winner.gain / MIMIC):
@@ -363,19 +327,11 @@ def _chain(evidence: Evidence, base: Model, choices: Sequence[Choice], last: Mod
     plants = [last.plant]
     for later in reversed(choices[1:]):
         plants.append(without_effect(plants[-1], later.winner.name))
-    between = [_fitted(evidence, plant, last.nuisances) for plant in reversed(plants[1:])]
+    between = [whole_fit(evidence, plant, last.nuisances) for plant in reversed(plants[1:])]
     return [base, *between, last]
 
 
-def _swap(
-    evidence: Evidence,
-    found: Search,
-    place: int,
-    signatures: Signatures,
-    centred: FloatArray,
-    bias: FloatArray,
-    friction: float,
-) -> None:
+def _swap(screening: Screening, found: Search, place: int) -> None:
     """Asks again whether an early choice or a relative of it stands better beside the later ones.
 
     What was chosen first was compared while the rest was still missing.
@@ -384,15 +340,16 @@ def _swap(
     record = choice.winner.candidate.record
     effect = next(each for each in whole.plant.effects if each.name == record.name)
     taken = {each.winner.name for each in found.choices} - {record.name}
-    tried = {each.name: each.record for each in signatures.candidates if each.name not in taken}
+    candidates_of = screening.signatures.candidates
+    tried = {each.name: each.record for each in candidates_of if each.name not in taken}
     kin = {name for name, other in tried.items() if other.family == record.family}
     if len(kin) < 2 or any(name in effect.parameters for name in record.second):
         return
-    less = _fitted(evidence, without_effect(whole.plant, record.name), whole.nuisances)
-    scores = screen(_problem(evidence, less, centred, bias), signatures, friction)
+    evidence = screening.evidence
+    less = whole_fit(evidence, without_effect(whole.plant, record.name), whole.nuisances)
     trials = [
-        _trial(evidence, less, signatures, score, friction)
-        for score in scores
+        screening.trial(less, score)
+        for score in screening.scores(less)
         if score.candidate.name in kin and score.score > score.threshold
     ]
     again = choose(trials)
@@ -407,36 +364,6 @@ def _swap(
         found.rows[trial.name] = listing.tried(trial, again)
 
 
-def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score) -> Model:
-    """The base with an effect, fitted from where the screening says; from near 0 if that fails."""
-    index = signatures.candidates.index(score.candidate)
-    explained = signatures.columns[:, signatures.slices[index]] @ score.gains
-
-    def begun(share: float) -> Plant:
-        plant = stepped(base, share * explained)
-        return with_effect(plant, score.candidate, (share * score.gains).tolist())
-
-    # A simulated motion breaks away or does not: slopes tell little of what a whole gain does.
-    start = begun(1.0)
-    if any(isinstance(form, ShootingForm) for form in evidence.forms):
-        plants = [begun(share) for share in SHARES]
-        start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
-    model = _fitted(evidence, start, base.nuisances)
-    if model.power < (1.0 - KEPT * score.score) * base.power:
-        return model
-    # Short of what the screening promised it is caught: a base that has bent itself towards the
-    # effect jumps too far at once, and a contact that all but loses its track has a kink on every
-    # side. Then the effect alone moves first, and the base follows.
-    tried = [model]
-    for share in (1.0, CAUTIOUS):
-        start = with_effect(base.plant, score.candidate, (share * score.gains).tolist())
-        alone = _fitted(evidence, start, base.nuisances, only=score.candidate.name)
-        tried.append(_fitted(evidence, alone.plant, alone.nuisances))
-        if alone.power < base.power:
-            break
-    return min(tried, key=lambda each: each.power)
-
-
 def friction_of(evidence: Evidence, base: Model) -> float:
     """Weighted rms of what the base needs beside inertia: friction, gravity, added efforts."""
     needed = evidence.stack(
@@ -445,34 +372,3 @@ def friction_of(evidence: Evidence, base: Model) -> float:
         )
     )
     return float(np.sqrt(np.mean(needed**2)))
-
-
-def _too_good(evidence: Evidence, model: Model) -> str:
-    """Why a model that leaves less than noise must is no machine, "" where it leaves that."""
-    if model.power * model.given >= LEAST_OF_NOISE * evidence.floor:
-        return ""
-    return "leaves far less than the noise of these data must: it takes away what was measured"
-
-
-def _friction_is_late(evidence: Evidence, model: Model) -> str:
-    """Why a delay may be no delay of the input, "" where it is none or no reason stands against it.
-
-    Where noise is kept from friction by a follower with a backlash, friction turns round late
-    itself, and an input that seems late is what is left of that.
-    """
-    effect = model.plant.effects[-1]
-    record = next(each for each in effects() if each.name == effect.name)
-    if not record.late or not any(f.followed_late for f in evidence.forms):
-        return ""
-    (gain,) = record.gains
-    if effect.parameters[gain].value > LATE_SHARE * evidence.support:
-        return ""
-    return "lies within what noise of the position makes friction late by"
-
-
-def _contributed(signatures: Signatures, score: Score, model: Model) -> FloatArray:
-    """What an effect explains of every row after its refit; shape (n,)."""
-    index = signatures.candidates.index(score.candidate)
-    gains = model.gains(score.candidate)
-    contributed: FloatArray = signatures.columns[:, signatures.slices[index]] @ gains
-    return contributed

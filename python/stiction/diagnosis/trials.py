@@ -1,0 +1,180 @@
+"""One candidate refitted together with a model, and judged."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from ..catalogue import effects
+from ..fitting.rows import Nuisances
+from ..plant import Plant
+from ..shooting import ShootingForm
+from ..trajectory import FloatArray
+from .decide import Trial, judge
+from .evidence import Evidence
+from .model import Model, fitted, power_of, stepped, with_effect
+from .screen import Problem, Score, Signatures, screen
+
+__all__ = ["Screening", "promises", "whole_fit"]
+
+LATE_SHARE: Final = 0.5
+"""Of the kernel's support: a follower that keeps noise from friction is late by less."""
+SHARES: Final = (0.1, 0.3, 0.6, 1.0, 1.7, 3.0)
+"""Shares of the screened gain among which a refit by simulation picks its start."""
+KEPT: Final = 0.75
+"""Share of what the screening promises that a refit keeps, unless it is caught."""
+CAUTIOUS: Final = 0.1
+"""Share of the screened gain to start from where the whole of it leads astray."""
+MUCH: Final = 0.05
+MANY_TIMES: Final = 5.0
+"""A score of this size, and so many times its threshold, is refitted whatever it does held out."""
+LEAST_OF_NOISE: Final = 0.01
+"""What leaves a smaller share of the power that noise alone leaves explains nothing: it makes what
+was measured vanish."""
+
+_logger = logging.getLogger(__name__)
+
+
+def promises(score: Score) -> bool:
+    """Whether a candidate is worth a refit: it explains more than noise, and it carries over.
+
+    Gains of a base that has lost a recording carry over badly; what explains much and far more than
+    noise is worth a look with everything fitted anew.
+    """
+    if not score.testable or score.score <= score.threshold:
+        return False
+    if score.candidate.record.late:
+        # By more than a sample the slope at no delay tells that something is late, not by how much.
+        return True
+    return score.heldout > 0.0 or score.score > max(MUCH, MANY_TIMES * score.threshold)
+
+
+@dataclass(frozen=True)
+class Screening:
+    """What every round screens and refits with.
+
+    Attributes
+    ----------
+    evidence : Evidence
+    signatures : Signatures
+    centred : numpy.ndarray, shape (n, surrogates)
+        Residuals of the surrogates about their mean.
+    bias : numpy.ndarray, shape (n,)
+        Their mean, as far as the residual shares it.
+    friction : float
+        Weighted rms of what the base needs beside inertia.
+    """
+
+    evidence: Evidence
+    signatures: Signatures
+    centred: FloatArray
+    bias: FloatArray
+    friction: float
+
+    def scores(self, model: Model) -> list[Score]:
+        """Efficient scores of all effects for what a model leaves, the best first."""
+        return screen(self._left_by(model), self.signatures, self.friction)
+
+    def trial(self, base: Model, score: Score) -> Trial:
+        """A candidate refitted together with a model, and judged."""
+        _logger.info("refitting with %s", score.candidate.name)
+        model = _refit(self.evidence, base, self.signatures, score)
+        explained = self.contributed(score, model)
+        size = float(np.sqrt(np.mean(explained**2))) / max(self.friction, 1e-300)
+        trial = judge(base, score, model, explained, size)
+        reason = (
+            trial.reason
+            or _too_good(self.evidence, model)
+            or _friction_is_late(self.evidence, model)
+        )
+        return replace(trial, reason=reason)
+
+    def with_signatures(self, signatures: Signatures) -> Screening:
+        """The same for other candidates."""
+        return replace(self, signatures=signatures)
+
+    def contributed(self, score: Score, model: Model) -> FloatArray:
+        """What an effect explains of every row after its refit; shape (n,)."""
+        index = self.signatures.candidates.index(score.candidate)
+        gains = model.gains(score.candidate)
+        explained: FloatArray = self.signatures.columns[:, self.signatures.slices[index]] @ gains
+        return explained
+
+    def _left_by(self, model: Model) -> Problem:
+        evidence = self.evidence
+        return Problem(
+            model.residual - self.bias,
+            model.columns,
+            self.centred,
+            evidence.cells.block,
+            evidence.fitted,
+            evidence.plans,
+        )
+
+
+def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score) -> Model:
+    """The base with an effect, fitted from where the screening says; from near 0 if that fails."""
+    index = signatures.candidates.index(score.candidate)
+    explained = signatures.columns[:, signatures.slices[index]] @ score.gains
+
+    def begun(share: float) -> Plant:
+        plant = stepped(base, share * explained)
+        return with_effect(plant, score.candidate, (share * score.gains).tolist())
+
+    # A simulated motion breaks away or does not: slopes tell little of what a whole gain does.
+    start = begun(1.0)
+    if any(isinstance(form, ShootingForm) for form in evidence.forms):
+        plants = [begun(share) for share in SHARES]
+        start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
+    model = whole_fit(evidence, start, base.nuisances)
+    if model.power < (1.0 - KEPT * score.score) * base.power:
+        return model
+    # Short of what the screening promised it is caught: a base that has bent itself towards the
+    # effect jumps too far at once, and a contact that all but loses its track has a kink on every
+    # side. Then the effect alone moves first, and the base follows.
+    tried = [model]
+    for share in (1.0, CAUTIOUS):
+        start = with_effect(base.plant, score.candidate, (share * score.gains).tolist())
+        alone = whole_fit(evidence, start, base.nuisances, only=score.candidate.name)
+        tried.append(whole_fit(evidence, alone.plant, alone.nuisances))
+        if alone.power < base.power:
+            break
+    return min(tried, key=lambda each: each.power)
+
+
+def whole_fit(evidence: Evidence, plant: Plant, nuisances: Nuisances, *, only: str = "") -> Model:
+    """The plant fitted, whole or not at all.
+
+    A fit keeps its best at Ctrl-C and goes on from there; one of several that make a decision must
+    end all of them.
+    """
+    model = fitted(evidence, plant, nuisances, only=only)
+    if model.solution.interrupted:
+        raise KeyboardInterrupt
+    return model
+
+
+def _too_good(evidence: Evidence, model: Model) -> str:
+    """Why a model that leaves less than noise must is no machine, "" where it leaves that."""
+    if model.power * model.given >= LEAST_OF_NOISE * evidence.floor:
+        return ""
+    return "leaves far less than the noise of these data must: it takes away what was measured"
+
+
+def _friction_is_late(evidence: Evidence, model: Model) -> str:
+    """Why a delay may be no delay of the input, "" where it is none or no reason stands against it.
+
+    Where noise is kept from friction by a follower with a backlash, friction turns round late
+    itself, and an input that seems late is what is left of that.
+    """
+    effect = model.plant.effects[-1]
+    record = next(each for each in effects() if each.name == effect.name)
+    if not record.late or not any(f.followed_late for f in evidence.forms):
+        return ""
+    (gain,) = record.gains
+    if effect.parameters[gain].value > LATE_SHARE * evidence.support:
+        return ""
+    return "lies within what noise of the position makes friction late by"

@@ -1,0 +1,114 @@
+"""Rounds of the selection: causes that pass only together, and what a named one leaves."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from stiction.diagnosis import rounds
+from stiction.diagnosis.decide import Choice, Trial
+from stiction.diagnosis.selection import Search
+
+BLOCKS = np.ones(30), np.ones(30)
+
+
+def trial(
+    name: str,
+    worth: float,
+    reason: str = "",
+    *,
+    family: str = "",
+    by_blocks: bool = False,
+    contributed: Any = (1.0, 0.0),
+) -> Trial:
+    record = SimpleNamespace(family=family or name, name=name, shapes=(), late=False)
+    candidate: Any = SimpleNamespace(name=name, parameters=1, record=record)
+    score: Any = SimpleNamespace(
+        signature=np.asarray(contributed, dtype=float),
+        candidate=candidate,
+        score=0.3,
+        threshold=0.05,
+        heldout=0.2,
+        testable=True,
+    )
+    model: Any = SimpleNamespace(blocks=BLOCKS, plant=SimpleNamespace(effects=()), name=name)
+    return Trial(score, model, 0.2, 1.0, worth, 9.0, 0.1, reason, by_blocks)
+
+
+class Bench:
+    """What the rounds ask of a screening: answers by the name of the model."""
+
+    evidence = None
+
+    def __init__(self, after: dict[str, list[Trial]]) -> None:
+        self.after = after
+
+    def scores(self, model: Any) -> list[Any]:
+        return [each.score for each in self.after.get(model.name, [])]
+
+    def trial(self, model: Any, score: Any) -> Trial:
+        return next(t for t in self.after[model.name] if t.name == score.candidate.name)
+
+    def contributed(self, score: Any, model: Any) -> Any:
+        return score.signature
+
+
+SPREAD = "its held-out gain is 1.96 standard errors, below 2.00"
+
+
+@pytest.mark.parametrize(
+    ("beside_first", "beside_second", "passes"),
+    [("", "", True), (SPREAD, "", False), ("", SPREAD, False)],
+)
+def test_causes_that_hide_each_other_pass_together(
+    monkeypatch: pytest.MonkeyPatch, beside_first: str, beside_second: str, passes: bool
+) -> None:
+    first, second = (trial(name, w, SPREAD, by_blocks=True) for name, w in (("a", 1.0), ("b", 0.5)))
+    bench: Any = Bench(
+        {"a": [trial("b", 2.0, beside_first)], "b": [trial("a", 2.5, beside_second)]}
+    )
+    alone = SimpleNamespace(name="b")
+    monkeypatch.setattr(rounds, "whole_fit", lambda *_: alone)
+    monkeypatch.setattr(rounds, "without_effect", lambda plant, _: plant)
+    base: Any = SimpleNamespace(nuisances=None)
+    choice = rounds._together(bench, base, [first, second])
+    assert (choice is not None) == passes
+    if choice is not None:
+        assert choice.winner.name == "a"
+        assert choice.winner.reason == ""
+
+
+def test_what_explains_less_than_another_is_no_first_of_two() -> None:
+    spread = trial("a", 0.5, SPREAD, by_blocks=True)
+    base: Any = SimpleNamespace(nuisances=None)
+    bench: Any = Bench({"a": [trial("b", 2.0)]})
+    assert rounds._together(bench, base, [spread, trial("c", 1.0, "imitates")]) is None
+    assert rounds._together(bench, base, []) is None
+
+
+@pytest.mark.parametrize(
+    ("family", "worth", "along", "kept"),
+    [
+        ("contact", 0.15, (1.0, 0.5), False),
+        # Large enough to be a cause of its own, of another kind, or a wave of another order.
+        ("contact", 0.25, (1.0, 0.5), True),
+        ("other", 0.15, (1.0, 0.5), True),
+        ("contact", 0.15, (0.1, 1.0), True),
+    ],
+)
+def test_a_small_relative_of_a_named_cause_may_be_its_rest(
+    family: str, worth: float, along: tuple[float, float], kept: bool
+) -> None:
+    named = trial("a", 1.0, family="contact")
+    found = Search([SimpleNamespace()], [Choice(named, ())])  # type: ignore[list-item]
+    later = trial("b", worth, family=family, contributed=along)
+    bench: Any = Bench({})
+    again = rounds._not_the_rest(bench, found, later)
+    assert (again.reason == "") == kept
+    if not kept:
+        assert again.reason.startswith("small beside a,")
+    refused = trial("b", worth, "noise", family=family)
+    assert rounds._not_the_rest(bench, found, refused) is refused
