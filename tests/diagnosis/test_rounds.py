@@ -10,6 +10,7 @@ import pytest
 
 from stiction.diagnosis import rounds
 from stiction.diagnosis.decide import Choice, Trial
+from stiction.diagnosis.result import CandidateRow
 from stiction.diagnosis.selection import Search
 
 BLOCKS = np.ones(30), np.ones(30)
@@ -103,12 +104,11 @@ def test_a_small_relative_of_a_named_cause_may_be_its_rest(
     family: str, worth: float, along: tuple[float, float], kept: bool
 ) -> None:
     named = trial("a", 1.0, family="contact")
-    found = Search([SimpleNamespace()], [Choice(named, ())])  # type: ignore[list-item]
     later = trial("b", worth, family=family, contributed=along)
+    row = CandidateRow("b", 0.3, 0.05, 0.2, "accepted")
+    models: list[Any] = ["base", "with a", "with both"]
+    found = Search(models, [Choice(named, ()), Choice(later, ())], {"b": row})
     bench: Any = Bench({})
-    again = rounds._not_the_rest(bench, found, later)
-    assert (again.reason == "") == kept
-    if not kept:
-        assert again.reason.startswith("small beside a,")
-    refused = trial("b", worth, "noise", family=family)
-    assert rounds._not_the_rest(bench, found, refused) is refused
+    assert rounds._take_back(bench, found) == (set() if kept else {"b"})
+    assert len(found.choices) == len(found.models) - 1 == (2 if kept else 1)
+    assert found.rows["b"].reason.startswith("accepted" if kept else "small beside a,")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import replace
 from typing import Final
 
@@ -81,9 +81,10 @@ def search(
         screening = Screening(evidence, signatures, centred, bias, friction_of(evidence, base))
         evidence.floor = float(np.mean(np.sum(null[evidence.fitted] ** 2, axis=0)))
         dropped: set[str] = set()
+        rests: set[str] = set()
         renewed = 0
         while len(found.choices) < MOST_EFFECTS:
-            choice = _round(screening, found)
+            choice = _round(screening, found, rests)
             if choice is not None and renewed < MOST_RENEWALS and _renew(evidence, found, choice):
                 renewed += 1
                 continue
@@ -94,6 +95,7 @@ def search(
             _logger.info("found %s", choice.winner.name)
             _sharpen(screening, found)
             dropped |= _drop(evidence, found)
+            rests |= _take_back(screening, found)
         for place in range(len(found.choices) - 1):
             _swap(screening, found, place)
     except KeyboardInterrupt:
@@ -138,8 +140,8 @@ def _where(plant: Plant, record: EffectRecord) -> str:
     return "part of the body" if body else "part of the law"
 
 
-def _round(screening: Screening, found: Search) -> Choice | None:
-    taken = {choice.winner.name for choice in found.choices}
+def _round(screening: Screening, found: Search, refused: Set[str]) -> Choice | None:
+    taken = refused | {choice.winner.name for choice in found.choices}
     scores = screening.scores(found.models[-1])
     scores = [score for score in scores if score.candidate.name not in taken]
     for score in scores:
@@ -153,7 +155,6 @@ def _round(screening: Screening, found: Search) -> Choice | None:
     for score in passing[:REFITTED]:
         if not _hopeless(score, trials):
             trials.append(screening.trial(found.models[-1], score))
-    trials = [_not_the_rest(screening, found, trial) for trial in trials]
     tried = {trial.name for trial in trials}
     for score in passing:
         if score.candidate.name not in tried:
@@ -232,24 +233,27 @@ def _together(screening: Screening, base: Model, trials: Sequence[Trial]) -> Cho
     return None
 
 
-def _not_the_rest(screening: Screening, found: Search, trial: Trial) -> Trial:
-    """Refuses what may be the rest of a relative that was found already.
+def _take_back(screening: Screening, found: Search) -> set[str]:
+    """Takes out the latest effect where it may be the rest of a relative that is still there.
 
     No catalogue has the form of a machine's own friction: what the named one leaves of it
     looks like another of its kind, and is small beside it.
     """
-    if trial.reason:
-        return trial
-    explained = screening.contributed(trial.score, trial.model)
-    for choice in found.choices:
+    latest = found.choices[-1].winner
+    explained = screening.contributed(latest.score, latest.model)
+    for choice in found.choices[:-1]:
         other = choice.winner
-        if other.candidate.record.family != trial.candidate.record.family:
+        if other.candidate.record.family != latest.candidate.record.family:
             continue
         before = screening.contributed(other.score, other.model)
-        if trial.worth < other.worth / MIMIC and parallel(explained, before) > RELATED:
+        if latest.worth < other.worth / MIMIC and parallel(explained, before) > RELATED:
+            _logger.info("%s may be the rest of %s", latest.name, other.name)
             reason = f"small beside {other.name}, and may be what its form leaves unexplained"
-            return replace(trial, reason=reason)
-    return trial
+            found.rows[latest.name] = replace(found.rows[latest.name], reason=reason)
+            found.choices.pop()
+            found.models.pop()
+            return {latest.name}
+    return set()
 
 
 def _sharpen(screening: Screening, found: Search) -> None:
