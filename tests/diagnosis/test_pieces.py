@@ -141,6 +141,27 @@ def test_projection_takes_off_what_the_base_explains_and_the_same_from_held_rows
     assert np.allclose(many, expected, rtol=0.0, atol=1e-12)
 
 
+def test_a_fold_leaves_alone_what_its_rows_do_not_tell() -> None:
+    source = np.random.default_rng(0)
+    base, residual = source.standard_normal((200, 3)), source.standard_normal(200)
+    whole = np.arange(200) < 160
+    fit = np.arange(200) < 80
+    held = whole & ~fit
+    # The last column is all but 0 in the rows that the fold fits: they would make a jump of it.
+    base[fit, 2] = 1e-5 * source.standard_normal(80)
+    residual -= base @ np.linalg.lstsq(base[whole], residual[whole])[0]
+    jumped = project(base, Plan(fit, held)).project(residual).held
+    assert np.linalg.norm(jumped) > 100.0 * np.linalg.norm(residual[held])
+    left = project(base, Plan(fit, held, whole)).project(residual).held
+    expected = project(base[:, :2], Plan(fit, held)).project(residual).held
+    assert np.allclose(left, expected, atol=0.2)
+    assert np.linalg.norm(left) < 1.1 * np.linalg.norm(residual[held])
+    # What its rows do tell is fitted as ever.
+    told = source.standard_normal((200, 3))
+    both = [project(told, Plan(fit, held, w)).project(residual).held for w in (None, whole)]
+    assert np.allclose(*both, atol=1e-10)
+
+
 def test_waves_of_multiples_of_an_order_are_those_of_each_alone() -> None:
     position = np.linspace(-7.0, 9.0, 301)
     orders = [0.35 * k for k in range(1, 81)]

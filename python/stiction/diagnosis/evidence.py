@@ -39,10 +39,13 @@ class Plan:
     Attributes
     ----------
     fit, held : numpy.ndarray of bool, shape (n,)
+    whole : numpy.ndarray of bool, shape (n,), optional
+        Rows of which a fold fits a part; None where ``fit`` is all that is ever fitted.
     """
 
     fit: Mask
     held: Mask
+    whole: Mask | None = None
 
 
 @dataclass(frozen=True)
@@ -233,7 +236,7 @@ class Evidence:
         for fold in self.split.folds:
             fit, held = self._stacked(self._masks(fold.fit)), self._stacked(self._masks(fold.held))
             if fit.any() and held.any():
-                plans.append(Plan(fit, held))
+                plans.append(Plan(fit, held, self.fitted))
         if not plans:
             raise NotEnoughData(
                 "session: nothing is left to decide on besides what is fitted; add a recording "

@@ -15,6 +15,9 @@ __all__ = ["Base", "Projected", "project", "refitted", "step"]
 
 FLAT: Final = 1e-8
 """Directions of the base with less than this share of the strongest one are dropped."""
+LEAST_TOLD: Final = 0.05
+"""A direction of which a fold tells less than this share of what all fitted rows tell is left where
+those put it: what one block alone determines, the others cannot."""
 TOGETHER: Final = 32
 """Columns from which the base is taken off at a time: they stay in the cache."""
 
@@ -36,19 +39,32 @@ class Projected:
 
 
 class Base:
-    """The columns of the base, orthogonalised over the fitted rows of a plan."""
+    """The columns of the base, orthogonalised over the fitted rows of a plan.
+
+    A fold fits the directions that its rows tell; the others stay where the fit to all rows put
+    them.
+    """
 
     def __init__(self, columns: FloatArray, plan: Plan) -> None:
         scale = np.sqrt(np.sum(columns[plan.fit] ** 2, axis=0))
         live = scale > 0.0
         self._columns = columns[:, live] / scale[live]
-        fit = self._columns[plan.fit]
-        left, sizes, right = np.linalg.svd(fit, full_matrices=False)
+        whole = self._columns[plan.fit if plan.whole is None else plan.whole]
+        left, sizes, right = np.linalg.svd(whole, full_matrices=False)
         kept = sizes > FLAT * sizes[0] if len(sizes) else np.zeros(0, dtype=bool)
         self._left = left[:, kept]
         self._inverse = right[kept].T / sizes[kept]
+        if plan.whole is not None:
+            self._left, self._inverse = self._told(plan)
         self._held = self._columns[plan.held]
         self._plan = plan
+
+    def _told(self, plan: Plan) -> tuple[FloatArray, FloatArray]:
+        """The directions that a fold tells, of those that all rows do."""
+        own = self._columns[plan.fit] @ self._inverse
+        shares, directions = np.linalg.eigh(own.T @ own)
+        kept = directions[:, shares > LEAST_TOLD] / np.sqrt(shares[shares > LEAST_TOLD])
+        return own @ kept, self._inverse @ kept
 
     def off(self, fit: FloatArray) -> FloatArray:
         """Columns of the fitted rows alone, without what the base explains; same shape."""
