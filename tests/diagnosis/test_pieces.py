@@ -345,6 +345,19 @@ def test_rows_that_do_not_excite_an_effect_do_not_tell_it_from_the_winner() -> N
     assert chosen.decided
 
 
+def test_a_rest_of_a_contact_without_a_spring_is_looked_for_in_two_lengths() -> None:
+    units = dict.fromkeys(("presliding", "loading"), 1.0)
+    own, none = (Scales((0.1, 1.0), (1.0,), True, units, finer) for finer in (1.0, 0.1))
+    records = {record.name: record for record in st.effects()}
+    for name in ("dwell_strengthening", "rate_dependent_breakaway"):
+        one, two = (candidates(records[name], scales) for scales in (own, none))
+        assert len(two) == 2 * len(one)
+        assert {each.shape["window"] for each in two} == {1.0, 0.1}
+    # A refit finds the length of others.
+    gap = records["backlash"]
+    assert len(candidates(gap, none)) == len(candidates(gap, own))
+
+
 def test_a_second_wave_has_another_order() -> None:
     (record,) = (each for each in st.effects() if each.name == "cogging")
     scales = Scales((0.1, 1.0), (1.0, 2.0, 3.0), True, {})

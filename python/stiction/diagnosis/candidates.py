@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Final
 
@@ -32,8 +32,8 @@ WIDER: Final = 1.5
 """A refit may leave the grid of a speed by this factor."""
 MUCH_WIDER: Final = 4.0
 """And that of other sizes by this one."""
-RESTING_SHARE: Final = 1e-3
-"""Of the range of motion: a rest of a contact without a spring."""
+RESTING_SHARES: Final = (1e-3, 1e-4)
+"""Of the range of motion: a rest of a contact without a spring, which has no length of its own."""
 FEWEST_COUNTS: Final = 3.0
 """A rest is no shorter than this many counts of the sensor."""
 ORDER_STEP: Final = 0.5
@@ -55,12 +55,16 @@ class Scales:
     units : dict of str to float
         What the scales ``presliding`` (rad or m), ``loading`` (N·m/s or N/s), ``session`` (s) and
         ``path`` (rad or m) are measured in.
+    finer : float
+        Factor to a second, smaller pre-sliding length that is tried where the contact has none; 1
+        where it has one.
     """
 
     speeds: tuple[float, float]
     orders: tuple[float, ...]
     whole_turns: bool
     units: dict[str, float]
+    finer: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -126,11 +130,15 @@ def scales_of(evidence: Evidence, plant: Plant) -> Scales:
     else:
         orders = (1.0,)
     usual = (float(low), float(max(high, low * 1.01)))
-    return Scales(usual, orders, whole, _units(evidence, plant, span))
+    units, finer = _units(evidence, plant, span)
+    return Scales(usual, orders, whole, units, finer)
 
 
-def _units(evidence: Evidence, plant: Plant, span: float) -> dict[str, float]:
-    """What shapes are measured in that belong to the contact or to the session as a whole."""
+def _units(evidence: Evidence, plant: Plant, span: float) -> tuple[dict[str, float], float]:
+    """What shapes are measured in that belong to the contact or to the session as a whole.
+
+    And the factor from the pre-sliding length to a finer one.
+    """
     values = plant.friction.model().parameters
     sliding = values.get("coulomb", math.inf)
     if not math.isfinite(sliding) or sliding <= 0.0:
@@ -138,18 +146,23 @@ def _units(evidence: Evidence, plant: Plant, span: float) -> dict[str, float]:
     stiffness = values.get("initial_stiffness", 0.0)
     forms = [rows.form for rows in evidence.shown]
     count = max(form.count for form in forms)
+    least = max(FEWEST_COUNTS * count, 1e-12)
     # Without a spring there is no pre-sliding length; a rest is what the sensor takes for one.
-    length = presliding(plant.friction, sliding) if stiffness > 0.0 else RESTING_SHARE * span
+    if stiffness > 0.0:
+        length = finest = max(presliding(plant.friction, sliding), least)
+    else:
+        length, finest = (max(share * span, least) for share in RESTING_SHARES)
     ends = [form.clock + form.time[-1] - form.time[0] for form in forms]
     paths = [form.path + float(np.sum(np.abs(np.diff(form.position)))) for form in forms]
-    return {
-        "presliding": max(length, FEWEST_COUNTS * count, 1e-12),
+    units = {
+        "presliding": length,
         "loading": max(sliding, 1e-300),
         "input": max(1e-300, *(_largest(form, plant) for form in forms)),
         "kernel": min(form.kernel.support for form in forms),
         "session": max(1e-3, *ends),
         "path": max(1e-9, *paths),
     }
+    return units, finest / length
 
 
 def _largest(form: WeakForm, plant: Plant) -> float:
@@ -180,7 +193,13 @@ def left_out(without: Sequence[str]) -> tuple[str, ...]:
 
 def candidates(record: EffectRecord, scales: Scales) -> list[Candidate]:
     """An effect at every point of the grid of its shapes."""
-    return list(_grid(record, scales))
+    found = list(_grid(record, scales))
+    # What a fit may vary finds its own length; what it may not has to be given the right one.
+    held = any(s.scale == "presliding" and not s.fitted for s in record.shapes)
+    if held and scales.finer < 1.0:
+        length = scales.units["presliding"] * scales.finer
+        found += _grid(record, replace(scales, units={**scales.units, "presliding": length}))
+    return found
 
 
 def present(plant: Plant, record: EffectRecord) -> bool:
