@@ -400,6 +400,16 @@ def test_a_refused_effect_that_scored_as_high_is_named_beside_the_cause(tmp_path
     assert "cogging scored" not in text
 
 
+def test_what_lost_to_another_cause_is_no_rival_of_this_one(tmp_path: Path) -> None:
+    whole = undrawn("missing_effect")
+    other = replace(whole.effects[0], name="frictional_lag", look_alikes=())
+    lost = CandidateRow("direction_asymmetry", 0.9, 0.07, 0.3, "frictional_lag explains more")
+    found = replace(whole, effects=(*whole.effects, other), candidates=(*whole.candidates, lost))
+    text = Page(write(found, tmp_path).read_text("utf-8")).text
+    # Its score is a share of another residual.
+    assert "scored as high" not in text
+
+
 def test_a_gain_that_may_be_nothing_is_not_praised(tmp_path: Path) -> None:
     found = replace(undrawn("missing_effect"), gain=Gain(0.03, (-0.4, 0.2)))
     text = Page(write(found, tmp_path).read_text("utf-8")).text
