@@ -11,6 +11,8 @@ from stiction.diagnosis.advice import advise
 from stiction.diagnosis.candidates import Scales
 from stiction.diagnosis.orders import open_orders, order_words
 from stiction.diagnosis.remedies import meant, recorded
+from stiction.diagnosis.result import Unexplained
+from stiction.diagnosis.words import NO_COORDINATE, sentence
 from stiction.fitting.result import FitParameter
 
 EFFECTS = {record.name: record for record in st.effects()}
@@ -47,6 +49,21 @@ def test_a_rig_that_moves_a_specimen_has_no_amplifier_and_no_drive(name: str, mo
     (advice,) = advise((), (), (record,), (), rig) or (None,)
     if advice is not None:
         assert advice.experiment.startswith("move it by ")
+
+
+def test_what_comes_late_is_told_by_its_sign() -> None:
+    def lags(excess: float) -> str:
+        effect = {"name": "frictional_lag", "excess": excess}
+        moved = plant("linear", moved=True).to_dict() | {"effects": [effect]}
+        return meant(EFFECTS["frictional_lag"], st.Plant.from_dict(moved))[0]
+
+    assert "higher while speeding up" in lags(0.3)
+    assert "lower while speeding up" in lags(-0.7)
+
+
+def test_more_than_noise_that_goes_with_nothing_is_said_so() -> None:
+    said = sentence("unexplained", (), None, (Unexplained(NO_COORDINATE, 0.82),), "")
+    assert said.endswith("is more than noise and goes with nothing that was looked at (82 %).")
 
 
 def test_less_than_a_period_over_a_stroke_determines_no_order() -> None:

@@ -21,7 +21,7 @@ from ..recording.split import name_of
 from ..recording.usable import checks_of, usable
 from ..session import Session
 from ..trajectory import FloatArray
-from .advice import NO_COORDINATE, advise
+from .advice import advise
 from .base import based, calibrated
 from .candidates import Scales, left_out, scales_of
 from .ceiling import ceiling_of
@@ -47,7 +47,7 @@ from .rounds import friction_of, search
 from .selection import Search
 from .verdict import relatives, unnamed, verdict_of
 from .view import View
-from .words import no_machine, push_words, sentence, what
+from .words import NO_COORDINATE, no_machine, push_words, sentence, what
 
 __all__ = ["SURROGATES", "diagnose"]
 
