@@ -10,10 +10,11 @@ import stiction as st
 from stiction.diagnosis.advice import advise
 from stiction.diagnosis.candidates import Scales
 from stiction.diagnosis.orders import open_orders, order_words
-from stiction.diagnosis.remedies import meant, recorded
+from stiction.diagnosis.remedies import GOALS, meant, recorded
 from stiction.diagnosis.result import Unexplained
 from stiction.diagnosis.words import NO_COORDINATE, sentence
 from stiction.fitting.result import FitParameter
+from stiction.plan import EXPERIMENTS
 
 EFFECTS = {record.name: record for record in st.effects()}
 
@@ -49,6 +50,26 @@ def test_a_rig_that_moves_a_specimen_has_no_amplifier_and_no_drive(name: str, mo
     (advice,) = advise((), (), (record,), (), rig) or (None,)
     if advice is not None:
         assert advice.experiment.startswith("move it by ")
+
+
+def test_a_servo_is_advised_nothing_that_its_plan_leaves_out() -> None:
+    table = {
+        "drive": {
+            "kind": "servo",
+            "proportional": 1.0,
+            "supply_v": 7.0,
+            "resistance_ohm": 3.0,
+            "torque_constant": 0.3,
+        },
+        "body": {"inertia": 0.002},
+        "friction": {"law": "coulomb"},
+    }
+    servo = st.Plant.from_dict(table)
+    left_out = {each.name for each in EXPERIMENTS if each.kind == "input"}
+    assert left_out == set(GOALS)
+    for record in EFFECTS.values():
+        said = recorded(record.plan, record.experiment, servo)
+        assert said.startswith("send it goals: ") == (record.plan in left_out)
 
 
 def test_what_comes_late_is_told_by_its_sign() -> None:

@@ -126,6 +126,12 @@ def test_a_constant_channel_is_a_fault_unless_the_machine_coasts(
     assert verdict(data, "constant channel") == expected
 
 
+@pytest.mark.parametrize(("on", "expected"), [(1.0, "fine"), (0.0, "note")])
+def test_a_drive_that_is_on_throughout_is_the_ordinary_case(on: float, expected: str) -> None:
+    data = machine() | {"enabled": np.full(ROWS, on)}
+    assert verdict(data, "constant channel") == expected
+
+
 def test_an_optional_channel_that_is_constant_is_noted() -> None:
     data = machine() | {"temperature": np.full(ROWS, 20.0)}
     assert verdict(data, "constant channel") == "note"

@@ -78,6 +78,13 @@ MOTIONS: Final = {
     "chirp": "sines of rising frequency at one amplitude of the motion",
 }
 """What a rig that prescribes the motion does in place of each experiment of ``stiction plan``."""
+GOALS: Final = {
+    "pulses": "large and small steps, with and without a known load",
+    "loops": "small moves nested in one another about a rest, and holds of 5 s and more",
+    "chirp": "sines of rising frequency at one amplitude",
+}
+"""What the goals of a servo do in place of the experiments of ``stiction plan`` that it cannot
+make: it is told where to go, not what to push with."""
 
 
 def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
@@ -94,5 +101,10 @@ def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
 
 
 def recorded(plan: str, what: str, plant: Plant) -> str:
-    """An experiment in words: one of ``stiction plan``, or a motion where a rig prescribes it."""
+    """An experiment in words: one of ``stiction plan``, or a motion where a rig prescribes it.
+
+    A servo that cannot make it is sent goals of another kind.
+    """
+    if plant.servo and plan in GOALS:
+        return f"send it goals: {GOALS[plan]}"
     return f"move it by {MOTIONS[plan]}" if plant.prescribed_motion else f"{plan}: {what}"

@@ -49,6 +49,9 @@ def constant(recording: Recording) -> list[Check]:
     for name, values in channels_of(recording):
         if np.ptp(values) > 0.0:
             continue
+        if name == "enabled" and values[0] != 0.0:
+            # A drive that is on throughout is the ordinary case.
+            continue
         what = f"{name} is {values[0]:.6g} in every row"
         if name == "input" and values[0] == 0.0:
             means = "the machine was left to itself: friction shows, the gain of the drive does not"
