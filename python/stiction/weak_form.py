@@ -23,6 +23,7 @@ from .motion import (
     smooth,
 )
 from .trajectory import FloatArray
+from .wording import NO_POSITION
 
 if TYPE_CHECKING:
     from .motor import Motor
@@ -126,7 +127,7 @@ class WeakForm:
         self.settings = recording.settings
         plant = self.own(plant)
         if recording.position is None:
-            raise InputError(f"{source}: there is no measured position to compare with")
+            raise InputError(f"{source}: {NO_POSITION}")
         self.prescribed = plant.prescribed_motion or recording.input is None
         driving = recording.effort if self.prescribed else recording.input
         if driving is None:
