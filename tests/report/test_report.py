@@ -271,6 +271,8 @@ def test_report_opens_without_a_network(pages: dict[str, Path], verdict: Verdict
     # A phone stacks the cells of a row: each says of what column it is.
     assert len(re.findall(r"<td[ >]", text)) == len(re.findall(r'<td data-label="[^"]', text))
     assert 'name="viewport" content="width=device-width' in text
+    # An interval that does not fit beside its value goes under it, and is not cut off.
+    assert "table.parameters td { flex-wrap: wrap" in text
 
 
 @pytest.mark.parametrize("verdict", VERDICTS)
