@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
 import stiction as st
 from stiction.diagnosis.advice import advise
 from stiction.diagnosis.candidates import Scales
+from stiction.diagnosis.listing import screened
 from stiction.diagnosis.orders import open_orders, order_words
 from stiction.diagnosis.remedies import GOALS, meant, recorded
 from stiction.diagnosis.result import Unexplained
+from stiction.diagnosis.screen import Score
 from stiction.diagnosis.words import NO_COORDINATE, sentence
 from stiction.fitting.result import FitParameter
 from stiction.plan import EXPERIMENTS
@@ -80,6 +84,18 @@ def test_what_comes_late_is_told_by_its_sign() -> None:
 
     assert "higher while speeding up" in lags(0.3)
     assert "lower while speeding up" in lags(-0.7)
+
+
+@pytest.mark.parametrize(
+    ("left", "told"),
+    [(0.096, "all but 10 % of it"), (0.004, "all but 0.4 % of it"), (0.0, "all of")],
+)
+def test_the_share_that_the_base_imitates_is_a_plain_number(left: float, told: str) -> None:
+    candidate = SimpleNamespace(name="run_in")
+    score = SimpleNamespace(
+        testable=False, left=left, candidate=candidate, score=0.0, threshold=0.1, heldout=0.0
+    )
+    assert told in screened(cast("Score", score)).reason
 
 
 def test_more_than_noise_that_goes_with_nothing_is_said_so() -> None:
