@@ -43,6 +43,21 @@ def missing(recording: Recording) -> list[Check]:
     return found or [Check("missing cells", "fine", "no cell and no stamp is missing")]
 
 
+def stress(recording: Recording) -> list[Check]:
+    """A note where what was measured is a stress and no force."""
+    if recording.units.get("effort") != "Pa":
+        return []
+    return [
+        Check(
+            "unit of the effort",
+            "note",
+            "the effort is a stress, in Pa",
+            "what is given in N is in Pa here, and what is given in N·s/m in Pa·s/m",
+            "multiply the stress by the area where forces are wanted",
+        )
+    ]
+
+
 def constant(recording: Recording) -> list[Check]:
     """Channels that never change."""
     found = []
