@@ -17,6 +17,7 @@ from .motion import count_of, evenly, held
 from .residual import free_run, started, starting_velocity
 from .trajectory import FloatArray
 from .weak_form import Start
+from .wording import NO_POSITION
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -259,7 +260,7 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
             "under [columns] as reference"
         )
     if recording.position is None:
-        raise InputError(f"{source}: there is no measured position to compare with")
+        raise InputError(f"{source}: {NO_POSITION}")
     time, dt = evenly(recording.time)
     measured = np.interp(time, recording.time, recording.position)
     reference = held(time, recording.time, recording.channels["reference"])

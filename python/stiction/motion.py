@@ -104,15 +104,17 @@ def smooth(values: FloatArray, dt: float, support: float, *, drifts: bool = Fals
     return np.convolve(np.pad(values, half, "edge"), weights, "valid")
 
 
-def noise_of(position: FloatArray) -> float:
+def noise_of(position: FloatArray, count: float | None = None) -> float:
     """Size of the white noise on a position: what its third differences hold.
 
     A motion that a machine can make hardly shows there: jerk·dt³ is far below a count. Readings
     without counts that repeat to the last digit while the machine rests have no noise; what their
-    third differences hold are the jumps of its acceleration.
+    third differences hold are the jumps of its acceleration. ``count`` is their step where it is
+    known: positions between readings, on even stamps, do not show it any more.
     """
     moved = np.flatnonzero(np.diff(position))
-    if len(moved) > 1 and np.max(np.diff(moved)) > STILL and count_of(position) == 0.0:
+    rests = len(moved) > 1 and np.max(np.diff(moved)) > STILL
+    if rests and (count_of(position) if count is None else count) == 0.0:
         return 0.0
     third = np.diff(position, 3)
     return float(np.sqrt(np.mean(third**2) / 20.0)) if len(third) else 0.0

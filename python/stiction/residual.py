@@ -12,6 +12,7 @@ from .errors import InputError
 from .motion import count_of
 from .trajectory import FloatArray, Trajectory
 from .weak_form import Start, WeakForm
+from .wording import NO_POSITION
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -260,5 +261,5 @@ def starting_velocity(time: FloatArray, position: FloatArray, count: float) -> f
 def _needed(recording: Recording) -> tuple[FloatArray, str]:
     source = str(recording.path) if recording.path is not None else "recording"
     if recording.position is None:
-        raise InputError(f"{source}: there is no measured position to compare with")
+        raise InputError(f"{source}: {NO_POSITION}")
     return recording.position, source

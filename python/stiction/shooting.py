@@ -10,7 +10,6 @@ import numpy as np
 
 from .accompanied import accompanied
 from .errors import InputError
-from .motion import noise_of
 from .trajectory import FloatArray
 from .weak_form import Candidate, Start, WeakForm
 
@@ -75,7 +74,7 @@ class ShootingForm(WeakForm):
 
     def __init__(self, plant: Plant, recording: Recording, *, horizon: float) -> None:
         super().__init__(plant, recording, support=horizon, every=horizon / ROWS_PER_HORIZON)
-        self.white = float(np.sqrt(max(noise_of(self.readings) ** 2 - self.count**2 / 12.0, 0.0)))
+        self.white = float(np.sqrt(max(self.noise**2 - self.count**2 / 12.0, 0.0)))
         least = MOVES_TIMES * max(self.count, 4.0 * self.white)
         self.moves = np.abs(self.velocity) * self.kernel.support > least
 

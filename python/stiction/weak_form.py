@@ -23,6 +23,7 @@ from .motion import (
     smooth,
 )
 from .trajectory import FloatArray
+from .wording import NO_POSITION
 
 if TYPE_CHECKING:
     from .motor import Motor
@@ -102,8 +103,9 @@ class WeakForm:
     kernel : Kernel
     readings, position : numpy.ndarray, shape (rows,)
         Position as it was read, on even stamps, and as it drives friction.
-    count : float
-        Step of the readings, 0 where there is none.
+    count, noise : float
+        Step of the readings, 0 where there is none, and standard deviation of their noise, rounding
+        included; rad or m.
     clock, path : float
         Session clock in s and path travelled in rad or m, at the first row; 0 until they are set.
 
@@ -125,7 +127,7 @@ class WeakForm:
         self.settings = recording.settings
         plant = self.own(plant)
         if recording.position is None:
-            raise InputError(f"{source}: there is no measured position to compare with")
+            raise InputError(f"{source}: {NO_POSITION}")
         self.prescribed = plant.prescribed_motion or recording.input is None
         driving = recording.effort if self.prescribed else recording.input
         if driving is None:
@@ -140,7 +142,9 @@ class WeakForm:
             raise NotEnoughData(_too_few(source, len(time), least))
         x = np.interp(time, recording.time, recording.position)
         u = held(time, recording.time, driving)
-        noise = noise_of(x)
+        # Of the readings themselves: between them, on even stamps, there are no steps.
+        self.count = plant.count or count_of(recording.position)
+        self.noise = noise = noise_of(x, self.count)
         warmth, on = (recording.channels.get(name) for name in ("temperature", "enabled"))
         self.temperature = None if warmth is None else held(time, recording.time, warmth)
         self.enabled = None if on is None else held(time, recording.time, on)
@@ -162,7 +166,6 @@ class WeakForm:
         load = recording.channels.get("load")
         self.load = np.zeros_like(x) if load is None else held(time, recording.time, load)
         self.effort = driven / plant.gain
-        self.count = plant.count or count_of(x)
         white = float(np.sqrt(max(noise**2 - self.count**2 / 12.0, 0.0)))
         flickers = white > FLICKER_SHARE * self.count
         self._backlash = max(self.count, BACKLASH_TIMES * white) if flickers else 0.0

@@ -10,6 +10,12 @@ _ALIKE = 0.55
 # A longer list than this hides what the reader looks for.
 _LISTED = 24
 
+NO_POSITION = (
+    "there is no measured position to compare with; name its column under [columns], as in "
+    'position = "...", or call it position_rad or position_m'
+)
+"""Of a recording without one, where a model is compared with it."""
+
 
 def listed(words: Iterable[str]) -> str:
     """Words joined by commas, at most 24 of them, or "nothing"."""

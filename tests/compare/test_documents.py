@@ -76,6 +76,8 @@ def test_the_command_prints_text_or_json_and_writes_a_page(tmp_path, capsys):
     assert re.search(r"^coulomb .* yes .* 1\.0 \(\d+\)$", text, re.M)
     assert "14 passive" in text
     page = (tmp_path / "compare.html").read_text("utf-8")
+    # A phone stacks the cells of a row: each says of what column it is.
+    assert page.count("<td") == len(re.findall(r'<td data-label="[^"]', page))
     assert page.count("<svg") == 2
     assert "http" not in re.sub(r'xmlns(:\w+)?="[^"]*"', "", page)
     assert "<script" not in page

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
+import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
@@ -72,3 +74,43 @@ def test_a_fit_of_a_law_that_was_interrupted_is_not_compared(
     assert found.message.startswith("interrupted")
     assert found.laws == ()
     assert found.verdict == "nothing_missing"
+
+
+def rival(law: str, power: float, **terms: float) -> laws.Rival:
+    """Another law that leaves so much power where it was fitted."""
+    plant = st.Plant.from_dict(
+        {
+            "motion": {"kind": "linear"},
+            "drive": {"kind": "prescribed_motion"},
+            "friction": {"law": law, **terms},
+        }
+    )
+    model = SimpleNamespace(
+        plant=plant,
+        residual=np.array([np.sqrt(power)]),
+        evidence=SimpleNamespace(fitted=np.array([True])),
+    )
+    return laws.Rival(law, True, cast("Model", model))
+
+
+def test_advice_to_state_a_law_names_the_terms_that_made_it_better() -> None:
+    with_spring = rival("rate_and_state", 1.0, compliance=3.6e-7)
+    assert 'law = "rate_and_state" and compliance = 3.6e-07' in with_spring.advice().experiment
+    assert rival("rate_and_state", 1.0).terms == ()
+    row = laws.law_rows([with_spring], 1, None, 0)[0]
+    assert row.reason.endswith("with compliance = 3.6e-07")
+
+
+def test_the_law_that_follows_a_single_event_is_named_and_comes_first() -> None:
+    own = rival("coulomb", 1.0).model
+    assert own is not None
+    tried = [rival("dahl", 0.95), rival("bristle", 860.0), rival("rate_and_state", 0.445)]
+    said = laws.event_words([*tried, rival("gms", 1.0)], own)
+    assert "rate_and_state follows it most closely" in said
+    assert "0.445 times the power that coulomb leaves there" in said
+    assert laws.event_words(tried[:2], own) == ""
+    rows = laws.law_rows(tried, 1, None, 0, beside=own)
+    assert [row.law for row in rows] == ["rate_and_state", "dahl", "bristle"]
+    assert rows[-1].reason.endswith("over 100 times the power")
+    alike = laws.law_rows([rival("gms", 1.001)], 1, None, 0, beside=own)[0]
+    assert alike.reason.endswith("the same power")

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
 import stiction as st
 from stiction.diagnosis.advice import advise
 from stiction.diagnosis.candidates import Scales
+from stiction.diagnosis.listing import screened
 from stiction.diagnosis.orders import open_orders, order_words
-from stiction.diagnosis.remedies import meant, recorded
+from stiction.diagnosis.remedies import GOALS, meant, recorded
+from stiction.diagnosis.result import Unexplained
+from stiction.diagnosis.screen import Score
+from stiction.diagnosis.words import NO_COORDINATE, sentence
 from stiction.fitting.result import FitParameter
+from stiction.plan import EXPERIMENTS
 
 EFFECTS = {record.name: record for record in st.effects()}
 
@@ -47,6 +54,53 @@ def test_a_rig_that_moves_a_specimen_has_no_amplifier_and_no_drive(name: str, mo
     (advice,) = advise((), (), (record,), (), rig) or (None,)
     if advice is not None:
         assert advice.experiment.startswith("move it by ")
+
+
+def test_a_servo_is_advised_nothing_that_its_plan_leaves_out() -> None:
+    table = {
+        "drive": {
+            "kind": "servo",
+            "proportional": 1.0,
+            "supply_v": 7.0,
+            "resistance_ohm": 3.0,
+            "torque_constant": 0.3,
+        },
+        "body": {"inertia": 0.002},
+        "friction": {"law": "coulomb"},
+    }
+    servo = st.Plant.from_dict(table)
+    left_out = {each.name for each in EXPERIMENTS if each.kind == "input"}
+    assert left_out == set(GOALS)
+    for record in EFFECTS.values():
+        said = recorded(record.plan, record.experiment, servo)
+        assert said.startswith("send it goals: ") == (record.plan in left_out)
+
+
+def test_what_comes_late_is_told_by_its_sign() -> None:
+    def lags(excess: float) -> str:
+        effect = {"name": "frictional_lag", "excess": excess}
+        moved = plant("linear", moved=True).to_dict() | {"effects": [effect]}
+        return meant(EFFECTS["frictional_lag"], st.Plant.from_dict(moved))[0]
+
+    assert "higher while speeding up" in lags(0.3)
+    assert "lower while speeding up" in lags(-0.7)
+
+
+@pytest.mark.parametrize(
+    ("left", "told"),
+    [(0.096, "all but 10 % of it"), (0.004, "all but 0.4 % of it"), (0.0, "all of")],
+)
+def test_the_share_that_the_base_imitates_is_a_plain_number(left: float, told: str) -> None:
+    candidate = SimpleNamespace(name="run_in")
+    score = SimpleNamespace(
+        testable=False, left=left, candidate=candidate, score=0.0, threshold=0.1, heldout=0.0
+    )
+    assert told in screened(cast("Score", score)).reason
+
+
+def test_more_than_noise_that_goes_with_nothing_is_said_so() -> None:
+    said = sentence("unexplained", (), None, (Unexplained(NO_COORDINATE, 0.82),), "")
+    assert said.endswith("is more than noise and goes with nothing that was looked at (82 %).")
 
 
 def test_less_than_a_period_over_a_stroke_determines_no_order() -> None:

@@ -213,6 +213,10 @@ BAD: dict[str, tuple[Callable[[st.Plant], Plan], list[str]]] = {
         lambda p: plan(p, effort=0.2),
         ["0.2", "moves nothing", "give"],
     ),
+    "an effort that moves little": (
+        lambda p: plan(p, effort=0.35),
+        ["0.35", "hardly moves", "most of it"],
+    ),
     "a limit below 0": (lambda p: plan(p, speed=-1.0), ["speed = -1", "above 0"]),
     "an unknown experiment": (lambda p: plan(p, only=("ramp",)), ["ramp", "did you mean 'ramps'"]),
     "a rate of 0": (lambda p: plan(p, rate=0.0), ["rate = 0", "allowed"]),

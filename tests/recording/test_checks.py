@@ -63,6 +63,23 @@ def test_every_check_is_there_once_or_more_and_goes_into_json() -> None:
     assert list(entries[0]) == ["name", "verdict", "what", "means", "try"]
 
 
+def test_a_stress_is_noted_because_reports_say_newton(tmp_path: Path) -> None:
+    data = machine()
+    rows = zip(data["time"], data["position"], strict=True)
+    lines = [f"{t},{x},{0.6 + 0.01 * (k % 7)},20" for k, (t, x) in enumerate(rows)]
+    (tmp_path / "rock.csv").write_text("\n".join(["time_s,x,mu,stress", *lines]))
+    columns = {
+        "position": {"name": "x", "unit": "m"},
+        "friction_coefficient": "mu",
+        "normal_force": {"name": "stress", "unit": "MPa"},
+    }
+    moved = Recording.load(tmp_path / "rock.csv", columns)
+    (one,) = [each for each in check(moved) if each.name == "unit of the effort"]
+    assert one.verdict == "note"
+    assert "N is in Pa" in one.means
+    assert not found(data, "unit of the effort")
+
+
 def test_what_is_not_fine_says_what_it_means_and_what_to_try() -> None:
     data = machine()
     data["position"][100] = -3.14
@@ -123,6 +140,12 @@ def test_a_constant_channel_is_a_fault_unless_the_machine_coasts(
 ) -> None:
     data = machine()
     data[channel] = np.full(ROWS, value)
+    assert verdict(data, "constant channel") == expected
+
+
+@pytest.mark.parametrize(("on", "expected"), [(1.0, "fine"), (0.0, "note")])
+def test_a_drive_that_is_on_throughout_is_the_ordinary_case(on: float, expected: str) -> None:
+    data = machine() | {"enabled": np.full(ROWS, on)}
     assert verdict(data, "constant channel") == expected
 
 

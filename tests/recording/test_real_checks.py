@@ -101,6 +101,11 @@ def test_the_uneven_clock_of_the_pendulum_is_noted(shared_data: Path) -> None:
     assert names["energy_shaping"] == set()
 
 
+def test_the_stress_of_the_rock_is_no_force(shared_data: Path) -> None:
+    (recording,) = recordings(shared_data / "rock_rsf")
+    assert "in Pa" in noted(recording)["unit of the effort"].what
+
+
 def test_the_two_rates_of_the_rock_are_noted_and_are_no_gaps(shared_data: Path) -> None:
     (recording,) = recordings(shared_data / "rock_rsf")
     said = noted(recording)

@@ -271,6 +271,8 @@ def test_report_opens_without_a_network(pages: dict[str, Path], verdict: Verdict
     # A phone stacks the cells of a row: each says of what column it is.
     assert len(re.findall(r"<td[ >]", text)) == len(re.findall(r'<td data-label="[^"]', text))
     assert 'name="viewport" content="width=device-width' in text
+    # An interval that does not fit beside its value goes under it, and is not cut off.
+    assert "table.parameters td { flex-wrap: wrap" in text
 
 
 @pytest.mark.parametrize("verdict", VERDICTS)
@@ -398,6 +400,16 @@ def test_a_refused_effect_that_scored_as_high_is_named_beside_the_cause(tmp_path
     text = Page(write(found, tmp_path).read_text("utf-8")).text
     assert "But direction asymmetry scored as high before being refused" in text
     assert "cogging scored" not in text
+
+
+def test_what_lost_to_another_cause_is_no_rival_of_this_one(tmp_path: Path) -> None:
+    whole = undrawn("missing_effect")
+    other = replace(whole.effects[0], name="frictional_lag", look_alikes=())
+    lost = CandidateRow("direction_asymmetry", 0.9, 0.07, 0.3, "frictional_lag explains more")
+    found = replace(whole, effects=(*whole.effects, other), candidates=(*whole.candidates, lost))
+    text = Page(write(found, tmp_path).read_text("utf-8")).text
+    # Its score is a share of another residual.
+    assert "scored as high" not in text
 
 
 def test_a_gain_that_may_be_nothing_is_not_praised(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from .remedies import recorded
 from .result import Advice, Cause, Unexplained
 from .words import joined
 
-__all__ = ["MOMENTS", "NO_COORDINATE", "advise"]
+__all__ = ["MOMENTS", "advise"]
 
 MOMENTS: Final = "single moments in time"
 """Where what is left comes in bursts that nothing that was looked at goes with."""
@@ -78,8 +78,6 @@ BY_COORDINATE: Final = {
 }
 """An experiment of `stiction plan`, and what matters in it, that shows more of what depends on a
 coordinate."""
-NO_COORDINATE: Final = "nothing that was looked at"
-"""Where more is left than noise and it shows in no coordinate."""
 
 
 def advise(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -22,8 +23,9 @@ from .gain import Gain, HeldOut, gain_of
 from .model import Model
 from .result import Advice, LawRow
 from .selection import Search
+from .words import joined
 
-__all__ = ["THE_LAW", "Rival", "better_law", "law_names", "law_rows", "rivals_of"]
+__all__ = ["THE_LAW", "Rival", "better_law", "event_words", "law_names", "law_rows", "rivals_of"]
 
 THE_LAW: Final = "the friction law"
 """What is left depends on, where another law leaves less of it."""
@@ -35,6 +37,11 @@ WORTH_A_TERM: Final = 0.95
 WORTH_MORE: Final = 0.1
 """Share of what is left with all effects that another law alone must remove to be the likelier
 cause."""
+
+ALIKE: Final = 1.005
+"""Powers are the same up to this ratio: nobody reads a difference in the third digit."""
+MOST_TOLD: Final = 100.0
+"""Beyond so many times the power a number says nothing: the fit of the law has failed."""
 
 _logger = logging.getLogger(__name__)
 
@@ -76,10 +83,19 @@ class Rival:
             f"{100 * self.beside:.0f} % less than {own}{beside}."
         )
 
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """Terms that a fit leaves alone and this one has: ``"compliance = 4.2e-07"``."""
+        if self.model is None:
+            return ()
+        given = self.model.plant.friction.parameters
+        return tuple(f"{n} = {given[n].value:.2g}" for n in _left_alone(self.law) if n in given)
+
     def advice(self) -> Advice:
         """What to do about it."""
+        stated = joined([f'law = "{self.law}"', *self.terms])
         return Advice(
-            f'state law = "{self.law}" in the plant file and diagnose again',
+            f"state {stated} in the plant file and diagnose again",
             "effects beside a law that lacks something stand for that",
             (),
         )
@@ -138,13 +154,7 @@ def _fitted(base: Model, law: str) -> Model | None:
     rig, are tried as well, and stay where they leave less.
     """
     _logger.info("fitting law %s", law)
-    record = next(each for each in all_laws() if each.name == law)
-    offered = {term for effect in effects() for term in effect.law_terms}
-    more = {
-        each.name: Parameter(each.typical)
-        for each in record.parameters
-        if each.optional and each.neutral == 0.0 and each.name not in offered
-    }
+    more = _left_alone(law)
     plain = _launched(base, Friction(law))
     if not more or plain is None or plain.solution.interrupted:
         return plain
@@ -152,6 +162,17 @@ def _fitted(base: Model, law: str) -> Model | None:
     if full is None:
         return plain
     return full if _fitted_power(full) < WORTH_A_TERM * _fitted_power(plain) else plain
+
+
+def _left_alone(law: str) -> dict[str, Parameter]:
+    """Optional terms of a law that a fit leaves neutral and no effect offers, at typical values."""
+    record = next(each for each in all_laws() if each.name == law)
+    offered = {term for effect in effects() for term in effect.law_terms}
+    return {
+        each.name: Parameter(each.typical)
+        for each in record.parameters
+        if each.optional and each.neutral == 0.0 and each.name not in offered
+    }
 
 
 def _launched(base: Model, friction: Friction) -> Model | None:
@@ -181,6 +202,8 @@ def law_rows(
 ) -> tuple[LawRow, ...]:
     """Laws with what they gain over the plant's own, the best first.
 
+    With ``beside`` that one is first which leaves least in the rows that were fitted.
+
     Parameters
     ----------
     rivals : sequence of Rival
@@ -192,12 +215,13 @@ def law_rows(
         The plant's own law, where what matters lies in rows that were fitted: then it is told what
         each law leaves there.
     """
-    rows = []
+    rows: list[tuple[float, LawRow]] = []
     index = first
     for rival in rivals:
         if rival.model is None:
             if rival.asked:
-                rows.append(LawRow(rival.law, None, "could not be fitted to these data"))
+                row = LawRow(rival.law, None, "could not be fitted to these data")
+                rows.append((-math.inf, row))
             continue
         gain: Gain | None = None if test is None else gain_of(test, 0, index, seed)
         index += 1
@@ -207,12 +231,42 @@ def law_rows(
             reason = "fitted, and no rows were left to test on"
         elif gain.ci95[0] > 0.0:
             reason = f"explains {100 * gain.value:.1f} % of what the plant's law leaves"
-        elif gain.ci95[1] < 0.0:
-            reason = f"leaves {1.0 - gain.value:.3g} times the power that the plant's law leaves"
+        elif gain.ci95[1] < 0.0 and 1.0 - gain.value > ALIKE:
+            reason = f"leaves {_times(1.0 - gain.value)} that the plant's law leaves"
         else:
             reason = "explains about as much as the plant's law"
+        if rival.terms:
+            few = len(rival.terms) < 3
+            reason += f", with {joined(rival.terms) if few else 'all of its optional terms'}"
+        place = -1e300 if gain is None else gain.value
         if beside is not None:
-            left = _fitted_power(rival.model) / max(_fitted_power(beside), 1e-300)
-            reason += f"; where it was fitted it leaves {left:.3g} times the power"
-        rows.append(LawRow(rival.law, gain, reason))
-    return tuple(sorted(rows, key=lambda r: -(r.gain.value if r.gain else -1e300)))
+            left = _where_fitted(rival.model, beside)
+            reason += f"; where it was fitted, with the event, it leaves {_times(left)}"
+            place = -left
+        rows.append((place, LawRow(rival.law, gain, reason)))
+    return tuple(row for _, row in sorted(rows, key=lambda each: -each[0]))
+
+
+def event_words(rivals: Sequence[Rival], own: Model) -> str:
+    """Which law follows an event in rows that were fitted, in a sentence; "" where none does."""
+    left = {r.law: _where_fitted(r.model, own) for r in rivals if r.model is not None}
+    best = min(left, key=lambda law: left[law], default=None)
+    if best is None or left[best] > 1.0 - WORTH_MORE:
+        return ""
+    return (
+        f" Of the laws that were compared {best} follows it most closely: fitted to it, it leaves "
+        f"{_times(left[best])} that {own.plant.friction.law} leaves there, which no other rows "
+        "confirm."
+    )
+
+
+def _where_fitted(model: Model, own: Model) -> float:
+    """Power that a model leaves in the rows that were fitted, over what the plant's own leaves."""
+    return _fitted_power(model) / max(_fitted_power(own), 1e-300)
+
+
+def _times(left: float) -> str:
+    """So many times a power, as far as the number tells something."""
+    if abs(left - 1.0) < ALIKE - 1.0:
+        return "the same power"
+    return "over 100 times the power" if left > MOST_TOLD else f"{left:.3g} times the power"

@@ -20,7 +20,8 @@ def screened(score: Score) -> CandidateRow:
     if not score.testable and score.left > IMITATED:
         reason = "not testable: 2 % of the friction would not show beside what else is left"
     elif not score.testable:
-        share = "all" if score.left < 1e-4 else f"all but {100 * score.left:.1g} %"
+        few = f"{100 * score.left:.0f}" if score.left > 0.0095 else f"{100 * score.left:.1g}"
+        share = "all" if score.left < 1e-4 else f"all but {few} %"
         reason = f"not testable: the base imitates {share} of it on these data"
     elif score.score <= score.threshold:
         reason = "explains no more than noise does"

@@ -8,7 +8,6 @@ from typing import Final
 import numpy as np
 
 from ..fitting.rows import Mask, Nuisances, Rows
-from ..motion import noise_of
 from ..plant import Plant
 from ..shooting import ShootingForm
 from ..trajectory import FloatArray
@@ -53,7 +52,7 @@ def measure_noise(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
     """
     form = rows.form
     count = form.count
-    white = max(noise_of(form.readings) ** 2 - count**2 / 12.0, 0.0)
+    white = max(form.noise**2 - count**2 / 12.0, 0.0)
     position = float(np.sqrt(white))
     lag = max(1, round(LAG_SHARE * form.kernel.support / (form.dt * form.stride)))
     counted = _counted(rows, lag)
@@ -68,7 +67,7 @@ def measure_noise(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
         made = _scatter(alone, lag, counted)
     else:
         inertial = np.convolve(form.kernel.weights, [1.0, -2.0, 1.0]) / form.dt**2
-        moved = position**2 + (count**2 / 12.0 if noise_of(form.readings) > 0.0 else 0.0)
+        moved = position**2 + (count**2 / 12.0 if form.noise > 0.0 else 0.0)
         made = form.own(plant).inertia ** 2 * moved * _bent(inertial, samples)
     effort = max(variance - made, 0.0) / _bent(weights, samples)
     return Noise(position, count, float(np.sqrt(effort)))

@@ -21,7 +21,7 @@ from ..recording.split import name_of
 from ..recording.usable import checks_of, usable
 from ..session import Session
 from ..trajectory import FloatArray
-from .advice import NO_COORDINATE, advise
+from .advice import advise
 from .base import based, calibrated
 from .candidates import Scales, left_out, scales_of
 from .ceiling import ceiling_of
@@ -29,7 +29,7 @@ from .confirm import confirmed, described, lost, lost_on_test
 from .coordinates import Look, looks
 from .evidence import Evidence
 from .gain import HeldOut, gain_of, open_residuals
-from .laws import THE_LAW, Rival, better_law, law_names, law_rows, rivals_of
+from .laws import THE_LAW, Rival, better_law, event_words, law_names, law_rows, rivals_of
 from .listing import in_order
 from .lone import lone_event
 from .loop import borne_out, replayed
@@ -47,7 +47,7 @@ from .rounds import friction_of, search
 from .selection import Search
 from .verdict import relatives, unnamed, verdict_of
 from .view import View
-from .words import no_machine, push_words, sentence, what
+from .words import NO_COORDINATE, no_machine, push_words, sentence, what
 
 __all__ = ["SURROGATES", "diagnose"]
 
@@ -363,7 +363,8 @@ def _concluded(
     reason = "These data cannot be tested: the base imitates every effect, so none could be seen."
     event = None if causes else lone_event(evidence, final, test, 0)
     if event is not None and better is None:
-        verdict, reason, unexplained = "not_testable", event.words(), ()
+        followed = event_words(rivals, base) if event.fitted else ""
+        verdict, reason, unexplained = "not_testable", event.words() + followed, ()
     return replace(
         found,
         verdict=verdict,

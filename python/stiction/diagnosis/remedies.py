@@ -59,6 +59,11 @@ MOVED: Final[_Words] = {
     ),
 }
 """Meaning and remedy where a rig moves a specimen and measures the effort."""
+RISING_LAG: Final = (
+    "friction is not a function of speed: it rises with speed, and late, so that it is lower while "
+    "speeding up than while slowing down"
+)
+"""What frictional_lag means where its excess is negative."""
 MOTIONS: Final = {
     "ramps": "constant speeds over three decades, both ways, without rests",
     "turns": "slow full strokes or turns both ways, twice",
@@ -67,22 +72,39 @@ MOTIONS: Final = {
     "dwells": "rests of 0.1 to 5 s, each ended slowly and fast",
     "loops": "small loops nested in one another, and holds of 5 s and more",
     "rests": "5 s of rest and 5 s of constant speed",
-    "cycle": "from cold: a short cycle, again after minutes of rest, again after long fast motion",
+    "cycle": "a short cycle from cold, again after minutes of rest, again after long fast motion",
     "tracking": "sines of many frequencies at once",
     "pulses": "quick moves with rests between them",
     "chirp": "sines of rising frequency at one amplitude of the motion",
 }
 """What a rig that prescribes the motion does in place of each experiment of ``stiction plan``."""
+GOALS: Final = {
+    "pulses": "large and small steps, with and without a known load",
+    "loops": "small moves nested in one another about a rest, and holds of 5 s and more",
+    "chirp": "sines of rising frequency at one amplitude",
+}
+"""What the goals of a servo do in place of the experiments of ``stiction plan`` that it cannot
+make: it is told where to go, not what to push with."""
 
 
 def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
     """What an effect means, and what to do about it."""
     usual = record.means, record.remedy
+    effect = next((each for each in plant.effects if each.name == record.name), None)
+    excess = None if effect is None else effect.parameters.get("excess")
+    if record.name == "frictional_lag" and excess is not None and excess.value < 0.0:
+        # What comes late is a rise of friction with speed, and its loop runs the other way round.
+        usual = RISING_LAG, record.remedy
     if plant.prescribed_motion:
         return MOVED.get(record.name, usual)
     return LINEAR.get(record.name, usual) if plant.motion == "linear" else usual
 
 
 def recorded(plan: str, what: str, plant: Plant) -> str:
-    """An experiment in words: one of ``stiction plan``, or a motion where a rig prescribes it."""
+    """An experiment in words: one of ``stiction plan``, or a motion where a rig prescribes it.
+
+    A servo that cannot make it is sent goals of another kind.
+    """
+    if plant.servo and plan in GOALS:
+        return f"send it goals: {GOALS[plan]}"
     return f"move it by {MOTIONS[plan]}" if plant.prescribed_motion else f"{plan}: {what}"

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
-from .advice import MOMENTS, NO_COORDINATE
+from .advice import MOMENTS
 from .decide import LEAST_GAIN
 from .evidence import Evidence
 from .model import Model
@@ -17,6 +17,7 @@ from .periodic import FREQUENCY
 from .result import Unexplained, Verdict
 from .selection import Search
 from .view import LEAST_SIZE
+from .words import NO_COORDINATE
 
 __all__ = ["relatives", "unnamed", "verdict_of"]
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .result import Cause, Diagnosis, Unexplained, Verdict
 
 __all__ = [
+    "NO_COORDINATE",
     "WORSE",
     "gain_words",
     "joined",
@@ -35,6 +36,8 @@ __all__ = [
     "worse_loop_words",
 ]
 
+NO_COORDINATE = "nothing that was looked at"
+"""Where more is left than noise and it shows in no coordinate."""
 MOST_TOLD = 3
 """Pushes that a sentence names."""
 MOST_ROWS = 5
@@ -110,14 +113,18 @@ def sentence(
         )
     rest = joined([f"{left.coordinate} ({100 * left.share:.0f} %)" for left in unexplained[:3]])
     if verdict == "unexplained":
+        depends = f"still depends on {rest}"
+        if unexplained and unexplained[0].coordinate == NO_COORDINATE:
+            share = f"{100 * unexplained[0].share:.0f} %"
+            depends = f"is more than noise and goes with {NO_COORDINATE} ({share})"
         if not effects:
             return (
-                "Something is missing that no effect of the catalogue explains: the residual still "
-                f"depends on {rest}."
+                "Something is missing that no effect of the catalogue explains: the residual "
+                f"{depends}."
             )
         return (
-            f"The simulation lacks {named}, and something without a name: what is left still "
-            f"depends on {rest}.{gained}"
+            f"The simulation lacks {named}, and something without a name: what is left "
+            f"{depends}.{gained}"
             f"{_unconfirmed(effects)}"
         )
     return f"The simulation lacks {named}.{gained}{_unconfirmed(effects)}"

@@ -177,7 +177,7 @@ def told(forms: Sequence[WeakForm]) -> str:
 
 def _step(form: WeakForm) -> float:
     """Count of the readings, or the one that would make as much noise as they have."""
-    return max(form.count, ROUNDED * noise_of(form.readings))
+    return max(form.count, ROUNDED * form.noise)
 
 
 def _size(parts: Sequence[FloatArray]) -> float:

@@ -118,9 +118,11 @@ def sizes_of(plant: Plant, limits: Limits) -> Sizes:
         taken = listed(
             [f"friction {friction:.3g}", *([f"gravity {weight:.3g}"] if weight > 0.0 else [])]
         )
+        still, least = most <= friction + weight, LEAST_EFFORT * (friction + weight)
+        moves = "moves nothing" if still else "hardly moves the machine"
         raise InputError(
-            f"{plant.source}: an effort of {most:.3g} {plant.effort_unit} moves nothing: {taken} "
-            f"takes it; give {LEAST_EFFORT * (friction + weight):.3g} or more"
+            f"{plant.source}: an effort of {most:.3g} {plant.effort_unit} {moves}: {taken} "
+            f"takes {'it' if still else 'most of it'}; give {least:.3g} or more"
         )
     most *= MARGIN
     spare = SHARE_TO_ACCELERATE * (most - friction - weight)

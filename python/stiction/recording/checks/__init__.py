@@ -31,10 +31,12 @@ def check(recording: Recording) -> tuple[Check, ...]:
     Returns
     -------
     tuple of Check
-        At least one of each name, ``"fine"`` ones included, always in the same order.
+        At least one of each name, ``"fine"`` ones included, always in the same order; where the
+        effort is a stress a note that says so.
     """
     return (
         *readings.missing(recording),
+        *readings.stress(recording),
         clock.jitter(recording),
         clock.gaps(recording),
         clock.rate(recording),

@@ -43,11 +43,29 @@ def missing(recording: Recording) -> list[Check]:
     return found or [Check("missing cells", "fine", "no cell and no stamp is missing")]
 
 
+def stress(recording: Recording) -> list[Check]:
+    """A note where what was measured is a stress and no force."""
+    if recording.units.get("effort") != "Pa":
+        return []
+    return [
+        Check(
+            "unit of the effort",
+            "note",
+            "the effort is a stress, in Pa",
+            "what is given in N is in Pa here, and what is given in N·s/m in Pa·s/m",
+            "multiply the stress by the area where forces are wanted",
+        )
+    ]
+
+
 def constant(recording: Recording) -> list[Check]:
     """Channels that never change."""
     found = []
     for name, values in channels_of(recording):
         if np.ptp(values) > 0.0:
+            continue
+        if name == "enabled" and values[0] != 0.0:
+            # A drive that is on throughout is the ordinary case.
             continue
         what = f"{name} is {values[0]:.6g} in every row"
         if name == "input" and values[0] == 0.0:

@@ -44,9 +44,17 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
 
 
 def _rivals(diagnosis: Diagnosis, cause: Cause) -> list[str]:
-    """Effects that were refused although they score about as high: the reader should know."""
+    """Effects that were refused although they score about as high: the reader should know.
+
+    What lost to another cause was scored beside it, as a share of another residual.
+    """
+    others = {effect.name for effect in diagnosis.effects} - {cause.name}
     named = {cause.name, *cause.look_alikes, *(effect.name for effect in diagnosis.effects)}
-    scores = {row.name: row.score for row in diagnosis.candidates if row.score is not None}
+    scores = {
+        row.name: row.score
+        for row in diagnosis.candidates
+        if row.score is not None and others.isdisjoint(row.reason.split())
+    }
     own = scores.get(cause.name)
     if own is None:
         return []

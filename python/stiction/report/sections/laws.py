@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ...catalogue import laws as catalogue
 from ..numbers import percent, percent_between
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Diagnosis
+    from ...diagnosis.result import Diagnosis, LawRow
     from ..drawings import Drawings
 
 __all__ = ["build"]
+
+FAILED: Final = -10.0
+"""Gain below which its digits say nothing."""
 
 
 def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
@@ -24,11 +27,19 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
         {
             "law": row.law,
             "summary": summaries.get(row.law, ""),
-            "gain": "" if row.gain is None else percent(row.gain.value),
-            "interval": "" if row.gain is None else percent_between(*row.gain.ci95),
+            **_numbers(row),
             "reason": row.reason,
         }
         for row in diagnosis.laws
     ]
     content = {"rows": rows, "own": diagnosis.plant.friction.law}
     return Section("laws", "Other friction laws", content)
+
+
+def _numbers(row: LawRow) -> dict[str, str]:
+    """Gain and its interval; of a law whose fit has failed only that it is far below 0."""
+    if row.gain is None:
+        return {"gain": "", "interval": ""}
+    if row.gain.value < FAILED:
+        return {"gain": f"below {percent(FAILED, 0)}", "interval": ""}
+    return {"gain": percent(row.gain.value), "interval": percent_between(*row.gain.ci95)}
