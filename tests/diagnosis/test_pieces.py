@@ -21,10 +21,9 @@ from stiction.diagnosis.decide import Choice, Trial, choose, strangers
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import Gain, HeldOut, gain_of
 from stiction.diagnosis.model import LEAST_GIVEN, Model, fitted, with_effect
-from stiction.diagnosis.noise import measure_noise
 from stiction.diagnosis.periodic import waves_of
 from stiction.diagnosis.regression import project
-from stiction.diagnosis.replay import centre, surrogate_residuals
+from stiction.diagnosis.replay import centre, noise_of, surrogate_residuals
 from stiction.diagnosis.result import Cause, Diagnosis
 from stiction.diagnosis.screen import Signatures
 from stiction.diagnosis.verdict import relatives
@@ -113,8 +112,8 @@ def test_surrogates_hold_the_noise_that_the_recording_holds() -> None:
     evidence.weigh()
     for rows in evidence.shown:
         # Counts that the contact feels look like noise of the effort too: never less than it is.
-        assert 0.0036 < measure_noise(rows, plant, none).effort < 0.0056
-        assert measure_noise(rows, plant, none).count == pytest.approx(COUNT, rel=1e-6)
+        assert 0.0036 < noise_of(rows, plant, none).effort < 0.0056
+        assert noise_of(rows, plant, none).count == pytest.approx(COUNT, rel=1e-6)
     null, noises = surrogate_residuals(evidence, plant, none, 8, 3)
     again, _ = surrogate_residuals(evidence, plant, none, 8, 3)
     assert np.array_equal(null, again)

@@ -10,8 +10,7 @@ import pytest
 import stiction as st
 from stiction.diagnosis.evidence import Evidence
 from stiction.diagnosis.model import Model, fitted
-from stiction.diagnosis.noise import measure_noise
-from stiction.diagnosis.replay import surrogate_residuals
+from stiction.diagnosis.replay import noise_of, surrogate_residuals
 from stiction.fitting.forms import HORIZONS_S, horizon_of, told
 from stiction.fitting.rows import Nuisances
 from stiction.shooting import ShootingForm
@@ -162,7 +161,7 @@ def test_surrogates_and_noise_are_those_of_a_right_model(coarse: list[st.Recordi
     null, noises = surrogate_residuals(evidence, plant(COARSE), Nuisances(), 6, 0)
     assert 0.6 < np.std(residual) / np.std(null) < 1.5
     for rows in evidence.shown:
-        found = measure_noise(rows, plant(COARSE), Nuisances())
+        found = noise_of(rows, plant(COARSE), Nuisances())
         assert noises[rows.index] == found
         assert found.count == pytest.approx(2.0 * math.pi / COARSE)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -9,10 +10,10 @@ import numpy as np
 
 from ..fitting.rows import Mask, Nuisances, Rows
 from ..plant import Plant
-from ..shooting import ShootingForm
 from ..trajectory import FloatArray
+from ..weak_form import WeakForm
 
-__all__ = ["Noise", "measure_noise"]
+__all__ = ["Noise", "measure_noise", "position_noise"]
 
 LAG_SHARE: Final = 1.0 / 3.0
 """Lag of the second difference that tells noise from misfit, as a share of the kernel's support:
@@ -42,35 +43,41 @@ class Noise:
     effort: float
 
 
-def measure_noise(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
+def measure_noise(
+    rows: Rows, plant: Plant, nuisances: Nuisances, alone: Sequence[FloatArray] = ()
+) -> Noise:
     """Noise of one recording, from what changes too fast for a machine.
 
     Position: third differences, less what rounding makes. Effort: second differences of the
-    residual over a third of the kernel, less what the position noise makes in the inertia term, or
-    in simulations that start from it.
+    residual over a third of the kernel, less what readings alone make of them. What rounding makes
+    of a machine that goes at a constant speed, or rests, is no white noise: it is tried out.
     The median over all rows keeps reversals and other misfit out.
+
+    Parameters
+    ----------
+    rows : Rows
+    plant : Plant
+    nuisances : Nuisances
+    alone : sequence of numpy.ndarray, shape (rows,)
+        Residuals of a motion that the plant makes, read by this sensor without noise of the effort.
+        Without them readings count as exact.
     """
     form = rows.form
-    count = form.count
-    white = max(form.noise**2 - count**2 / 12.0, 0.0)
-    position = float(np.sqrt(white))
+    count, position = form.count, position_noise(form)
     lag = max(1, round(LAG_SHARE * form.kernel.support / (form.dt * form.stride)))
     counted = _counted(rows, lag)
     if not counted.any():
         return Noise(position, count, 0.0)
     variance = _scatter(rows.residual(plant, nuisances), lag, counted)
-    samples = lag * form.stride
+    made = float(np.mean([_scatter(each, lag, counted) for each in alone])) if alone else 0.0
     weights = np.convolve(form.kernel.weights, [0.5, 0.5])
-    if isinstance(form, ShootingForm):
-        # What rounding makes of the start of a window is not white: it is tried out.
-        alone = form.from_readings_alone(plant, nuisances.start(rows.index))
-        made = _scatter(alone, lag, counted)
-    else:
-        inertial = np.convolve(form.kernel.weights, [1.0, -2.0, 1.0]) / form.dt**2
-        moved = position**2 + (count**2 / 12.0 if form.noise > 0.0 else 0.0)
-        made = form.own(plant).inertia ** 2 * moved * _bent(inertial, samples)
-    effort = max(variance - made, 0.0) / _bent(weights, samples)
+    effort = max(variance - made, 0.0) / _bent(weights, lag * form.stride)
     return Noise(position, count, float(np.sqrt(effort)))
+
+
+def position_noise(form: WeakForm) -> float:
+    """White noise of the position beside the rounding to counts, rad or m."""
+    return float(np.sqrt(max(form.noise**2 - form.count**2 / 12.0, 0.0)))
 
 
 def _counted(rows: Rows, lag: int) -> Mask:

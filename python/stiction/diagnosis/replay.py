@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -17,15 +18,18 @@ from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from ..weak_form import Start, WeakForm
 from .evidence import Evidence
-from .noise import Noise, measure_noise
+from .noise import Noise, measure_noise, position_noise
 
-__all__ = ["centre", "shared", "surrogate_residuals"]
+__all__ = ["centre", "noise_of", "shared", "surrogate_residuals"]
 
 _logger = logging.getLogger(__name__)
 
 SMOOTHING_SHARE: Final = 1.0 / 3.0
 """Support over which the measured motion is smoothed to stand for the true one, as a share of the
 kernel's: rounding is gone, and what the kernel sees is not."""
+
+TRIED: Final = 2
+"""Readings of a motion without noise of the effort, to see what they make of the residual."""
 
 _Residual = Callable[[FloatArray, FloatArray], FloatArray]
 """Residual of readings, shape (rows,), and of white noise on the effort, shape (rows,)."""
@@ -60,39 +64,70 @@ def surrogate_residuals(
     """
 
     def one(rows: Rows) -> tuple[FloatArray, Noise]:
-        noise = measure_noise(rows, plant, nuisances)
-        source = np.random.default_rng([seed, rows.index])
-        return rows.weight * _replayed(rows, plant, nuisances, noise, number, source), noise
+        replay = _Replay.of(rows, plant, nuisances)
+        noise = replay.noise()
+        return rows.weight * replay.columns(noise, number, seed), noise
 
     found = evidence.each(one, evidence.shown)
     noises = {rows.index: noise for rows, (_, noise) in zip(evidence.shown, found, strict=True)}
     return np.concatenate([columns for columns, _ in found]), noises
 
 
-def _replayed(
-    rows: Rows,
-    plant: Plant,
-    nuisances: Nuisances,
-    noise: Noise,
-    number: int,
-    source: np.random.Generator,
-) -> FloatArray:
-    form = rows.form
-    start = nuisances.start(rows.index)
-    if isinstance(form, ShootingForm):
-        motion, residual = _shot(form, plant, start)
-    else:
-        motion, residual = _slid(form, plant, start) or _followed(form, plant, start)
-    columns = np.empty((int(rows.mask.sum()), number))
-    for k in range(number):
-        readings = motion + noise.position * source.standard_normal(len(motion))
-        if noise.count > 0.0:
+def noise_of(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
+    """Noise of one recording beside a plant that describes it."""
+    return _Replay.of(rows, plant, nuisances).noise()
+
+
+@dataclass(frozen=True)
+class _Replay:
+    """A motion that a plant makes, near that of a recording, and the residual of its readings."""
+
+    rows: Rows
+    plant: Plant
+    nuisances: Nuisances
+    motion: FloatArray
+    residual: _Residual
+
+    @classmethod
+    def of(cls, rows: Rows, plant: Plant, nuisances: Nuisances) -> _Replay:
+        form, start = rows.form, nuisances.start(rows.index)
+        if isinstance(form, ShootingForm):
+            motion, residual = _shot(form, plant, start)
+        else:
+            motion, residual = _slid(form, plant, start) or _followed(form, plant, start)
+        return cls(rows, plant, nuisances, motion, residual)
+
+    def noise(self) -> Noise:
+        """Noise of the recording, less what reading this motion makes by itself."""
+        form = self.rows.form
+        if isinstance(form, ShootingForm):
+            start = self.nuisances.start(self.rows.index)
+            alone = [form.from_readings_alone(self.plant, start)]
+        else:
+            source = np.random.default_rng(self.rows.index)
+            white, still = position_noise(form), np.zeros(len(self.motion))
+            alone = [self.residual(self._read(white, source), still) for _ in range(TRIED)]
+        return measure_noise(self.rows, self.plant, self.nuisances, alone)
+
+    def columns(self, noise: Noise, number: int, seed: int) -> FloatArray:
+        """Residuals of the rows that count, of so many replays; shape (rows, number)."""
+        source = np.random.default_rng([seed, self.rows.index])
+        columns = np.empty((int(self.rows.mask.sum()), number))
+        for k in range(number):
+            readings = self._read(noise.position, source)
+            added = noise.effort * source.standard_normal(len(self.motion))
+            columns[:, k] = self.residual(readings, added)[self.rows.mask]
+        return columns
+
+    def _read(self, white: float, source: np.random.Generator) -> FloatArray:
+        """The motion as the sensor reads it."""
+        form = self.rows.form
+        readings = self.motion + white * source.standard_normal(len(self.motion))
+        if form.count > 0.0:
             # Where a rigid contact stops between two counts changes what is read of the stop.
             begin = 0.0 if form.springy else source.uniform(-0.5, 0.5)
-            readings = np.round(readings / noise.count + begin) * noise.count
-        added = noise.effort * source.standard_normal(len(motion))
-        columns[:, k] = residual(readings, added)[rows.mask]
-    return columns
+            readings = np.round(readings / form.count + begin) * form.count
+        return readings
 
 
 def _followed(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
