@@ -7,6 +7,7 @@
 
 use stiction_dispatch::Task;
 
+use super::clock::after_steps;
 use super::machine::Run;
 use std::ops::Range;
 
@@ -205,9 +206,9 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         let steps = |samples: usize, part: u32| samples * self.parts as usize - part as usize;
         let (mut time, part) = (self.run.time, self.part);
         if self.seen.still(samples.clone(), &self.run, |k| self.efforts.at(k)) {
-            for _ in 0..steps(held, part) {
-                time += self.verlet.span;
-            }
+            // Of what a bare body does nothing asks for derivatives of time.
+            let passed = after_steps(time.re(), self.verlet.span.re(), steps(held, part));
+            time = time.with_value(passed);
         } else {
             for k in samples.clone() {
                 for _ in 0..steps(1, if k == start { part } else { 0 }) {
@@ -232,9 +233,9 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
     {
         let run = &mut self.run;
         run.position += displacement;
-        run.path += displacement.abs();
-        run.moved += displacement;
-        run.time += self.verlet.span;
+        // Nobody asks a bare body for derivatives of these, nor how far it has moved for its effects.
+        run.path = run.path + displacement.re().abs();
+        run.time = run.time + self.verlet.span.re();
         run.velocity = velocity;
         run.friction = friction;
         self.part += 1;

@@ -6,6 +6,7 @@
 //! all go through the same loop.
 
 mod adaptive;
+mod clock;
 mod contact;
 mod events;
 mod fast;
