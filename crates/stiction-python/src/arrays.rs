@@ -44,8 +44,13 @@ pub fn samples<'py>(
         return Err(input_error(py, format!("{name} is empty; give at least one sample")));
     }
     let array = array.readonly();
-    if let Some(bad) = array.as_slice()?.iter().position(|x| !x.is_finite()) {
-        let given = array.as_slice()?[bad];
+    let values = array.as_slice()?;
+    // By chunks without a choice in them, which become vectors.
+    let finite = |some: &[f64]| some.iter().fold(true, |all, x| all & x.is_finite());
+    if !values.chunks(64).all(finite)
+        && let Some(bad) = values.iter().position(|x| !x.is_finite())
+    {
+        let given = values[bad];
         return Err(input_error(
             py,
             format!("{name}[{bad}] = {given} is not a finite number; repair or drop the sample"),
