@@ -61,7 +61,7 @@ impl<S: Scalar> Verlet<S> {
     /// Velocity predicted for the end of the step, `net` with all friction at the start.
     #[inline(always)]
     pub fn predicted(&self, velocity: S, net: S) -> S {
-        velocity + self.pace * net
+        (velocity + self.pace * net).alone()
     }
 
     /// Velocity at the end: `both` efforts, less friction at the start alone, and that at the end
@@ -90,6 +90,14 @@ impl<S: Scalar> Verlet<S> {
     #[inline(always)]
     fn over_half(&self, number: S) -> S {
         if S::CARRIES && !self.located { number * self.half.re() } else { number * self.half }
+    }
+
+    /// [`Self::share`] and [`Self::braking`] where nothing damps, in no one's eyes the same quotient: else
+    /// every step had a division.
+    #[inline(always)]
+    pub fn free(&self) -> (S, S) {
+        let share = self.share(S::constant(0.0)).alone();
+        (share, self.braking(share))
     }
 
     /// What a unit of undamped friction at the end takes off the velocity there.
@@ -123,10 +131,52 @@ pub trait Seen<S: Scalar, T> {
     fn see(&mut self, sample: usize, run: &Run<S>, contact: &T);
 }
 
+/// The places of position and velocity, where nothing else is wanted of a row of plain steps: what a
+/// loop does not ask in every sample.
+#[derive(Debug)]
+pub struct Places<'a, S> {
+    /// The sample that the first place is for.
+    pub first: usize,
+    /// Positions.
+    pub position: &'a mut [S],
+    /// Velocities, as many.
+    pub velocity: &'a mut [S],
+}
+
+impl<S: Scalar, T> Seen<S, T> for Places<'_, S> {
+    #[inline(always)]
+    fn looks(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn still(&mut self, samples: Range<usize>, run: &Run<S>, _: impl Fn(usize) -> S) -> bool {
+        let places = samples.start - self.first..samples.end - self.first;
+        self.position[places.clone()].fill(run.position);
+        self.velocity[places].fill(run.velocity);
+        true
+    }
+
+    #[inline(always)]
+    fn see(&mut self, sample: usize, run: &Run<S>, _: &T) {
+        let place = sample - self.first;
+        self.position[place] = run.position;
+        self.velocity[place] = run.velocity;
+    }
+}
+
 /// All effort but friction, sample by sample. A trait, for a closure cannot ask to be part of the loop.
 pub trait Efforts<S> {
     /// During this sample.
     fn at(&self, sample: usize) -> S;
+    /// How many of these samples in a row have no effort above this.
+    #[inline(always)]
+    fn within(&self, samples: Range<usize>, greatest: f64) -> usize
+    where
+        S: Scalar,
+    {
+        samples.take_while(|k| self.at(*k).re().abs() <= greatest).count()
+    }
 }
 
 /// Goes through all steps with a law that knows no events and asks for nothing but the motion: each
@@ -198,7 +248,7 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         V: Seen<S, T>,
     {
         let Range { start, end } = self.samples;
-        let held = (start..end).take_while(|k| self.efforts.at(*k).re().abs() <= greatest).count();
+        let held = self.efforts.within(start..end, greatest);
         if held == 0 {
             return None;
         }
