@@ -95,13 +95,16 @@ class Motor(_native.Motor):
         if isinstance(outputs, str):
             raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
         names = None if outputs is None else list(outputs)
-        start = float(self.state["time"])
+        start = self.clock
         columns = self.run(
             current, dt, load=load, temperature=temperature, enabled=enabled, outputs=names, out=out
         )
         length = len(next(iter(columns.values()))) if columns else np.size(current)
         steps: float | FloatArray
-        steps = float(np.asarray(dt)) if np.ndim(dt) == 0 else np.array(dt, dtype=np.float64)
+        if isinstance(dt, float):
+            steps = float(dt)
+        else:
+            steps = float(np.asarray(dt)) if np.ndim(dt) == 0 else np.array(dt, dtype=np.float64)
         return Trajectory(columns, steps, length, start=start, statistics=self.statistics)
 
     def simulate_segments(
@@ -159,7 +162,7 @@ class Motor(_native.Motor):
         if isinstance(outputs, str):
             raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
         names = None if outputs is None else list(outputs)
-        start = float(self.state["time"])
+        start = self.clock
         rows, columns, cost = self.run_segments(
             durations, current, tolerance=tolerance, times=times, load=load,
             temperature=temperature, enabled=enabled, outputs=names,

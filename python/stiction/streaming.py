@@ -93,7 +93,7 @@ def _streamed(
 ) -> Iterator[Trajectory]:
     path = None if checkpoint is None else Path(checkpoint)
     identity = _identity(motor, dt, every, load)
-    start = float(motor.state["time"])
+    start = motor.clock
     passed = 0
     if path is not None and path.exists():
         passed, start = _resume(motor, path, identity)

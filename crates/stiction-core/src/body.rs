@@ -31,11 +31,17 @@ impl<S: Scalar> Body<S> {
     /// Effort of gravity, positive along +x.
     #[inline]
     pub fn gravity(&self, position: S) -> S {
-        let weight = -self.weight;
+        let weight = self.level_gravity();
         if self.gravity {
             weight - self.gravity_amplitude * (position - self.gravity_zero).sin()
         } else {
             weight
         }
+    }
+
+    /// The same where it is the same everywhere.
+    #[inline(always)] // a loop over rows of derivatives asks for it in every sample
+    pub fn level_gravity(&self) -> S {
+        -self.weight
     }
 }

@@ -5,7 +5,7 @@
 //! is a [`Task`]. Products and sums are rounded one by one at every width, so that results are the
 //! same to the bit on every processor and for every set of columns.
 
-use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Div, Index, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use stiction_dispatch::{Task, Width, alone};
 
@@ -15,11 +15,27 @@ use crate::scalar::Scalar;
 pub const COLUMNS: usize = 16;
 
 /// A value with its derivatives with respect to [`COLUMNS`] seeded parameters.
+///
+/// The value does not lie beside the row: the compiler would read both as one vector, which has to
+/// wait until what was written in two parts is in the cache.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct Dual {
+    re: f64,
+    slopes: Row,
+}
+
+/// Derivatives, as vectors lie in memory.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
-pub struct Dual {
-    slopes: [f64; COLUMNS],
-    re: f64,
+struct Row([f64; COLUMNS]);
+
+impl Index<usize> for Row {
+    type Output = f64;
+    #[inline(always)]
+    fn index(&self, column: usize) -> &f64 {
+        &self.0[column]
+    }
 }
 
 impl Dual {
@@ -31,13 +47,13 @@ impl Dual {
             *place = slope(column);
         }
         // Among vectors that the compiler makes of values, rows would come apart.
-        Self { slopes, re: alone(re) }
+        Self { re: alone(re), slopes: Row(slopes) }
     }
 
     /// All derivatives.
     #[inline(always)]
     pub fn slopes(&self) -> &[f64; COLUMNS] {
-        &self.slopes
+        &self.slopes.0
     }
 }
 
@@ -144,12 +160,12 @@ impl Scalar for Dual {
 
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self { slopes: [0.0; COLUMNS], re: value }
+        Self { re: value, slopes: Row([0.0; COLUMNS]) }
     }
     #[inline(always)]
     fn variable(value: f64, column: usize) -> Self {
         let mut own = Self::constant(value);
-        own.slopes[column] = 1.0;
+        own.slopes.0[column] = 1.0;
         own
     }
     #[inline(always)]
@@ -169,8 +185,12 @@ impl Scalar for Dual {
         Self::new(value, |k| self.slopes[k])
     }
     #[inline(always)]
+    fn alone(self) -> Self {
+        self // every value is
+    }
+    #[inline(always)]
     fn derivative_is_nonzero(self) -> bool {
-        self.slopes.iter().fold(false, |any, slope| any | (*slope != 0.0))
+        self.slopes.0.iter().fold(false, |any, slope| any | (*slope != 0.0))
     }
     #[inline(always)]
     fn run<T: Task>(task: T) -> T::Output {

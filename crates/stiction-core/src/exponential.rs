@@ -41,9 +41,9 @@ fn parts<N: Numbers>(x: N, sign: N, kept: impl Fn(N) -> N) -> (N, N, N) {
     let scale = rounded.power_of_two() * sign;
     let square = r * r;
     let fourth = square * square;
-    let low = (q(0) + r * q(1)) + square * (q(2) + r * q(3));
-    let middle = kept((q(4) + r * q(5)) + square * (q(6) + r * q(7)));
-    let high = (fourth * fourth) * (q(8) + r * q(9));
+    let low = (q(0) + r * q(1)) + kept(square * (q(2) + r * q(3)));
+    let middle = kept((q(4) + r * q(5)) + kept(square * (q(6) + r * q(7))));
+    let high = kept((fourth * fourth) * (q(8) + r * q(9)));
     (scale, scale * r, (scale * square) * ((low + high) + fourth * middle))
 }
 

@@ -4,7 +4,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use stiction_dispatch::Task;
+use stiction_dispatch::{Task, alone};
 
 pub use crate::dual::{COLUMNS, Dual};
 use crate::trig::sin_cos;
@@ -44,6 +44,9 @@ pub trait Scalar:
     fn chain(self, value: f64, slope: f64) -> Self;
     /// The same derivatives with this value: the same quantity, summed in another order.
     fn with_value(self, value: f64) -> Self;
+
+    /// The number, as one that is in no vector of values, see [`alone`].
+    fn alone(self) -> Self;
 
     /// e^x.
     #[inline(always)]
@@ -170,6 +173,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn with_value(self, value: f64) -> Self {
         value
+    }
+    #[inline(always)]
+    fn alone(self) -> Self {
+        alone(self)
     }
     #[inline(always)]
     fn run<T: Task>(task: T) -> T::Output {

@@ -5,7 +5,7 @@ use crate::integrate::{Machine, Run};
 use crate::kernel::RowKernel;
 use crate::motor::{MotorSpec, PerSample, Rows, Running, Surroundings};
 use crate::scalar::{COLUMNS, Dual, Scalar};
-use crate::traces::{Stretch, Traces, put};
+use crate::traces::{Stretch, Traces, put_all};
 
 /// Derivatives of position and velocity at the end of every sample.
 #[derive(Debug, Clone)]
@@ -16,10 +16,14 @@ pub struct Sensitivity {
     pub velocity: Vec<f64>,
 }
 
+/// Samples whose derivatives are put into the rows at once: rows lie apart, and a processor keeps
+/// few pages at hand to write to.
+const ONCE: usize = 8;
+
 /// Where the derivatives of a pass go.
 struct Slopes<'a> {
-    position: &'a mut [f64],
-    velocity: &'a mut [f64],
+    /// Rows of position and velocity, and what is not in them yet.
+    rows: [(&'a mut [f64], [[f64; COLUMNS]; ONCE]); 2],
     samples: usize,
 }
 
@@ -31,8 +35,13 @@ impl Rows<Dual> for Slopes<'_> {
 
     #[inline(always)] // where it is called, the motion is in registers
     fn see(&mut self, k: usize, run: &Run<Dual>, _: &Machine<Dual>, _: impl Fn(usize) -> Dual) {
-        put(self.position, self.samples, k, run.position.slopes());
-        put(self.velocity, self.samples, k, run.velocity.slopes());
+        let place = k % ONCE;
+        for ((rows, held), of) in self.rows.iter_mut().zip([&run.position, &run.velocity]) {
+            held[place] = *of.slopes();
+            if place + 1 == ONCE || k + 1 == self.samples {
+                put_all(rows, self.samples, k - place, &held[..=place]);
+            }
+        }
     }
 }
 
@@ -139,7 +148,8 @@ pub fn sensitivity_into(
     passes(spec, start.into(), paths, |running, first, number| {
         let own = first * samples..(first + number) * samples;
         let (position, velocity) = (&mut position[own.clone()], &mut velocity[own]);
-        let slopes = Slopes { position, velocity, samples };
+        let rows = [position, velocity].map(|rows| (rows, [[0.0; COLUMNS]; ONCE]));
+        let slopes = Slopes { rows, samples };
         running.simulate_rows(inputs, around, |_| Dual::constant(0.0), dt, slopes)
     })
 }

@@ -95,13 +95,9 @@ impl Servo {
 /// A number held within ± a limit.
 #[inline]
 pub fn within<S: Scalar>(value: S, limit: f64) -> S {
-    if value.re() > limit {
-        S::constant(limit)
-    } else if value.re() < -limit {
-        S::constant(-limit)
-    } else {
-        value
-    }
+    // The lesser and the greater of two, for which processors have instructions.
+    let held = if limit < value.re() { S::constant(limit) } else { value };
+    if held.re() < -limit { S::constant(-limit) } else { held }
 }
 
 #[cfg(test)]

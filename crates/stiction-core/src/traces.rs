@@ -130,6 +130,17 @@ pub fn put(rows: &mut [f64], samples: usize, k: usize, slopes: &[f64; COLUMNS]) 
     }
 }
 
+/// Writes what stands for some samples from `first` on into one row after the other, for as many as
+/// there are.
+#[inline(always)]
+pub fn put_all(rows: &mut [f64], samples: usize, first: usize, slopes: &[[f64; COLUMNS]]) {
+    for (column, row) in rows.chunks_exact_mut(samples).take(COLUMNS).enumerate() {
+        for (place, slopes) in row[first..first + slopes.len()].iter_mut().zip(slopes) {
+            *place = slopes[column];
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

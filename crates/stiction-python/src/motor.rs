@@ -665,6 +665,12 @@ impl Motor {
         Ok(())
     }
 
+    /// Time on the session clock in s: what the state calls ``time``.
+    #[getter]
+    fn clock(&self) -> f64 {
+        self.lock().running().run.time
+    }
+
     /// State of body and friction as a dict of floats and arrays; assign one to continue from it.
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

@@ -7,6 +7,7 @@
 
 use stiction_dispatch::Task;
 
+use super::clock::after_steps;
 use super::machine::Run;
 use std::ops::Range;
 
@@ -60,7 +61,7 @@ impl<S: Scalar> Verlet<S> {
     /// Velocity predicted for the end of the step, `net` with all friction at the start.
     #[inline(always)]
     pub fn predicted(&self, velocity: S, net: S) -> S {
-        velocity + self.pace * net
+        (velocity + self.pace * net).alone()
     }
 
     /// Velocity at the end: `both` efforts, less friction at the start alone, and that at the end
@@ -89,6 +90,14 @@ impl<S: Scalar> Verlet<S> {
     #[inline(always)]
     fn over_half(&self, number: S) -> S {
         if S::CARRIES && !self.located { number * self.half.re() } else { number * self.half }
+    }
+
+    /// [`Self::share`] and [`Self::braking`] where nothing damps, in no one's eyes the same quotient: else
+    /// every step had a division.
+    #[inline(always)]
+    pub fn free(&self) -> (S, S) {
+        let share = self.share(S::constant(0.0)).alone();
+        (share, self.braking(share))
     }
 
     /// What a unit of undamped friction at the end takes off the velocity there.
@@ -122,10 +131,52 @@ pub trait Seen<S: Scalar, T> {
     fn see(&mut self, sample: usize, run: &Run<S>, contact: &T);
 }
 
+/// The places of position and velocity, where nothing else is wanted of a row of plain steps: what a
+/// loop does not ask in every sample.
+#[derive(Debug)]
+pub struct Places<'a, S> {
+    /// The sample that the first place is for.
+    pub first: usize,
+    /// Positions.
+    pub position: &'a mut [S],
+    /// Velocities, as many.
+    pub velocity: &'a mut [S],
+}
+
+impl<S: Scalar, T> Seen<S, T> for Places<'_, S> {
+    #[inline(always)]
+    fn looks(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn still(&mut self, samples: Range<usize>, run: &Run<S>, _: impl Fn(usize) -> S) -> bool {
+        let places = samples.start - self.first..samples.end - self.first;
+        self.position[places.clone()].fill(run.position);
+        self.velocity[places].fill(run.velocity);
+        true
+    }
+
+    #[inline(always)]
+    fn see(&mut self, sample: usize, run: &Run<S>, _: &T) {
+        let place = sample - self.first;
+        self.position[place] = run.position;
+        self.velocity[place] = run.velocity;
+    }
+}
+
 /// All effort but friction, sample by sample. A trait, for a closure cannot ask to be part of the loop.
 pub trait Efforts<S> {
     /// During this sample.
     fn at(&self, sample: usize) -> S;
+    /// How many of these samples in a row have no effort above this.
+    #[inline(always)]
+    fn within(&self, samples: Range<usize>, greatest: f64) -> usize
+    where
+        S: Scalar,
+    {
+        samples.take_while(|k| self.at(*k).re().abs() <= greatest).count()
+    }
 }
 
 /// Goes through all steps with a law that knows no events and asks for nothing but the motion: each
@@ -197,7 +248,7 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         V: Seen<S, T>,
     {
         let Range { start, end } = self.samples;
-        let held = (start..end).take_while(|k| self.efforts.at(*k).re().abs() <= greatest).count();
+        let held = self.efforts.within(start..end, greatest);
         if held == 0 {
             return None;
         }
@@ -205,9 +256,9 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         let steps = |samples: usize, part: u32| samples * self.parts as usize - part as usize;
         let (mut time, part) = (self.run.time, self.part);
         if self.seen.still(samples.clone(), &self.run, |k| self.efforts.at(k)) {
-            for _ in 0..steps(held, part) {
-                time += self.verlet.span;
-            }
+            // Of what a bare body does nothing asks for derivatives of time.
+            let passed = after_steps(time.re(), self.verlet.span.re(), steps(held, part));
+            time = time.with_value(passed);
         } else {
             for k in samples.clone() {
                 for _ in 0..steps(1, if k == start { part } else { 0 }) {
@@ -232,9 +283,9 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
     {
         let run = &mut self.run;
         run.position += displacement;
-        run.path += displacement.abs();
-        run.moved += displacement;
-        run.time += self.verlet.span;
+        // Nobody asks a bare body for derivatives of these, nor how far it has moved for its effects.
+        run.path = run.path + displacement.re().abs();
+        run.time = run.time + self.verlet.span.re();
         run.velocity = velocity;
         run.friction = friction;
         self.part += 1;

@@ -233,9 +233,9 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Gravity and added efforts of a bare machine.
-    #[inline]
+    #[inline(always)]
     pub(super) fn weight(&self) -> S {
-        self.body.gravity(S::constant(0.0)) + 0.0
+        self.body.level_gravity() + 0.0
     }
 
     /// Whether a run is as a step of this bare machine leaves it.

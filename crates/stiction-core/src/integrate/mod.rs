@@ -6,6 +6,7 @@
 //! all go through the same loop.
 
 mod adaptive;
+mod clock;
 mod contact;
 mod events;
 mod fast;
@@ -20,7 +21,7 @@ mod swing;
 pub use adaptive::{Account, Adaptive};
 pub use contact::{Along, Held};
 pub use events::{Stepper, quiet, through_events};
-pub use glide::{Efforts, Glide, Plain, Seen, Verlet, glide_on};
+pub use glide::{Efforts, Glide, Places, Plain, Seen, Verlet, glide_on};
 pub use machine::{Machine, Run};
 pub use shaft::Beyond;
 

@@ -55,8 +55,6 @@ pub struct Bodies {
     pub friction: Row,
     /// Path travelled.
     pub path: Row,
-    /// Displacement since effects last remembered.
-    pub moved: Row,
     /// Time.
     pub time: Row,
     /// Duration of a step.
@@ -87,7 +85,6 @@ impl Bodies {
             velocity: zero,
             friction: zero,
             path: zero,
-            moved: zero,
             time: zero,
             span: zero,
             half: zero,
@@ -118,7 +115,6 @@ impl Bodies {
         self.velocity.0[lane] = run.velocity.re();
         self.friction.0[lane] = run.friction.re();
         self.path.0[lane] = run.path.re();
-        self.moved.0[lane] = run.moved.re();
         self.time.0[lane] = run.time.re();
     }
 
@@ -129,7 +125,6 @@ impl Bodies {
         run.velocity = S::constant(self.velocity.0[lane]);
         run.friction = S::constant(self.friction.0[lane]);
         run.path = S::constant(self.path.0[lane]);
-        run.moved = S::constant(self.moved.0[lane]);
         run.time = S::constant(self.time.0[lane]);
     }
 
@@ -187,7 +182,6 @@ impl Bodies {
     ) {
         self.position.add(lane, plain, displacement);
         self.path.add(lane, plain, displacement.abs());
-        self.moved.add(lane, plain, displacement);
         self.time.add(lane, plain, self.span.0[lane]);
         self.velocity.take(lane, plain, velocity);
         self.friction.take(lane, plain, friction);

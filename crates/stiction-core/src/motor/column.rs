@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::error::{Error, Result};
 use crate::friction::LawState;
-use crate::integrate::{Machine, Run, Seen};
+use crate::integrate::{Machine, Places, Run, Seen};
 use crate::model::LawSpec;
 use crate::scalar::Scalar;
 
@@ -75,6 +75,10 @@ pub(crate) trait Rows<S: Scalar> {
         _friction: impl Fn(usize) -> S,
     ) -> bool {
         false
+    }
+    /// The places of these samples, where position and velocity are all that is looked at.
+    fn places(&mut self, _samples: Range<usize>) -> Option<Places<'_, S>> {
+        None
     }
     /// Sees a sample.
     fn see(
@@ -176,6 +180,17 @@ impl Rows<f64> for Columns<'_, '_> {
             values.iter_mut().zip(samples).for_each(|(value, k)| *value = friction(k));
         }
         true
+    }
+
+    #[inline(always)]
+    fn places(&mut self, samples: Range<usize>) -> Option<Places<'_, f64>> {
+        let others = !self.others.is_empty() || !self.measured.is_empty();
+        if others || !self.friction.is_empty() {
+            return None;
+        }
+        let first = samples.start;
+        let position = self.position.get_mut(samples.clone())?;
+        Some(Places { first, position, velocity: self.velocity.get_mut(samples)? })
     }
 
     #[inline(always)] // where it is called, the motion is in registers

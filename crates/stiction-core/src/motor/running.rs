@@ -164,23 +164,28 @@ impl<S: Scalar> Running<S> {
                     let span = S::constant(dt_now / f64::from(divided));
                     let machine = &self.machine;
                     if !S::CARRIES {
-                        let load = |k| added(k) + around.load.at(k);
-                        let effort = |k| machine.bare_effort(inputs[k], load(k)).re();
-                        ahead.reach(index, inputs.len(), effort);
+                        ahead.reach(index, inputs, around.load, |k, input, load| {
+                            machine.bare_effort(input, added(k) + load).re()
+                        });
                     }
                     let efforts = Applied { machine, inputs, around, added: &added, ahead: &ahead };
-                    let seen = Showing { machine, rows: &mut rows };
                     // Not to the end, which would be looked for anew after every event.
                     let end =
                         if S::CARRIES { inputs.len().min(index + AHEAD) } else { ahead.end() };
                     let end = dt.same_until(index, end);
-                    let mut glide =
-                        machine.glide(self.run, efforts, seen, index..end, (span, divided));
-                    let state = &mut *state;
+                    let (samples, state) = (index..end, &mut *state);
+                    let step = (span, divided);
                     (self.run, index, passed) = if S::CARRIES {
+                        let seen = Showing { machine, rows: &mut rows };
+                        let mut glide = machine.glide(self.run, efforts, seen, samples, step);
                         S::run(Plain { law, state, glide: &mut glide });
                         (glide.run, glide.samples.start, glide.part)
+                    } else if let Some(places) = rows.places(samples.clone()) {
+                        let glide = machine.glide(self.run, efforts, places, samples, step);
+                        S::run(Plain { law, state, glide })
                     } else {
+                        let seen = Showing { machine, rows: &mut rows };
+                        let glide = machine.glide(self.run, efforts, seen, samples, step);
                         S::run(Plain { law, state, glide })
                     };
                     room = 0; // what the glide has left of it nobody counted
@@ -237,6 +242,20 @@ impl<S: Scalar, A: Fn(usize) -> S> Efforts<S> for Applied<'_, S, A> {
         let load = (self.added)(sample) + self.around.load.at(sample);
         self.machine.bare_effort(self.inputs[sample], load)
     }
+
+    #[inline(always)]
+    fn within(&self, samples: std::ops::Range<usize>, greatest: f64) -> usize {
+        let plain = |effort: &f64| effort.abs() <= greatest;
+        if S::CARRIES {
+            return samples.take_while(|k| plain(&self.at(*k).re())).count();
+        }
+        // Without a choice in eight of them they become vectors.
+        let efforts = self.ahead.of(samples);
+        let eights = efforts.chunks_exact(8);
+        let whole = |eight: &&[f64]| eight.iter().fold(true, |all, effort| all & plain(effort));
+        let passed = 8 * eights.take_while(whole).count();
+        passed + efforts[passed..].iter().take_while(|effort| plain(effort)).count()
+    }
 }
 
 /// Samples that a row of plain steps goes on at most.
@@ -257,16 +276,32 @@ impl Default for Ahead {
 }
 
 impl Ahead {
-    /// Has the effort of this sample and of those behind it.
+    /// Has the effort of this sample and of those behind it, made of sample, input and load.
     #[inline(always)]
-    fn reach(&mut self, sample: usize, samples: usize, effort: impl Fn(usize) -> f64) {
+    fn reach(
+        &mut self,
+        sample: usize,
+        inputs: &[f64],
+        loads: PerSample<'_>,
+        effort: impl Fn(usize, f64, f64) -> f64,
+    ) {
         if self.from <= sample && sample < self.end() {
             return;
         }
         self.from = sample;
-        self.number = AHEAD.min(samples - sample);
-        for (k, place) in self.efforts[..self.number].iter_mut().enumerate() {
-            *place = effort(sample + k);
+        self.number = AHEAD.min(inputs.len() - sample);
+        let end = self.end();
+        let places = self.efforts[..self.number].iter_mut();
+        let given = (sample..end).zip(&inputs[sample..end]);
+        // What the loop had to ask of each sample would keep it from vectors.
+        if let PerSample::Same(load) = loads {
+            for (place, (k, input)) in places.zip(given) {
+                *place = effort(k, *input, load);
+            }
+        } else {
+            for (place, (k, input)) in places.zip(given) {
+                *place = effort(k, *input, loads.at(k));
+            }
         }
     }
 
@@ -278,5 +313,10 @@ impl Ahead {
     #[inline(always)]
     fn at(&self, sample: usize) -> f64 {
         self.efforts[sample - self.from]
+    }
+
+    #[inline(always)]
+    fn of(&self, samples: std::ops::Range<usize>) -> &[f64] {
+        &self.efforts[samples.start - self.from..samples.end - self.from]
     }
 }

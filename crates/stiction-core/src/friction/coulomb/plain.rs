@@ -45,8 +45,7 @@ impl<S: Scalar> Coulomb<S> {
         glide: &mut Glide<S, E, V>,
     ) {
         let verlet = glide.verlet;
-        let free = verlet.share(S::constant(0.0));
-        let freely = verlet.braking(free);
+        let (free, freely) = verlet.free();
         let (mode, mut force, mut velocity) = (state.0.mode, state.0.force, glide.run.velocity);
         let looks = glide.seen.looks();
         if mode * velocity.re() < 0.0 {

@@ -42,6 +42,14 @@ pub struct Fading<S> {
 }
 
 impl<S: Scalar> Here<S> {
+    /// The same for whoever writes it to memory: numbers that lie side by side there the compiler would
+    /// keep in one vector all along the loop.
+    #[inline(always)]
+    pub fn apart(&self) -> Self {
+        let [position, force, slope] = [self.position, self.force, self.slope].map(S::alone);
+        Self { position, force, slope, ..*self }
+    }
+
     /// Whether a motion, as a share of the distance over which the branch fades, neither turns round nor
     /// closes the loop; false before any motion, where the target is no number.
     #[inline(always)]
@@ -52,11 +60,28 @@ impl<S: Scalar> Here<S> {
     /// Such a motion where it is a short one.
     #[inline(always)]
     pub fn onward(&self, branch: &Fading<S>, displacement: S) -> Option<Self> {
-        let (position, z) = (self.position + displacement, displacement * branch.share);
-        let short = z.re() < SHORT && self.steps < SYNCHRONISED;
-        if !short || !self.stays(branch, position.re(), z.re()) {
+        let (position, z) = self.reach(branch, displacement);
+        if !self.is_short(z) || !self.stays(branch, position.re(), z.re()) {
             return None;
         }
+        Some(self.shortly(branch, displacement, position, z))
+    }
+
+    /// Where a motion leads, and as which share of the distance over which the branch fades.
+    #[inline(always)]
+    pub fn reach(&self, branch: &Fading<S>, displacement: S) -> (S, S) {
+        (self.position + displacement, displacement * branch.share)
+    }
+
+    /// Whether such a share is a short way that may go on from the step before.
+    #[inline(always)]
+    pub fn is_short(&self, share: S) -> bool {
+        share.re() < SHORT && self.steps < SYNCHRONISED
+    }
+
+    /// A short motion that stays on the branch, and where it leads.
+    #[inline(always)]
+    pub fn shortly(&self, branch: &Fading<S>, displacement: S, position: S, z: S) -> Self {
         let excess = self.slope - branch.last;
         let (way, along) = (displacement.re(), z.re());
         let [force, slope] =
@@ -64,14 +89,14 @@ impl<S: Scalar> Here<S> {
         // The same, with fewer products of rows of derivatives.
         let share = gone_share(z);
         let gained = displacement * (branch.last + excess * share);
-        Some(Self {
+        Self {
             position,
             force: (self.force + gained).with_value(force),
             slope: (self.slope - excess * (z * share)).with_value(slope),
             direction: self.direction,
             // A spring that is held changes no bit, however long.
             steps: self.steps + u32::from(way != 0.0),
-        })
+        }
     }
 }
 
@@ -99,7 +124,7 @@ pub fn short_way(
     let fallen = excess * z;
     let eased = fallen * z;
     [
-        ((force + displacement * slope) - kept(bent * near)) - (bent * square) * far,
-        ((slope - fallen) + kept(eased * near)) + (eased * square) * far,
+        kept(((force + displacement * slope) - kept(bent * near)) - (bent * square) * far),
+        kept(((slope - fallen) + kept(eased * near)) + (eased * square) * far),
     ]
 }

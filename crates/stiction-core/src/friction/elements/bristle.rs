@@ -107,14 +107,14 @@ impl<S: Scalar> LawState<S> for BristleState<S> {
 }
 
 impl<S: Scalar> Bristle<S> {
-    /// σ₁ at this speed and its slope by speed.
+    /// σ₁ at this speed and its slope by speed, where it has one.
     #[inline(always)]
-    fn damper(&self, velocity: S) -> (S, S) {
+    fn damper(&self, velocity: S) -> (S, Option<S>) {
         if self.damping_velocity.re().is_infinite() {
-            return (self.damping, S::constant(0.0));
+            return (self.damping, None);
         }
         let (left, steepness) = fall(velocity, self.damping_velocity, S::constant(2.0));
-        (self.damping * left, self.damping * steepness)
+        (self.damping * left, Some(self.damping * steepness))
     }
 
     /// Bent so far that they bear this force, or what they can.
@@ -132,9 +132,10 @@ impl<S: Scalar> Bristle<S> {
     /// Friction of bristles that bear this force.
     #[inline(always)]
     pub fn friction(&self, borne: S, slip: &Slip<S>, velocity: S, channels: &Channels<S>) -> S {
+        // What waits for the slip comes in last, here and below.
+        let others = borne * channels.level + self.viscous * channels.viscous_level * velocity;
         let pace = velocity * -(slip.share - 1.0);
-        let bristles = borne + self.damper(velocity).0 * pace;
-        bristles * channels.level + self.viscous * channels.viscous_level * velocity
+        others + self.damper(velocity).0 * pace * channels.level
     }
 
     /// The step that ends so.
@@ -172,12 +173,14 @@ impl<S: Scalar> Bristle<S> {
         // By the velocity, where the force of the bristles changes with it at this rate.
         let slope = |force: S| {
             let slips = (slip.by_force * force + slip.by_speed) * s;
-            (force + damper * (bends - velocity * slips) + fading * pace * s) * channels.level
-                + viscous
+            let damped = damper * (bends - velocity * slips);
+            let damped = fading.map_or(damped, |fading| damped + fading * pace * s);
+            (force * channels.level + viscous) + damped * channels.level
         };
         let implicit = slope(bent.by_end);
         Outcome {
-            force: (bent.force + damper * pace) * channels.level + viscous * velocity,
+            force: (bent.force * channels.level + viscous * velocity)
+                + damper * pace * channels.level,
             slope: slope(bent.by_velocity),
             // A falling flank is left explicit: implicit, it could outweigh the inertia.
             damping: if implicit.re() > 0.0 { implicit } else { S::constant(0.0) },

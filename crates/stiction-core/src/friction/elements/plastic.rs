@@ -40,6 +40,8 @@ pub struct Pacing<S> {
     pace: S,
     /// Whether nothing can creep.
     still: bool,
+    /// Whether f is a plain square, which costs no power.
+    square: bool,
 }
 
 impl<S: Scalar> Plastic<S> {
@@ -68,6 +70,7 @@ impl<S: Scalar> Plastic<S> {
     }
 
     /// What a seeded exponent of 2 adds to that slope: a derivative.
+    #[inline(always)] // rows that a function of its own leaves in short vectors are waited for
     fn beyond_square(&self, size: S) -> S {
         (self.exponent - 2.0) * (self.coefficient * size * (size.re().ln() * 2.0 + 1.0))
     }
@@ -109,7 +112,8 @@ impl<S: Scalar> Plastic<S> {
         let doubled = self.coefficient * 2.0;
         let off = self.coefficient.re() == 0.0 && !self.coefficient.derivative_is_nonzero();
         let still = off || duration.re() <= 0.0;
-        Pacing { progress, doubled: doubled.re(), pace: progress * doubled, still }
+        let square = self.is_square();
+        Pacing { progress, doubled: doubled.re(), pace: progress * doubled, still, square }
     }
 
     /// The same where creep goes on through a short step or has none: nearly every one. `SQUARE`
@@ -142,7 +146,7 @@ impl<S: Scalar> Plastic<S> {
         let (gain, pace) = if SQUARE || self.exponent.re() == 2.0 {
             let size = force.abs();
             let mut pace = pacing.pace * size * stiffness;
-            if !SQUARE && !self.is_square() {
+            if !SQUARE && !pacing.square {
                 pace += progress * self.beyond_square(size) * stiffness;
             }
             (pacing.doubled * size.re() * stiffness.re(), pace)

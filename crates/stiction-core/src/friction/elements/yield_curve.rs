@@ -176,12 +176,12 @@ impl<S: Scalar> YieldCurve<S> {
     /// [`SpringState::walk`] finds, to the bit.
     #[inline(always)]
     pub fn along(&self, course: &Course<S>, here: &Here<S>, displacement: S) -> Option<Here<S>> {
-        if let Some(there) = here.onward(&course.fading, displacement) {
-            return Some(there);
-        }
-        let (position, share) = (here.position + displacement, displacement * course.fading.share);
+        let (position, share) = here.reach(&course.fading, displacement);
         if !here.stays(&course.fading, position.re(), share.re()) {
             return None;
+        }
+        if here.is_short(share) {
+            return Some(here.shortly(&course.fading, displacement, position, share));
         }
         let y = (position - course.origin) * course.stretch * self.inverse_distance;
         let yielded = faded_within(-y);

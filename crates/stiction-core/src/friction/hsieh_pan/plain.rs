@@ -42,6 +42,13 @@ impl<S: Scalar> Sticking<S> {
         Self { here, plastic, hardening: self.hardening + creep.hardening }
     }
 
+    /// See [`Here::apart`].
+    #[inline(always)]
+    fn apart(&self) -> Self {
+        let [plastic, hardening] = [self.plastic, self.hardening].map(S::alone);
+        Self { here: self.here.apart(), plastic, hardening }
+    }
+
     #[inline(always)]
     fn keep(&self, state: &mut HsiehPanState<S>) {
         state.spring.slide(&self.here);
@@ -109,7 +116,7 @@ impl<S: Scalar> HsiehPan<S> {
                 now = now.after(there, &creep);
             } else {
                 // A copy for the call: what it may look at could not stay in registers.
-                let begun = now;
+                let begun = now.apart();
                 let rest = (unbraked, braking);
                 let apart = self.step_apart(state, &begun, displacement, verlet.span(), rest);
                 let Some(apart) = apart else { break };
@@ -121,7 +128,7 @@ impl<S: Scalar> HsiehPan<S> {
             }
             glide.accept(displacement, velocity, now.here.force + damping * velocity, state);
         }
-        now.keep(state);
+        now.apart().keep(state);
     }
 
     /// A step in which creep sets in or ends, or the spring gets through its reverse points or is
@@ -166,8 +173,7 @@ impl<S: Scalar> HsiehPan<S> {
         let greatest = self.parameters.breakaway.re();
         let looks = glide.seen.looks();
         let (verlet, duration) = (glide.verlet, glide.verlet.span());
-        let free = verlet.share(S::constant(0.0));
-        let freely = verlet.braking(free);
+        let (free, freely) = verlet.free();
         let (mut series, mut velocity) = (state.series, glide.run.velocity);
         if mode * velocity.re() < 0.0 {
             return;

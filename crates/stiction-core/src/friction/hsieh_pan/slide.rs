@@ -87,8 +87,10 @@ impl<S: Scalar> HsiehPan<S> {
         channels: &Channels<S>,
     ) -> Slide<S> {
         let p = &self.parameters;
-        let power = |velocity| fall_power(velocity, p.stribeck_velocity, p.stribeck_exponent);
-        let (before, after) = (power(motion.start_velocity), power(motion.velocity));
+        // Not through a closure, which would not be part of the loop.
+        let (scale, exponent) = (p.stribeck_velocity, p.stribeck_exponent);
+        let before = fall_power(motion.start_velocity, scale, exponent);
+        let after = fall_power(motion.velocity, scale, exponent);
         let distance = motion.displacement.abs();
         let per_distance = S::constant(1.0) / p.slip_distance;
         let z = distance * per_distance;

@@ -70,8 +70,8 @@ impl Lanes {
         let borne = stiffness * self.deflection.0[lane];
         let per_from = 1.0 / from;
         let slipping = borne * sign(before) * per_from;
-        let bristles = borne + damper * (before * -(slipping - 1.0));
-        let net = effort - (bristles + viscous * before);
+        let others = borne + viscous * before;
+        let net = effort - (others + damper * (before * -(slipping - 1.0)));
         let (displacement, velocity) = bodies.depart(lane, net);
 
         // `LuGre::bend`.
@@ -92,9 +92,9 @@ impl Lanes {
         let by_speed = -(share * (steepness * per_to));
         let bends = -(share - 1.0);
         let slips = (per_to * by_end + by_speed) * towards;
-        let implicit = by_end + damper * (bends - velocity * slips) + viscous;
+        let implicit = (by_end + viscous) + damper * (bends - velocity * slips);
         let damping = if implicit > 0.0 { implicit } else { 0.0 };
-        let force = bent + damper * (velocity * bends) + viscous * velocity;
+        let force = (bent + viscous * velocity) + damper * (velocity * bends);
         let undamped = force - damping * velocity;
         let arrived = bodies.arrive(lane, net + effort, damping, undamped);
         let friction = undamped + damping * arrived;

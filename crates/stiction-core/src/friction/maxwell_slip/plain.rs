@@ -27,18 +27,18 @@ impl<S: Scalar> MaxwellSlip<S> {
             if let Some(there) = curve.along(&course, &here, displacement) {
                 here = there;
             } else {
-                state.spring.slide(&here);
+                state.spring.slide(&here.apart());
                 let Some(turned) = Self::turned(curve, state, displacement) else { break };
                 course = turned;
                 here = state.spring.here();
             }
             velocity = unbraked - braking * here.force;
             if looks {
-                state.spring.slide(&here);
+                state.spring.slide(&here.apart());
             }
             glide.accept(displacement, velocity, here.force + damping * velocity, state);
         }
-        state.spring.slide(&here);
+        state.spring.slide(&here.apart());
     }
 
     /// Takes the spring through its reverse points; nowhere where one more needs room.
