@@ -187,7 +187,11 @@ class WeakForm:
     @property
     def velocity(self) -> FloatArray:
         """Velocity through the kernel, shape (n,)."""
-        return self._mean(np.gradient(self.position, self.dt)[1:])
+        return self.velocities(self.position)
+
+    def velocities(self, position: FloatArray) -> FloatArray:
+        """Velocity of a position at the stamps of the recording, through the kernel."""
+        return self._mean(np.gradient(position, self.dt)[1:])
 
     def accelerations(self, position: FloatArray) -> FloatArray:
         """Acceleration of a position at the stamps of the recording, through the kernel."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..fitting.rows import Rows
 from ..plant import Plant
+from ..recording import Recording
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .contact import Slides, slides_of
@@ -25,6 +26,8 @@ __all__ = [
 
 TURNING_SHARE: Final = 1e-3
 """Speeds below this share of the usual one have no direction of their own: the last one holds."""
+MOST_MISSED: Final = 0.2
+"""Velocity by which a machine misses its reference, as a share of its own, and still follows it."""
 
 
 @dataclass(frozen=True)
@@ -248,13 +251,15 @@ def _look(evidence: Evidence, plant: Plant, clock: float, window: float, rows: R
     spacing = form.dt * form.stride
     since: FloatArray = np.arange(len(direction), dtype=np.float64) - last
     pulled = effort - form.own(plant).inertia * form.acceleration
+    asked = _asked(evidence.recordings[rows.index], form, plant)
+    velocity, acceleration, driving = asked or (velocity, form.acceleration, effort)
     return Look(
         time=form.time - evidence.recordings[rows.index].time[0] + clock,
         position=position,
         velocity=velocity,
-        acceleration=form.acceleration,
+        acceleration=acceleration,
         effort=effort,
-        rate=np.gradient(effort, spacing),
+        rate=np.gradient(driving, spacing),
         direction=direction,
         angle=np.mod(position, 2.0 * np.pi) if evidence.plant.motion == "rotary" else position,
         travelled=np.abs(position - position[last]),
@@ -267,6 +272,27 @@ def _look(evidence: Evidence, plant: Plant, clock: float, window: float, rows: R
         else form.mean(form.temperature[1:]),
         slides=slides_of(position, pulled, spacing, window),
     )
+
+
+def _asked(
+    recording: Recording, form: WeakForm, plant: Plant
+) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+    """Velocity, acceleration and effort that a controller was asked for, through the kernel.
+
+    What a controller answers to noise goes with the noise: where the machine goes evenly, speed and
+    effort change by nothing else, and what is left would depend on them. None where no reference
+    is known, or the machine follows another motion.
+    """
+    asked = recording.channels.get("reference")
+    if asked is None or len(asked) != len(form.position) or plant.servo:
+        return None
+    velocity = form.velocities(asked)
+    missed = float(np.mean((velocity - form.velocity) ** 2))
+    if missed > MOST_MISSED**2 * float(np.mean(form.velocity**2)):
+        return None
+    acceleration = form.accelerations(asked)
+    short = form.short(plant, position=asked, driven=False)
+    return velocity, acceleration, form.own(plant).inertia * acceleration - short
 
 
 def _load(plant: Plant, form: WeakForm, position: FloatArray) -> FloatArray:

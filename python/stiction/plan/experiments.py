@@ -20,6 +20,8 @@ DECADES: Final = 3.0
 RAMPS: Final = 7
 RAMP_S: Final = 2.0
 """Speeds of the ramps, and how long one goes one way."""
+CYCLE_REACH: Final = 0.15
+"""Of the range: a cycle that travels far wears off by itself what it is there to show."""
 RESTS_S: Final = (0.1, 0.3, 1.0, 3.0, 5.0)
 LOADINGS: Final = (0.01, 0.1, 0.5)
 """Rests, and the shares of the greatest speed at which they end."""
@@ -176,7 +178,7 @@ def _cycle(
     motion = Motion(dt, share * sizes.acceleration)
     motion.rest(1.0)
     for speed in (0.5, 0.05):
-        distance = min(0.5 * sizes.reach, speed * sizes.speed * RAMP_S)
+        distance = min(CYCLE_REACH * sizes.reach, speed * sizes.speed * RAMP_S)
         for sign in (1.0, -1.0, -1.0, 1.0):
             motion.ramp(sign * distance, share * speed * sizes.speed)
     motion.rest(1.0)
