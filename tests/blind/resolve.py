@@ -17,6 +17,7 @@ from tests.reference.session_reference import make_sessions
 
 import stiction as st
 from stiction.plan import plan
+from stiction.plan.experiments import EXPERIMENTS
 
 from .score import as_plant, as_session
 from .table import wilson
@@ -36,6 +37,8 @@ FIRST_SEED = 10_000_000
 REACH = 6.0
 """rad on either side: the machine may make a turn."""
 PAUSE_S, LONG_REST_S = 2.0, 90.0
+PLANNED = {experiment.name for experiment in EXPERIMENTS}
+"""What can be recorded without the owner's hands: nobody turns this machine round."""
 COLD = ("cycle", "rest", "cycle", "fast", "cycle", "rest", "fast", "cycle")
 """What tells time from path: a machine that is cold, rests, and then travels."""
 
@@ -43,7 +46,7 @@ COLD = ("cycle", "rest", "cycle", "fast", "cycle", "rest", "fast", "cycle")
 def advised(found):
     """Names of the planned experiments that tell undecided causes apart, the first one first."""
     names = [advice.experiment.split(":")[0] for advice in found.advice if advice.separates]
-    return list(dict.fromkeys(names))
+    return [name for name in dict.fromkeys(names) if name in PLANNED]
 
 
 def recorded(made, found, name):

@@ -66,7 +66,7 @@ def test_a_servo_is_advised_nothing_that_its_plan_leaves_out() -> None:
             "torque_constant": 0.3,
         },
         "body": {"inertia": 0.002},
-        "friction": {"law": "coulomb"},
+        "friction": {"law": "maxwell_slip"},
     }
     servo = st.Plant.from_dict(table)
     left_out = {each.name for each in EXPERIMENTS if each.kind == "input"}
@@ -74,6 +74,15 @@ def test_a_servo_is_advised_nothing_that_its_plan_leaves_out() -> None:
     for record in EFFECTS.values():
         said = recorded(record.plan, record.experiment, servo)
         assert said.startswith("send it goals: ") == (record.plan in left_out)
+
+
+def test_a_dry_contact_is_turned_round_where_others_make_loops_below_break_away() -> None:
+    def said(law: str) -> str:
+        table = {"drive": {"input": "torque_nm", "gain": 1.0}, "friction": {"law": law}}
+        return recorded("loops", "nested loops", st.Plant.from_dict(table))
+
+    assert said("coulomb").startswith("mount it the other way round")
+    assert said("hsieh_pan") == "loops: nested loops"
 
 
 def test_what_comes_late_is_told_by_its_sign() -> None:

@@ -86,6 +86,12 @@ GOALS: Final = {
 """What the goals of a servo do in place of the experiments of ``stiction plan`` that it cannot
 make: it is told where to go, not what to push with."""
 
+REVERSED: Final = (
+    "mount it the other way round and record the same again: an effort from outside turns over "
+    "with the mount, friction does not"
+)
+"""In place of loops below break-away, of which a contact without a spring has none."""
+
 
 def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
     """What an effect means, and what to do about it."""
@@ -103,8 +109,11 @@ def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
 def recorded(plan: str, what: str, plant: Plant) -> str:
     """An experiment in words: one of ``stiction plan``, or a motion where a rig prescribes it.
 
-    A servo that cannot make it is sent goals of another kind.
+    A servo that cannot make it is sent goals of another kind; where there is no pre-sliding, no
+    loop tells of it.
     """
+    if plan == "loops" and not plant.friction.springy and not plant.prescribed_motion:
+        return REVERSED
     if plant.servo and plan in GOALS:
         return f"send it goals: {GOALS[plan]}"
     return f"move it by {MOTIONS[plan]}" if plant.prescribed_motion else f"{plan}: {what}"
