@@ -5,11 +5,14 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 from tests.blind.resolve import recorded
 from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
+from stiction.diagnosis.coordinates import _asked
+from stiction.weak_form import WeakForm
 
 # One seed: a machine that lacks nothing goes evenly, there and back, under its controller.
 SEED = 10320000
@@ -26,6 +29,34 @@ def even_session() -> Any:
     }
     stated = as_plant(made).to_dict() | {"body": body, "friction": friction}
     return recorded(made, SimpleNamespace(plant=st.Plant.from_dict(stated)), "cycle")
+
+
+def test_only_a_reference_that_is_followed_takes_the_place_of_the_motion() -> None:
+    (rec, *_) = as_session(even_session()).recordings
+    asked = rec.channels["reference"]
+    plant = st.Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm", "gain": 1.0},
+            "body": {"inertia": 0.01},
+            "friction": {"law": "maxwell_slip", "coulomb": 0.1, "initial_stiffness": 100.0},
+        }
+    )
+
+    def looked(reference: Any) -> Any:
+        known = {} if reference is None else {"reference": reference}
+        made = st.Recording(rec.time, rec.input, rec.position, kind="cycle", **known)
+        return _asked(made, WeakForm(plant, made), plant)
+
+    found = looked(asked)
+    assert found is not None
+    form = WeakForm(plant, rec)
+    velocity, acceleration, effort = found
+    assert np.std(velocity - form.velocity) < 0.2 * np.std(form.velocity)
+    assert np.std(acceleration) < np.std(form.acceleration)
+    assert np.std(effort - form.measured(plant)) < np.std(effort)
+    # None, and that of another motion.
+    for other in (None, -asked):
+        assert looked(other) is None
 
 
 def test_what_a_controller_answers_to_noise_is_no_cause() -> None:
