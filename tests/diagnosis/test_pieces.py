@@ -161,6 +161,27 @@ def test_a_fold_leaves_alone_what_its_rows_do_not_tell() -> None:
     assert np.allclose(*both, atol=1e-10)
 
 
+def test_a_fold_does_not_go_where_the_fit_to_all_rows_may_not() -> None:
+    source = np.random.default_rng(3)
+    columns = source.standard_normal((200, 2))
+    noise = source.standard_normal(200)
+    whole = np.arange(200) < 160
+    fit = whole & (np.arange(200) % 2 == 0)
+    plan = Plan(fit, whole & ~fit, whole)
+
+    def held(residual: np.ndarray) -> np.ndarray:
+        evidence: Any = SimpleNamespace(fitted=whole)
+        model = Model(evidence, SimpleNamespace())  # type: ignore[arg-type]
+        model.__dict__.update(residual=residual, columns=columns)
+        return model.held(plan)
+
+    # A parameter at its bound leaves a slope that no fit may take: nor may a fold.
+    free = noise - columns @ np.linalg.lstsq(columns[whole], noise[whole])[0]
+    bound = free + 2.0 * columns[:, 1]
+    assert np.allclose(held(bound) - held(free), 2.0 * columns[plan.held, 1], atol=1e-9)
+    assert np.linalg.norm(held(free)) > np.linalg.norm(free[plan.held])
+
+
 def test_waves_of_multiples_of_an_order_are_those_of_each_alone() -> None:
     position = np.linspace(-7.0, 9.0, 301)
     orders = [0.35 * k for k in range(1, 81)]

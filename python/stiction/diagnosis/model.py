@@ -175,11 +175,13 @@ class Model:
         """Residual of the rows that a plan holds out, fitted on those that it fits.
 
         Where the plan fits all of train that is the residual itself; in a fold it is corrected by
-        one Gauss-Newton step from the fit to all of train.
+        one Gauss-Newton step from the fit to all of train, less the step that all of train would
+        take: a fit that stands at a bound stays there.
         """
         if np.array_equal(plan.fit, self.evidence.fitted):
             return self.residual[plan.held]
-        return step(self.columns, self.residual, plan)
+        whole = step(self.columns, self.residual, Plan(self.evidence.fitted, plan.held))
+        return step(self.columns, self.residual, plan) + self.residual[plan.held] - whole
 
     @cached_property
     def given(self) -> float:
