@@ -14,7 +14,7 @@ pub enum MotionKind {
 
 /// What a parameter measures. Efforts are torques or forces, positions angles or lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)]
+#[allow(missing_docs)] // the names are what there is to say
 pub enum Quantity {
     One,
     Effort,
@@ -202,7 +202,7 @@ macro_rules! parameters {
         impl<S: $crate::scalar::Scalar> $name<S> {
             /// Specifications in the order of the values.
             pub const SPECS: &'static [$crate::parameter::ParameterSpec] = {
-                #[allow(unused_imports)]
+                #[allow(unused_imports)] // few laws have both
                 use $crate::parameter::Default::{Ratio, Value};
                 &[$(
                     $crate::parameter::ParameterSpec {

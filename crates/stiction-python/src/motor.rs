@@ -546,7 +546,7 @@ impl Motor {
     /// Returns two arrays of shape (parameters, n), parts of one of shape (2, parameters, n) that
     /// may be given as ``out``; the motor is left as it was.
     #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None, out=None))]
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity)] // a pair of arrays, as Python gets it
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn sensitivity<'py>(
         &self,

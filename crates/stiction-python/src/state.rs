@@ -66,7 +66,7 @@ pub fn from_dict(state: &Bound<'_, PyDict>) -> PyResult<Vec<(String, Entry)>> {
 }
 
 /// Parameters (numbers) and options (words) given as keywords.
-#[allow(clippy::type_complexity)]
+#[allow(clippy::type_complexity)] // two lists, taken apart where they are asked for
 pub fn keywords(
     owner: &str,
     given: Option<&Bound<'_, PyDict>>,

@@ -489,7 +489,7 @@ macro_rules! laws {
                                 (Self::$law(law), AnyState::$law(state)) => {
                                     Some($crate::lanes::Member { number, machine, law, state, run, own })
                                 }
-                                #[allow(unreachable_patterns)]
+                                #[allow(unreachable_patterns)] // a catalogue of one law has no other
                                 _ => unreachable!("motors of an ensemble have one law"),
                             }
                         });
@@ -528,7 +528,7 @@ macro_rules! laws {
                 match ($any, $state) {
                     $(($crate::friction::Law::$law($inner),
                        $crate::friction::AnyState::$law($held)) => $body,)*
-                    #[allow(unreachable_patterns)]
+                    #[allow(unreachable_patterns)] // a catalogue of one law has no other
                     _ => unreachable!("a state is only ever made by its own law"),
                 }
             };
@@ -547,7 +547,7 @@ macro_rules! laws {
                         $crate::integrate::quiet(held, law, state, span)
                             .map(|trial| (AnyTrial::$law(trial), law.outcome(&trial)))
                     })*
-                    #[allow(unreachable_patterns)]
+                    #[allow(unreachable_patterns)] // a catalogue of one law has no other
                     _ => unreachable!("a state is only ever made by its own law"),
                 }
             }
@@ -559,7 +559,7 @@ macro_rules! laws {
                         state.make_room(1);
                         law.commit(state, trial);
                     })*
-                    #[allow(unreachable_patterns)]
+                    #[allow(unreachable_patterns)] // a catalogue of one law has no other
                     _ => unreachable!("a trial is only ever made by its own law"),
                 }
             }
