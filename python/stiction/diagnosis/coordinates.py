@@ -37,7 +37,8 @@ class Look:
     Attributes
     ----------
     time, position, velocity, acceleration, effort, rate : numpy.ndarray, shape (n,)
-        Through the kernel; ``rate`` is that of the effort, ``time`` the session clock.
+        Through the kernel; ``rate`` is that of the effort, ``time`` the session clock. Velocity,
+        acceleration and rate are those that were asked for where a reference was followed.
     direction : numpy.ndarray, shape (n,)
         Of the motion, −1 or 1; the last one where the machine rests.
     angle : numpy.ndarray, shape (n,)
@@ -281,17 +282,18 @@ def _asked(
 
     What a controller answers to noise goes with the noise: where the machine goes evenly, speed and
     effort change by nothing else, and what is left would depend on them. None where no reference
-    is known, or the machine follows another motion.
+    is known, it has gaps, or the machine follows another motion.
     """
-    asked = recording.channels.get("reference")
-    if asked is None or len(asked) != len(form.position) or plant.servo:
+    reference = recording.channels.get("reference")
+    if reference is None or len(reference) != len(form.position) or plant.servo:
         return None
-    velocity = form.velocities(asked)
+    velocity = form.velocities(reference)
     missed = float(np.mean((velocity - form.velocity) ** 2))
-    if not missed <= MOST_MISSED**2 * float(np.mean(form.velocity**2)):  # NaN: gaps in it
+    # Nor does NaN, of gaps, pass.
+    if not missed <= MOST_MISSED**2 * float(np.mean(form.velocity**2)):
         return None
-    acceleration = form.accelerations(asked)
-    short = form.short(plant, position=asked, driven=False)
+    acceleration = form.accelerations(reference)
+    short = form.short(plant, position=reference, driven=False)
     return velocity, acceleration, form.own(plant).inertia * acceleration - short
 
 
