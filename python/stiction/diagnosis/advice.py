@@ -8,14 +8,13 @@ from typing import Final
 from ..catalogue import EffectRecord, effects
 from ..plant import Plant
 from ..recording import Check
+from .passing import MOMENTS
 from .remedies import recorded
 from .result import Advice, Cause, Unexplained
 from .words import joined
 
-__all__ = ["MOMENTS", "advise"]
+__all__ = ["advise"]
 
-MOMENTS: Final = "single moments in time"
-"""Where what is left comes in bursts that nothing that was looked at goes with."""
 _RAMPS: Final = ("ramps", "two-way ramps of constant speed over three decades, without rests")
 _TURNS: Final = ("turns", "slow full turns (or full strokes) both ways, twice")
 _FULL_TURNS: Final = ("turns", "slow full turns both ways, twice")
@@ -26,7 +25,10 @@ _CYCLE: Final = (
     "from cold: a short cycle, again after minutes of rest, again after long fast motion",
 )
 BY_COORDINATE: Final = {
-    MOMENTS: ("rests", "5 s of rest and 5 s of constant speed, with what runs nearby on and off"),
+    MOMENTS.name: (
+        "rests",
+        "5 s of rest and 5 s of constant speed, with what runs nearby on and off",
+    ),
     "velocity": _RAMPS,
     "speed": _RAMPS,
     "position": _TURNS,

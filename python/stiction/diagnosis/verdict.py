@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
-from .advice import MOMENTS
 from .decide import LEAST_GAIN
 from .evidence import Evidence
 from .model import Model
 from .omnibus import Rest
+from .passing import MOMENTS
 from .periodic import FREQUENCY
 from .result import Unexplained, Verdict
 from .selection import Search
@@ -68,7 +68,7 @@ def unnamed(
         told = (Unexplained(left.views[0].coordinate.name, selection.imitated),)
     if not told and excess > _most_excess(evidence):
         bursts = _at_moments(evidence, selection.models[-1], null)
-        told = (Unexplained(MOMENTS if bursts else NO_COORDINATE, excess),)
+        told = (Unexplained(MOMENTS.name if bursts else NO_COORDINATE, excess),)
     return told
 
 

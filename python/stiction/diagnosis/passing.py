@@ -1,0 +1,214 @@
+"""What comes and goes with time inside a recording: offsets that wander, pushes that come once.
+
+Rows held out that lie in recordings of their own say nothing of it: what wanders within seconds is
+another thing in the next recording. So neighbours in time judge each other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from ..trajectory import FloatArray
+from .coordinates import Coordinate
+from .evidence import Cells
+from .view import View, limit, means
+
+__all__ = ["DRIFT", "MOMENTS", "drift_view", "moments_view"]
+
+
+DRIFT: Final = Coordinate("session time", "session clock, s", False, lambda look: look.time)
+"""Residual that is much the same as a second before and a second later."""
+MOMENTS: Final = Coordinate(
+    "single moments in time",
+    "session clock, s",
+    False,
+    lambda look: look.time,
+    upright="rms residual, {f}",
+)
+"""Residual that is large in a few short windows, away from reversals."""
+SPAN_S: Final = 1.0
+"""Length of the stretches that neighbours predict."""
+WHOLE: Final = 0.5
+"""Of the rows of a full one, which a stretch needs to be asked and to answer."""
+STRETCHES: Final = 24
+"""Of the velocity: what goes with it is taken off, for a machine that goes on evenly for seconds
+shows it as a drift."""
+WINDOW_S: Final = 0.1
+"""Length of the windows in which moments are looked for."""
+SETTLED_S: Final = 0.15
+"""Since the last reversal: before that the curve of any law misses."""
+CHANCES: Final = 3
+"""The largest windows that are not counted: so few say nothing of what comes again."""
+FEWEST_RECORDINGS: Final = 4
+"""From so many on the one that shows most is not counted."""
+FEWEST_WINDOWS: Final = 10
+"""Of a recording, for some of them to stand out."""
+
+
+def drift_view(
+    cells: Cells,
+    clock: FloatArray,
+    velocity: FloatArray,
+    both: FloatArray,
+    weights: FloatArray,
+    friction: float,
+) -> View:
+    """What the seconds beside it tell of each second of a recording.
+
+    Parameters
+    ----------
+    cells : Cells
+    clock : numpy.ndarray, shape (n,)
+        Session clock of each row, s.
+    velocity : numpy.ndarray, shape (n,)
+    both : numpy.ndarray, shape (n, 1 + surrogates)
+        Weighted residual, then those of the surrogates.
+    weights : numpy.ndarray, shape (n,)
+    friction : float
+        Weighted rms of the friction.
+    """
+    place, starts = _windows(cells, clock, SPAN_S)
+    recording = _of(cells.recording, place, len(starts))
+    total = _sums(place, both**2, len(starts))
+    both = _less_velocity(velocity, both)
+    rows = np.bincount(place, minlength=len(starts))
+    own = _sums(place, both, len(starts)) / rows[:, None]
+    full = rows >= WHOLE * np.max(rows)
+    # Of each pair of stretches that touch, within one recording.
+    touch = full[:-1] & full[1:] & (np.diff(starts) < 1.5 * SPAN_S)
+    touch &= np.diff(recording) == 0
+    told = np.zeros_like(own)
+    told[1:] += own[:-1] * touch[:, None]
+    told[:-1] += own[1:] * touch[:, None]
+    beside = np.zeros(len(starts))
+    beside[1:] += touch
+    beside[:-1] += touch
+    told /= np.maximum(beside, 1.0)[:, None]
+    removed = rows[:, None] * (2.0 * own - told) * told
+    gained, whole = _by_recording(recording, removed), _by_recording(recording, total)
+    usual = np.median(gained / np.maximum(whole, 1e-300), axis=0)
+    shown = _sums(place, both / weights[:, None], len(starts)) / rows[:, None]
+    low, high = np.quantile(shown[:, 1:], [0.025, 0.975], axis=1)
+    curve = (starts + 0.5 * SPAN_S, shown[:, 0], low, high)
+    view = _view(DRIFT, curve, gained, whole, len(place), friction)
+    # What wanders does so in most recordings; where few show it, the model has lost the machine.
+    seen = usual[0] > limit(usual[1:])
+    return view if seen else replace(view, share=min(view.share, float(usual[0])))
+
+
+def moments_view(
+    cells: Cells,
+    clock: FloatArray,
+    elapsed: FloatArray,
+    both: FloatArray,
+    weights: FloatArray,
+    friction: float,
+) -> View | None:
+    """What lies in windows that hold more than any window of any other surrogate.
+
+    None where the machine never goes one way for long enough.
+
+    Parameters
+    ----------
+    cells : Cells
+    clock : numpy.ndarray, shape (n,)
+        Session clock of each row, s.
+    elapsed : numpy.ndarray, shape (n,)
+        Time since the last reversal, s.
+    both : numpy.ndarray, shape (n, 1 + surrogates)
+        Weighted residual, then those of the surrogates.
+    weights : numpy.ndarray, shape (n,)
+    friction : float
+        Weighted rms of the friction.
+    """
+    place, starts = _windows(cells, clock, WINDOW_S)
+    recording = _of(cells.recording, place, len(starts))
+    settled = np.bincount(place, elapsed < SETTLED_S, len(starts)) == 0.0
+    if np.sum(settled) < FEWEST_WINDOWS:
+        return None
+    rows = np.bincount(place, minlength=len(starts))
+    power = _sums(place, both**2, len(starts))
+    beyond = np.zeros_like(power)
+    for index in np.unique(recording):
+        asked = np.flatnonzero(settled & (recording == index))
+        if len(asked) < FEWEST_WINDOWS:
+            continue
+        largest = np.max(power[asked, 1:], axis=0)
+        # Each surrogate is held against the others, the residual against all of them.
+        others = [np.max(np.delete(largest, j)) for j in range(len(largest))]
+        reach = np.array([np.max(largest), *others])
+        more = power[asked] - np.mean(power[asked, 1:])
+        beyond[asked] = np.where(power[asked] > reach, more, 0.0)
+    few = np.sort(beyond, axis=0)[max(len(beyond) - CHANCES, 0)]
+    beyond = np.where(beyond < few, beyond, 0.0)
+    physical = _sums(place, (both / weights[:, None]) ** 2, len(starts)) / rows[:, None]
+    shown = np.sqrt(physical)[settled]
+    low, high = np.quantile(shown[:, 1:], [0.025, 0.975], axis=1)
+    curve = (starts[settled] + 0.5 * WINDOW_S, shown[:, 0], low, high)
+    gained, total = _by_recording(recording, beyond), _by_recording(recording, power)
+    return _view(MOMENTS, curve, gained, total, len(place), friction)
+
+
+def _view(
+    coordinate: Coordinate,
+    curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+    gained: FloatArray,
+    whole: FloatArray,
+    rows: int,
+    friction: float,
+) -> View:
+    """The view of what is gained of the whole of each recording; shape (k, 1 + surrogates)."""
+    if len(gained) >= FEWEST_RECORDINGS:
+        # In a recording in which the model has lost the machine anything may come and go.
+        best = np.argmax(gained, axis=0), np.arange(gained.shape[1])
+        gained[best] = whole[best] = 0.0
+    gain = np.sum(gained, axis=0)
+    shares = gain / np.maximum(np.sum(whole, axis=0), 1e-300)
+    size = float(np.sqrt(max(gain[0], 0.0) / max(rows, 1))) / max(friction, 1e-300)
+    return View(coordinate, *curve, float(shares[0]), limit(shares[1:]), size)
+
+
+def _by_recording(recording: np.ndarray, columns: FloatArray) -> FloatArray:
+    """Sums over the windows of each recording; shape (recordings, k)."""
+    _, index = np.unique(recording, return_inverse=True)
+    return _sums(index, columns, int(index[-1]) + 1)
+
+
+def _windows(cells: Cells, clock: FloatArray, length: float) -> tuple[np.ndarray, FloatArray]:
+    """Window of each row, numbered through all recordings, and the clock where each begins."""
+    place = np.zeros(len(clock), dtype=np.int64)
+    starts: list[FloatArray] = []
+    known = 0
+    for index in np.unique(cells.recording):
+        own = np.flatnonzero(cells.recording == index)
+        first = float(clock[own[0]])
+        number, local = np.unique(
+            np.floor((clock[own] - first) / length + 1e-6), return_inverse=True
+        )
+        place[own] = known + local
+        starts.append(first + number * length)
+        known += len(number)
+    return place, np.concatenate(starts)
+
+
+def _sums(place: np.ndarray, columns: FloatArray, number: int) -> FloatArray:
+    """Sum of each column in each window; shape (number, k)."""
+    return np.column_stack([np.bincount(place, column, number) for column in columns.T])
+
+
+def _of(values: np.ndarray, place: np.ndarray, number: int) -> np.ndarray:
+    """What the rows of each window have in common; shape (number,)."""
+    common = np.zeros(number, dtype=values.dtype)
+    common[place] = values
+    return common
+
+
+def _less_velocity(velocity: FloatArray, both: FloatArray) -> FloatArray:
+    """Residuals less their means over stretches of velocity."""
+    edges = np.unique(np.quantile(velocity, np.linspace(0.0, 1.0, STRETCHES + 1)[1:-1]))
+    index = np.searchsorted(edges, velocity)
+    left: FloatArray = both - means(index, both, len(edges) + 1)[index]
+    return left
