@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 
 __all__ = ["Slides", "slides_of"]
@@ -32,6 +33,8 @@ class Slides:
     ----------
     slid : numpy.ndarray, shape (n,)
         Distance slid since the last rest, 0 at rest.
+    sliding : numpy.ndarray of bool, shape (n,)
+        Slid by more than a window since the last rest: the spring of the contact is stretched.
     rest : numpy.ndarray, shape (n,)
         Time that the contact rested before the slide that a row begins, s; NaN where it begins
         none.
@@ -40,6 +43,7 @@ class Slides:
     """
 
     slid: FloatArray
+    sliding: Mask
     rest: FloatArray
     loading: FloatArray
 
@@ -60,7 +64,12 @@ def slides_of(position: FloatArray, force: FloatArray, spacing: float, window: f
         rad or m.
     """
     number = len(position)
-    found = Slides(np.zeros(number), np.full(number, np.nan), np.full(number, np.nan))
+    found = Slides(
+        np.zeros(number),
+        np.zeros(number, dtype=bool),
+        np.full(number, np.nan),
+        np.full(number, np.nan),
+    )
     share = -np.expm1(-spacing / LOADING_S)
     places, forces = position.tolist(), force.tolist()
     anchor, filtered = (places[0], forces[0]) if places else (0.0, 0.0)
@@ -80,6 +89,7 @@ def slides_of(position: FloatArray, force: FloatArray, spacing: float, window: f
             rested = 0.0
             slid += moved
             found.slid[k] = slid
+            found.sliding[k] = slid > window
             if slid <= REACH * window:
                 found.rest[k], found.loading[k] = stood, loaded
         else:

@@ -11,7 +11,7 @@ import numpy as np
 from ..trajectory import FloatArray
 from .coordinates import COORDINATES, Look
 from .evidence import Evidence
-from .passing import DRIFT, drift_view, moments_view
+from .passing import DRIFT, drift_view, moments_view, settled
 from .periodic import COUPLED, ORDERS, Asked, frequency_view, order_views
 from .response import response_columns, response_view
 from .smoother import smoother, stacked
@@ -90,9 +90,9 @@ def rest(
     views.append(response_view(moved, spacing, evidence.plans, both, evidence.weights, friction))
     clock = stacked(evidence, [look.time for look in seen])
     velocity = stacked(evidence, [look.velocity for look in seen])
-    elapsed = stacked(evidence, [look.elapsed for look in seen])
+    sliding = stacked(evidence, [settled(look) for look in seen])
     cells, weights = evidence.cells, evidence.weights
-    moments = moments_view(cells, clock, elapsed, both, weights, friction)
+    moments = moments_view(cells, clock, sliding, both, weights, friction)
     drift = drift_view(cells, clock, velocity, both, weights, friction)
     # A drift shows in recordings that lie apart, in seconds that lie side by side, or in both.
     views = [

@@ -11,12 +11,13 @@ from typing import Final
 
 import numpy as np
 
+from ..fitting.rows import Mask
 from ..trajectory import FloatArray
-from .coordinates import Coordinate
+from .coordinates import Coordinate, Look
 from .evidence import Cells
 from .view import View, limit, means
 
-__all__ = ["DRIFT", "MOMENTS", "drift_view", "moments_view"]
+__all__ = ["DRIFT", "MOMENTS", "drift_view", "moments_view", "settled"]
 
 
 DRIFT: Final = Coordinate("session time", "session clock, s", False, lambda look: look.time)
@@ -27,8 +28,9 @@ MOMENTS: Final = Coordinate(
     False,
     lambda look: look.time,
     upright="rms residual, {f}",
+    rows="while it slides",
 )
-"""Residual that is large in a few short windows, away from reversals."""
+"""Residual that is large in a few short windows, while the machine slides."""
 SPAN_S: Final = 1.0
 """Length of the stretches that neighbours predict."""
 WHOLE: Final = 0.5
@@ -39,13 +41,18 @@ shows it as a drift."""
 WINDOW_S: Final = 0.1
 """Length of the windows in which moments are looked for."""
 SETTLED_S: Final = 0.15
-"""Since the last reversal: before that the curve of any law misses."""
+"""Since the last reversal or rest: before that the curve of any law misses."""
 CHANCES: Final = 3
 """The largest windows that are not counted: so few say nothing of what comes again."""
 FEWEST_RECORDINGS: Final = 4
 """From so many on the one that shows most is not counted."""
 FEWEST_WINDOWS: Final = 10
 """Of a recording, for some of them to stand out."""
+
+
+def settled(look: Look) -> Mask:
+    """Rows in which a machine has been sliding one way for some time; shape (n,)."""
+    return look.slides.sliding & (look.elapsed >= SETTLED_S)
 
 
 def drift_view(
@@ -102,22 +109,23 @@ def drift_view(
 def moments_view(
     cells: Cells,
     clock: FloatArray,
-    elapsed: FloatArray,
+    sliding: Mask,
     both: FloatArray,
     weights: FloatArray,
     friction: float,
 ) -> View | None:
     """What lies in windows that hold more than any window of any other surrogate.
 
-    None where the machine never goes one way for long enough.
+    Shares are of windows in which the machine slides throughout, for where it rests or turns round
+    the curve of any law misses; None where there are too few of them.
 
     Parameters
     ----------
     cells : Cells
     clock : numpy.ndarray, shape (n,)
         Session clock of each row, s.
-    elapsed : numpy.ndarray, shape (n,)
-        Time since the last reversal, s.
+    sliding : numpy.ndarray of bool, shape (n,)
+        Rows in which the machine has been sliding one way for some time.
     both : numpy.ndarray, shape (n, 1 + surrogates)
         Weighted residual, then those of the surrogates.
     weights : numpy.ndarray, shape (n,)
@@ -126,14 +134,14 @@ def moments_view(
     """
     place, starts = _windows(cells, clock, WINDOW_S)
     recording = _of(cells.recording, place, len(starts))
-    settled = np.bincount(place, elapsed < SETTLED_S, len(starts)) == 0.0
-    if np.sum(settled) < FEWEST_WINDOWS:
+    whole = np.bincount(place, ~sliding, len(starts)) == 0.0
+    if np.sum(whole) < FEWEST_WINDOWS:
         return None
     rows = np.bincount(place, minlength=len(starts))
-    power = _sums(place, both**2, len(starts))
+    power = _sums(place, both**2, len(starts)) * whole[:, None]
     beyond = np.zeros_like(power)
     for index in np.unique(recording):
-        asked = np.flatnonzero(settled & (recording == index))
+        asked = np.flatnonzero(whole & (recording == index))
         if len(asked) < FEWEST_WINDOWS:
             continue
         largest = np.max(power[asked, 1:], axis=0)
@@ -145,11 +153,11 @@ def moments_view(
     few = np.sort(beyond, axis=0)[max(len(beyond) - CHANCES, 0)]
     beyond = np.where(beyond < few, beyond, 0.0)
     physical = _sums(place, (both / weights[:, None]) ** 2, len(starts)) / rows[:, None]
-    shown = np.sqrt(physical)[settled]
+    shown = np.sqrt(physical)[whole]
     low, high = np.quantile(shown[:, 1:], [0.025, 0.975], axis=1)
-    curve = (starts[settled] + 0.5 * WINDOW_S, shown[:, 0], low, high)
+    curve = (starts[whole] + 0.5 * WINDOW_S, shown[:, 0], low, high)
     gained, total = _by_recording(recording, beyond), _by_recording(recording, power)
-    return _view(MOMENTS, curve, gained, total, len(place), friction)
+    return _view(MOMENTS, curve, gained, total, int(np.sum(rows[whole])), friction)
 
 
 def _view(

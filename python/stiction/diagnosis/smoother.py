@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..trajectory import FloatArray
 from .coordinates import Coordinate, Look
@@ -31,8 +32,10 @@ ROWS: Final = 150
 FEWEST_BINS: Final = 6
 """... but so many stretches there are."""
 
+_Value = TypeVar("_Value", np.float64, np.bool_)
 
-def stacked(evidence: Evidence, values: Sequence[FloatArray]) -> FloatArray:
+
+def stacked(evidence: Evidence, values: Sequence[NDArray[_Value]]) -> NDArray[_Value]:
     """Values of each recording shown, one under the other, without the rows that do not count."""
     masks = [rows.mask for rows in evidence.shown]
     return np.concatenate([v[m] for v, m in zip(values, masks, strict=True)])
