@@ -13,7 +13,7 @@ from stiction.diagnosis.contact import slides_of
 from stiction.diagnosis.coordinates import COORDINATES, UNJUDGED, Coordinate
 from stiction.diagnosis.omnibus import Rest, View
 from stiction.diagnosis.own import OWN, Wave, own_coordinate
-from stiction.diagnosis.passing import MOMENTS
+from stiction.diagnosis.passing import DRIFT, MOMENTS
 from stiction.diagnosis.periodic import COUPLED, FREQUENCY, ORDERS
 from stiction.diagnosis.response import RESPONSE
 from stiction.diagnosis.smoother import BINS, smoother
@@ -43,7 +43,7 @@ def test_no_coordinate_belongs_to_an_effect_that_is_not_there() -> None:
 
 def test_every_coordinate_has_a_hint_and_an_experiment() -> None:
     names = {each.name for each in (*COORDINATES, *ORDERS, *COUPLED, RESPONSE, FREQUENCY)}
-    names.add(MOMENTS.name)
+    names |= {MOMENTS.name, DRIFT.name}
     assert set(HINTS) == names
     assert set(BY_COORDINATE) == names
 

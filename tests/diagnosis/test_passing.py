@@ -102,6 +102,12 @@ def test_bursts_are_seen_away_from_reversals_alone():
     assert not near.moments().flagged()
 
 
+def test_what_stands_out_everywhere_is_no_matter_of_moments():
+    made = session()
+    made.both[:, 0] *= 8.0
+    assert not made.moments().flagged()
+
+
 def test_three_outliers_are_no_bursts():
     made = session()
     for first in (1000, 9000, 17100):

@@ -161,7 +161,6 @@ COORDINATES: Final = (
         rows="where a slide begins",
         logarithmic=True,
     ),
-    Coordinate("session time", "session clock, s", False, lambda look: look.time, slow=True),
     Coordinate(
         "session time along the motion", "session clock, s", True, lambda look: look.time, slow=True
     ),

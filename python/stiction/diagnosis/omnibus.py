@@ -11,7 +11,7 @@ import numpy as np
 from ..trajectory import FloatArray
 from .coordinates import COORDINATES, Look
 from .evidence import Evidence
-from .passing import DRIFT, drift_view, moments_view, settled
+from .passing import drift_view, moments_view, settled
 from .periodic import COUPLED, ORDERS, Asked, frequency_view, order_views
 from .response import response_columns, response_view
 from .smoother import smoother, stacked
@@ -93,16 +93,7 @@ def rest(
     sliding = stacked(evidence, [settled(look) for look in seen])
     cells, weights = evidence.cells, evidence.weights
     moments = moments_view(cells, clock, sliding, both, weights, friction)
-    drift = drift_view(cells, clock, velocity, both, weights, friction)
-    # A drift shows in recordings that lie apart, in seconds that lie side by side, or in both.
-    views = [
-        _clearer(view, drift) if view.coordinate.name == DRIFT.name else view for view in views
-    ]
+    views.append(drift_view(cells, clock, velocity, both, weights, friction))
     lines = frequency_view(cells, spacing, both, weights, friction)
     views += [view for view in (moments, lines) if view is not None]
     return Rest(tuple(sorted(views, key=lambda view: -view.share)))
-
-
-def _clearer(one: View, other: View) -> View:
-    """Of two views of one coordinate the one that stands higher above what noise reaches."""
-    return max((one, other), key=lambda view: view.share / view.threshold)

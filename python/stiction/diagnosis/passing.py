@@ -46,6 +46,8 @@ CHANCES: Final = 3
 """The largest windows that are not counted: so few say nothing of what comes again."""
 FEWEST_RECORDINGS: Final = 4
 """From so many on the one that shows most is not counted."""
+FEW: Final = 0.25
+"""Share of all windows in which moments are single ones."""
 FEWEST_WINDOWS: Final = 10
 """Of a recording, for some of them to stand out."""
 
@@ -150,6 +152,8 @@ def moments_view(
         reach = np.array([np.max(largest), *others])
         more = power[asked] - np.mean(power[asked, 1:])
         beyond[asked] = np.where(power[asked] > reach, more, 0.0)
+    # What stands out everywhere is no matter of moments.
+    beyond *= np.sum(beyond > 0.0, axis=0) < FEW * np.sum(whole)
     few = np.sort(beyond, axis=0)[max(len(beyond) - CHANCES, 0)]
     beyond = np.where(beyond < few, beyond, 0.0)
     physical = _sums(place, (both / weights[:, None]) ** 2, len(starts)) / rows[:, None]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, Final
 
@@ -218,9 +218,7 @@ def _testable(
         "residual": residual_told([rows.form for rows in evidence.shown]),
     }
     _logger.info("replaying it with noise, %d times", surrogates)
-    null, noises = surrogate_residuals(evidence, base.plant, base.nuisances, surrogates, found.seed)
-    # What a fit would have taken up is no sign of anything.
-    null = refitted(base.columns, null, evidence.fitted)
+    null, noises = _surrogates(evidence, base, surrogates, found.seed)
     data["noise"] = [_noise_entry(evidence, index, noise) for index, noise in noises.items()]
     _logger.info("screening the effects")
     selection = described(search(evidence, base, null, without=without), evidence, null)
@@ -267,10 +265,20 @@ def _testable(
         (first_rival, rivals),
         test,
         null,
+        lambda: _surrogates(evidence, final, surrogates, found.seed)[0],
         checks,
     )
     found = _with_pushes(found, evidence)
     return replayed(replace(found, ceiling=ceiling), evidence, base, final)
+
+
+def _surrogates(
+    evidence: Evidence, model: Model, number: int, seed: int
+) -> tuple[FloatArray, dict[int, Noise]]:
+    """Residuals of a model that is right, shape (n, number), and the noise of each recording."""
+    null, noises = surrogate_residuals(evidence, model.plant, model.nuisances, number, seed)
+    # What a fit would have taken up is no sign of anything.
+    return refitted(model.columns, null, evidence.fitted), noises
 
 
 def _with_pushes(found: Diagnosis, evidence: Evidence) -> Diagnosis:
@@ -307,6 +315,7 @@ def _concluded(
     compared: tuple[int, Sequence[Rival]],
     test: HeldOut | None,
     null: FloatArray,
+    null_of_last: Callable[[], FloatArray],
     checks: Sequence[tuple[str, Check]],
 ) -> Diagnosis:
     """Verdict and words, from everything that was measured.
@@ -353,7 +362,7 @@ def _concluded(
     gain = None
     if causes and test is not None:
         gain = gain_of(test, 0, len(causes), found.seed)
-    unexplained = unnamed(evidence, selection, rests[1], null)
+    unexplained = unnamed(evidence, selection, *rests, null, null_of_last)
     if better is not None and not causes and not unexplained:
         unexplained = (Unexplained(THE_LAW, better.beside),)
     left = lost(evidence, final, null)

@@ -30,6 +30,7 @@ from .replay import centre, shared
 from .result import CandidateRow
 from .screen import Score, Signatures
 from .selection import Search
+from .sharpen import beside_a_second, is_sharpened, sharpened
 from .trials import Screening, promises, whole_fit
 
 __all__ = ["MOST_EFFECTS", "friction_of", "search"]
@@ -93,7 +94,8 @@ def search(
             found.choices.append(choice)
             found.models.append(choice.winner.model)
             _logger.info("found %s", choice.winner.name)
-            _sharpen(screening, found)
+            found.choices[-1] = sharpened(screening, found.choices[-1])
+            found.models[-1] = found.choices[-1].winner.model
             dropped |= _drop(evidence, found)
             rests |= _take_back(screening, found)
         for place in range(len(found.choices) - 1):
@@ -154,7 +156,8 @@ def _round(screening: Screening, found: Search, refused: Set[str]) -> Choice | N
     trials: list[Trial] = []
     for score in passing[:REFITTED]:
         if not _hopeless(score, trials):
-            trials.append(screening.trial(found.models[-1], score))
+            trial = screening.trial(found.models[-1], score)
+            trials.append(beside_a_second(screening, found.models[-1], trial))
     tried = {trial.name for trial in trials}
     for score in passing:
         if score.candidate.name not in tried:
@@ -256,33 +259,6 @@ def _take_back(screening: Screening, found: Search) -> set[str]:
     return set()
 
 
-def _sharpen(screening: Screening, found: Search) -> None:
-    """Gives the effect that was found last a second wave where that passes like an effect.
-
-    What repeats with position is seldom a sine, and the rest of it would be taken for another
-    effect.
-    """
-    choice = found.choices[-1]
-    if not choice.winner.candidate.record.second:
-        return
-    model = found.models[-1]
-    own = screening.signatures.second_of(
-        next(each for each in model.plant.effects if each.name == choice.winner.name)
-    )
-    if not own.candidates:
-        return
-    second = screening.with_signatures(own)
-    (score,) = second.scores(model)
-    if not promises(score):
-        return
-    trial = second.trial(model, score)
-    if not trial.reason:
-        _logger.info("%s has a second wave", choice.winner.name)
-        found.models[-1] = trial.model
-        winner = replace(choice.winner, model=trial.model)
-        found.choices[-1] = replace(choice, winner=winner)
-
-
 def _renew(evidence: Evidence, found: Search, choice: Choice) -> bool:
     """Whether the base alone does better from where the winner led it; then it is replaced.
 
@@ -347,7 +323,7 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
     candidates_of = screening.signatures.candidates
     tried = {each.name: each.record for each in candidates_of if each.name not in taken}
     kin = {name for name, other in tried.items() if other.family == record.family}
-    if len(kin) < 2 or any(name in effect.parameters for name in record.second):
+    if len(kin) < 2 or is_sharpened(effect, record):
         return
     evidence = screening.evidence
     less = whole_fit(evidence, without_effect(whole.plant, record.name), whole.nuisances)

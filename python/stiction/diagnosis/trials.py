@@ -82,7 +82,10 @@ class Screening:
         """A candidate refitted together with a model, and judged."""
         _logger.info("refitting with %s", score.candidate.name)
         model = _refit(self.evidence, base, self.signatures, score)
-        explained = self.contributed(score, model)
+        return self.judged(base, score, model, self.contributed(score, model))
+
+    def judged(self, base: Model, score: Score, model: Model, explained: FloatArray) -> Trial:
+        """A model with a candidate, judged; ``explained`` is what that does, shape (n,)."""
         size = float(np.sqrt(np.mean(explained**2))) / max(self.friction, 1e-300)
         trial = judge(base, score, model, explained, size)
         reason = (

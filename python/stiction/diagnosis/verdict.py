@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
 
 from ..trajectory import FloatArray
-from .decide import LEAST_GAIN
+from .decide import LEAST_GAIN, heldout_gain
 from .evidence import Evidence
 from .model import Model
 from .omnibus import Rest
@@ -42,7 +42,12 @@ leaves little, spread over many coordinates."""
 
 
 def unnamed(
-    evidence: Evidence, selection: Search, left: Rest, null: FloatArray
+    evidence: Evidence,
+    selection: Search,
+    before: Rest,
+    left: Rest,
+    null: FloatArray,
+    null_of_last: Callable[[], FloatArray],
 ) -> tuple[Unexplained, ...]:
     """What the last model leaves that noise does not explain, largest first.
 
@@ -50,10 +55,12 @@ def unnamed(
     ----------
     evidence : Evidence
     selection : Search
-    left : Rest
-        What its last model leaves, in every coordinate.
+    before, left : Rest
+        What its first model leaves and what its last one leaves, in every coordinate.
     null : numpy.ndarray, shape (n, surrogates)
         Residuals of the surrogates.
+    null_of_last : callable
+        The same of the last model: a shaft that gives turns noise of the position into effort.
     """
     excess = _excess(evidence, selection.models[-1], null)
     told = _told(left, LEAST_SIZE)
@@ -61,11 +68,14 @@ def unnamed(
         # A line over time is what the replays took for noise, and none of their making.
         return tuple(each for each in told if each.coordinate == FREQUENCY.name)
     if not told and selection.choices:
-        beside = _told(left, BESIDE_A_NAME)
+        beside = _told(left, 0.0 if _falls_short(selection, before) else BESIDE_A_NAME)
         told = beside if _outweighs(selection, beside) else ()
     if not told and selection.imitated > LEAST_GAIN:
         # What was refused as an imitation shows that there is something to imitate.
         told = (Unexplained(left.views[0].coordinate.name, selection.imitated),)
+    if not told and excess > _most_excess(evidence) and selection.choices:
+        null = null_of_last()
+        excess = _excess(evidence, selection.models[-1], null)
     if not told and excess > _most_excess(evidence):
         bursts = _at_moments(evidence, selection.models[-1], null)
         told = (Unexplained(MOMENTS.name if bursts else NO_COORDINATE, excess),)
@@ -97,6 +107,16 @@ def relatives(selection: Search, place: int) -> list[str]:
 def _told(left: Rest, least: float) -> tuple[Unexplained, ...]:
     views = left.flagged(least)
     return tuple(Unexplained(view.coordinate.name, view.share) for view in views)
+
+
+def _falls_short(selection: Search, before: Rest) -> bool:
+    """Whether the names explain less than a mean over stretches of one coordinate does.
+
+    A cause explains at least what shows over any single coordinate; what follows a part of that
+    imitates it, and then whatever is left of it counts.
+    """
+    gain = heldout_gain(selection.models[0], selection.models[-1])[0]
+    return any(view.share > gain for view in before.flagged())
 
 
 def _outweighs(selection: Search, left: Sequence[Unexplained]) -> bool:

@@ -1,0 +1,119 @@
+"""What an effect is beyond the form in which it is looked for: a second wave, shapes of its own."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import replace
+from typing import Final
+
+from ..catalogue import EffectRecord
+from ..plant import Effect, Plant
+from .decide import LEAST_GAIN, LEAST_Z, PENALTY, Choice, Trial, heldout_gain, log_gain
+from .model import Model
+from .trials import MANY_TIMES, MUCH, Screening, promises, whole_fit
+
+__all__ = ["beside_a_second", "is_sharpened", "sharpened"]
+
+PURE: Final = "one"
+"""Scale of shapes that are numbers of their own, as an exponent is: what is measured in a length
+or an input of the session may exchange for a gain."""
+
+_logger = logging.getLogger(__name__)
+
+
+def sharpened(screening: Screening, choice: Choice) -> Choice:
+    """A choice with a second wave, and with shapes of its own, where these pass like an effect.
+
+    What repeats with position is seldom a sine, and a shape that the screening holds is seldom
+    right: the rest of either would be taken for another effect.
+    """
+    winner = choice.winner
+    for further in (_second_wave, _freed):
+        model = further(screening, winner)
+        if model is not None:
+            winner = replace(winner, model=model)
+    return replace(choice, winner=winner)
+
+
+def is_sharpened(effect: Effect, record: EffectRecord) -> bool:
+    """Whether an effect has a second wave or shapes that the screening holds."""
+    if any(name in effect.parameters for name in record.second):
+        return True
+    return any(not effect.parameters[name].fixed for name in _held(record))
+
+
+def beside_a_second(screening: Screening, base: Model, trial: Trial) -> Trial:
+    """A trial that was refused, with a second wave where that passes together with the first.
+
+    Where two waves are about as large, one alone does harm wherever they cancel.
+    """
+    score = trial.score
+    if not trial.reason or score.score <= max(MUCH, MANY_TIMES * score.threshold):
+        return trial
+    found = _second(screening, trial)
+    if found is None:
+        return trial
+    second, other = found
+    explained = screening.contributed(score, other.model) + second.contributed(
+        other.score, other.model
+    )
+    both = screening.judged(base, score, other.model, explained)
+    if both.reason:
+        return trial
+    _logger.info("%s passes with a second wave", trial.name)
+    return replace(both, worth=both.worth - PENALTY * other.candidate.parameters)
+
+
+def _second_wave(screening: Screening, winner: Trial) -> Model | None:
+    """The winner with a second wave; None where that does not pass."""
+    found = _second(screening, winner)
+    if found is None or found[1].reason:
+        return None
+    _logger.info("%s has a second wave", winner.name)
+    return found[1].model
+
+
+def _second(screening: Screening, trial: Trial) -> tuple[Screening, Trial] | None:
+    """A second wave refitted beside the first one, and what it was screened with."""
+    record, effect = trial.candidate.record, _effect(trial.model.plant, trial.name)
+    if not record.second or any(name in effect.parameters for name in record.second):
+        return None
+    own = screening.signatures.second_of(effect)
+    if not own.candidates:
+        return None
+    second = screening.with_signatures(own)
+    (score,) = second.scores(trial.model)
+    return (second, second.trial(trial.model, score)) if promises(score) else None
+
+
+def _freed(screening: Screening, winner: Trial) -> Model | None:
+    """The winner with shapes that the screening holds fitted as well; None where nothing gains."""
+    before, record = winner.model, winner.candidate.record
+    held = _held(record)
+    if not held:
+        return None
+    effect = _effect(before.plant, record.name)
+    parameters = {
+        name: replace(each, fixed=False) if name in held else each
+        for name, each in effect.parameters.items()
+    }
+    freed = Effect(effect.name, parameters)
+    plant: Plant = replace(
+        before.plant,
+        effects=tuple(freed if each is effect else each for each in before.plant.effects),
+    )
+    model = whole_fit(screening.evidence, plant, before.nuisances)
+    gain, z = heldout_gain(before, model)
+    if gain <= LEAST_GAIN or z <= LEAST_Z or log_gain(before, model) <= PENALTY * len(held):
+        return None
+    _logger.info("%s has %s of its own", record.name, " and ".join(held))
+    return model
+
+
+def _held(record: EffectRecord) -> tuple[str, ...]:
+    """Shapes of an effect that its candidates hold, and that a fit may well vary."""
+    return tuple(s.parameter for s in record.shapes if not s.fitted and s.scale == PURE)
+
+
+def _effect(plant: Plant, name: str) -> Effect:
+    return next(each for each in plant.effects if each.name == name)

@@ -1,0 +1,87 @@
+"""A cause is more than the form in which it is looked for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.blind.draw import cases
+from tests.blind.score import as_plant, as_session
+from tests.reference.session_reference import make_sessions
+
+import stiction as st
+from stiction.diagnosis import sharpen, verdict
+from stiction.diagnosis.omnibus import Rest
+from stiction.diagnosis.sharpen import is_sharpened
+from stiction.diagnosis.view import View
+from stiction.parameter import Parameter
+from stiction.plant import Effect
+
+# A friction that repeats 8 and 24 times a turn, one wave nearly as large as the other: where they
+# cancel, the first alone does harm, and the rows that decide do not want it.
+TWO_WAVES = next(c for c in cases(60, 610) if c.seed == 6110046)
+
+
+def found(case: Any) -> Any:
+    (made,) = make_sessions([case.spec])
+    return st.diagnose(as_plant(made), as_session(made))
+
+
+def test_two_waves_pass_together_where_one_does_not() -> None:
+    diagnosis = found(TWO_WAVES)
+    assert [cause.name for cause in diagnosis.effects] == ["position_dependent_friction"]
+    assert diagnosis.gain is not None
+    assert diagnosis.gain.value > 0.8
+    (effect,) = diagnosis.plant.effects
+    assert {effect.parameters[name].value for name in ("order", "order_2")} == {8.0, 24.0}
+
+
+@pytest.mark.parametrize(
+    ("gain", "z", "kept"), [(0.2, 4.0, True), (0.2, 1.0, False), (0.01, 9.0, False)]
+)
+def test_a_shape_of_its_own_has_to_gain(
+    monkeypatch: pytest.MonkeyPatch, gain: float, z: float, kept: bool
+) -> None:
+    record = next(r for r in st.effects() if r.name == "stribeck")
+    names = (*record.gains, *(shape.parameter for shape in record.shapes))
+    stated = {n: Parameter(1.0, fixed=n == "exponent") for n in names}
+    drive, friction = {"input": "torque_nm", "gain": 1.0}, {"law": "coulomb"}
+    plant = st.Plant.from_dict({"drive": drive, "body": {"inertia": 0.01}, "friction": friction})
+    plant = replace(plant, effects=(Effect("stribeck", stated),))
+    monkeypatch.setattr(
+        sharpen, "whole_fit", lambda _, plant, __: SimpleNamespace(plant=plant, nuisances=None)
+    )
+    monkeypatch.setattr(sharpen, "heldout_gain", lambda *_: (gain, z))
+    monkeypatch.setattr(sharpen, "log_gain", lambda *_: 2.0 * gain)
+    before = SimpleNamespace(plant=plant, nuisances=None)
+    winner: Any = SimpleNamespace(
+        name="stribeck", model=before, candidate=SimpleNamespace(record=record)
+    )
+    screening: Any = SimpleNamespace(evidence=None)
+    model = sharpen._freed(screening, winner)
+    assert (model is not None) == kept
+    if model is not None:
+        (effect,) = model.plant.effects
+        assert not effect.parameters["exponent"].fixed
+        assert is_sharpened(effect, record)
+        assert not is_sharpened(Effect("stribeck", stated), record)
+
+
+def test_names_that_explain_less_than_one_coordinate_shows_imitate(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    none = np.zeros(0)
+
+    def view(name: str, share: float) -> View:
+        coordinate: Any = SimpleNamespace(name=name, refines="")
+        return View(coordinate, none, none, none, none, share, 0.02, 0.01)
+
+    monkeypatch.setattr(verdict, "heldout_gain", lambda *_: (0.1, 5.0))
+    selection: Any = SimpleNamespace(models=[None, None])
+    assert verdict._falls_short(selection, Rest((view("acceleration", 0.12),)))
+    assert not verdict._falls_short(selection, Rest((view("acceleration", 0.08),)))
+    # What noise reaches as well is no sign.
+    assert not verdict._falls_short(selection, Rest((view("acceleration", 0.01),)))
