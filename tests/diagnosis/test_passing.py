@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pytest
@@ -29,10 +30,13 @@ class Session:
     velocity: FloatArray
     both: FloatArray
     cells: Cells
+    sliding: Any
 
     def drift(self):
         weights = np.ones(len(self.clock))
-        return drift_view(self.cells, self.clock, self.velocity, self.both, weights, FRICTION)
+        return drift_view(
+            self.cells, self.clock, self.velocity, self.sliding, self.both, weights, FRICTION
+        )
 
     def moments(self):
         weights = np.ones(len(self.clock))
@@ -51,7 +55,8 @@ def session(recordings=6):
         np.mod(time, 2.0),
         np.sin(np.pi * time / 2.0) * (1.0 + 0.1 * recording),
         0.1 * rng.standard_normal((len(time), 1 + SURROGATES)),
-        Cells(np.zeros(0, int), recording, np.zeros(0, int), ("",)),
+        Cells(recording, recording, recording, ("",)),
+        np.mod(time, 2.0) > 0.1,
     )
 
 
@@ -78,6 +83,15 @@ def test_a_drift_in_one_recording_is_a_machine_that_was_lost_there():
     lost = made.cells.recording == 2
     made.both[lost, 0] += 0.3 * np.sin(2.0 * np.pi * 0.07 * made.clock[lost])
     assert not made.drift().flagged()
+
+
+def test_what_a_resting_contact_holds_is_no_drift():
+    made = session()
+    made.sliding[:] = np.mod(made.clock, 5.0) > 3.0
+    made.both[~made.sliding, 0] += 0.2
+    assert not made.drift().flagged()
+    made.sliding[:] = False
+    assert made.drift() is None
 
 
 def test_what_goes_with_the_velocity_is_no_drift():

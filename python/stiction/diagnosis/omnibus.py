@@ -90,10 +90,13 @@ def rest(
     views.append(response_view(moved, spacing, evidence.plans, both, evidence.weights, friction))
     clock = stacked(evidence, [look.time for look in seen])
     velocity = stacked(evidence, [look.velocity for look in seen])
-    sliding = stacked(evidence, [settled(look) for look in seen])
+    sliding = stacked(evidence, [look.slides.sliding for look in seen])
+    steady = stacked(evidence, [settled(look) for look in seen])
     cells, weights = evidence.cells, evidence.weights
-    moments = moments_view(cells, clock, sliding, both, weights, friction)
-    views.append(drift_view(cells, clock, velocity, both, weights, friction))
-    lines = frequency_view(cells, spacing, both, weights, friction)
-    views += [view for view in (moments, lines) if view is not None]
+    with_time = (
+        drift_view(cells, clock, velocity, sliding, both, weights, friction),
+        moments_view(cells, clock, steady, both, weights, friction),
+        frequency_view(cells, spacing, both, weights, friction),
+    )
+    views += [view for view in with_time if view is not None]
     return Rest(tuple(sorted(views, key=lambda view: -view.share)))

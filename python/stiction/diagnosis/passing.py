@@ -15,12 +15,14 @@ from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .coordinates import Coordinate, Look
 from .evidence import Cells
-from .view import View, limit, means
+from .view import FEWEST_ROWS, View, limit, means
 
 __all__ = ["DRIFT", "MOMENTS", "drift_view", "moments_view", "settled"]
 
 
-DRIFT: Final = Coordinate("session time", "session clock, s", False, lambda look: look.time)
+DRIFT: Final = Coordinate(
+    "session time", "session clock, s", False, lambda look: look.time, rows="while it slides"
+)
 """Residual that is much the same as a second before and a second later."""
 MOMENTS: Final = Coordinate(
     "single moments in time",
@@ -33,7 +35,7 @@ MOMENTS: Final = Coordinate(
 """Residual that is large in a few short windows, while the machine slides."""
 SPAN_S: Final = 1.0
 """Length of the stretches that neighbours predict."""
-WHOLE: Final = 0.5
+WHOLE: Final = 0.2
 """Of the rows of a full one, which a stretch needs to be asked and to answer."""
 STRETCHES: Final = 24
 """Of the velocity: what goes with it is taken off, for a machine that goes on evenly for seconds
@@ -61,11 +63,15 @@ def drift_view(
     cells: Cells,
     clock: FloatArray,
     velocity: FloatArray,
+    sliding: Mask,
     both: FloatArray,
     weights: FloatArray,
     friction: float,
-) -> View:
+) -> View | None:
     """What the seconds beside it tell of each second of a recording.
+
+    Of rows in which the machine slides: a contact that holds an effort of which the model knows
+    nothing holds it until it slides. None where there are too few of them.
 
     Parameters
     ----------
@@ -73,12 +79,17 @@ def drift_view(
     clock : numpy.ndarray, shape (n,)
         Session clock of each row, s.
     velocity : numpy.ndarray, shape (n,)
+    sliding : numpy.ndarray of bool, shape (n,)
     both : numpy.ndarray, shape (n, 1 + surrogates)
         Weighted residual, then those of the surrogates.
     weights : numpy.ndarray, shape (n,)
     friction : float
         Weighted rms of the friction.
     """
+    if np.sum(sliding) < FEWEST_ROWS:
+        return None
+    cells, clock, velocity = cells.of(sliding), clock[sliding], velocity[sliding]
+    both, weights = both[sliding], weights[sliding]
     place, starts = _windows(cells, clock, SPAN_S)
     recording = _of(cells.recording, place, len(starts))
     total = _sums(place, both**2, len(starts))
