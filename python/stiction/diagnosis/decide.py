@@ -42,6 +42,8 @@ TOUCHED: Final = 0.01
 """Blocks with less than this share of an effect's mean power are none of its business."""
 PENALTY: Final = 0.004
 """Of log-gain per parameter: flexible wrong effects imitate right ones."""
+MOST_TIMES: Final = 5.0
+"""What a refit explains over what the screening promised: causes that were hidden came to 2.8."""
 NEAR: Final = 0.15
 """Within this share of the winner's log-gain another candidate is not told apart."""
 DECIDED_Z: Final = 2.0
@@ -171,6 +173,11 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             f"explains {100 * explained:.2f} % of the residual, and noise alone reaches "
             f"{100 * score.threshold:.2f} %"
         )
+    elif explained > MOST_TIMES * max(score.score, score.threshold) and not _late(score):
+        reason = (
+            f"explains {100 * explained:.1f} % of the residual where its signature can explain "
+            f"{100 * score.score:.1f} %: the base was freed, which is no effect's gain"
+        )
     elif unseen:
         reason = "the rows held out hardly excite it"
         by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
@@ -203,6 +210,11 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         )
     worth = log_gain(base, model) - PENALTY * score.candidate.parameters
     return Trial(score, model, gain, z, worth, strength, size, reason, by_blocks, uneven, unseen)
+
+
+def _late(score: Score) -> bool:
+    """Whether the slope at no delay tells that something is late, but not by how much."""
+    return score.candidate.record.late
 
 
 def _out_of_its_range(candidate: Candidate, model: Model) -> str:

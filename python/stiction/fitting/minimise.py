@@ -17,7 +17,7 @@ from .rows import Nuisances, Rows, Start, numbers, primed, start_quantities, tim
 from .slopes import places_of, slopes
 from .variables import Variables, records
 
-__all__ = ["MOST_EVALUATIONS", "Solution", "launch", "minimise"]
+__all__ = ["MOST_EVALUATIONS", "Solution", "from_usual_exponents", "launch", "minimise"]
 
 MOST_EVALUATIONS: Final = 60
 CONVERGED: Final = 1e-8
@@ -121,6 +121,33 @@ def launch(
     whole = minimise(best.plant, paths, rows, most=most, nuisances=nuisances)
     spent = sum(solution.evaluations for solution in first)
     return replace(whole, begin=best.begin, evaluations=whole.evaluations + spent)
+
+
+def from_usual_exponents(solution: Solution, rows: Sequence[Rows]) -> Solution:
+    """The better of a solution and a short fit from it with each exponent at its usual value.
+
+    An exponent of a law far from that makes up for the number that it belongs to, in a valley that
+    no small step leaves. Where the law has none, or the fit was interrupted, the solution.
+    """
+    known = records(solution.plant)
+    usual = {
+        path: known[path].default
+        for path in solution.variables.paths
+        if path.startswith("friction.") and path.endswith("exponent") and not known[path].optional
+    }
+    if not usual or solution.interrupted:
+        return solution
+    paths, nuisances = solution.variables.paths, solution.nuisances
+    start = solution.plant.with_values(usual)
+    again = minimise(start, paths, rows, most=FEW_EVALUATIONS, nuisances=nuisances)
+    spent = solution.evaluations + again.evaluations
+    better = solution
+    if again.power < solution.power and not again.interrupted:
+        nuisances = again.nuisances
+        better = minimise(again.plant, paths, rows, most=MOST_EVALUATIONS, nuisances=nuisances)
+        spent += better.evaluations
+    interrupted = again.interrupted or better.interrupted
+    return replace(better, evaluations=spent, begin=solution.begin, interrupted=interrupted)
 
 
 class _Minimiser:

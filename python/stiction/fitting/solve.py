@@ -16,7 +16,7 @@ from ..recording.split import BLOCK_S, name_of, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from .forms import forms_of, horizon_of, set_clocks, shows_its_ring
-from .minimise import MOST_EVALUATIONS, Solution, launch, minimise
+from .minimise import MOST_EVALUATIONS, Solution, from_usual_exponents, launch, minimise
 from .pushes import Watch, told
 from .result import FitParameter, FitResult
 from .rows import Nuisances, Rows, primed, rows_of
@@ -184,13 +184,14 @@ def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
     if first.interrupted:
         return first
     reweighted(rows, first.plant, first.nuisances)
-    return minimise(
+    second = minimise(
         first.plant,
         first.variables.paths,
         rows,
         most=most,
         nuisances=primed(first.plant, rows, first.nuisances),
     )
+    return from_usual_exponents(second, rows)
 
 
 def reweighted(rows: Sequence[Rows], plant: Plant, nuisances: Nuisances) -> None:
