@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -25,7 +26,7 @@ def trial(
     by_blocks: bool = False,
     contributed: Any = (1.0, 0.0),
 ) -> Trial:
-    record = SimpleNamespace(family=family or name, name=name, shapes=(), late=False)
+    record = SimpleNamespace(family=family or name, name=name, shapes=(), late=False, second=())
     candidate: Any = SimpleNamespace(name=name, parameters=1, record=record)
     score: Any = SimpleNamespace(
         signature=np.asarray(contributed, dtype=float),
@@ -80,6 +81,16 @@ def test_causes_that_hide_each_other_pass_together(
     if choice is not None:
         assert choice.winner.name == "a"
         assert choice.winner.reason == ""
+
+
+def test_a_refit_that_freed_the_base_leads_to_a_better_one_before_any_name() -> None:
+    freed = replace(trial("a", 2.0, "the base was freed"), freed=True)
+    bench: Any = Bench({"base": [freed, trial("b", 1.0)]})
+    base: Any = SimpleNamespace(name="base")
+    choice, leads = rounds._round(bench, Search([base]), set())
+    assert choice is not None
+    assert choice.winner.name == "b"
+    assert [lead.name for lead in leads] == ["a", "b"]
 
 
 def test_what_explains_less_than_another_is_no_first_of_two() -> None:

@@ -94,6 +94,8 @@ class Trial:
         in them, and for nothing else.
     unseen : bool
         The rows held out are none of its business: they can speak neither for nor against it.
+    freed : bool
+        It explains far more than its signature can: the refit freed a base that was caught.
     uneven : float
         What strengths of their own by kind of recording would add, as a share of its gain; 1
         where its shape says that it is something else.
@@ -110,6 +112,7 @@ class Trial:
     by_blocks: bool = False
     uneven: float = 0.0
     unseen: bool = False
+    freed: bool = False
 
     @property
     def imitates(self) -> bool:
@@ -159,6 +162,9 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     gain, z = heldout_gain(base, model, touched)
     unseen = int(np.sum(touched & (base.blocks[1] > 0.0))) < FEWEST_BLOCKS
     explained = 1.0 - model.power / base.power if base.power > 0.0 else 0.0
+    # Of what is late the slope at no delay does not tell how much it explains.
+    late = score.candidate.record.late
+    freed = not late and explained > MOST_TIMES * max(score.score, score.threshold)
     reason = ""
     by_blocks = False
     strength = model.strength(score.candidate)
@@ -173,7 +179,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             f"explains {100 * explained:.2f} % of the residual, and noise alone reaches "
             f"{100 * score.threshold:.2f} %"
         )
-    elif explained > MOST_TIMES * max(score.score, score.threshold) and not _late(score):
+    elif freed:
         reason = (
             f"explains {100 * explained:.1f} % of the residual where its signature can explain "
             f"{100 * score.score:.1f} %: the base was freed, which is no effect's gain"
@@ -209,12 +215,9 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             f"{100 * uneven:.0f} % to its gain"
         )
     worth = log_gain(base, model) - PENALTY * score.candidate.parameters
-    return Trial(score, model, gain, z, worth, strength, size, reason, by_blocks, uneven, unseen)
-
-
-def _late(score: Score) -> bool:
-    """Whether the slope at no delay tells that something is late, but not by how much."""
-    return score.candidate.record.late
+    return Trial(
+        score, model, gain, z, worth, strength, size, reason, by_blocks, uneven, unseen, freed
+    )
 
 
 def _out_of_its_range(candidate: Candidate, model: Model) -> str:

@@ -85,8 +85,8 @@ def search(
         rests: set[str] = set()
         renewed = 0
         while len(found.choices) < MOST_EFFECTS:
-            choice = _round(screening, found, rests)
-            if choice is not None and renewed < MOST_RENEWALS and _renew(evidence, found, choice):
+            choice, leads = _round(screening, found, rests)
+            if renewed < MOST_RENEWALS and any(_renew(evidence, found, lead) for lead in leads):
                 renewed += 1
                 continue
             if choice is None or choice.winner.name in dropped:
@@ -142,7 +142,10 @@ def _where(plant: Plant, record: EffectRecord) -> str:
     return "part of the body" if body else "part of the law"
 
 
-def _round(screening: Screening, found: Search, refused: Set[str]) -> Choice | None:
+def _round(
+    screening: Screening, found: Search, refused: Set[str]
+) -> tuple[Choice | None, list[Trial]]:
+    """What is accepted of what a model lacks, and trials that may have freed the base."""
     taken = refused | {choice.winner.name for choice in found.choices}
     scores = screening.scores(found.models[-1])
     scores = [score for score in scores if score.candidate.name not in taken]
@@ -172,7 +175,8 @@ def _round(screening: Screening, found: Search, refused: Set[str]) -> Choice | N
     for trial in trials:
         if choice is not None or not found.choices:
             found.rows[trial.name] = listing.tried(trial, choice)
-    return choice
+    freed = sorted((trial for trial in trials if trial.freed), key=lambda t: -t.worth)[:1]
+    return choice, freed if choice is None else [*freed, choice.winner]
 
 
 def _beside(screening: Screening, trials: Sequence[Trial]) -> Choice | None:
@@ -259,14 +263,14 @@ def _take_back(screening: Screening, found: Search) -> set[str]:
     return set()
 
 
-def _renew(evidence: Evidence, found: Search, choice: Choice) -> bool:
-    """Whether the base alone does better from where the winner led it; then it is replaced.
+def _renew(evidence: Evidence, found: Search, lead: Trial) -> bool:
+    """Whether the base alone does better from where a trial led it; then it is replaced.
 
     A fit that was caught looks as if an effect had freed it: what the base can do by itself is no
     effect's gain.
     """
-    model, base = choice.winner.model, found.models[-1]
-    alone = whole_fit(evidence, without_effect(model.plant, choice.winner.name), model.nuisances)
+    model, base = lead.model, found.models[-1]
+    alone = whole_fit(evidence, without_effect(model.plant, lead.name), model.nuisances)
     if alone.power > (1.0 - WORTH_RENEWING) * base.power:
         return False
     _logger.info("the base does better from another start")

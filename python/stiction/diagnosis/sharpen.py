@@ -75,8 +75,11 @@ def _second_wave(screening: Screening, winner: Trial) -> Model | None:
 
 def _second(screening: Screening, trial: Trial) -> tuple[Screening, Trial] | None:
     """A second wave refitted beside the first one, and what it was screened with."""
-    record, effect = trial.candidate.record, _effect(trial.model.plant, trial.name)
-    if not record.second or any(name in effect.parameters for name in record.second):
+    record = trial.candidate.record
+    if not record.second:
+        return None
+    effect = _effect(trial.model.plant, trial.name)
+    if any(name in effect.parameters for name in record.second):
         return None
     own = screening.signatures.second_of(effect)
     if not own.candidates:

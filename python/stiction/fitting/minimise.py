@@ -23,6 +23,9 @@ MOST_EVALUATIONS: Final = 60
 CONVERGED: Final = 1e-8
 """Change of cost, or of parameters, below which nothing more is gained: samples at rest go over
 from stick to slip one by one, so the cost has tiny steps."""
+FIRST_EVALUATIONS: Final = 5
+LEFT: Final = 2
+"""After so many steps these go on of several starts."""
 FEW_EVALUATIONS: Final = 14
 """After so many it shows which of several starts leads on."""
 MOST_ESCAPES: Final = 4
@@ -108,19 +111,48 @@ def minimise(
 def launch(
     plants: Sequence[Plant], paths: Sequence[str], rows: Sequence[Rows], *, most: int
 ) -> Solution:
-    """Minimise from each of several starts for a while, then to the end from the best of them."""
+    """Minimise from each of several starts for a while, then to the end from the best of them.
+
+    After a few steps the better half of them goes on.
+    """
     first = []
     for plant in plants:
-        first.append(minimise(plant, paths, rows, most=min(FEW_EVALUATIONS, most)))
+        most_at_first = FIRST_EVALUATIONS if len(plants) > LEFT else FEW_EVALUATIONS
+        first.append(minimise(plant, paths, rows, most=min(most_at_first, most)))
         if first[-1].interrupted:
             break
-    best = min(first, key=lambda solution: solution.power)
-    if best.interrupted or best.success:
-        return best
-    nuisances = primed(best.plant, rows, best.nuisances)
-    whole = minimise(best.plant, paths, rows, most=most, nuisances=nuisances)
     spent = sum(solution.evaluations for solution in first)
-    return replace(whole, begin=best.begin, evaluations=whole.evaluations + spent)
+    if len(first) > LEFT and not any(solution.interrupted for solution in first):
+        first = sorted(first, key=lambda solution: solution.power)[:LEFT]
+        for k, solution in enumerate(first):
+            if not solution.success:
+                first[k] = _further(solution, rows, min(FEW_EVALUATIONS - FIRST_EVALUATIONS, most))
+                spent += first[k].evaluations
+            if first[k].interrupted:
+                break
+    best = min(first, key=lambda solution: solution.power)
+    stopped = next((solution for solution in first if solution.interrupted), None)
+    if stopped is not None:
+        return _stopped(best, stopped)
+    if best.success:
+        return best
+    whole = _further(best, rows, most, nuisances=primed(best.plant, rows, best.nuisances))
+    return replace(whole, evaluations=whole.evaluations + spent)
+
+
+def _stopped(best: Solution, stopped: Solution) -> Solution:
+    """The best so far of a fit that was interrupted in another part."""
+    return replace(best, success=False, interrupted=True, message=stopped.message)
+
+
+def _further(
+    solution: Solution, rows: Sequence[Rows], most: int, *, nuisances: Nuisances | None = None
+) -> Solution:
+    """The same fit, gone on with."""
+    paths = solution.variables.paths
+    known = solution.nuisances if nuisances is None else nuisances
+    further = minimise(solution.plant, paths, rows, most=most, nuisances=known)
+    return replace(further, begin=solution.begin)
 
 
 def from_usual_exponents(solution: Solution, rows: Sequence[Rows]) -> Solution:
@@ -146,8 +178,9 @@ def from_usual_exponents(solution: Solution, rows: Sequence[Rows]) -> Solution:
         nuisances = again.nuisances
         better = minimise(again.plant, paths, rows, most=MOST_EVALUATIONS, nuisances=nuisances)
         spent += better.evaluations
-    interrupted = again.interrupted or better.interrupted
-    return replace(better, evaluations=spent, begin=solution.begin, interrupted=interrupted)
+    if again.interrupted:
+        better = _stopped(solution, again)
+    return replace(better, evaluations=spent, begin=solution.begin)
 
 
 class _Minimiser:
