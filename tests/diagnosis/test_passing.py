@@ -73,6 +73,7 @@ def test_an_offset_that_wanders_within_seconds_is_told_by_the_seconds_beside_it(
     made.both[:, 0] += wander
     seen = made.drift()
     assert seen.flagged()
+    assert not made.moments().flagged()
     assert seen.share == pytest.approx(np.mean(wander**2) / np.mean(made.both[:, 0] ** 2), rel=0.3)
     # Drawn as it is: the mean of each second, in units of effort.
     assert np.corrcoef(seen.mean, np.interp(seen.at, made.clock, wander))[0, 1] > 0.9

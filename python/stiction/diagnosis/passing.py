@@ -145,6 +145,11 @@ def moments_view(
     friction : float
         Weighted rms of the friction.
     """
+    # What is the same for a second is no moment; nor does a moment change its median.
+    place, starts = _windows(cells, clock, SPAN_S)
+    order = np.argsort(place, kind="stable")
+    within = np.split(both[order], np.flatnonzero(np.diff(place[order])) + 1)
+    both = both - np.array([np.median(part, axis=0) for part in within])[place]
     place, starts = _windows(cells, clock, WINDOW_S)
     recording = _of(cells.recording, place, len(starts))
     whole = np.bincount(place, ~sliding, len(starts)) == 0.0
