@@ -222,9 +222,12 @@ def _together(screening: Screening, base: Model, trials: Sequence[Trial]) -> Cho
     first = max(spread, key=lambda t: t.worth, default=None)
     if first is None or any(trial.worth > first.worth for trial in trials):
         return None
-    for score in screening.scores(first.model):
-        if score.candidate.name == first.name or not promises(score):
-            continue
+    others = [
+        score
+        for score in screening.scores(first.model)
+        if score.candidate.name != first.name and promises(score)
+    ]
+    for score in others[:REFITTED]:
         second = screening.trial(first.model, score)
         if second.reason:
             continue
