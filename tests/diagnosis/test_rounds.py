@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stiction.diagnosis import rounds
+from stiction.diagnosis import decide, rounds
 from stiction.diagnosis.decide import Choice, Trial
 from stiction.diagnosis.result import CandidateRow
 from stiction.diagnosis.selection import Search
@@ -123,3 +123,29 @@ def test_a_small_relative_of_a_named_cause_may_be_its_rest(
     assert rounds._take_back(bench, found) == (set() if kept else {"b"})
     assert len(found.choices) == len(found.models) - 1 == (2 if kept else 1)
     assert found.rows["b"].reason.startswith("accepted" if kept else "small beside a,")
+
+
+@pytest.mark.parametrize(
+    ("gained", "passes"),
+    [
+        # A recording in which it does nothing got worse, and two in which it acts got better.
+        ((1.4, 0.5, 0.6, 1.0), True),
+        # What it acts in got worse; and only one recording got better.
+        ((1.0, 0.5, 0.9, 1.4), False),
+        ((1.0, 0.3, 1.0, 1.0), False),
+    ],
+)
+def test_a_recording_in_which_an_effect_does_nothing_does_not_judge_it(
+    gained: tuple[float, ...], passes: bool
+) -> None:
+    rows, recordings = 40, 4
+    recording = np.repeat(np.arange(recordings), rows)
+    cells = SimpleNamespace(block=recording, recording=recording)
+
+    def model(*powers: float) -> Any:
+        blocks = np.ones(recordings), np.array(powers)
+        return SimpleNamespace(blocks=blocks, evidence=SimpleNamespace(cells=cells))
+
+    contributed = np.where(recording == 0, 0.0, 1.0)
+    kept = decide._without_the_best(model(1.0, 1.0, 1.0, 1.0), model(*gained), contributed)
+    assert (kept > 0.5 * decide.LEAST_GAIN) == passes

@@ -194,7 +194,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     elif z <= LEAST_Z:
         reason = f"its held-out gain is {z:.2f} standard errors, below {LEAST_Z:.2f}"
         by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
-    elif _without_the_best(base, model) <= 0.5 * LEAST_GAIN:
+    elif _without_the_best(base, model, contributed) <= 0.5 * LEAST_GAIN:
         reason = "gains on rows held out in one recording alone"
     elif strength < LEAST_STRENGTH:
         reason = f"its strength is {strength:.2f} standard errors, below {LEAST_STRENGTH:.2f}"
@@ -253,19 +253,24 @@ def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tupl
     return gained / total, max(_z(difference), _sign_z(difference))
 
 
-def _without_the_best(base: Model, model: Model) -> float:
+def _without_the_best(base: Model, model: Model, contributed: FloatArray) -> float:
     """Held-out gain with the recording left out that gains most; the whole gain of a few.
 
-    In a recording in which the base has lost the machine anything may find it again.
+    In a recording in which the base has lost the machine anything may find it again. Recordings in
+    which the effect does nothing count for neither side: in one of them the base may lose it.
     """
     cells = base.evidence.cells
     of_block = np.zeros(len(base.blocks[1]), dtype=np.int64)
     of_block[cells.block] = cells.recording
     before, after = limited(base.blocks[1], model.blocks[1])
     whole, left = (np.bincount(of_block, power) for power in (before, after))
+    explained = np.bincount(cells.recording, contributed**2, len(whole))
+    rows = np.bincount(cells.recording, minlength=len(whole))
+    touched = explained > TOUCHED * float(np.mean(contributed**2)) * rows
     held = np.flatnonzero(whole > 0.0)
     if len(held) < FEWEST_RECORDINGS:
         return 1.0
+    held = held[touched[held]] if np.sum(touched[held]) > 1 else held
     kept = held[held != held[np.argmax((whole - left)[held])]]
     return float(1.0 - left[kept].sum() / whole[kept].sum())
 
