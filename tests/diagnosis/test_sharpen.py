@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -85,3 +85,22 @@ def test_names_that_explain_less_than_one_coordinate_shows_imitate(
     assert not verdict._falls_short(selection, Rest((view("acceleration", 0.08),)))
     # What noise reaches as well is no sign.
     assert not verdict._falls_short(selection, Rest((view("acceleration", 0.01),)))
+
+
+def test_what_the_names_leave_as_it_was_is_no_sign_against_them() -> None:
+    none = np.zeros(0)
+
+    def seen(**shares: float) -> Rest:
+        return Rest(
+            tuple(
+                View(
+                    cast("Any", SimpleNamespace(name=name)), none, none, none, none, s, 0.02, 0.002
+                )
+                for name, s in shares.items()
+            )
+        )
+
+    whole, less = (SimpleNamespace(blocks=(none, np.full(4, p))) for p in (1.0, 0.8))
+    selection: Any = SimpleNamespace(models=[whole, less])
+    before, after = seen(velocity=0.04, effort=0.1), seen(velocity=0.05, effort=0.06)
+    assert verdict._touched(selection, before, after) == {"effort"}

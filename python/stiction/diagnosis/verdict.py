@@ -36,6 +36,8 @@ WINDOW_S: Final = 0.2
 """Length of the windows in which single moments are looked for."""
 FEW_WINDOWS: Final = 0.35
 """Share of all windows in which moments are single ones."""
+UNTOUCHED: Final = 0.9
+"""Of what a coordinate shows, from which on names left it as it was."""
 BESIDE_A_NAME: Final = 0.0015
 """Share of the friction from which on what is left counts beside a name: what imitates a cause
 leaves little, spread over many coordinates."""
@@ -68,7 +70,9 @@ def unnamed(
         # A line over time is what the replays took for noise, and none of their making.
         return tuple(each for each in told if each.coordinate == FREQUENCY.name)
     if not told and selection.choices:
-        beside = _told(left, 0.0 if _falls_short(selection, before) else BESIDE_A_NAME)
+        least = 0.0 if _falls_short(selection, before) else BESIDE_A_NAME
+        touched = _touched(selection, before, left)
+        beside = tuple(each for each in _told(left, least) if each.coordinate in touched)
         told = beside if _outweighs(selection, beside) else ()
     if not told and selection.imitated > LEAST_GAIN:
         # What was refused as an imitation shows that there is something to imitate.
@@ -107,6 +111,21 @@ def relatives(selection: Search, place: int) -> list[str]:
 def _told(left: Rest, least: float) -> tuple[Unexplained, ...]:
     views = left.flagged(least)
     return tuple(Unexplained(view.coordinate.name, view.share) for view in views)
+
+
+def _touched(selection: Search, before: Rest, left: Rest) -> set[str]:
+    """Coordinates of which the names took a part.
+
+    What imitates a cause takes a part of what that shows. What the names leave as it was, and what
+    was too little to be told without them, is no sign against them.
+    """
+    whole, less = (float(m.blocks[1].sum()) for m in (selection.models[0], selection.models[-1]))
+    shown = {view.coordinate.name: view.share * whole for view in before.views}
+    return {
+        view.coordinate.name
+        for view in left.views
+        if view.share * less < UNTOUCHED * shown.get(view.coordinate.name, np.inf)
+    }
 
 
 def _falls_short(selection: Search, before: Rest) -> bool:
