@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final, TypedDict
+from typing import TYPE_CHECKING, Any, ClassVar, Final, TypedDict
 
 import numpy as np
 
@@ -114,6 +114,9 @@ class WeakForm:
     InputError
         No position, no input, or too short for the kernel.
     """
+
+    simulated: ClassVar[bool] = False
+    """Whether the plant moves by itself, and is not led along the measured motion."""
 
     def __init__(
         self,

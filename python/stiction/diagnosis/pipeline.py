@@ -22,7 +22,7 @@ from ..recording.usable import checks_of, usable
 from ..session import Session
 from ..trajectory import FloatArray
 from .advice import advise
-from .base import based, calibrated
+from .base import based
 from .candidates import Scales, left_out, scales_of
 from .ceiling import ceiling_of
 from .confirm import confirmed, described, lost, lost_on_test
@@ -205,7 +205,6 @@ def _testable(
 ) -> Diagnosis:
     """The diagnosis of data that can be used."""
     _logger.info("looking through %d recordings", len(session))
-    found = replace(found, plant=calibrated(found.plant, session.recordings))
     _logger.info("fitting the base")
     evidence, base = based(found.plant, session.recordings, threads=threads)
     dealt = evidence.split.to_dict()
