@@ -362,7 +362,7 @@ def _concluded(
     reason = "These data cannot be tested: the base imitates every effect, so none could be seen."
     event = None if causes else lone_event(evidence, final, test, 0)
     if event is not None and better is None:
-        followed = event_words(rivals, base) if event.fitted else ""
+        followed = event_words(rivals, base, event) if event.fitted else ""
         verdict, reason, unexplained = "not_testable", event.words() + followed, ()
     return replace(
         found,
@@ -379,7 +379,7 @@ def _concluded(
             first_rival,
             test,
             found.seed,
-            beside=base if event is not None and event.fitted else None,
+            beside=(base, event) if event is not None and event.fitted else None,
         ),
         baseline=baseline,
         extended=extended,
