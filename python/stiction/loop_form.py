@@ -24,6 +24,8 @@ __all__ = ["LoopForm"]
 
 RAN_AWAY: Final = 1e12
 """Positions and their derivatives beyond this are those of a loop that runs away."""
+GAUSSIAN: Final = 1.4826
+"""Standard deviation over median magnitude."""
 TRIED: Final = frozenset({"second mass", "input rate"})
 """Hooks of effects whose slope at their neutral point tells nothing of them: of a second mass there
 is none, and a goal that is barely held back differs for one sample after a step."""
@@ -47,6 +49,10 @@ class LoopForm(WeakForm):
     def __init__(self, plant: Plant, recording: Recording) -> None:
         super().__init__(plant, recording)
         self.stiffen(plant)
+        # A reading that failed for one sample is no noise of all the others, nor is a fast motion.
+        third = np.abs(np.diff(self.readings, 3))
+        white = GAUSSIAN * float(np.median(third)) / np.sqrt(20.0) if len(third) else 0.0
+        self.noise = max(white, self.count / np.sqrt(12.0))
         stamps = recording.time[0] + self.dt * np.arange(len(self.readings))
         self.velocity_at_start = starting_velocity(stamps, self.readings, self.count)
         self.stride = 1
@@ -79,6 +85,11 @@ class LoopForm(WeakForm):
     def measured(self, plant: Plant) -> FloatArray:
         """Effort that the drive gives along the measured motion; shape (n,)."""
         return self._driven(plant, self.input)
+
+    def whole(self, plant: Plant) -> FloatArray:
+        """The motion, counted as the residual is: a loop explains where the servo goes."""
+        moved: FloatArray = self.stiffness * (self.readings[1:] - np.mean(self.readings))
+        return moved
 
     def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
         """Measured effort, and that less the residual; shape (n,) each."""

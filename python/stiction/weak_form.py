@@ -278,6 +278,10 @@ class WeakForm:
             return self._mean(self.effort[1:] + _centred(self.load[:-1]))
         return self.given(self._driven(plant, self.input), self.load[:-1])
 
+    def whole(self, plant: Plant) -> FloatArray:
+        """What a residual is a part of, to tell how much of it a plant explains; shape (n,)."""
+        return self.measured(plant)
+
     def _driven(self, plant: Plant, given: FloatArray) -> FloatArray:
         """Effort of the drive for an input held over each sample, effects left out."""
         plant = self.own(plant)
