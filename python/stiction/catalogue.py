@@ -125,6 +125,11 @@ class EffectRecord:
     parameters: tuple[ParameterRecord, ...]
 
     @property
+    def before_drive(self) -> bool:
+        """Whether it changes when and how fast an input comes to the drive."""
+        return not {"input delay", "input rate", "input lag"}.isdisjoint(self.hooks)
+
+    @property
     def late(self) -> bool:
         """Whether it lets the effort follow the input late."""
         return not {"input delay", "input lag"}.isdisjoint(self.hooks)

@@ -3,24 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
+from .catalogue import EffectRecord, effects
 from .errors import InputError
+from .parameter import Parameter
+from .plant import Effect, Plant
 from .residual import started, starting_velocity
 from .trajectory import FloatArray
-from .weak_form import Start, WeakForm
+from .weak_form import Candidate, Start, WeakForm
 
 if TYPE_CHECKING:
     from .motor import Motor
-    from .plant import Plant
     from .recording import Recording
 
 __all__ = ["LoopForm"]
 
 RAN_AWAY: Final = 1e12
-"""Derivatives of a position beyond this are those of a loop that runs away."""
+"""Positions and their derivatives beyond this are those of a loop that runs away."""
+GAUSSIAN: Final = 1.4826
+"""Standard deviation over median magnitude."""
+TRIED: Final = frozenset({"second mass", "input rate"})
+"""Hooks of effects whose slope at their neutral point tells nothing of them: of a second mass there
+is none, and a goal that is barely held back differs for one sample after a step."""
 
 
 class LoopForm(WeakForm):
@@ -36,16 +44,31 @@ class LoopForm(WeakForm):
     Parameters and attributes are those of ``WeakForm``; rows are the sample ends.
     """
 
+    simulated: ClassVar[bool] = True
+
     def __init__(self, plant: Plant, recording: Recording) -> None:
         super().__init__(plant, recording)
-        drive = plant.drive
-        self.stiffness = abs(
-            plant.gain * drive["proportional"] * drive["supply_v"] / drive["resistance_ohm"]
-        )
+        self.stiffen(plant)
+        # A reading that failed for one sample is no noise of all the others, nor is a fast motion.
+        third = np.abs(np.diff(self.readings, 3))
+        white = GAUSSIAN * float(np.median(third)) / np.sqrt(20.0) if len(third) else 0.0
+        self.noise = max(white, self.count / np.sqrt(12.0))
         stamps = recording.time[0] + self.dt * np.arange(len(self.readings))
         self.velocity_at_start = starting_velocity(stamps, self.readings, self.count)
         self.stride = 1
         self.time = stamps[1:]
+
+    def stiffen(self, plant: Plant) -> None:
+        """Takes the stiffness K of a plant as it stands, whatever a recording was set to."""
+        drive = plant.drive
+        self.stiffness = abs(
+            plant.gain * drive["proportional"] * drive["supply_v"] / drive["resistance_ohm"]
+        )
+
+    @property
+    def followed_late(self) -> bool:
+        """Never: friction is driven by the simulated motion, which has no noise."""
+        return False
 
     @property
     def velocity(self) -> FloatArray:
@@ -53,9 +76,20 @@ class LoopForm(WeakForm):
         slope: FloatArray = np.gradient(self.position, self.dt)[1:]
         return slope
 
+    def accelerations(self, position: FloatArray) -> FloatArray:
+        """Acceleration of a position at the sample ends, through the kernel, shape (n,)."""
+        half = self.kernel.half
+        padded = np.pad(position[1:], half, "reflect", reflect_type="odd")
+        return self.kernel.second_derivative(padded)
+
     def measured(self, plant: Plant) -> FloatArray:
         """Effort that the drive gives along the measured motion; shape (n,)."""
         return self._driven(plant, self.input)
+
+    def whole(self, plant: Plant) -> FloatArray:
+        """The motion, counted as the residual is: a loop explains where the servo goes."""
+        moved: FloatArray = self.stiffness * (self.readings[1:] - np.mean(self.readings))
+        return moved
 
     def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
         """Measured effort, and that less the residual; shape (n,) each."""
@@ -64,16 +98,18 @@ class LoopForm(WeakForm):
 
     def residual(self, plant: Plant, start: Start = None) -> FloatArray:
         """The effort by which the servo would pull the simulated position to the measured one."""
+        missed: FloatArray = self.stiffness * (self.readings[1:] - self.reaches(plant, start))
+        return missed
+
+    def reaches(self, plant: Plant, start: Start = None) -> FloatArray:
+        """Simulated position at the sample ends, shape (n,); NaN where none is, or it runs away."""
         motor = self._begun(plant, start)
         try:
-            reached = motor.simulate(
-                self.input, self.dt, **self.around, outputs=["position"]
-            ).position
+            run = motor.simulate(self.input, self.dt, **self.around, outputs=["position"])
         except InputError:
             # A trial of a fit that is too stiff for the sample time: it must look bad, not end it.
-            reached = np.full(len(self.input), np.nan)
-        missed: FloatArray = self.stiffness * (self.readings[1:] - reached)
-        return missed
+            return np.full(len(self.input), np.nan)
+        return np.where(np.abs(run.position) < RAN_AWAY, run.position, np.nan)
 
     def late(self, plant: Plant) -> FloatArray:
         """0: where goal and position are stamped hardly matters to a loop that is simulated."""
@@ -98,6 +134,88 @@ class LoopForm(WeakForm):
         columns[:, own] = -self.stiffness * moved.T
         return columns
 
+    def signatures(
+        self, plant: Plant, candidates: Sequence[Candidate], start: Start = None
+    ) -> FloatArray:
+        """Derivatives of the residual by the gains of effects that are not there, exact.
+
+        Effects at their neutral point change nothing, so a simulation carries several of them at
+        once, one of a kind. What has no slope there to speak of is tried out at its typical size.
+
+        Parameters and return value are those of ``WeakForm.signatures``.
+        """
+        records = {record.name: record for record in effects()}
+        places, at = [], 0
+        for name, _ in candidates:
+            places.append(slice(at, at + len(records[name].gains)))
+            at += len(records[name].gains)
+        columns = np.zeros((len(self), at))
+        left = self.residual(plant, start)
+        for batch in _batches([name for name, _ in candidates]):
+            smooth = [k for k in batch if TRIED.isdisjoint(records[candidates[k][0]].hooks)]
+            with_them = _beside(plant, [candidates[k] for k in smooth], records)
+            paths = [
+                f"effects.{candidates[k][0]}.{gain}"
+                for k in smooth
+                for gain in records[candidates[k][0]].gains
+            ]
+            found = self.jacobian(with_them, paths, start)
+            own = [place for k in smooth for place in range(places[k].start, places[k].stop)]
+            columns[:, own] = found
+            for k in set(batch) - set(smooth):
+                columns[:, places[k]] = self._tried(plant, candidates[k], records, left, start)
+        return columns
+
+    def _tried(
+        self,
+        plant: Plant,
+        candidate: Candidate,
+        records: dict[str, EffectRecord],
+        left: FloatArray,
+        start: Start,
+    ) -> FloatArray:
+        """What an effect of typical size changes, per unit of its gain; 0 where it cannot be."""
+        record = records[candidate[0]]
+        typical = {each.name: each.typical for each in record.parameters}
+        columns = []
+        for gain in record.gains:
+            size = typical[gain]
+            there = _beside(plant, [candidate], records, {gain: size})
+            changed = (self.residual(there, start) - left) / size
+            columns.append(np.where(np.isfinite(changed), changed, 0.0))
+        return np.column_stack(columns)
+
+    def _mean(self, values: FloatArray) -> FloatArray:
+        """As they are: nothing is averaged."""
+        return values
+
     def _begun(self, plant: Plant, start: Start) -> Motor:
         begin = float(self.readings[0]), self.velocity_at_start
-        return started(self.own(plant), *begin, start)
+        return started(self.own(plant), *begin, start, clock=self.clock, path=self.path)
+
+
+def _batches(names: Sequence[str]) -> list[list[int]]:
+    """Places of candidates, in groups in which no effect comes twice."""
+    seen: dict[str, int] = {}
+    batches: list[list[int]] = []
+    for place, name in enumerate(names):
+        group = seen.get(name, 0)
+        seen[name] = group + 1
+        if group == len(batches):
+            batches.append([])
+        batches[group].append(place)
+    return batches
+
+
+def _beside(
+    plant: Plant,
+    candidates: Sequence[Candidate],
+    records: dict[str, EffectRecord],
+    gains: dict[str, float] | None = None,
+) -> Plant:
+    """A plant with effects of these shapes, neutral unless gains are given; others stay."""
+    added = []
+    for name, shape in candidates:
+        values = {**dict.fromkeys(records[name].gains, 0.0), **(gains or {}), **shape}
+        added.append(Effect(name, {each: Parameter(value) for each, value in values.items()}))
+    return replace(plant, effects=(*plant.effects, *added))

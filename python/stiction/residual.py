@@ -229,10 +229,21 @@ def free_run(plant: Plant, recording: Recording, start: Start = None) -> FreeRun
     )
 
 
-def started(plant: Plant, position: float, velocity: float, start: Start) -> Motor:
-    """The plant's motor at its starting position and velocity, with this friction state."""
+def started(
+    plant: Plant,
+    position: float,
+    velocity: float,
+    start: Start,
+    *,
+    clock: float = 0.0,
+    path: float = 0.0,
+) -> Motor:
+    """The plant's motor at its starting position and velocity, with this friction state.
+
+    ``clock`` and ``path`` are those of the session, s and rad or m.
+    """
     motor = plant.motor()
-    motor.reset(position, velocity)
+    motor.reset(position, velocity, time=clock, path=path)
     if start:
         state = motor.state
         motor.follow(Motion([position] * 2, [0.0], NO_TIME), start=start)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
@@ -71,6 +71,8 @@ class ShootingForm(WeakForm):
     InputError
         As for ``WeakForm``.
     """
+
+    simulated: ClassVar[bool] = True
 
     def __init__(self, plant: Plant, recording: Recording, *, horizon: float) -> None:
         super().__init__(plant, recording, support=horizon, every=horizon / ROWS_PER_HORIZON)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final, TypedDict
+from typing import TYPE_CHECKING, Any, ClassVar, Final, TypedDict
 
 import numpy as np
 
@@ -114,6 +114,9 @@ class WeakForm:
     InputError
         No position, no input, or too short for the kernel.
     """
+
+    simulated: ClassVar[bool] = False
+    """Whether the plant moves by itself, and is not led along the measured motion."""
 
     def __init__(
         self,
@@ -274,6 +277,10 @@ class WeakForm:
         if self.prescribed:
             return self._mean(self.effort[1:] + _centred(self.load[:-1]))
         return self.given(self._driven(plant, self.input), self.load[:-1])
+
+    def whole(self, plant: Plant) -> FloatArray:
+        """What a residual is a part of, to tell how much of it a plant explains; shape (n,)."""
+        return self.measured(plant)
 
     def _driven(self, plant: Plant, given: FloatArray) -> FloatArray:
         """Effort of the drive for an input held over each sample, effects left out."""

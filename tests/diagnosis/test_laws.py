@@ -87,8 +87,9 @@ def rival(law: str, power: float, **terms: float) -> laws.Rival:
     )
     model = SimpleNamespace(
         plant=plant,
-        residual=np.array([np.sqrt(power)]),
-        evidence=SimpleNamespace(fitted=np.array([True])),
+        # Beside the event a row in which no law differs from another.
+        residual=np.array([np.sqrt(power), 3.0]),
+        evidence=SimpleNamespace(fitted=np.array([True, True]), shown=(), names=()),
     )
     return laws.Rival(law, True, cast("Model", model))
 
@@ -105,12 +106,14 @@ def test_the_law_that_follows_a_single_event_is_named_and_comes_first() -> None:
     own = rival("coulomb", 1.0).model
     assert own is not None
     tried = [rival("dahl", 0.95), rival("bristle", 860.0), rival("rate_and_state", 0.445)]
-    said = laws.event_words([*tried, rival("gms", 1.0)], own)
+    inside = SimpleNamespace(rows=lambda shown, names: np.array([True, False]))
+    event = cast("Any", inside)
+    said = laws.event_words([*tried, rival("gms", 1.0)], own, event)
     assert "rate_and_state follows it most closely" in said
     assert "0.445 times the power that coulomb leaves there" in said
-    assert laws.event_words(tried[:2], own) == ""
-    rows = laws.law_rows(tried, 1, None, 0, beside=own)
+    assert laws.event_words(tried[:2], own, event) == ""
+    rows = laws.law_rows(tried, 1, None, 0, beside=(own, event))
     assert [row.law for row in rows] == ["rate_and_state", "dahl", "bristle"]
     assert rows[-1].reason.endswith("over 100 times the power")
-    alike = laws.law_rows([rival("gms", 1.001)], 1, None, 0, beside=own)[0]
+    alike = laws.law_rows([rival("gms", 1.001)], 1, None, 0, beside=(own, event))[0]
     assert alike.reason.endswith("the same power")

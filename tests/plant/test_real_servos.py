@@ -41,6 +41,10 @@ STS3215 = {
     "friction": {"law": "coulomb"},
     "effects": [{"name": "input_delay"}],
 }
+HELD_BACK = {
+    **STS3215,
+    "effects": [{"name": "input_delay"}, {"name": "goal_rate_limit", "slowness": 0.1}],
+}
 DUTY = {"xl330": 0.0028774, "sts3215": 0.166}
 """Duty per rad and unit of the firmware's gain."""
 ARM = 0.018
@@ -77,6 +81,8 @@ def mean_error(plant: st.Plant, recordings: list[st.Recording]) -> float:
     [
         ("xl330", XL330, lambda header: header["kp"] == 400, 0.0691),
         ("sts3215", STS3215, lambda header: header["mass"] == 0.969, 0.0309),
+        ("sts3215", HELD_BACK, lambda header: header["mass"] == 0.969, 0.02),
+        ("sts3215", HELD_BACK, lambda header: header["mass"] == 1.168, 0.0309),
     ],
 )
 def test_a_servo_is_simulated_better_than_published(shared_data, name, table, held, published):

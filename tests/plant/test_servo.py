@@ -7,6 +7,7 @@ import pytest
 from tests.reference.servo_reference import Servo
 
 import stiction as st
+from stiction.loop_form import LoopForm
 from stiction.residual import free_run
 from stiction.weak_form import WeakForm
 
@@ -157,6 +158,117 @@ def test_a_goal_that_arrives_late_is_named():
     assert found.effects[0].name in ("input_delay", "current_loop_lag")
     assert found.baseline.replay is not None
     assert found.extended.replay.heldout_rms < 0.5 * found.baseline.replay.heldout_rms
+
+
+DEALT = ["train", "train", "train", "select", "select", "select", "test", "test"]
+
+
+def session(servo, dealt=DEALT):
+    return [recorded(servo, seed, role=role) for seed, role in enumerate(dealt)]
+
+
+def test_a_goal_moves_no_faster_than_its_limit():
+    held_back = {**PLANT, "effects": [{"name": "goal_rate_limit", "slowness": 0.5}]}
+    target = goal()
+    run = st.Plant.from_dict(held_back).simulate(target, DT).position
+    other = Servo(fastest=2.0).run(target, DT)
+    assert np.max(np.abs(run - other)) < 2e-3 * np.ptp(other)
+    assert np.max(np.abs(plant().simulate(target, DT).position - other)) > 0.1
+
+
+def test_a_step_at_a_time_holds_the_goal_back_as_the_run_does():
+    held_back = {**PLANT, "effects": [{"name": "goal_rate_limit", "slowness": 0.5}]}
+    target, machine = goal(200), st.Plant.from_dict(held_back)
+    run, motor = machine.simulate(target, DT), machine.motor()
+    steps = [motor.step(float(u), DT)[0] for u in target[:90]]
+    other = machine.motor()
+    other.state = motor.state
+    steps += [other.step(float(u), DT)[0] for u in target[90:]]
+    assert np.array_equal(steps, run.position)
+
+
+def test_a_goal_that_is_held_back_is_named():
+    found = st.diagnose(plant(), session(Servo(fastest=2.0)), surrogates=8)
+    assert [cause.name for cause in found.effects] == ["goal_rate_limit"]
+    (slowness,) = found.effects[0].parameters.values()
+    assert slowness.value == pytest.approx(0.5, rel=0.01)
+    assert found.extended.replay.heldout_rms < 0.05 * found.baseline.replay.heldout_rms
+
+
+def test_two_causes_before_the_drive_are_told_apart():
+    found = st.diagnose(plant(), session(Servo(fastest=2.0, late=6)), surrogates=8)
+    assert {cause.name for cause in found.effects} == {"goal_rate_limit", "input_delay"}
+    assert found.verdict == "missing_effect"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_servo_that_lacks_nothing_gets_no_name(seed):
+    machine = Servo(proportional=1.2, coulomb=0.01 * (1 + seed), inertia=0.001 * (1 + seed))
+    free = st.Plant.from_dict(
+        {
+            **PLANT,
+            "drive": {**PLANT["drive"], "torque_constant": {"value": 0.6, "fixed": False}},
+            "body": {**PLANT["body"], "inertia": 0.003},
+            "friction": {"law": "coulomb"},
+        }
+    )
+    found = st.diagnose(free, session(machine), surrogates=8)
+    assert found.verdict == "nothing_missing", found.sentence
+
+
+def test_gear_losses_are_named():
+    found = st.diagnose(plant(), session(Servo(gear_loss=0.3)), surrogates=8)
+    assert [cause.name for cause in found.effects] == ["load_dependent_friction"]
+
+
+def test_fit_and_diagnosis_of_a_servo_end_in_the_same_machine():
+    free = plant(torque_constant={"value": 0.6, "fixed": False})
+    dealt = ["train", "train", "train", "test"]
+    found = st.diagnose(free, session(Servo(gear_loss=0.3), dealt), surrogates=4, without=[])
+    fitted = st.fit(free, session(Servo(gear_loss=0.3), dealt))
+    for path, own in fitted.parameters.items():
+        assert found.baseline.parameters[path].value == own.value, path
+
+
+def test_signatures_of_a_loop_are_those_of_differences():
+    recording = recorded(Servo(), 3)
+    machine = plant()
+    form = LoopForm(machine, recording)
+    shapes = [
+        ("cogging", {"order": 3.0}),
+        ("cogging", {"order": 5.0}),
+        ("torque_constant_saturation", {"input": 7.4}),
+        ("input_delay", {}),
+    ]
+    found = form.signatures(machine, shapes)
+    gains = ["cosine", "sine", "cosine", "sine", "loss", "delay"]
+    owners = [0, 0, 1, 1, 2, 3]
+    for k, (gain, owner) in enumerate(zip(gains, owners, strict=True)):
+        name, shape = shapes[owner]
+        size = 1e-5
+        there = st.Plant.from_dict({**PLANT, "effects": [{"name": name, gain: size, **shape}]})
+        chord = (form.residual(there) - form.residual(machine)) / size
+        assert np.max(np.abs(found[:, k] - chord)) < 0.02 * np.max(np.abs(chord)), gain
+
+
+def test_only_a_servo_has_a_goal():
+    machine = st.Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm", "gain": 1.0},
+            "body": {"inertia": 0.01},
+            "friction": {"law": "coulomb", "coulomb": 0.02},
+        }
+    )
+    rng = np.random.default_rng(5)
+    recordings = []
+    for role in ("train", "select", "test"):
+        push = np.repeat(rng.normal(0.0, 0.05, 60), 20)
+        run = machine.simulate(push, DT).position
+        reached = np.concatenate([[0.0], run[:-1]])
+        recordings.append(st.Recording(DT * np.arange(1200), push, reached, role=role))
+    found = st.diagnose(machine, recordings, surrogates=4)
+    (row,) = [row for row in found.candidates if row.name == "goal_rate_limit"]
+    assert row.reason == "only a servo has a goal"
 
 
 @pytest.mark.parametrize(

@@ -32,6 +32,10 @@ class Servo:
     coulomb: float = 0.02
     viscous: float = 0.004
     late: int = 0  # samples by which the goal arrives late
+    fastest: float = np.inf  # rad/s, greatest speed of the goal in the servo, in every tiny step
+    gear_loss: float = 0.0  # dry friction per torque that the arm's weight puts on the gears
+    tremble: float = 0.0  # N m, of a torque that is drawn anew in every sample
+    seed: int = 0
 
     def run(self, goal, dt, start=0.0, enabled=None, substeps=400):
         """Position at the end of each sample whose goal is held."""
@@ -40,16 +44,20 @@ class Servo:
         q, w = start, 0.0
         arrived = np.concatenate([np.zeros(self.late), goal])[: len(goal)]
         reached = np.empty(len(goal))
+        wanted = arrived[0]
+        shaken = self.tremble * np.random.default_rng(self.seed).standard_normal(len(goal))
         for k, target in enumerate(arrived):
             on = enabled is None or enabled[k]
             for _ in range(substeps):
-                duty = max(-self.duty_limit, min(self.duty_limit, self.proportional * (target - q)))
+                wanted += max(-self.fastest * h, min(self.fastest * h, target - wanted))
+                duty = max(-self.duty_limit, min(self.duty_limit, self.proportional * (wanted - q)))
                 current = (self.supply * duty - self.constant * w) / self.resistance
                 current = max(-self.current_limit, min(self.current_limit, current))
                 torque = self.constant * current if on else 0.0
-                torque -= self.mass * GRAVITY * self.length * np.sin(q) + self.viscous * w
+                weight = self.mass * GRAVITY * self.length * np.sin(q)
+                torque += shaken[k] - weight - self.viscous * w
                 free = w + h * torque / total
-                slowed = h * self.coulomb / total
+                slowed = h * (self.coulomb + self.gear_loss * abs(weight)) / total
                 w = 0.0 if abs(free) <= slowed else free - np.copysign(slowed, free)
                 q += h * w
             reached[k] = q

@@ -163,6 +163,60 @@ impl<S: Scalar> DelayLine<S> {
     }
 }
 
+/// An input that changes no faster than a limit, and how far it has come.
+#[derive(Debug, Clone, Copy)]
+pub struct RateLimit<S> {
+    /// Time for one unit of a change.
+    slowness: S,
+    /// How far it has come; none before the first sample, which is where it starts.
+    reached: Option<S>,
+}
+
+impl<S: Scalar> RateLimit<S> {
+    /// Name of its entry in a state.
+    pub const ENTRY: &'static str = "limited_input";
+
+    /// A limit that nothing has passed yet.
+    pub fn new(slowness: S) -> Self {
+        Self { slowness, reached: None }
+    }
+
+    /// Takes in the input of a sample and gives the mean over it of what comes nearer to it at a
+    /// constant rate: u − Δ·T/(2·dt) where it gets there within T = |Δ|·slowness, and half of the way
+    /// that it makes where it does not.
+    #[inline(never)] // motors without a limit are not to carry it through their loop
+    pub fn pass(&mut self, input: S, dt: f64) -> S {
+        let Some(before) = self.reached else {
+            self.reached = Some(input);
+            return input;
+        };
+        let missing = input - before;
+        let needed = missing.abs() * self.slowness;
+        if needed.re() <= dt {
+            self.reached = Some(input);
+            let short = missing * needed / (2.0 * dt);
+            // No limit changes no bit, and shows its derivative.
+            return if short.re() == 0.0 { input - short.chain(0.0, 1.0) } else { input - short };
+        }
+        let made = S::constant(if missing.re() < 0.0 { -dt } else { dt }) / self.slowness;
+        self.reached = Some(before + made);
+        before + made * 0.5
+    }
+
+    fn entry(&self) -> (&'static str, Entry) {
+        let row = self.reached.map(|reached| [reached.re(), 0.0]);
+        (Self::ENTRY, Entry::Pairs(row.into_iter().collect()))
+    }
+
+    fn restore(&mut self, read: &mut EntryReader<'_>) -> Result<()> {
+        self.reached = match read.pairs(Self::ENTRY)? {
+            [] => None,
+            [[reached, _], ..] => Some(S::constant(*reached)),
+        };
+        Ok(())
+    }
+}
+
 /// A first-order lag of the input and what has come through it.
 #[derive(Debug, Clone, Copy)]
 pub struct Lag<S> {
@@ -196,17 +250,22 @@ impl<S: Scalar> Lag<S> {
     }
 }
 
-/// What the input passes on its way to the drive: first a delay, then a lag.
+/// What the input passes on its way to the drive: a delay, then a limit of its rate, then a lag.
 #[derive(Debug, Clone)]
 pub struct Way<S> {
     delay: Option<DelayLine<S>>,
+    rate: Option<RateLimit<S>>,
     lag: Option<Lag<S>>,
 }
 
 impl<S: Scalar> Way<S> {
-    /// The way through a delay and a lag, where there are any.
-    pub fn new(delay: Option<S>, lag: Option<S>) -> Self {
-        Self { delay: delay.map(DelayLine::new), lag: lag.map(Lag::new) }
+    /// The way through a delay, a limit of the rate and a lag, where there are any.
+    pub fn new(delay: Option<S>, slowness: Option<S>, lag: Option<S>) -> Self {
+        Self {
+            delay: delay.map(DelayLine::new),
+            rate: slowness.map(RateLimit::new),
+            lag: lag.map(Lag::new),
+        }
     }
 
     /// Mean of what arrives during a sample.
@@ -216,9 +275,13 @@ impl<S: Scalar> Way<S> {
             None => S::constant(input),
             Some(line) => line.pass(input, dt),
         };
-        match &mut self.lag {
+        let limited = match &mut self.rate {
             None => late,
-            Some(lag) => lag.pass(late, dt),
+            Some(rate) => rate.pass(late, dt),
+        };
+        match &mut self.lag {
+            None => limited,
+            Some(lag) => lag.pass(limited, dt),
         }
     }
 
@@ -226,6 +289,9 @@ impl<S: Scalar> Way<S> {
     pub fn clear(&mut self) {
         if let Some(line) = &mut self.delay {
             line.clear();
+        }
+        if let Some(rate) = &mut self.rate {
+            rate.reached = None;
         }
         if let Some(lag) = &mut self.lag {
             lag.followed = S::constant(0.0);
@@ -237,6 +303,9 @@ impl<S: Scalar> Way<S> {
         if let (Some(line), Some(other)) = (&mut self.delay, &other.delay) {
             line.resume(other);
         }
+        if let (Some(rate), Some(other)) = (&mut self.rate, &other.rate) {
+            rate.reached = other.reached.map(|reached| S::constant(reached.re()));
+        }
         if let (Some(lag), Some(other)) = (&mut self.lag, &other.lag) {
             lag.followed = S::constant(other.followed.re());
         }
@@ -245,7 +314,8 @@ impl<S: Scalar> Way<S> {
     /// Names of its entries in a state.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         let delay = self.delay.as_ref().map(|_| DelayLine::<f64>::ENTRY);
-        delay.into_iter().chain(self.lag.as_ref().map(|_| Lag::<f64>::ENTRY))
+        let rate = self.rate.as_ref().map(|_| RateLimit::<f64>::ENTRY);
+        delay.into_iter().chain(rate).chain(self.lag.as_ref().map(|_| Lag::<f64>::ENTRY))
     }
 
     /// What is on the way, as entries of a state.
@@ -253,13 +323,17 @@ impl<S: Scalar> Way<S> {
         let delay = self.delay.as_ref().map(DelayLine::entry);
         let lag = self.lag.as_ref();
         let lag = lag.map(|lag| (Lag::<S>::ENTRY, Entry::Number(lag.followed.re())));
-        delay.into_iter().chain(lag)
+        let rate = self.rate.as_ref().map(RateLimit::entry);
+        delay.into_iter().chain(rate).chain(lag)
     }
 
     /// Takes what is on the way from the entries of a state.
     pub fn restore(&mut self, read: &mut EntryReader<'_>) -> Result<()> {
         if let Some(line) = &mut self.delay {
             line.restore(read)?;
+        }
+        if let Some(rate) = &mut self.rate {
+            rate.restore(read)?;
         }
         if let Some(lag) = &mut self.lag {
             lag.followed = S::constant(read.number(Lag::<S>::ENTRY, false)?);

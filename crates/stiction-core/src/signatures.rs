@@ -124,6 +124,7 @@ fn acts_at_once(record: &EffectRecord) -> bool {
     record.hooks.iter().all(|hook| match hook {
         Hook::FrictionLevel | Hook::AddedEffort | Hook::InputMap => true,
         Hook::InputDelay
+        | Hook::InputRate
         | Hook::InputLag
         | Hook::SensorMap
         | Hook::StateRelaxation

@@ -37,6 +37,8 @@ def fit(
         Print JSON.
     """
     recordings, plant = loaded(session)
+    from ..report.fit_page import fit_page
+
     with spoken_of(session, recordings, plant):
         result = run(plant, recordings)
         if not math.isfinite(result.train_rms):
@@ -48,11 +50,7 @@ def fit(
     files = [where / "plant.toml", where / "fit.json", where / "fit.html"]
     result.plant.save(files[0])
     files[1].write_text(result.to_json() + "\n", encoding="utf-8")
-    page = (
-        '<!doctype html><html lang="en"><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>Fit of {session.name}</title>{result._repr_html_()}</html>\n"
-    )
+    page = fit_page(result, list(recordings), f"Fit of {session.name}")
     files[2].write_text(page, encoding="utf-8")
     wrote = "\n".join(f"wrote {file}" for file in files)
     repairs = mended(recordings)

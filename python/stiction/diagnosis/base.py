@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from ..errors import NotEnoughData
-from ..fitting.forms import horizon_of, shows_its_ring
+from ..fitting.forms import followable, horizon_of, shows_its_ring, stiffen
 from ..fitting.minimise import MOST_EVALUATIONS, launch
-from ..fitting.solve import fit, settled
+from ..fitting.solve import settled
 from ..fitting.start import complete, free_paths
 from ..plant import Plant
 from ..recording import Recording
-from ..recording.split import split
 from .evidence import Evidence
 from .model import Model
 
-__all__ = ["based", "calibrated"]
+__all__ = ["based"]
 
 LOST: Final = 1e-3
 """An inertia that shrinks to this share of what the plant states, or of what the motion told at
@@ -31,20 +29,6 @@ SHOWS: Final = 0.3
 _logger = logging.getLogger(__name__)
 
 
-def calibrated(plant: Plant, recordings: Sequence[Recording]) -> Plant:
-    """A plant whose gain is to be fitted, with the gain that its closed loop has.
-
-    The gain scales what is measured here: fitted to an effort residual it would shrink until little
-    of that is left. A servo is simulated from its goal instead, over the recordings of train.
-    """
-    if not plant.servo or not any(path.startswith("drive.") for path in plant.parameters):
-        return plant
-    _logger.info("fitting the gain of the drive to its closed loop")
-    train = sorted({part.recording for part in split(recordings).train})
-    gauged = fit(plant, [recordings[index] for index in train]).plant
-    return replace(gauged, drive={**gauged.drive, "torque_constant": gauged.gain})
-
-
 def based(
     plant: Plant, recordings: Sequence[Recording], *, threads: int | None = None
 ) -> tuple[Evidence, Model]:
@@ -52,7 +36,8 @@ def based(
 
     The way is that of `stiction.fit`: a first pass from starts that the data give, a second with
     recordings weighted by what the first left in each; where the first one shows that readings are
-    too coarse to drive friction, both on short simulations from there.
+    too coarse to drive friction, both on short simulations from there. Of a servo both are on its
+    simulated loop: what its law makes of the measured motion may never have been its effort.
 
     Returns
     -------
@@ -72,14 +57,24 @@ def based(
     horizon = None
     if not first.interrupted:
         horizon = horizon_of(first.plant, first.nuisances, evidence.train, evidence.forms)
-    if horizon is not None:
-        _logger.info("fitting it again, simulated over %.0f ms", 1e3 * horizon)
+    servo = plant.servo and not first.interrupted
+    if horizon is not None or servo:
+        _logger.info("fitting it again, simulated")
         simulated = Evidence(
-            plant, recordings, threads=threads, horizon=horizon, watch=evidence.watch
+            first.plant,
+            recordings,
+            threads=threads,
+            horizon=horizon,
+            loop=servo,
+            watch=evidence.watch,
         )
-        again = launch([first.plant], paths, simulated.train, most=MOST_EVALUATIONS)
-        if shows_its_ring(again.plant, simulated.forms):
+        # As in a fit: along the measured motion a servo may lead anywhere.
+        begun = [first.plant, starts[0]] if servo else [first.plant]
+        begun = [followable(start, simulated.forms) for start in begun]
+        again = launch(begun, paths, simulated.train, most=MOST_EVALUATIONS)
+        if servo or shows_its_ring(again.plant, simulated.forms):
             evidence, first = simulated, again
+            stiffen(evidence.forms, first.plant)
     solution = settled(first, evidence.train, most=MOST_EVALUATIONS)
     evidence.weigh()
     base = Model(evidence, solution)

@@ -72,7 +72,7 @@ def lost(evidence: Evidence, model: Model, null: FloatArray) -> float:
         Residuals of the surrogates.
     """
     held = _deciding(evidence)
-    effort = evidence.stack(lambda rows: rows.form.measured(model.plant))[held]
+    effort = evidence.stack(lambda rows: rows.form.whole(model.plant))[held]
     return _beyond(model.residual[held], effort, null[held])
 
 

@@ -232,7 +232,8 @@ def _out_of_its_range(candidate: Candidate, model: Model) -> str:
         if stated.fixed or stated.max is None or stated.min is None:
             continue
         if shape.scale == "speed" and stated.value >= AT_THE_EDGE * stated.max:
-            return f"{shape.parameter} went to the top of all speeds"
+            where = "top of all speeds" if max(shape.grid) >= 1.0 else "end of its range"
+            return f"{shape.parameter} went to the {where}"
         if shape.scale == "kernel" and stated.value <= stated.min / AT_THE_EDGE:
             return f"{shape.parameter} went below what a kernel shows"
     return ""

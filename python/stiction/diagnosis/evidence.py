@@ -84,12 +84,15 @@ class Evidence:
         Recordings looked at side by side; results do not depend on it.
     horizon : float, optional
         Length of the windows of a shooting residual, s; the weak form without it.
+    loop : bool
+        Simulate the loop of a servo over whole recordings.
     watch : Watch, optional
         Who looks out for pushes from outside; without it a new one learns from the rows that may
         be looked at.
 
     Attributes
     ----------
+    loop : bool
     watch : Watch
     pushes : list of Push
         Times that no drive made: their rows are left out. Those among rows that test are added when
@@ -122,13 +125,15 @@ class Evidence:
         *,
         threads: int | None = None,
         horizon: float | None = None,
+        loop: bool = False,
         watch: Watch | None = None,
     ) -> None:
         self.plant = plant
+        self.loop = loop
         self.recordings = list(recordings)
         self.threads = threads
         self.names = [name_of(recording, k) for k, recording in enumerate(self.recordings)]
-        self.forms = forms_of(plant, self.recordings, self.each, horizon=horizon)
+        self.forms = forms_of(plant, self.recordings, self.each, horizon=horizon, loop=loop)
         self.support = max(form.kernel.support for form in self.forms)
         self.split: Split = split(self.recordings, edge_s=min(self.support, 0.25 * BLOCK_S))
         seen = {part.recording for part in (*self.split.train, *self.split.select)}

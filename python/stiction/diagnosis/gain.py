@@ -81,7 +81,9 @@ def open_residuals(evidence: Evidence, models: Sequence[tuple[Plant, Nuisances]]
 
     residuals = tuple(left(plant, nuisances) for plant, nuisances in models)
     weights = np.concatenate([np.full(int(e.mask.sum()), e.weight) for e in rows])
-    effort = np.concatenate([e.weight * e.form.measured(evidence.plant)[e.mask] for e in rows])
+    # The gain of a servo may be fitted: its effort is that of the first plant, the base.
+    base = models[0][0]
+    effort = np.concatenate([e.weight * e.form.measured(base)[e.mask] for e in rows])
     return HeldOut(residuals, weights, effort, evidence.cells_of(rows), tuple(rows))
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from ..catalogue import effects
 from ..catalogue import laws as all_laws
 from ..errors import InputError
+from ..fitting.forms import followable
 from ..fitting.minimise import MOST_EVALUATIONS, launch
 from ..fitting.start import complete, free_paths
 from ..parameter import Parameter
@@ -20,6 +21,7 @@ from ..plant import Friction
 from ..wording import did_you_mean, listed
 from .decide import DECIDED_Z, heldout_gain
 from .gain import Gain, HeldOut, gain_of
+from .lone import Lone
 from .model import Model
 from .result import Advice, LawRow
 from .selection import Search
@@ -180,6 +182,7 @@ def _launched(base: Model, friction: Friction) -> Model | None:
     try:
         bare = replace(base.plant, friction=friction)
         starts = complete(bare, [rows.form for rows in evidence.train])
+        starts = [followable(start, evidence.forms) for start in starts]
         paths = free_paths(starts[0])
         return Model(evidence, launch(starts, paths, evidence.train, most=MOST_EVALUATIONS))
     except InputError as error:
@@ -198,11 +201,11 @@ def law_rows(
     test: HeldOut | None,
     seed: int,
     *,
-    beside: Model | None = None,
+    beside: tuple[Model, Lone] | None = None,
 ) -> tuple[LawRow, ...]:
     """Laws with what they gain over the plant's own, the best first.
 
-    With ``beside`` that one is first which leaves least in the rows that were fitted.
+    With ``beside`` that one is first which leaves least in the event that was fitted.
 
     Parameters
     ----------
@@ -211,8 +214,8 @@ def law_rows(
         Place of the first of them among the models that were tested.
     test : HeldOut or None
     seed : int
-    beside : Model, optional
-        The plant's own law, where what matters lies in rows that were fitted: then it is told what
+    beside : (Model, Lone), optional
+        The plant's own law and an event that lies in rows that were fitted: then it is told what
         each law leaves there.
     """
     rows: list[tuple[float, LawRow]] = []
@@ -240,16 +243,16 @@ def law_rows(
             reason += f", with {joined(rival.terms) if few else 'all of its optional terms'}"
         place = -1e300 if gain is None else gain.value
         if beside is not None:
-            left = _where_fitted(rival.model, beside)
-            reason += f"; where it was fitted, with the event, it leaves {_times(left)}"
+            left = _in_event(rival.model, *beside)
+            reason += f"; in the event, to which it was fitted, it leaves {_times(left)}"
             place = -left
         rows.append((place, LawRow(rival.law, gain, reason)))
     return tuple(row for _, row in sorted(rows, key=lambda each: -each[0]))
 
 
-def event_words(rivals: Sequence[Rival], own: Model) -> str:
+def event_words(rivals: Sequence[Rival], own: Model, event: Lone) -> str:
     """Which law follows an event in rows that were fitted, in a sentence; "" where none does."""
-    left = {r.law: _where_fitted(r.model, own) for r in rivals if r.model is not None}
+    left = {r.law: _in_event(r.model, own, event) for r in rivals if r.model is not None}
     best = min(left, key=lambda law: left[law], default=None)
     if best is None or left[best] > 1.0 - WORTH_MORE:
         return ""
@@ -260,9 +263,12 @@ def event_words(rivals: Sequence[Rival], own: Model) -> str:
     )
 
 
-def _where_fitted(model: Model, own: Model) -> float:
-    """Power that a model leaves in the rows that were fitted, over what the plant's own leaves."""
-    return _fitted_power(model) / max(_fitted_power(own), 1e-300)
+def _in_event(model: Model, own: Model, event: Lone) -> float:
+    """Power that a model leaves in an event that was fitted, over what the plant's own leaves."""
+    evidence = own.evidence
+    inside = event.rows(evidence.shown, evidence.names) & evidence.fitted
+    one, two = (float(np.sum(each.residual[inside] ** 2)) for each in (model, own))
+    return one / max(two, 1e-300)
 
 
 def _times(left: float) -> str:

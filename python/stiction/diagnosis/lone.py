@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from ..fitting.rows import Rows
+from ..fitting.rows import Mask, Rows
 from ..recording.split import BLOCK_S
 from ..trajectory import FloatArray
 from .evidence import Evidence
@@ -43,17 +43,29 @@ class Lone:
         s since the first row of the recording.
     role : str
         What the rows are for in which it lies: they "were fitted", "decide" or "test".
+    begin : float
+        Stamp of the first row of the recording, s.
     """
 
     recording: str
     start: float
     end: float
     role: str
+    begin: float = 0.0
 
     @property
     def fitted(self) -> bool:
         """Whether it lies in rows that were fitted."""
         return self.role == _ROLES[0]
+
+    def rows(self, rows: Sequence[Rows], names: Sequence[str]) -> Mask:
+        """Which of the stacked rows lie in it; shape (n,)."""
+        inside = []
+        for each in rows:
+            since = each.form.time[each.mask] - self.begin
+            here = names[each.index] == self.recording
+            inside.append((since >= self.start) & (since <= self.end) & here)
+        return np.concatenate(inside)
 
     def words(self) -> str:
         """Why that cannot be tested, in a sentence."""
@@ -97,7 +109,7 @@ def lone_event(evidence: Evidence, model: Model, test: HeldOut | None, place: in
         begin = float(evidence.recordings[index].time[0])
         found = _event(roles, begin)
         if found is not None:
-            return Lone(name, found[0] - begin, found[1] - begin, _ROLES[found[2]])
+            return Lone(name, found[0] - begin, found[1] - begin, _ROLES[found[2]], begin)
     return None
 
 

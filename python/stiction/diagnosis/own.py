@@ -77,6 +77,7 @@ OWN: Final[dict[str, str | Wave]] = {
     "dwell_strengthening": "rest before the slide",
     "rate_dependent_breakaway": "loading before the slide",
     "input_delay": "rate of the effort",
+    "goal_rate_limit": "effort",
     "warm_up": "session time, in slides",
     "run_in": "path, in slides",
     "drive_deadband": "effort along the motion",

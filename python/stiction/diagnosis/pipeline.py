@@ -22,7 +22,7 @@ from ..recording.usable import checks_of, usable
 from ..session import Session
 from ..trajectory import FloatArray
 from .advice import advise
-from .base import based, calibrated
+from .base import based
 from .candidates import Scales, left_out, scales_of
 from .ceiling import ceiling_of
 from .confirm import confirmed, described, lost, lost_on_test
@@ -205,7 +205,6 @@ def _testable(
 ) -> Diagnosis:
     """The diagnosis of data that can be used."""
     _logger.info("looking through %d recordings", len(session))
-    found = replace(found, plant=calibrated(found.plant, session.recordings))
     _logger.info("fitting the base")
     evidence, base = based(found.plant, session.recordings, threads=threads)
     dealt = evidence.split.to_dict()
@@ -372,7 +371,7 @@ def _concluded(
     reason = "These data cannot be tested: the base imitates every effect, so none could be seen."
     event = None if causes else lone_event(evidence, final, test, 0)
     if event is not None and better is None:
-        followed = event_words(rivals, base) if event.fitted else ""
+        followed = event_words(rivals, base, event) if event.fitted else ""
         verdict, reason, unexplained = "not_testable", event.words() + followed, ()
     return replace(
         found,
@@ -389,7 +388,7 @@ def _concluded(
             first_rival,
             test,
             found.seed,
-            beside=base if event is not None and event.fitted else None,
+            beside=(base, event) if event is not None and event.fitted else None,
         ),
         baseline=baseline,
         extended=extended,

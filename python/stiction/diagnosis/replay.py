@@ -12,6 +12,7 @@ import numpy as np
 from ..accompanied import accompanied
 from ..errors import InputError
 from ..fitting.rows import Nuisances, Rows
+from ..loop_form import LoopForm
 from ..motion import smooth
 from ..plant import Plant
 from ..shooting import ShootingForm
@@ -91,7 +92,9 @@ class _Replay:
     @classmethod
     def of(cls, rows: Rows, plant: Plant, nuisances: Nuisances) -> _Replay:
         form, start = rows.form, nuisances.start(rows.index)
-        if isinstance(form, ShootingForm):
+        if isinstance(form, LoopForm):
+            motion, residual = _looped(form, plant, start)
+        elif isinstance(form, ShootingForm):
             motion, residual = _shot(form, plant, start)
         else:
             motion, residual = _slid(form, plant, start) or _followed(form, plant, start)
@@ -100,6 +103,10 @@ class _Replay:
     def noise(self) -> Noise:
         """Noise of the recording, less what reading this motion makes by itself."""
         form = self.rows.form
+        if isinstance(form, LoopForm):
+            # Nobody measured an effort. What varies from run to run thresholds have from the
+            # residual itself, turned round block by block.
+            return Noise(position_noise(form), form.count, 0.0)
         if isinstance(form, ShootingForm):
             start = self.nuisances.start(self.rows.index)
             alone = [form.from_readings_alone(self.plant, start)]
@@ -175,6 +182,17 @@ def _slid(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Resi
         return short + acted - inertia * form.accelerations(readings)
 
     return motion, residual
+
+
+def _looped(form: LoopForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
+    """The motion of the simulated loop, and the residual of its readings."""
+    reached = form.reaches(plant, start)
+
+    def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
+        missed: FloatArray = form.stiffness * (readings[1:] - reached)
+        return missed
+
+    return np.concatenate([form.readings[:1], reached]), residual
 
 
 def _shot(form: ShootingForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:

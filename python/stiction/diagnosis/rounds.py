@@ -47,6 +47,10 @@ WORTH_RENEWING: Final = 0.005
 """Share of its residual's power that makes that worth while."""
 AT_THE_DRIVE: Final = frozenset({"input map", "input delay", "input lag"})
 """Hooks of effects that a machine without a drive cannot have."""
+AT_THE_GOAL: Final = "input rate"
+"""Hook of effects that a drive without a goal cannot have."""
+SWINGS: Final = "second mass"
+"""Hook of effects whose mass swings faster than the samples of a servo show."""
 RELATED: Final = 0.2
 """Cosine from which on one member of a family may be a part of another; waves of different orders
 have next to none."""
@@ -122,6 +126,10 @@ def _candidates(
             reason = _where(base.plant, record)
         elif record.rotary_only and base.plant.motion != "rotary":
             reason = "only a machine that turns can have it"
+        elif AT_THE_GOAL in record.hooks and not base.plant.servo:
+            reason = "only a servo has a goal"
+        elif evidence.loop and SWINGS in record.hooks:
+            reason = "not testable: what swings between samples shows in no loop that is simulated"
         elif evidence.plant.prescribed_motion and not AT_THE_DRIVE.isdisjoint(record.hooks):
             reason = "there is no drive where the motion is prescribed"
         elif missing:
@@ -157,7 +165,9 @@ def _round(
                 found.blind.append(score.candidate.record)
     passing = [score for score in scores if promises(score)]
     trials: list[Trial] = []
-    for score in passing[:REFITTED]:
+    refitted = passing[:REFITTED]
+    asked = [s for s in scores if _is_asked(screening, s) and s not in refitted]
+    for score in [*refitted, *asked]:
         if not _hopeless(score, trials):
             trial = screening.trial(found.models[-1], score)
             trials.append(beside_a_second(screening, found.models[-1], trial))
@@ -177,6 +187,15 @@ def _round(
             found.rows[trial.name] = listing.tried(trial, choice)
     freed = sorted((trial for trial in trials if trial.freed), key=lambda t: -t.worth)[:1]
     return choice, freed if choice is None else [*freed, choice.winner]
+
+
+def _is_asked(screening: Screening, score: Score) -> bool:
+    """Whether a candidate is refitted whatever its score: before the drive of a simulated loop.
+
+    A loop bends itself far towards a goal that is late or held back, and from there the slope of
+    such a cause tells nothing of it.
+    """
+    return screening.evidence.loop and score.candidate.record.before_drive
 
 
 def _beside(screening: Screening, trials: Sequence[Trial]) -> Choice | None:
@@ -330,6 +349,9 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
     candidates_of = screening.signatures.candidates
     tried = {each.name: each.record for each in candidates_of if each.name not in taken}
     kin = {name for name, other in tried.items() if other.family == record.family}
+    if screening.evidence.loop:
+        # A loop bends far more to a cause that is still missing than friction along a motion does.
+        kin |= {rival.name for rival in choice.rivals} & tried.keys()
     if len(kin) < 2 or is_sharpened(effect, record):
         return
     evidence = screening.evidence
@@ -337,7 +359,8 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
     trials = [
         screening.trial(less, score)
         for score in screening.scores(less)
-        if score.candidate.name in kin and score.score > score.threshold
+        if score.candidate.name in kin
+        and (score.score > score.threshold or _is_asked(screening, score))
     ]
     again = choose(trials)
     if again is None:

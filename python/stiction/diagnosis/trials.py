@@ -11,7 +11,6 @@ import numpy as np
 from ..catalogue import effects
 from ..fitting.rows import Nuisances
 from ..plant import Plant
-from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from .decide import Trial, judge
 from .evidence import Evidence
@@ -121,15 +120,19 @@ class Screening:
 def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score) -> Model:
     """The base with an effect, fitted from where the screening says; from near 0 if that fails."""
     index = signatures.candidates.index(score.candidate)
+    gains = score.gains
+    if not np.any(gains):
+        typical = {each.name: each.typical for each in score.candidate.record.parameters}
+        gains = np.array([typical[name] for name in score.candidate.record.gains])
     explained = signatures.columns[:, signatures.slices[index]] @ score.gains
 
     def begun(share: float) -> Plant:
         plant = stepped(base, share * explained)
-        return with_effect(plant, score.candidate, (share * score.gains).tolist())
+        return with_effect(plant, score.candidate, (share * gains).tolist())
 
     # A simulated motion breaks away or does not: slopes tell little of what a whole gain does.
     start = begun(1.0)
-    if any(isinstance(form, ShootingForm) for form in evidence.forms):
+    if any(form.simulated for form in evidence.forms):
         plants = [begun(share) for share in SHARES]
         start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
     model = whole_fit(evidence, start, base.nuisances)
@@ -140,7 +143,7 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
     # side. Then the effect alone moves first, and the base follows.
     tried = [model]
     for share in (1.0, CAUTIOUS):
-        start = with_effect(base.plant, score.candidate, (share * score.gains).tolist())
+        start = with_effect(base.plant, score.candidate, (share * gains).tolist())
         alone = whole_fit(evidence, start, base.nuisances, only=score.candidate.name)
         tried.append(whole_fit(evidence, alone.plant, alone.nuisances))
         if alone.power < base.power:

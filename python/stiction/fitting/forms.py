@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -17,7 +18,16 @@ from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .rows import Nuisances, Rows
 
-__all__ = ["EVERY_S", "forms_of", "horizon_of", "set_clocks", "shows_its_ring", "told"]
+__all__ = [
+    "EVERY_S",
+    "followable",
+    "forms_of",
+    "horizon_of",
+    "set_clocks",
+    "shows_its_ring",
+    "stiffen",
+    "told",
+]
 
 EVERY_S: Final = 0.005
 """Spacing of the weak-form residual: the kernel leaves nothing between."""
@@ -147,6 +157,22 @@ def horizon_of(
     return float(np.clip(max(drifts, rings), *HORIZONS_S))
 
 
+def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
+    """The plant with a contact no stiffer than the samples of a loop show; else as it is.
+
+    A loop is simulated whole, again and again: see ``shows_its_ring``. What is fixed stays.
+    """
+    stiffness = plant.friction.parameters.get("initial_stiffness")
+    loops = all(isinstance(form, LoopForm) for form in forms)
+    if stiffness is None or stiffness.fixed or not loops:
+        return plant
+    most = plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
+    ends = max(min(stiffness.max or most, most), stiffness.min or 0.0)
+    held = replace(stiffness, value=min(stiffness.value, 0.5 * ends), max=ends)
+    parameters = {**plant.friction.parameters, "initial_stiffness": held}
+    return replace(plant, friction=replace(plant.friction, parameters=parameters))
+
+
 def shows_its_ring(plant: Plant, forms: Sequence[WeakForm]) -> bool:
     """Whether samples follow a machine that rings on its pre-sliding stiffness.
 
@@ -157,8 +183,21 @@ def shows_its_ring(plant: Plant, forms: Sequence[WeakForm]) -> bool:
     return ring * max(form.dt for form in forms) < np.pi
 
 
+def stiffen(forms: Sequence[WeakForm], plant: Plant) -> None:
+    """Counts what loops miss as efforts of a plant that was fitted, and no longer of its start."""
+    for form in forms:
+        if isinstance(form, LoopForm):
+            form.stiffen(plant)
+
+
 def told(forms: Sequence[WeakForm]) -> str:
     """Which residual was used and why, in one sentence."""
+    if isinstance(forms[0], LoopForm):
+        return (
+            "The servo was simulated from its goal over whole recordings (closed loop), because "
+            "nobody measured its effort: residuals are the efforts by which it would pull the "
+            "simulated position to the measured one."
+        )
     supports = [1e3 * form.kernel.support for form in forms]
     if isinstance(forms[0], ShootingForm):
         return (

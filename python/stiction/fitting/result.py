@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from html import escape
@@ -139,13 +140,13 @@ class FitResult:
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><td>{escape(path)}</td><td>{p.value:.6g}</td><td>{p.stderr:.2g}</td>"
-            f"<td>{escape(p.unit)}</td><td>{escape(p.at_bound)}</td></tr>"
+            f"<tr><td>{escape(path)}</td><td>{p.value:.6g} {escape(p.unit)}</td>"
+            f"<td>{_interval(p)}</td><td>{escape(p.at_bound)}</td></tr>"
             for path, p in self.parameters.items()
         )
         lines = "".join(f"<p>{escape(line)}</p>" for line in self._headline())
         remarks = "".join(f"<li>{escape(line.strip())}</li>" for line in self._remarks())
-        head = "<tr><th>parameter</th><th>value</th><th>s.e.</th><th>unit</th><th>bound</th></tr>"
+        head = "<tr><th>parameter</th><th>value</th><th>95 % interval</th><th>bound</th></tr>"
         return f"{lines}<table>{head}{rows}</table><ul>{remarks}</ul>"
 
     def to_dict(self) -> dict[str, Any]:
@@ -187,3 +188,11 @@ class FitResult:
     def to_json(self) -> str:
         """Everything as JSON; null stands for what the data do not determine."""
         return json_of(self.to_dict())
+
+
+def _interval(parameter: FitParameter) -> str:
+    """The interval as a table shows it, without a line break inside a number."""
+    low, high = parameter.ci95
+    if not (math.isfinite(low) and math.isfinite(high)):
+        return "not determined"
+    return f"{low:.4g} to {high:.4g}"

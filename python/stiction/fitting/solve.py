@@ -15,7 +15,7 @@ from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.split import BLOCK_S, name_of, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
-from .forms import forms_of, horizon_of, set_clocks, shows_its_ring
+from .forms import followable, forms_of, horizon_of, set_clocks, shows_its_ring, stiffen
 from .minimise import MOST_EVALUATIONS, Solution, from_usual_exponents, launch, minimise
 from .pushes import Watch, told
 from .result import FitParameter, FitResult
@@ -144,10 +144,12 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         simulated = _Seen(first.plant, recordings, horizon, loop=servo, watch=seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
         begun = [first.plant, starts[0]] if servo else [first.plant]
+        begun = [followable(start, simulated.forms) for start in begun]
         again = launch(begun, paths, simulated.train, most=max_evaluations)
         evaluations += again.evaluations
         if servo or shows_its_ring(again.plant, simulated.forms):
             seen, train, first = simulated, simulated.train, again
+            stiffen(seen.forms, first.plant)
     solution = settled(first, train, most=max_evaluations)
     if solution is not first:
         evaluations += solution.evaluations

@@ -49,6 +49,8 @@ BEFORE, AFTER, BAND, REFUSED = ACCENT, SIMULATED, "#dde1e5", "#b9c0c7"
 """Orange and blue are told apart by people who do not see red and green alike."""
 FLOOR_TIMES: Final = 2.0
 """The band of noise over time is this many times its rms: 95 % of it."""
+LEAST_TOLD: Final = 1e-3
+"""Where no share is larger nothing shows: 0 % → 0 % reads as if nothing had been looked at."""
 MOST_RECORDINGS: Final = 24
 """Recordings that a figure shows one by one."""
 LONGEST_NAME, LONGEST_NARROW_NAME = 30, 16
@@ -393,6 +395,8 @@ def _logarithmic(view: View) -> bool:
 
 def _panel_title(before: View, after: View, *, both: bool, narrow: bool) -> str:
     shares = f"{_share(before)} → {_share(after)}" if both else _share(after)
+    if max(before.share if both else 0.0, after.share) < LEAST_TOLD:
+        shares = "nothing shows"
     noise = f"noise: {_share_of(max(after.threshold, 0.0))}"
     name = after.coordinate.name.replace("order over position, times", "order ×")
     if narrow:

@@ -57,6 +57,11 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn delay(&self) -> Option<S> {
         None
     }
+    /// Time that the input takes for one unit of a change, in s per unit: one over the greatest rate.
+    /// One that is there is followed even where it is 0, so that derivatives see it.
+    fn slowness(&self) -> Option<S> {
+        None
+    }
     /// Time constant with which the effort follows the input, in s. One that is there is followed
     /// even where it is 0, so that derivatives see it.
     fn lag(&self) -> Option<S> {
@@ -155,6 +160,7 @@ effects! {
     dwell_strengthening => DwellStrengthening,
     encoder_eccentricity => EncoderEccentricity,
     frictional_lag => FrictionalLag,
+    goal_rate_limit => GoalRateLimit,
     gravity_unbalance => GravityUnbalance,
     input_delay => InputDelay,
     load_dependent_friction => LoadDependentFriction,

@@ -50,8 +50,10 @@ impl<S: Scalar> Running<S> {
         let state = law.initial();
         let zero = S::constant(0.0);
         let run = machine.start(zero, zero);
-        let (delay, lag) = (machine.effects.delay(), machine.effects.lag());
-        let way = (delay.is_some() || lag.is_some()).then(|| Way::new(delay, lag));
+        let own = &machine.effects;
+        let (delay, slowness, lag) = (own.delay(), own.slowness(), own.lag());
+        let any = delay.is_some() || slowness.is_some() || lag.is_some();
+        let way = any.then(|| Way::new(delay, slowness, lag));
         let integrator = spec.integrator;
         Self { machine, law, state, run, way, integrator, longest_phase: LONGEST_PHASE }
     }

@@ -71,10 +71,11 @@ def _level(diagnosis: Diagnosis) -> dict[str, Any] | None:
     held_out = model.heldout_rms is not None
     rms = model.heldout_rms if model.heldout_rms is not None else model.train_rms
     noise = model.noise_floor_rms
-    share = (noise / rms) ** 2 if rms > 0.0 else 1.0
+    share = (noise / model.train_rms) ** 2 if model.train_rms > 0.0 else 1.0
     return {
         "rms": scale_of(diagnosis).text(rms),
         "noise": scale_of(diagnosis).text(noise),
         "rows": "on held-out rows" if held_out else "on the rows fitted",
+        "where": "on the rows fitted " if held_out else "",
         "share": percent(share, 0) if share < 0.995 else "",
     }

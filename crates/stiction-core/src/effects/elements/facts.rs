@@ -11,6 +11,8 @@ pub enum Hook {
     InputMap,
     /// Lets the input arrive late.
     InputDelay,
+    /// Lets the input change no faster than a limit.
+    InputRate,
     /// Lets the effort follow the input gradually.
     InputLag,
     /// Changes what the position sensor reads.
@@ -29,6 +31,7 @@ impl Hook {
             Self::AddedEffort => "added effort",
             Self::InputMap => "input map",
             Self::InputDelay => "input delay",
+            Self::InputRate => "input rate",
             Self::InputLag => "input lag",
             Self::SensorMap => "sensor map",
             Self::StateRelaxation => "state relaxation",

@@ -23,6 +23,7 @@ pub struct Effects<S: Scalar> {
     inputs: Vec<usize>,
     sensors: Vec<usize>,
     delay: Option<S>,
+    slowness: Option<S>,
     lag: Option<S>,
     relaxations: Vec<Relaxation<S>>,
     second_masses: Vec<SecondMass<S>>,
@@ -35,7 +36,7 @@ impl<S: Scalar> Effects<S> {
     /// Name of what effects remember, as an entry of a state.
     pub const ENTRY: &'static str = "effect_memory";
 
-    /// Sorts effects by hook. Delays and lags add up.
+    /// Sorts effects by hook. Delays and lags add up; of limited rates the last one counts.
     pub fn new(effects: impl IntoIterator<Item = AnyEffect<S>>) -> Self {
         let mut sorted = Self {
             kept: Vec::new(),
@@ -44,6 +45,7 @@ impl<S: Scalar> Effects<S> {
             inputs: Vec::new(),
             sensors: Vec::new(),
             delay: None,
+            slowness: None,
             lag: None,
             relaxations: Vec::new(),
             second_masses: Vec::new(),
@@ -60,6 +62,9 @@ impl<S: Scalar> Effects<S> {
                     Hook::SensorMap => sorted.sensors.push(place),
                     Hook::InputDelay => {
                         sorted.delay = sum(sorted.delay, with_effect!(&effect, |e| e.delay()));
+                    }
+                    Hook::InputRate => {
+                        sorted.slowness = with_effect!(&effect, |e| e.slowness());
                     }
                     Hook::InputLag => {
                         sorted.lag = sum(sorted.lag, with_effect!(&effect, |e| e.lag()));
@@ -219,6 +224,11 @@ impl<S: Scalar> Effects<S> {
     /// How late the input arrives, where an effect delays it.
     pub fn delay(&self) -> Option<S> {
         self.delay
+    }
+
+    /// Time that the input takes for one unit of a change, where an effect limits its rate.
+    pub fn slowness(&self) -> Option<S> {
+        self.slowness
     }
 
     /// Time constant with which the effort follows the input, where an effect lets it lag.
