@@ -126,7 +126,7 @@ class Motor:
         enabled: npt.ArrayLike | None = None,
         outputs: Sequence[str] | None = None,
         out: dict[str, _Floats] | None = None,
-    ) -> dict[str, _Floats]: ...
+    ) -> tuple[dict[str, _Floats], int, float, dict[str, int]]: ...
     def run_segments(
         self,
         durations: npt.ArrayLike,

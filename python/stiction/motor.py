@@ -95,17 +95,15 @@ class Motor(_native.Motor):
         if isinstance(outputs, str):
             raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
         names = None if outputs is None else list(outputs)
-        start = self.clock
-        columns = self.run(
+        columns, length, start, statistics = self.run(
             current, dt, load=load, temperature=temperature, enabled=enabled, outputs=names, out=out
         )
-        length = len(next(iter(columns.values()))) if columns else np.size(current)
         steps: float | FloatArray
         if isinstance(dt, float):
             steps = float(dt)
         else:
             steps = float(np.asarray(dt)) if np.ndim(dt) == 0 else np.array(dt, dtype=np.float64)
-        return Trajectory(columns, steps, length, start=start, statistics=self.statistics)
+        return Trajectory(columns, steps, length, start=start, statistics=statistics)
 
     def simulate_segments(
         self,

@@ -42,11 +42,11 @@ class Trajectory:
         What happened, in words.
     """
 
-    _columns: Mapping[str, FloatArray]
+    _columns: dict[str, FloatArray]
     _dt: float | FloatArray
     _length: int
     _start: float
-    _statistics: Mapping[str, int]
+    _statistics: dict[str, int]
 
     def __init__(
         self,
@@ -59,11 +59,11 @@ class Trajectory:
     ) -> None:
         # Written past the guard below, once.
         self.__dict__.update(
-            _columns=MappingProxyType(dict(columns)),
+            _columns=dict(columns),
             _dt=dt,
             _length=length,
             _start=start,
-            _statistics=MappingProxyType(dict(statistics or {})),
+            _statistics=dict(statistics or {}),
         )
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -72,12 +72,12 @@ class Trajectory:
     @property
     def statistics(self) -> Mapping[str, int]:
         """How often each branch was taken since the last reset."""
-        return self._statistics
+        return MappingProxyType(self._statistics)
 
     @property
     def columns(self) -> Mapping[str, FloatArray]:
         """The columns by name."""
-        return self._columns
+        return MappingProxyType(self._columns)
 
     @property
     def dt(self) -> float | FloatArray:

@@ -29,6 +29,25 @@ def test_ends_of_segments_are_those_of_fixed_steps() -> None:
     np.testing.assert_allclose(run.time, np.cumsum(durations), rtol=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("law", "own"), [("hsieh_pan", {"breakaway": 0.5}), ("maxwell_slip", {"viscous": 0.3})]
+)
+def test_rings_on_a_spring_take_fewer_steps_than_fixed_ones(
+    law: str, own: dict[str, float]
+) -> None:
+    durations = np.tile([0.02, 0.08], 8)
+    currents = np.zeros(16)
+    currents[::2] = np.tile([0.15, 0.2, -0.15, -0.2], 2)
+    run = rig(law, **own).simulate_segments(durations, currents)
+    assert run.statistics["evaluations"] < 0.5 * durations.sum() / 1e-4
+    dt = 2e-5
+    inputs = np.repeat(currents, np.round(durations / dt).astype(int))
+    motor = st.Motor(INERTIA, friction=st.FrictionModel(law, **own), integrator="reference")
+    fixed = motor.simulate(inputs, dt, outputs=("position",))
+    ends = np.round(np.cumsum(durations) / dt).astype(int) - 1
+    np.testing.assert_allclose(run.position, fixed.position[ends], atol=TOLERANCE, rtol=0)
+
+
 def test_rows_stand_at_the_times_asked_for_and_the_motor_goes_on_from_the_end() -> None:
     motor = rig()
     run = motor.simulate_segments([0.5, 1.0], [0.1, 0.0], times=[0.2, 0.5, 0.7])

@@ -1,5 +1,7 @@
 //! Arrays from Python: C-contiguous float64 is borrowed, anything else is converted.
 
+use std::fmt::Display;
+
 use numpy::{
     PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods,
 };
@@ -175,7 +177,7 @@ impl<'py> Around<'py> {
 
 /// A writable C-contiguous float64 array of this shape to fill, called `name` in a complaint.
 pub fn target<'py>(
-    name: &str,
+    name: impl Display,
     value: &Bound<'py, PyAny>,
     shape: &[usize],
 ) -> PyResult<PyReadwriteArrayDyn<'py, f64>> {

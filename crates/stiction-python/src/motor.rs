@@ -5,8 +5,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use numpy::{
     PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods,
 };
+use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyString};
+use stiction_core::friction::Statistics;
 use stiction_core::integrate::Integrator;
 use stiction_core::motor::{Column, Motor as Core, MotorSpec};
 use stiction_core::segments::Segments;
@@ -86,6 +88,27 @@ fn servo_settings<'py>(py: Python<'py>, servo: &Servo) -> PyResult<Bound<'py, Py
     }
     Ok(dict)
 }
+
+/// A word out of a dict of arrays to fill.
+fn word<'a, 'py>(key: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py, PyString>> {
+    let wrong = |_| input_error(key.py(), format!("key {key} of out is not a word"));
+    key.cast::<PyString>().map_err(wrong)
+}
+
+/// Branch counters by name.
+fn statistics<'py>(py: Python<'py>, counted: &Statistics) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item(intern!(py, "reversals"), counted.reversals)?;
+    dict.set_item(intern!(py, "closings"), counted.closings)?;
+    dict.set_item(intern!(py, "breakaways"), counted.breakaways)?;
+    dict.set_item(intern!(py, "sticks"), counted.sticks)?;
+    dict.set_item(intern!(py, "memory_peak"), counted.memory_peak)?;
+    dict.set_item(intern!(py, "memory_growths"), counted.memory_growths)?;
+    Ok(dict)
+}
+
+/// Arrays by name, samples, time at the start, branch counters.
+type Ran<'py> = (Bound<'py, PyDict>, usize, f64, Bound<'py, PyDict>);
 
 /// Three arrays: needed, driven, ahead.
 type Derivatives<'py> =
@@ -181,7 +204,8 @@ impl Motor {
         core.step(current, load, dt).or_input_error(py)
     }
 
-    /// Samples with held inputs; the arrays asked for, by name.
+    /// Samples with held inputs: the arrays asked for, by name, how many samples there were, the time
+    /// on the session clock before the first, and how often each branch was taken.
     #[pyo3(signature = (current, dt, *, load=None, temperature=None, enabled=None, outputs=None, out=None))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn run<'py>(
@@ -192,48 +216,51 @@ impl Motor {
         load: Option<&Bound<'py, PyAny>>,
         temperature: Option<&Bound<'py, PyAny>>,
         enabled: Option<&Bound<'py, PyAny>>,
-        outputs: Option<Vec<String>>,
+        outputs: Option<Vec<Bound<'py, PyString>>>,
         out: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Ran<'py>> {
         let current = one_row("current", current)?;
-        let shape = current.shape().to_vec();
-        let n = shape[0];
-        let dt = Each::steps("dt", dt, &shape)?;
-        let around = Around::read([load, temperature, enabled], &shape)?;
-        let law = self.lock().spec().friction.clone();
-        let names: Vec<String> = match (outputs, out) {
-            (Some(names), _) => names,
-            (None, Some(out)) if !out.is_empty() => {
-                out.keys().iter().filter_map(|key| key.extract().ok()).collect()
-            }
-            _ => Column::names(&law).iter().map(|name| (*name).to_owned()).collect(),
-        };
-        if let Some(out) = out {
-            for key in out.keys() {
-                let key: String = key
-                    .extract()
-                    .map_err(|_| input_error(py, format!("key {key} of out is not a word")))?;
-                if !names.contains(&key) {
-                    return Err(input_error(
-                        py,
-                        format!("out['{key}'] is not among outputs; add it there or drop it"),
-                    ));
+        let n = current.len();
+        let dt = Each::steps("dt", dt, &[n])?;
+        let around = Around::read([load, temperature, enabled], &[n])?;
+        let names = match (outputs, out) {
+            (Some(names), out) => {
+                let given = out.map_or_else(|| PyDict::new(py), Clone::clone);
+                for key in given.keys() {
+                    let key = word(&key)?.to_str()?;
+                    if !names.iter().any(|name| *name == *key) {
+                        return Err(input_error(
+                            py,
+                            format!("out['{key}'] is not among outputs; add it there or drop it"),
+                        ));
+                    }
                 }
+                names
             }
-        }
+            (None, Some(out)) if !out.is_empty() => {
+                out.keys().iter().map(|key| word(&key).cloned()).collect::<PyResult<_>>()?
+            }
+            _ => {
+                let names = Column::names(&self.lock().spec().friction);
+                names.into_iter().map(|name| PyString::new(py, name)).collect()
+            }
+        };
         let result = PyDict::new(py);
-        let mut arrays: Vec<(Column, PyReadwriteArrayDyn<'py, f64>)> = Vec::new();
+        let mut arrays: Vec<(Column, PyReadwriteArrayDyn<'py, f64>)> =
+            Vec::with_capacity(names.len());
         for name in &names {
-            let column = Column::named(&law, name).or_input_error(py)?;
-            if result.contains(name)? {
-                return Err(input_error(py, format!("output '{name}' is asked for twice")));
-            }
+            let word = name.to_str()?;
+            let column = Column::named(&self.lock().spec().friction, word);
+            let column = column.or_input_error(py)?;
             let array = match out.map(|out| out.get_item(name)).transpose()?.flatten() {
                 Some(array) => array,
                 None => PyArray1::<f64>::zeros(py, n, false).into_any(),
             };
+            if arrays.iter().any(|(other, _)| *other == column) {
+                return Err(input_error(py, format!("output '{word}' is asked for twice")));
+            }
             result.set_item(name, &array)?;
-            arrays.push((column, target(&format!("out['{name}']"), &array, &[n])?));
+            arrays.push((column, target(format_args!("out['{word}']"), &array, &[n])?));
         }
         let current = current.as_slice()?;
         let (dt, around) = (dt.per_sample()?, around.surroundings()?);
@@ -241,8 +268,15 @@ impl Motor {
         for (column, array) in &mut arrays {
             columns.push((*column, array.as_slice_mut()?));
         }
-        py.detach(|| self.lock().simulate(current, around, dt, &mut columns)).or_input_error(py)?;
-        Ok(result)
+        let (start, counted) = py
+            .detach(|| {
+                let mut core = self.lock();
+                let start = core.running().run.time;
+                core.simulate(current, around, dt, &mut columns)?;
+                Ok((start, core.statistics()))
+            })
+            .or_input_error(py)?;
+        Ok((result, n, start, statistics(py, &counted)?))
     }
 
     /// Inputs held for durations (shape (n,) each): times of the rows, the arrays asked for, by name,
@@ -695,13 +729,6 @@ impl Motor {
     #[getter]
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let counted = self.lock().statistics();
-        let dict = PyDict::new(py);
-        dict.set_item("reversals", counted.reversals)?;
-        dict.set_item("closings", counted.closings)?;
-        dict.set_item("breakaways", counted.breakaways)?;
-        dict.set_item("sticks", counted.sticks)?;
-        dict.set_item("memory_peak", counted.memory_peak)?;
-        dict.set_item("memory_growths", counted.memory_growths)?;
-        Ok(dict)
+        self::statistics(py, &counted)
     }
 }

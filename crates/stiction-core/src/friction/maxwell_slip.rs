@@ -135,6 +135,7 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
     const PARAMETERS: &'static [ParameterSpec] = MaxwellSlipParameters::<f64>::SPECS;
     const START: &'static [ParameterSpec] = MaxwellSlipStart::<f64>::SPECS;
     const REMEMBERS: bool = true;
+    const SPRINGS: bool = true;
     const SUMMARY: &'static str =
         "elasto-slide elements in parallel: hysteresis with memory that goes over into sliding";
     const SOURCE: &'static str =
@@ -237,6 +238,10 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
         glide: &mut Glide<S, E, V>,
     ) {
         self.glide_on(state, glide);
+    }
+
+    fn springs(&self, _state: &MaxwellSlipState<S>) -> Option<f64> {
+        self.glides().then(|| self.parameters.viscous.re())
     }
 
     // Where the body stays, so does the force.

@@ -273,6 +273,8 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         let outcome = self.outcome(trial);
         outcome.force - outcome.damping * velocity
     }
+    /// Whether [`FrictionLaw::springs`] may tell of a damping.
+    const SPRINGS: bool = false;
     /// Whether a contact like this one has [`FrictionLaw::glide`].
     #[inline(always)]
     fn glides(&self) -> bool {
@@ -287,6 +289,11 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         _state: &mut Self::State,
         _glide: &mut Glide<S, E, V>,
     ) {
+    }
+    /// The damping beside a spring where that is all that [`FrictionLaw::glide`] goes through from
+    /// this state: long runs then take its steps longer.
+    fn springs(&self, _state: &Self::State) -> Option<f64> {
+        None
     }
     /// What takes motors with contacts like this one through their samples side by side; see
     /// [`crate::lanes`].

@@ -2,12 +2,14 @@
 //!
 //! The body on its contact is taken as a damped oscillator, which is solved exactly, and a
 //! remainder, which is fitted by a parabola through the start, the middle and the end of a step.
-//! The longer a ring lasts, the smaller the remainder, and the longer the steps.
+//! The longer a ring lasts, the smaller the remainder, and the longer the steps. A body on a spring
+//! goes through its rings in rows of short steps ([`super::row`]).
 
 use std::cell::Cell;
 
 use super::events::Stepper;
 use super::machine::{Machine, Run};
+use super::row::{Rows, Taken};
 use super::swing::{Landing, Swing, located};
 use crate::friction::{FrictionLaw, LawState, Motion};
 use crate::scalar::sign;
@@ -58,6 +60,7 @@ pub struct Adaptive {
     damping: f64,
     /// How many times its size what is left of a ring would still move the body.
     over: f64,
+    rows: Rows,
     /// What it cost.
     pub account: Account,
 }
@@ -72,6 +75,7 @@ impl Adaptive {
             stiffness: f64::NAN,
             damping: 0.0,
             over: 1.0,
+            rows: Rows::new(tolerance, natural),
             account: Account::default(),
         }
     }
@@ -97,6 +101,7 @@ impl Adaptive {
         // A new input: what the last steps were like says nothing of the next.
         self.next = self.next.min(16.0 * self.natural);
         self.over = 1.0;
+        self.rows.begin::<L>(&swing);
         let (mut left, mut stalled, mut mayrest) = (span, 0, true);
         while left > 0.0 {
             state.make_room(64);
@@ -125,10 +130,36 @@ impl Adaptive {
                     Resting::NotYet => (),
                 }
             }
+            if let Some(passed) = self.row(&mut swing, law, state, left) {
+                left = lesser(left, passed, span);
+                continue;
+            }
             let passed = self.step(&mut swing, law, state, left, &mut stalled);
             left = lesser(left, passed, span);
         }
         self.account.evaluations += swing.evaluations.get();
+    }
+
+    /// Plain steps in a row, where they are worth more than one of the oscillator; their duration.
+    fn row<L: FrictionLaw<f64>>(
+        &mut self,
+        swing: &mut Swing<'_>,
+        law: &L,
+        state: &mut L::State,
+        left: f64,
+    ) -> Option<f64> {
+        let worth = self.rows.worth();
+        if self.next > worth && self.turn(swing, law, state).0 > worth {
+            return None;
+        }
+        let taken = self.rows.take(swing, law, state, self.stiffness, left)?;
+        let Taken { duration, steps, refused, stiffness, damping } = taken;
+        (self.stiffness, self.damping) = (stiffness, damping);
+        self.account.steps += steps as u64;
+        self.account.refused += refused;
+        // What the oscillator may do by now only a step of it can tell.
+        self.next = self.next.max(GROWTH * duration);
+        Some(duration)
     }
 
     /// One step, or one up to an event; its duration.

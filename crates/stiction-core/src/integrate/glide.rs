@@ -9,10 +9,14 @@ use stiction_dispatch::Task;
 
 use super::clock::after_steps;
 use super::machine::Run;
+use super::response::{Response, halves};
 use std::ops::Range;
 
 use crate::friction::{Channels, FrictionLaw, Motion};
 use crate::scalar::Scalar;
+
+/// (ω·h)² below which a step is not fitted to a spring.
+const SOFTEST: f64 = 1e-6;
 
 /// The body's share of a step: velocity Verlet with trapezoidal damping.
 #[derive(Debug, Clone, Copy)]
@@ -46,8 +50,8 @@ impl<S: Scalar> Verlet<S> {
     #[inline(always)]
     pub fn dragged(self, damping: S) -> Self {
         Self {
-            stride: self.span - self.lever * damping,
-            kept: self.inertia - self.half * damping,
+            stride: self.stride - self.lever * damping,
+            kept: self.kept - self.half * damping,
             ..self
         }
     }
@@ -115,6 +119,33 @@ impl<S: Scalar> Verlet<S> {
     #[inline(always)]
     pub fn span(&self) -> S {
         self.span
+    }
+}
+
+impl Verlet<f64> {
+    /// The same, bent so that a body on a spring of this stiffness beside this damping would be taken
+    /// where it goes, however long the step: what is left for the step to be short for is how the
+    /// friction differs from that.
+    pub(super) fn fitted(span: f64, inertia: f64, stiffness: f64, damping: f64) -> Self {
+        // What a soft spring does in the step would be lost in round-off.
+        let soft = stiffness * span * span < SOFTEST * inertia;
+        let stiffness = if soft { 0.0 } else { stiffness };
+        let (_, Response { impulse, slope, first, .. }) =
+            halves(stiffness / inertia, 0.5 * damping / inertia, span);
+        // x₁ = g·v₀ + G₁/J·(E − σ₀), v₁ = P·v₀ + Q·(2·E − σ₀ − σ₁), which P and Q make exact for
+        // σ₁ = σ₀ + k·x₁.
+        let lever = first / inertia;
+        let braking = impulse / (2.0 * inertia - stiffness * first);
+        let left = slope + braking * stiffness * impulse;
+        let half = braking * inertia / (1.0 - braking * damping);
+        let share = inertia + half * damping;
+        Self {
+            half,
+            lever,
+            stride: impulse + lever * damping,
+            kept: left * share + half * damping,
+            ..Self::new(span, inertia, 1.0 / inertia)
+        }
     }
 }
 

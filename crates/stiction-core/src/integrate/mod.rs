@@ -14,6 +14,7 @@ mod glide;
 mod machine;
 mod reference;
 mod response;
+mod row;
 mod shaft;
 mod steep;
 mod swing;

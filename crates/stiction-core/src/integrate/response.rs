@@ -6,6 +6,18 @@ const SERIES: f64 = 0.05;
 const SOFT: f64 = 1e-2;
 /// Coefficients of the series: the next is below 1e-17.
 const TERMS: usize = 12;
+/// Coefficients that are less, as shares of the first, change nothing.
+const NOTHING: f64 = 1e-18;
+/// 1/n; the first is not asked for.
+const SHARES: [f64; TERMS + 4] = {
+    let mut shares = [0.0; TERMS + 4];
+    let mut n = 1;
+    while n < shares.len() {
+        shares[n] = 1.0 / n as f64;
+        n += 1;
+    }
+    shares
+};
 
 /// g, its slope and its repeated integrals at a time t, where g'' + 2·c·g' + K·g = 0, g(0) = 0,
 /// g'(0) = 1.
@@ -86,16 +98,22 @@ fn sliding(decay: f64, t: f64) -> Response {
 
 fn series(square: f64, decay: f64, t: f64) -> Response {
     let mut response = Response { impulse: 0.0, slope: 0.0, first: 0.0, second: 0.0, third: 0.0 };
+    let (damped, swung, per_time) = (2.0 * decay * t, square * t * t, 1.0 / t);
     // Coefficients of g times t^n, n = 0, 1, …
     let (mut before, mut at) = (0.0, t);
     for n in 1..=TERMS {
-        let n = n as f64;
+        let once = at * t * SHARES[n + 1];
+        let twice = once * t * SHARES[n + 2];
         response.impulse += at;
-        response.slope += at * n / t;
-        response.first += at * t / (n + 1.0);
-        response.second += at * t * t / ((n + 1.0) * (n + 2.0));
-        response.third += at * t * t * t / ((n + 1.0) * (n + 2.0) * (n + 3.0));
-        let next = -(2.0 * decay * t * at / (n + 1.0)) - square * t * t * before / (n * (n + 1.0));
+        response.slope += at * n as f64 * per_time;
+        response.first += once;
+        response.second += twice;
+        response.third += twice * t * SHARES[n + 3];
+        let next = -(damped * at + swung * before * SHARES[n]) * SHARES[n + 1];
+        // Without damping every second one is 0.
+        if at.abs() + next.abs() < NOTHING * t {
+            break;
+        }
         (before, at) = (at, next);
     }
     response

@@ -33,15 +33,15 @@ impl Column {
 
     /// The column called `name`.
     pub fn named(law: &LawSpec, name: &str) -> Result<Self> {
-        let names = Self::names(law);
-        let index = names.iter().position(|known| *known == name);
-        let index = index.ok_or_else(|| Error::unknown("output", name, names))?;
-        Ok(match index {
-            0 => Self::Position,
-            1 => Self::Velocity,
-            2 => Self::Friction,
-            3 => Self::Measured,
-            own => Self::Law(own - 4),
+        Ok(match name {
+            "position" => Self::Position,
+            "velocity" => Self::Velocity,
+            "friction" => Self::Friction,
+            "measured" => Self::Measured,
+            own => {
+                let index = law.record.outputs.iter().position(|known| *known == own);
+                Self::Law(index.ok_or_else(|| Error::unknown("output", name, Self::names(law)))?)
+            }
         })
     }
 

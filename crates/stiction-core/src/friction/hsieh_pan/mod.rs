@@ -95,6 +95,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
     const START: &'static [ParameterSpec] = HsiehPanStart::<f64>::SPECS;
     const OPTIONS: &'static [OptionSpec] = OPTIONS;
     const REMEMBERS: bool = true;
+    const SPRINGS: bool = true;
     const SUMMARY: &'static str =
         "pre-sliding with creep, work hardening and reverse-point memory; breaks away and slides";
     const SOURCE: &'static str = "Hsieh, Pan, Wear 242 (2000) 1-17; partly reconstructed";
@@ -328,6 +329,10 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         glide: &mut Glide<S, E, V>,
     ) {
         self.glide_in_mode(state, glide);
+    }
+
+    fn springs(&self, state: &HsiehPanState<S>) -> Option<f64> {
+        (self.glides() && state.mode == 0.0).then(|| self.parameters.damping.re())
     }
 
     fn abreast(&self) -> Option<Abreast<S, Self>> {

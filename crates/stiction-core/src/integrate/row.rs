@@ -1,0 +1,260 @@
+//! Rows of plain steps of a body on a spring, each fitted to the oscillator that it nearly is.
+//!
+//! A ring is many swings, and each of them has a turn, where a spring with memory has a kink. So steps
+//! that stop at turns are not worth what one of them costs; short ones of [`FrictionLaw::glide`] are,
+//! as long as the error allows.
+
+use std::ops::Range;
+
+use super::glide::{Efforts, Glide, Seen, Verlet};
+use super::machine::Run;
+use super::swing::Swing;
+use crate::friction::FrictionLaw;
+
+/// Share of the tolerance that a ring may be off after a radian of its phase.
+const LOCAL: f64 = 0.02;
+/// Excess of that over which a row is taken again.
+const REFUSED: f64 = 2.0;
+/// What part of that the next row aims at.
+const AIM: f64 = 0.8;
+/// Steps change by no more than this from row to row.
+const CHANGE: Range<f64> = 0.1..4.0;
+/// The longest step and the first after a new input, in steps of the fast integrator.
+const LONGEST: f64 = 12.0;
+const FIRST: f64 = 1.5;
+/// The shortest, which is taken whatever its error.
+const SHORTEST: f64 = 1.0 / 64.0;
+/// Steps of a row, and of the first after a new input.
+const STEPS: usize = 48;
+const FIRST_STEPS: usize = 16;
+/// Errors are weighed as if a spring had at least this share of its greatest stiffness.
+const SOFTEST: f64 = 0.1;
+
+/// Rows of steps: how long the next ones are.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rows {
+    /// Duration of a step of the fast integrator.
+    natural: f64,
+    /// Error of a position that is allowed.
+    tolerance: f64,
+    /// Whether the machine is bare.
+    bare: bool,
+    span: f64,
+    steps: usize,
+}
+
+/// A row that was taken.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Taken {
+    /// How long it took.
+    pub duration: f64,
+    pub steps: usize,
+    /// Rows that were taken in vain.
+    pub refused: u64,
+    /// The stiffness that leaves least of a remainder, and the damping beside it.
+    pub stiffness: f64,
+    pub damping: f64,
+}
+
+impl Rows {
+    /// With this error allowed; a step of the fast integrator lasts `natural`.
+    pub fn new(tolerance: f64, natural: f64) -> Self {
+        Self { natural, tolerance, bare: false, span: natural, steps: FIRST_STEPS }
+    }
+
+    /// A new input: what steps were like before says nothing of the next.
+    pub fn begin<L: FrictionLaw<f64>>(&mut self, swing: &Swing<'_>) {
+        self.bare = L::SPRINGS && swing.machine.is_bare() && swing.machine.glides(swing.run);
+        self.span = self.span.min(FIRST * self.natural);
+        self.steps = FIRST_STEPS;
+    }
+
+    /// Beyond this a step of the oscillator is worth more than a row, where its error and the turns of
+    /// the motion allow it; infinite where rows may still get longer.
+    pub fn worth(&self) -> f64 {
+        let longest = LONGEST * self.natural;
+        if self.span < longest { f64::INFINITY } else { 0.5 * STEPS as f64 * longest }
+    }
+
+    /// Plain steps from here, where there are any, up to the first that is not.
+    pub fn take<L: FrictionLaw<f64>>(
+        &mut self,
+        swing: &mut Swing<'_>,
+        law: &L,
+        state: &mut L::State,
+        stiffness: f64,
+        left: f64,
+    ) -> Option<Taken> {
+        if !L::SPRINGS || !self.bare {
+            return None;
+        }
+        let damping = law.springs(state)?;
+        let greatest = law.greatest_stiffness();
+        let shortest = SHORTEST * self.natural;
+        let inertia = swing.machine.inertia;
+        let (effort, _) = swing.here();
+        let begun = state.clone();
+        let (mut refused, mut stiffness) = (0, stiffness.min(greatest));
+        loop {
+            let (mut span, mut steps) = (self.span, self.steps);
+            if left < 1.5 * steps as f64 * span {
+                steps = (left / span).ceil().max(1.0) as usize;
+                span = left / steps as f64;
+            }
+            let oscillator = (stiffness, damping);
+            let went = go(law, state, swing.run, (inertia, effort), oscillator, (steps, span));
+            swing.count(went.steps as u64);
+            let weighed = stiffness.max(SOFTEST * greatest);
+            let relative = went.strayed / weighed / (LOCAL * self.tolerance);
+            if went.stiffness.is_finite() {
+                stiffness = went.stiffness.clamp(0.0, greatest);
+            }
+            let change = (AIM / relative.max(f64::MIN_POSITIVE)).sqrt();
+            let next = span * change.clamp(CHANGE.start, CHANGE.end);
+            self.span = next.clamp(shortest, LONGEST * self.natural);
+            // A state that is not finite cannot be mended by shorter steps.
+            if relative > REFUSED && span > shortest {
+                refused += 1;
+                state.clone_from(&begun);
+                continue;
+            }
+            self.steps = STEPS;
+            if went.steps == 0 {
+                return None;
+            }
+            *swing.run = went.run;
+            let duration = went.steps as f64 * span;
+            return Some(Taken { duration, steps: went.steps, refused, stiffness, damping });
+        }
+    }
+}
+
+/// Where steps in a row lead, and what they were like.
+struct Went {
+    run: Run<f64>,
+    /// How many were plain.
+    steps: usize,
+    /// By what effort each of them was off, in the mean.
+    strayed: f64,
+    /// The stiffness that leaves least of a remainder; no number where nothing moved.
+    stiffness: f64,
+}
+
+/// Goes through so many steps of a duration, or up to the first that is not plain.
+#[inline(never)]
+fn go<L: FrictionLaw<f64>>(
+    law: &L,
+    state: &mut L::State,
+    run: &Run<f64>,
+    (inertia, effort): (f64, f64),
+    (stiffness, damping): (f64, f64),
+    (steps, span): (usize, f64),
+) -> Went {
+    let verlet = Verlet::fitted(span, inertia, stiffness, damping);
+    let seen = Watch::from(run, stiffness, damping);
+    let (run, efforts) = (*run, Held(effort));
+    // Own places and a copy: nobody else can see them, so that they stay in registers.
+    let mut glide = Glide { verlet, run, efforts, seen, samples: 0..steps, part: 0, parts: 1 };
+    law.clone().glide(state, &mut glide);
+    let (run, steps, seen) = (glide.run, glide.samples.start, glide.seen);
+    Went { run, steps, strayed: seen.strayed(steps), stiffness: seen.products / seen.squares }
+}
+
+/// All effort but friction, held.
+struct Held(f64);
+
+impl Efforts<f64> for Held {
+    #[inline(always)]
+    fn at(&self, _: usize) -> f64 {
+        self.0
+    }
+}
+
+/// What friction does beside a spring and a damping.
+///
+/// Verlet's steps x₂ − 2·x₁ + x₀ = h²/J·R₁ miss h²/12 of the second derivative of R, whatever acts
+/// beside the oscillator that they are fitted to: they go as if R₁ were off by a twelfth of its second
+/// difference.
+struct Watch {
+    stiffness: f64,
+    damping: f64,
+    position: f64,
+    force: f64,
+    /// By how much the remainder k·x − σ changed in the last step; no number before the first.
+    change: f64,
+    /// The sum of how these changes differ from one to the next.
+    bends: f64,
+    /// Sums of Δx² and of Δx·Δσ.
+    squares: f64,
+    products: f64,
+}
+
+impl Watch {
+    fn from(run: &Run<f64>, stiffness: f64, damping: f64) -> Self {
+        let force = run.friction - damping * run.velocity;
+        let (change, bends, squares, products) = (f64::NAN, 0.0, 0.0, 0.0);
+        let position = run.position;
+        Self { stiffness, damping, position, force, change, bends, squares, products }
+    }
+
+    fn strayed(&self, steps: usize) -> f64 {
+        self.bends / (12.0 * steps.saturating_sub(1).max(1) as f64)
+    }
+}
+
+impl<T> Seen<f64, T> for Watch {
+    #[inline(always)]
+    fn looks(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn still(&mut self, _: Range<usize>, _: &Run<f64>, _: impl Fn(usize) -> f64) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn see(&mut self, _: usize, run: &Run<f64>, _: &T) {
+        let force = run.friction - self.damping * run.velocity;
+        let (way, rise) = (run.position - self.position, force - self.force);
+        let change = self.stiffness * way - rise;
+        // What is no number, of the first step, is no bend.
+        self.bends += (change - self.change).abs().max(0.0);
+        self.squares += way * way;
+        self.products += way * rise;
+        (self.position, self.force, self.change) = (run.position, force, change);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrate::response::halves;
+
+    #[test]
+    fn a_fitted_step_is_exact_on_an_oscillator() {
+        let (inertia, effort) = (0.0076, 0.2);
+        for (stiffness, damping) in [(3000.0, 0.45), (3000.0, 0.0), (40.0, 3.0), (0.0, 0.3)] {
+            for span in [1e-4, 8e-4, 3e-3] {
+                let verlet = Verlet::fitted(span, inertia, stiffness, damping).dragged(damping);
+                let (start, velocity, force) = (1e-5, 0.02, stiffness * 1e-5);
+                let push = effort - force;
+                let gone = verlet.displacement(velocity, push);
+                let then = stiffness * (start + gone);
+                let arrived = verlet.arrive(velocity, push + effort, damping, then);
+                let (decay, square) = (0.5 * damping / inertia, stiffness / inertia);
+                let (_, exact) = halves(square, decay, span);
+                let way = velocity * exact.impulse + push * exact.first / inertia;
+                let speed = velocity * exact.slope + push * exact.impulse / inertia;
+                assert!((gone - way).abs() <= 1e-13 * way.abs(), "{span}: {gone} {way}");
+                assert!((arrived - speed).abs() <= 1e-12 * 0.02, "{span}: {arrived} {speed}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_spring_too_soft_to_tell_is_none() {
+        let [soft, none] = [1e-13, 0.0].map(|k| Verlet::fitted(8e-4, 0.002, k, 0.3));
+        assert_eq!(soft.displacement(0.02, 0.1), none.displacement(0.02, 0.1));
+    }
+}
