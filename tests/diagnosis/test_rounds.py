@@ -133,12 +133,15 @@ def test_a_small_relative_of_a_named_cause_may_be_its_rest(
         # What it acts in got worse; and only one recording got better.
         ((1.0, 0.5, 0.9, 1.4), False),
         ((1.0, 0.3, 1.0, 1.0), False),
+        ((1.0, 0.3, 1.0, 1.0, 1.0), False),
+        # Of many it may lose the machine in one.
+        ((1.0, 0.5, 0.9, 0.9, 1.8), True),
     ],
 )
 def test_a_recording_in_which_an_effect_does_nothing_does_not_judge_it(
     gained: tuple[float, ...], passes: bool
 ) -> None:
-    rows, recordings = 40, 4
+    rows, recordings = 40, len(gained)
     recording = np.repeat(np.arange(recordings), rows)
     cells = SimpleNamespace(block=recording, recording=recording)
 
@@ -147,5 +150,5 @@ def test_a_recording_in_which_an_effect_does_nothing_does_not_judge_it(
         return SimpleNamespace(blocks=blocks, evidence=SimpleNamespace(cells=cells))
 
     contributed = np.where(recording == 0, 0.0, 1.0)
-    kept = decide._without_the_best(model(1.0, 1.0, 1.0, 1.0), model(*gained), contributed)
+    kept = decide._without_the_best(model(*np.ones(recordings)), model(*gained), contributed)
     assert (kept > 0.5 * decide.LEAST_GAIN) == passes

@@ -255,7 +255,7 @@ def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tupl
 
 
 def _without_the_best(base: Model, model: Model, contributed: FloatArray) -> float:
-    """Held-out gain with the recording left out that gains most; the whole gain of a few.
+    """Held-out gain without the recordings that gain most and least; the whole gain of a few.
 
     In a recording in which the base has lost the machine anything may find it again. Recordings in
     which the effect does nothing count for neither side: in one of them the base may lose it.
@@ -272,7 +272,9 @@ def _without_the_best(base: Model, model: Model, contributed: FloatArray) -> flo
     if len(held) < FEWEST_RECORDINGS:
         return 1.0
     held = held[touched[held]] if np.sum(touched[held]) > 1 else held
-    kept = held[held != held[np.argmax((whole - left)[held])]]
+    in_order = held[np.argsort((whole - left)[held])]
+    # As it may find the machine again in one, it may lose it in another.
+    kept = in_order[1:-1] if len(in_order) >= FEWEST_RECORDINGS else in_order[:-1]
     return float(1.0 - left[kept].sum() / whole[kept].sum())
 
 
