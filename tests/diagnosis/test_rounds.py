@@ -43,7 +43,7 @@ def trial(
 class Bench:
     """What the rounds ask of a screening: answers by the name of the model."""
 
-    evidence = None
+    evidence = SimpleNamespace(loop=False)
 
     def __init__(self, after: dict[str, list[Trial]]) -> None:
         self.after = after
