@@ -40,10 +40,17 @@ def test_two_waves_pass_together_where_one_does_not() -> None:
 
 
 @pytest.mark.parametrize(
-    ("gain", "z", "kept"), [(0.2, 4.0, True), (0.2, 1.0, False), (0.01, 9.0, False)]
+    ("gain", "z", "known", "kept"),
+    [
+        (0.2, 4.0, True, True),
+        (0.2, 1.0, True, False),
+        (0.01, 9.0, True, False),
+        # A shape that exchanges for the gain.
+        (0.2, 4.0, False, False),
+    ],
 )
 def test_a_shape_of_its_own_has_to_gain(
-    monkeypatch: pytest.MonkeyPatch, gain: float, z: float, kept: bool
+    monkeypatch: pytest.MonkeyPatch, gain: float, z: float, known: bool, kept: bool
 ) -> None:
     record = next(r for r in st.effects() if r.name == "stribeck")
     names = (*record.gains, *(shape.parameter for shape in record.shapes))
@@ -52,7 +59,9 @@ def test_a_shape_of_its_own_has_to_gain(
     plant = st.Plant.from_dict({"drive": drive, "body": {"inertia": 0.01}, "friction": friction})
     plant = replace(plant, effects=(Effect("stribeck", stated),))
     monkeypatch.setattr(
-        sharpen, "whole_fit", lambda _, plant, __: SimpleNamespace(plant=plant, nuisances=None)
+        sharpen,
+        "whole_fit",
+        lambda _, plant, __: SimpleNamespace(plant=plant, nuisances=None, knows=lambda _: known),
     )
     monkeypatch.setattr(sharpen, "heldout_gain", lambda *_: (gain, z))
     monkeypatch.setattr(sharpen, "log_gain", lambda *_: 2.0 * gain)

@@ -109,6 +109,9 @@ def _freed(screening: Screening, winner: Trial) -> Model | None:
     gain, z = heldout_gain(before, model)
     if gain <= LEAST_GAIN or z <= LEAST_Z or log_gain(before, model) <= PENALTY * len(held):
         return None
+    # A shape that exchanges for a gain leaves neither known.
+    if not model.knows(winner.candidate):
+        return None
     _logger.info("%s has %s of its own", record.name, " and ".join(held))
     return model
 
