@@ -82,7 +82,7 @@ def mean_error(plant: st.Plant, recordings: list[st.Recording]) -> float:
         ("xl330", XL330, lambda header: header["kp"] == 400, 0.0691),
         ("sts3215", STS3215, lambda header: header["mass"] == 0.969, 0.0309),
         ("sts3215", HELD_BACK, lambda header: header["mass"] == 0.969, 0.02),
-        ("sts3215", HELD_BACK, lambda header: header["mass"] == 1.168, 0.0309),
+        ("sts3215", HELD_BACK, lambda header: header["mass"] > 1.1, 0.0309),
     ],
 )
 def test_a_servo_is_simulated_better_than_published(shared_data, name, table, held, published):
