@@ -303,6 +303,7 @@ def test_neutral_effects_change_no_bit(kind, integrator):
     assert dressed.state.keys() == plain.state.keys() | {
         "input_history",
         "lagged_input",
+        "limited_input",
         "effect_memory",
     }
     assert plain.statistics == dressed.statistics
