@@ -1,0 +1,297 @@
+//! `Motor`: a machine with friction, advanced sample by sample or over arrays.
+
+mod along;
+mod own;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use numpy::{PyArray1, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+use stiction_core::friction::Statistics;
+use stiction_core::motor::{Column, Motor as Core, MotorSpec};
+use stiction_core::segments::Segments;
+use stiction_core::sensitivity::Start;
+
+use crate::arguments::{effects_of, integrator_of, numbers_of, servo_of};
+use crate::arrays::{Around, Each, one_row, target};
+use crate::error::{IntoPython, duration, finite, input_error};
+use crate::friction_model::FrictionModel;
+
+/// Base of ``stiction.Motor``: everything that needs no Python.
+#[pyclass(frozen, subclass, module = "stiction._native")]
+pub struct Motor {
+    core: Mutex<Core>,
+}
+
+impl Motor {
+    #[inline]
+    fn lock(&self) -> MutexGuard<'_, Core> {
+        self.core.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What it is a binding of.
+    pub fn core(&self) -> MutexGuard<'_, Core> {
+        self.lock()
+    }
+
+    /// Start values of the law, where any are given.
+    fn start(
+        &self,
+        py: Python<'_>,
+        given: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Option<Vec<f64>>> {
+        let Some(given) = given else { return Ok(None) };
+        let numbers = numbers_of("start", given)?;
+        self.lock().spec().friction.start(&numbers).or_input_error(py).map(Some)
+    }
+
+    /// A copy, primed where start values are given.
+    fn primed(&self, start: Option<&[f64]>) -> Core {
+        let mut core = self.lock().clone();
+        if let Some(start) = start {
+            core.prime(start);
+        }
+        core
+    }
+
+    /// Work that starts where the motor is and leaves it as it was, without the interpreter.
+    fn beside<R: Send>(
+        &self,
+        py: Python<'_>,
+        start: Option<&Bound<'_, PyAny>>,
+        work: impl FnOnce(&MotorSpec, Start<'_>) -> R + Send,
+    ) -> PyResult<R> {
+        let primed = self.start(py, start)?;
+        Ok(py.detach(|| {
+            let core = self.lock().clone();
+            work(core.spec(), Start { running: core.running(), primed: primed.as_deref() })
+        }))
+    }
+}
+
+/// A word out of a dict of arrays to fill.
+fn word<'a, 'py>(key: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py, PyString>> {
+    let wrong = |_| input_error(key.py(), format!("key {key} of out is not a word"));
+    key.cast::<PyString>().map_err(wrong)
+}
+
+/// Branch counters by name.
+fn statistics<'py>(py: Python<'py>, counted: &Statistics) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item(intern!(py, "reversals"), counted.reversals)?;
+    dict.set_item(intern!(py, "closings"), counted.closings)?;
+    dict.set_item(intern!(py, "breakaways"), counted.breakaways)?;
+    dict.set_item(intern!(py, "sticks"), counted.sticks)?;
+    dict.set_item(intern!(py, "memory_peak"), counted.memory_peak)?;
+    dict.set_item(intern!(py, "memory_growths"), counted.memory_growths)?;
+    Ok(dict)
+}
+
+/// Arrays by name, samples, time at the start, branch counters.
+type Ran<'py> = (Bound<'py, PyDict>, usize, f64, Bound<'py, PyDict>);
+
+/// Times of the rows, arrays by name, what it cost.
+type Held<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyDict>, Bound<'py, PyDict>);
+
+#[pymethods]
+impl Motor {
+    #[new]
+    #[pyo3(signature = (
+        inertia, torque_constant=1.0, friction=None, *, effects=None, gravity_amplitude=0.0,
+        gravity_zero=0.0, weight=0.0, input_limit=f64::INFINITY, servo=None, count=0.0,
+        integrator="fast",
+    ))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn new(
+        py: Python<'_>,
+        inertia: f64,
+        torque_constant: f64,
+        friction: Option<&Bound<'_, FrictionModel>>,
+        effects: Option<&Bound<'_, PyDict>>,
+        gravity_amplitude: f64,
+        gravity_zero: f64,
+        weight: f64,
+        input_limit: f64,
+        servo: Option<&Bound<'_, PyAny>>,
+        count: f64,
+        integrator: &str,
+    ) -> PyResult<Self> {
+        let Some(friction) = friction else {
+            return Err(input_error(
+                py,
+                "friction is missing; give a FrictionModel, for instance \
+                 FrictionModel('coulomb', coulomb=0.35)",
+            ));
+        };
+        let (law, state) = {
+            let core = friction.get().lock();
+            (core.spec().clone(), core.state().clone())
+        };
+        let spec = MotorSpec {
+            input_limit,
+            gravity_amplitude,
+            gravity_zero,
+            weight,
+            count,
+            servo: servo.map(servo_of).transpose()?,
+            effects: effects_of(effects)?,
+            integrator: integrator_of(py, integrator)?,
+            ..MotorSpec::new(inertia, torque_constant, law)
+        };
+        let mut core = Core::new(spec).or_input_error(py)?;
+        core.set_friction_state(state);
+        Ok(Self { core: Mutex::new(core) })
+    }
+
+    /// One sample with held current; position and velocity at its end.
+    #[pyo3(signature = (current, dt, *, load=0.0, temperature=None, enabled=true))]
+    fn step(
+        &self,
+        py: Python<'_>,
+        current: f64,
+        dt: f64,
+        load: f64,
+        temperature: Option<f64>,
+        enabled: bool,
+    ) -> PyResult<(f64, f64)> {
+        let current = finite(py, "current", current)?;
+        let dt = duration(py, "dt", dt)?;
+        let load = finite(py, "load", load)?;
+        let temperature = temperature.map(|t| finite(py, "temperature", t)).transpose()?;
+        let mut core = self.lock();
+        core.set_temperature(temperature);
+        core.set_enabled(enabled);
+        core.step(current, load, dt).or_input_error(py)
+    }
+
+    /// Samples with held inputs: the arrays asked for, by name, how many samples there were, the time
+    /// on the session clock before the first, and how often each branch was taken.
+    #[pyo3(signature = (current, dt, *, load=None, temperature=None, enabled=None, outputs=None, out=None))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
+        outputs: Option<Vec<Bound<'py, PyString>>>,
+        out: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Ran<'py>> {
+        let current = one_row("current", current)?;
+        let n = current.len();
+        let dt = Each::steps("dt", dt, &[n])?;
+        let around = Around::read([load, temperature, enabled], &[n])?;
+        let names = match (outputs, out) {
+            (Some(names), out) => {
+                let given = out.map_or_else(|| PyDict::new(py), Clone::clone);
+                for key in given.keys() {
+                    let key = word(&key)?.to_str()?;
+                    if !names.iter().any(|name| *name == *key) {
+                        return Err(input_error(
+                            py,
+                            format!("out['{key}'] is not among outputs; add it there or drop it"),
+                        ));
+                    }
+                }
+                names
+            }
+            (None, Some(out)) if !out.is_empty() => {
+                out.keys().iter().map(|key| word(&key).cloned()).collect::<PyResult<_>>()?
+            }
+            _ => {
+                let names = Column::names(&self.lock().spec().friction);
+                names.into_iter().map(|name| PyString::new(py, name)).collect()
+            }
+        };
+        let result = PyDict::new(py);
+        let mut arrays: Vec<(Column, PyReadwriteArrayDyn<'py, f64>)> =
+            Vec::with_capacity(names.len());
+        for name in &names {
+            let word = name.to_str()?;
+            let column = Column::named(&self.lock().spec().friction, word);
+            let column = column.or_input_error(py)?;
+            let array = match out.map(|out| out.get_item(name)).transpose()?.flatten() {
+                Some(array) => array,
+                None => PyArray1::<f64>::zeros(py, n, false).into_any(),
+            };
+            if arrays.iter().any(|(other, _)| *other == column) {
+                return Err(input_error(py, format!("output '{word}' is asked for twice")));
+            }
+            result.set_item(name, &array)?;
+            arrays.push((column, target(format_args!("out['{word}']"), &array, &[n])?));
+        }
+        let current = current.as_slice()?;
+        let (dt, around) = (dt.per_sample()?, around.surroundings()?);
+        let mut columns = Vec::with_capacity(arrays.len());
+        for (column, array) in &mut arrays {
+            columns.push((*column, array.as_slice_mut()?));
+        }
+        let (start, counted) = py
+            .detach(|| {
+                let mut core = self.lock();
+                let start = core.running().run.time;
+                core.simulate(current, around, dt, &mut columns)?;
+                Ok((start, core.statistics()))
+            })
+            .or_input_error(py)?;
+        Ok((result, n, start, statistics(py, &counted)?))
+    }
+
+    /// Inputs held for durations (shape (n,) each): times of the rows, the arrays asked for, by name,
+    /// and what it cost.
+    #[pyo3(signature = (
+        durations, current, *, tolerance, times=None, load=None, temperature=None, enabled=None, outputs=None
+    ))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn run_segments<'py>(
+        &self,
+        py: Python<'py>,
+        durations: &Bound<'py, PyAny>,
+        current: &Bound<'py, PyAny>,
+        tolerance: f64,
+        times: Option<&Bound<'py, PyAny>>,
+        load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
+        outputs: Option<Vec<String>>,
+    ) -> PyResult<Held<'py>> {
+        let durations = one_row("durations", durations)?;
+        let current = one_row("current", current)?;
+        let around = Around::read([load, temperature, enabled], durations.shape())?;
+        let times = times.map(|times| one_row("times", times)).transpose()?;
+        let segments = Segments {
+            durations: durations.as_slice()?,
+            inputs: current.as_slice()?,
+            around: around.surroundings()?,
+            tolerance,
+            times: times.as_ref().map_or(Ok(&[][..]), |times| times.as_slice())?,
+        };
+        segments.check().or_input_error(py)?;
+        let rows = segments.rows();
+        let law = self.lock().spec().friction.clone();
+        let all = || Column::names(&law).iter().map(|name| (*name).to_owned()).collect();
+        let names: Vec<String> = outputs.unwrap_or_else(all);
+        let kinds = names.iter().map(|name| Column::named(&law, name).or_input_error(py));
+        let kinds = kinds.collect::<PyResult<Vec<Column>>>()?;
+        let mut arrays = vec![vec![0.0; rows.len()]; kinds.len()];
+        let mut columns: Vec<(Column, &mut [f64])> =
+            kinds.into_iter().zip(arrays.iter_mut().map(Vec::as_mut_slice)).collect();
+        let account = py
+            .detach(|| self.lock().simulate_segments(&segments, &mut columns))
+            .or_input_error(py)?;
+        let result = PyDict::new(py);
+        for (name, values) in names.iter().zip(arrays) {
+            result.set_item(name, PyArray1::from_vec(py, values))?;
+        }
+        let cost = PyDict::new(py);
+        cost.set_item("evaluations", account.evaluations)?;
+        cost.set_item("steps", account.steps)?;
+        cost.set_item("refused", account.refused)?;
+        cost.set_item("rests", account.rests)?;
+        Ok((PyArray1::from_vec(py, rows), result, cost))
+    }
+}

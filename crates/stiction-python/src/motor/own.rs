@@ -1,0 +1,136 @@
+//! What a motor is and where it is: parameters, settings, state, counters.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use stiction_core::integrate::Integrator;
+use stiction_core::motor::Column;
+use stiction_core::servo::Servo;
+
+use super::Motor;
+use crate::error::{IntoPython, finite};
+use crate::state::{from_dict, to_dict};
+
+fn servo_settings<'py>(py: Python<'py>, servo: &Servo) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (spec, value) in Servo::SPECS.iter().zip(servo.values()) {
+        dict.set_item(spec.name, value)?;
+    }
+    Ok(dict)
+}
+
+#[pymethods]
+impl Motor {
+    /// Paths and values of all parameters.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (path, value) in self.lock().spec().parameters() {
+            dict.set_item(path, value)?;
+        }
+        Ok(dict)
+    }
+
+    /// Keywords that rebuild the motor, but for friction.
+    fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let spec = self.lock().spec().clone();
+        let effects = PyDict::new(py);
+        for effect in &spec.effects {
+            let values = PyDict::new(py);
+            for (parameter, value) in effect.record.parameters.iter().zip(&effect.values) {
+                values.set_item(parameter.name, value)?;
+            }
+            effects.set_item(effect.record.name, values)?;
+        }
+        let dict = PyDict::new(py);
+        dict.set_item("inertia", spec.inertia)?;
+        dict.set_item("torque_constant", spec.gain)?;
+        dict.set_item("effects", effects)?;
+        dict.set_item("gravity_amplitude", spec.gravity_amplitude)?;
+        dict.set_item("gravity_zero", spec.gravity_zero)?;
+        dict.set_item("weight", spec.weight)?;
+        dict.set_item("input_limit", spec.input_limit)?;
+        dict.set_item("servo", spec.servo.map(|servo| servo_settings(py, &servo)).transpose()?)?;
+        dict.set_item("count", spec.count)?;
+        let integrator = match spec.integrator {
+            Integrator::Fast => "fast",
+            Integrator::Reference => "reference",
+        };
+        dict.set_item("integrator", integrator)?;
+        Ok(dict)
+    }
+
+    /// Law, parameters and options of the friction: what ``FrictionModel`` takes.
+    fn friction_settings<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(&'static str, Bound<'py, PyDict>)> {
+        let spec = self.lock().spec().friction.clone();
+        let dict = PyDict::new(py);
+        for (parameter, value) in spec.record.parameters.iter().zip(&spec.values) {
+            dict.set_item(parameter.name, value)?;
+        }
+        for (name, word) in spec.options() {
+            dict.set_item(name, word)?;
+        }
+        Ok((spec.record.name, dict))
+    }
+
+    /// Names of the columns that a trajectory can show.
+    #[getter]
+    fn output_names(&self) -> Vec<&'static str> {
+        Column::names(&self.lock().spec().friction)
+    }
+
+    /// Back to rest at this position (or in motion at this velocity), friction never moved; the
+    /// session clock in s and the path travelled so far are what slow effects go by.
+    #[pyo3(signature = (position=0.0, velocity=0.0, *, time=0.0, path=0.0))]
+    fn reset(
+        &self,
+        py: Python<'_>,
+        position: f64,
+        velocity: f64,
+        time: f64,
+        path: f64,
+    ) -> PyResult<()> {
+        let position = finite(py, "position", position)?;
+        let velocity = crate::error::velocity(py, velocity)?;
+        let (time, path) = (finite(py, "time", time)?, finite(py, "path", path)?);
+        let mut core = self.lock();
+        core.reset(position, velocity);
+        core.set_clock(time, path);
+        Ok(())
+    }
+
+    /// Time on the session clock in s: what the state calls ``time``.
+    #[getter]
+    fn clock(&self) -> f64 {
+        self.lock().running().run.time
+    }
+
+    /// State of body and friction as a dict of floats and arrays; assign one to continue from it.
+    #[getter]
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let entries = self.lock().entries();
+        to_dict(py, entries)
+    }
+
+    #[setter]
+    fn set_state(&self, state: &Bound<'_, PyDict>) -> PyResult<()> {
+        let entries = from_dict(state)?;
+        self.lock().restore(&entries).or_input_error(state.py())
+    }
+
+    /// Takes over the state of another motor of the same definition, whatever it is.
+    fn adopt(&self, other: &Bound<'_, Self>) {
+        // Copied out first: two locks at once could wait for each other.
+        let core = other.get().lock().clone();
+        *self.lock() = core;
+    }
+
+    /// How often each branch was taken: reversals, closings, break-aways, sticks, memory.
+    #[getter]
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let counted = self.lock().statistics();
+        super::statistics(py, &counted)
+    }
+}
