@@ -1,7 +1,8 @@
 //! A linear spring, then a nonlinear one, then rolling: Futami's two regions.
 
 use super::elements::reachable::reachable;
-use super::elements::spring::{Loading, Response, SpringState, Walk, masing};
+use super::elements::loading::{Loading, Response, masing};
+use super::elements::spring::{SpringState, Walk};
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
     Rest, Statistics,

@@ -1,7 +1,8 @@
 //! Relays on a bounded Preisach plane, their density in closed form.
 
 use super::elements::reachable::reachable;
-use super::elements::spring::{Loading, Response, SpringState, Walk, virgin_inverse};
+use super::elements::loading::{Loading, Response, virgin_inverse};
+use super::elements::spring::{SpringState, Walk};
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
     Rest, Statistics,

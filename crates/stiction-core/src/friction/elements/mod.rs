@@ -8,6 +8,7 @@ pub mod branch;
 pub mod bristle;
 pub mod contact_age;
 pub mod lag;
+pub mod loading;
 pub mod memory;
 pub mod plastic;
 pub mod reachable;

@@ -2,8 +2,9 @@
 //! drives the creep, and the creep lowers that force. Each question is one scalar root.
 
 use super::lag::follow;
+use super::loading::Loading;
 use super::plastic::{Creep, Plastic};
-use super::spring::{Loading, SpringState, Walk};
+use super::spring::{SpringState, Walk};
 use crate::friction::Motion;
 use crate::scalar::{Scalar, sign};
 
@@ -170,7 +171,7 @@ pub fn instant<S: Scalar>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::friction::elements::spring::{Curve, VirginCurve};
+    use crate::friction::elements::loading::{Curve, VirginCurve};
     use crate::scalar::Dual;
 
     fn moved<S: Scalar>(displacement: S, hardening: S, velocity: f64) -> S {

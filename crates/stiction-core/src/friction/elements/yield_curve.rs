@@ -1,8 +1,9 @@
 //! First loading of elasto-slide elements without number, their yield points spread as one likes.
 
 use super::branch::{Branch, Fading, Here};
+use super::loading::{Loading, Response, masing};
 use super::reachable::reachable;
-use super::spring::{Loading, Response, SpringState, masing};
+use super::spring::SpringState;
 use crate::exponential::{faded_of, faded_within};
 use crate::scalar::{Scalar, logarithmic_mean};
 

@@ -11,7 +11,8 @@ use super::elements::lag::follow;
 use super::elements::plastic::Plastic;
 use super::elements::reachable::reachable;
 use super::elements::series;
-use super::elements::spring::{Curve, Loading, SpringState, VirginCurve};
+use super::elements::loading::{Curve, Loading, VirginCurve};
+use super::elements::spring::{SpringState};
 use super::elements::stribeck::{check_levels, steepest};
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, Motion, Outcome, Rest, Statistics,

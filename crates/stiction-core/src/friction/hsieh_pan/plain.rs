@@ -2,7 +2,8 @@
 
 use super::super::elements::branch::{Fading, Here};
 use super::super::elements::plastic::Creep;
-use super::super::elements::spring::{Curve, Loading, SpringState};
+use super::super::elements::loading::{Curve, Loading};
+use super::super::elements::spring::{SpringState};
 use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;
 use super::state::HsiehPanState;

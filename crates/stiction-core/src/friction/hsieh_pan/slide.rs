@@ -1,7 +1,7 @@
 //! Steps of a sliding hook.
 
 use super::super::elements::lag::follow_by;
-use super::super::elements::spring::Loading;
+use super::super::elements::loading::{Loading};
 use super::super::elements::stribeck::{fall_power, fall_slope};
 use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;

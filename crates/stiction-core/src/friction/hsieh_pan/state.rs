@@ -1,6 +1,7 @@
 //! What the contact keeps, and what a step would make of it.
 
-use super::super::elements::spring::{Curve, SpringState, Walk};
+use super::super::elements::loading::{Curve};
+use super::super::elements::spring::{SpringState, Walk};
 use super::super::{Entry, LawState, Outcome, Statistics};
 use crate::scalar::Scalar;
 

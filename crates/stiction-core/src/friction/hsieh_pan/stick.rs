@@ -2,7 +2,7 @@
 
 use super::super::elements::plastic::Creep;
 use super::super::elements::series;
-use super::super::elements::spring::Walk;
+use super::super::elements::spring::{Walk};
 use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;
 use super::state::{HsiehPanState, HsiehPanTrial, Mode};

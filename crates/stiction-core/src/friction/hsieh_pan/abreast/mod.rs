@@ -9,7 +9,8 @@ use std::array::from_mut;
 
 use super::{HsiehPan, HsiehPanState};
 use crate::friction::elements::memory::ReversePoint;
-use crate::friction::elements::spring::{Loading, SpringState};
+use crate::friction::elements::loading::{Loading};
+use crate::friction::elements::spring::{SpringState};
 use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH};
 use crate::scalar::Scalar;
 
