@@ -40,7 +40,7 @@ def selected(*names: str, known: bool = True) -> Search:
     winners = [SimpleNamespace(name=name, candidate=name) for name in names]
     choices: list[Any] = [SimpleNamespace(winner=winner) for winner in winners]
     rows = {name: CandidateRow(name, 0.5, 0.1, 0.2, "accepted") for name in names}
-    fitted = [SimpleNamespace(knows=lambda _: known) for _ in names]
+    fitted = [SimpleNamespace(knows=lambda _, **__: known) for _ in names]
     models: list[Any] = [SimpleNamespace(), *fitted]
     return Search(models, choices, rows)
 

@@ -152,3 +152,21 @@ def test_a_recording_in_which_an_effect_does_nothing_does_not_judge_it(
     contributed = np.where(recording == 0, 0.0, 1.0)
     kept = decide._without_the_best(model(*np.ones(recordings)), model(*gained), contributed)
     assert (kept > 0.5 * decide.LEAST_GAIN) == passes
+
+
+@pytest.mark.parametrize(
+    ("other", "threshold", "asked"),
+    [(0.02, 0.05, True), (0.2, 0.05, False), (0.02, 0.4, False)],
+    ids=["alone", "beside as much", "no more than noise"],
+)
+def test_what_explains_many_times_what_others_do_is_refitted_though_it_does_harm_held_out(
+    other: float, threshold: float, asked: bool
+) -> None:
+    scores = [trial("run_in", 0.5).score, trial("warm_up", 0.4).score, trial("cogging", 0.1).score]
+    slow: Any = SimpleNamespace(family="slow", name="slow")
+    for score, size in zip(scores, (0.3, 0.28, other), strict=True):
+        score.score, score.threshold, score.heldout = size, threshold, -0.1
+    scores[0].candidate.record = scores[1].candidate.record = slow
+    assert (rounds._outstanding(scores) is scores[0]) is asked
+    assert rounds._outstanding(scores) in (scores[0], None)
+    assert rounds._outstanding([]) is None

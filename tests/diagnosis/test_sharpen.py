@@ -61,7 +61,9 @@ def test_a_shape_of_its_own_has_to_gain(
     monkeypatch.setattr(
         sharpen,
         "whole_fit",
-        lambda _, plant, __: SimpleNamespace(plant=plant, nuisances=None, knows=lambda _: known),
+        lambda _, plant, __: SimpleNamespace(
+            plant=plant, nuisances=None, knows=lambda _, **__: known
+        ),
     )
     monkeypatch.setattr(sharpen, "heldout_gain", lambda *_: (gain, z))
     monkeypatch.setattr(sharpen, "log_gain", lambda *_: 2.0 * gain)

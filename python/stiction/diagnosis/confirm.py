@@ -115,8 +115,18 @@ def confirmed(selection: Search, test: HeldOut | None, seed: int) -> Search:
         low, high = gain_of(test, last, last + 1, seed).ci95
         if high < 0.0:
             selection = selection.without_last(AGAINST)
-        elif low <= 0.0 and not selection.models[-1].knows(selection.choices[-1].winner.candidate):
+        elif low <= 0.0 and not _is_known(selection):
             selection = selection.without_last(NOT_KNOWN)
         else:
             break
     return selection
+
+
+def _is_known(selection: Search) -> bool:
+    """Whether the strength of the last cause differs from 0.
+
+    A gain and the path or time over which it comes exchange for each other where most of it is yet
+    to come, and still there may be no doubt that something comes.
+    """
+    candidate = selection.choices[-1].winner.candidate
+    return selection.models[-1].knows(candidate, whatever_shape=False)

@@ -110,10 +110,11 @@ class Model:
             names=self.evidence.names,
         )
 
-    def knows(self, candidate: Candidate) -> bool:
+    def knows(self, candidate: Candidate, *, whatever_shape: bool) -> bool:
         """Whether the gains of an effect, taken together, differ from 0 on both ways to be wrong.
 
-        Over blocks of 1 s, and from one recording to the next.
+        Over blocks of 1 s, and from one recording to the next. ``whatever_shape`` lets its shape be
+        uncertain too; otherwise that is taken as it is, as in ``strength``.
         """
         paths = list(self.solution.variables.paths)
         own = [paths.index(f"effects.{candidate.name}.{name}") for name in candidate.gains]
@@ -121,6 +122,9 @@ class Model:
             return False
         train = self.evidence.train
         jacobians = [slopes(each, self.plant, paths, self.nuisances) for each in train]
+        if not whatever_shape:
+            for jacobian in jacobians:
+                jacobian[:, self._shape_of(candidate)] = 0.0
         residuals = [
             each.weight * each.residual(self.plant, self.nuisances)[each.mask] for each in train
         ]
@@ -142,8 +146,7 @@ class Model:
         fit, block = self.evidence.fitted, self.evidence.cells.block
         columns, residual = self.fitted_columns, self.residual[fit]
         scale = np.sqrt(np.sum(columns**2, axis=0))
-        shapes = [f"effects.{candidate.name}.{candidate.own(name)}" for name in candidate.shape]
-        scale[[paths.index(path) for path in shapes if path in paths]] = 0.0
+        scale[self._shape_of(candidate)] = 0.0
         live = np.flatnonzero(scale > 0.0)
         scaled = columns[:, live] / scale[live]
         bread = np.linalg.pinv(scaled.T @ scaled, rcond=FLAT, hermitian=True)
@@ -161,6 +164,12 @@ class Model:
         gains = self.gains(candidate) * scale[own]
         matrix = spread[np.ix_(places, places)]
         return float(np.sqrt(max(gains @ np.linalg.pinv(matrix, hermitian=True) @ gains, 0.0)))
+
+    def _shape_of(self, candidate: Candidate) -> list[int]:
+        """Where what is fitted of an effect's shape stands among all that is fitted."""
+        paths = list(self.solution.variables.paths)
+        shapes = [f"effects.{candidate.name}.{candidate.own(name)}" for name in candidate.shape]
+        return [paths.index(path) for path in shapes if path in paths]
 
     def gains(self, candidate: Candidate) -> FloatArray:
         """Fitted gains of an effect; shape (q,)."""

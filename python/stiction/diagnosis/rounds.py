@@ -41,6 +41,9 @@ REFITTED: Final = 5
 """Candidates refitted in a round."""
 SLIGHT: Final = 0.1
 """A candidate that explains less than this share of one that passed is not refitted beside it."""
+OUTSTANDING: Final = 3.0
+"""A candidate that explains this many times what any other does is refitted whatever it does held
+out."""
 MOST_RENEWALS: Final = 2
 """Times that the base is replaced by a better fit of itself."""
 WORTH_RENEWING: Final = 0.005
@@ -163,7 +166,7 @@ def _round(
             found.rows[score.candidate.name] = listing.screened(score)
             if not score.testable:
                 found.blind.append(score.candidate.record)
-    passing = [score for score in scores if promises(score)]
+    passing = [score for score in scores if promises(score) or score is _outstanding(scores)]
     trials: list[Trial] = []
     refitted = passing[:REFITTED]
     asked = [s for s in scores if _is_asked(screening, s) and s not in refitted]
@@ -187,6 +190,20 @@ def _round(
             found.rows[trial.name] = listing.tried(trial, choice)
     freed = sorted((trial for trial in trials if trial.freed), key=lambda t: -t.worth)[:1]
     return choice, freed if choice is None else [*freed, choice.winner]
+
+
+def _outstanding(scores: Sequence[Score]) -> Score | None:
+    """The candidate that explains many times what any other family does, if it beats noise.
+
+    Held out it may do harm as long as the base stands where the cause has driven it: what is so
+    much likelier than all others is refitted all the same.
+    """
+    best = max((s for s in scores if s.testable), key=lambda s: s.score, default=None)
+    if best is None or best.score <= best.threshold:
+        return None
+    family = best.candidate.record.family
+    others = [s.score for s in scores if s.testable and s.candidate.record.family != family]
+    return best if best.score > OUTSTANDING * max(others, default=0.0) else None
 
 
 def _is_asked(screening: Screening, score: Score) -> bool:

@@ -110,7 +110,7 @@ def _freed(screening: Screening, winner: Trial) -> Model | None:
     if gain <= LEAST_GAIN or z <= LEAST_Z or log_gain(before, model) <= PENALTY * len(held):
         return None
     # A shape that exchanges for a gain leaves neither known.
-    if not model.knows(winner.candidate):
+    if not model.knows(winner.candidate, whatever_shape=True):
         return None
     _logger.info("%s has %s of its own", record.name, " and ".join(held))
     return model
