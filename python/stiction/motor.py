@@ -92,18 +92,12 @@ class Motor(_native.Motor):
         InputError
             Wrong shapes, values that are not finite, unknown outputs.
         """
-        if isinstance(outputs, str):
-            raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
-        names = None if outputs is None else list(outputs)
+        names = None if outputs is None else _names(outputs)
         columns, length, start, statistics = self.run(
             current, dt, load=load, temperature=temperature, enabled=enabled, outputs=names, out=out
         )
-        steps: float | FloatArray
-        if isinstance(dt, float):
-            steps = float(dt)
-        else:
-            steps = float(np.asarray(dt)) if np.ndim(dt) == 0 else np.array(dt, dtype=np.float64)
-        return Trajectory(columns, steps, length, start=start, statistics=statistics)
+        steps = dt if type(dt) is float else _steps(dt)
+        return Trajectory(columns, steps, length, start, statistics)
 
     def simulate_segments(
         self,
@@ -157,9 +151,7 @@ class Motor(_native.Motor):
         >>> len(run), run.statistics["evaluations"] < 500
         (2, True)
         """
-        if isinstance(outputs, str):
-            raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
-        names = None if outputs is None else list(outputs)
+        names = None if outputs is None else _names(outputs)
         start = self.clock
         rows, columns, cost = self.run_segments(
             durations, current, tolerance=tolerance, times=times, load=load,
@@ -167,7 +159,7 @@ class Motor(_native.Motor):
         )  # fmt: skip
         steps = np.diff(rows, prepend=0.0)
         statistics = {**self.statistics, **cost}
-        return Trajectory(columns, steps, len(rows), start=start, statistics=statistics)
+        return Trajectory(columns, steps, len(rows), start, statistics)
 
     @property
     def friction(self) -> FrictionModel:
@@ -224,6 +216,17 @@ class Motor(_native.Motor):
         )
         law, keywords = self.friction_settings()
         return f"Motor({shown}, friction={FrictionModel(law, **keywords)!r})"
+
+
+def _names(outputs: Sequence[str]) -> list[str]:
+    if isinstance(outputs, str):
+        raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
+    return list(outputs)
+
+
+def _steps(dt: npt.ArrayLike) -> float | FloatArray:
+    """A sample time that is no plain float, s: of all samples, or of each."""
+    return float(np.asarray(dt)) if np.ndim(dt) == 0 else np.array(dt, dtype=np.float64)
 
 
 def _same_state(one: dict[str, Any], other: dict[str, Any]) -> bool:

@@ -119,8 +119,8 @@ def _streamed(
             columns,
             dt * every,
             done // every - first,
-            start=start + first * every * dt,
-            statistics=motor.statistics,
+            start + first * every * dt,
+            motor.statistics,
         )
         if path is not None:
             _keep(motor, path, identity, done, start)

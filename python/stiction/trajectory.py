@@ -50,21 +50,20 @@ class Trajectory:
 
     def __init__(
         self,
-        columns: Mapping[str, FloatArray],
+        columns: dict[str, FloatArray],
         dt: float | FloatArray,
         length: int,
-        *,
-        start: float = 0.0,
-        statistics: Mapping[str, int] | None = None,
+        start: float,
+        statistics: dict[str, int],
     ) -> None:
-        # Written past the guard below, once.
-        self.__dict__.update(
-            _columns=dict(columns),
-            _dt=dt,
-            _length=length,
-            _start=start,
-            _statistics=dict(statistics or {}),
-        )
+        # Past the guard below, once. What is given is the trajectory's own from now on: a call of
+        # `simulate` that other work has pushed out of the cache takes as long as what it looks up.
+        own = self.__dict__
+        own["_columns"] = columns
+        own["_dt"] = dt
+        own["_length"] = length
+        own["_start"] = start
+        own["_statistics"] = statistics
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a trajectory is frozen: {name} cannot be set")

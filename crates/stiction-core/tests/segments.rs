@@ -149,6 +149,49 @@ fn a_rest_of_any_length_costs_the_same() {
 }
 
 #[test]
+fn a_pulse_and_its_rest_cost_no_more_than_a_rest_may() {
+    let (durations, inputs) = pulses(20, 85.98);
+    for spec in [
+        law("hsieh_pan", &[("breakaway", 0.5)], &[]),
+        law("maxwell_slip", &[("viscous", 0.3)], &[]),
+    ] {
+        let run = segments(&durations, &inputs, &[]);
+        let cost = positions(&mut motor(INERTIA, spec.clone()), &run).1.evaluations;
+        assert!(cost <= 20 * REST, "{:?}: {cost}", spec);
+    }
+}
+
+/// A sequence that looks like chance, from 0 to 1.
+fn chance(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+#[test]
+fn rings_behind_slides_are_those_of_a_fine_tolerance() {
+    // A long slide is as straight as a ring that has nearly died out, and must not pass for one.
+    let slides = law("maxwell_slip", &[("viscous", 0.3)], &[]);
+    for seed in 0..40 {
+        let mut next = chance(seed);
+        let (mut durations, mut inputs) = (Vec::new(), Vec::new());
+        for _ in 0..12 {
+            durations.extend([0.005 + 0.03 * next(), 0.02 + 0.4 * next()]);
+            inputs.extend([0.9 * next() - 0.45, 0.0]);
+        }
+        let run = segments(&durations, &inputs, &[]);
+        let fine = Segments { tolerance: 1e-4 * TOLERANCE, ..run };
+        let [rows, exact] =
+            [&run, &fine].map(|run| positions(&mut motor(INERTIA, slides.clone()), run).0);
+        let off = rows.iter().zip(&exact).map(|(row, exact)| (row - exact).abs());
+        let off = off.fold(0.0, f64::max);
+        assert!(off <= 2.0 * TOLERANCE, "{seed}: {}", off / TOLERANCE);
+    }
+}
+
+#[test]
 fn cost_grows_with_pulses_and_not_with_the_time_between() {
     let cost = |number: usize, rest: f64| {
         let (durations, inputs) = pulses(number, rest);

@@ -109,6 +109,7 @@ impl Adaptive {
                 && let Some(held) = self.hold(&mut swing, law, state, left)
             {
                 left = lesser(left, held, span);
+                self.rows.leave(true);
                 self.account.rests += 1;
                 continue;
             }
@@ -123,6 +124,7 @@ impl Adaptive {
                 match self.rest(&mut swing, law, state, left) {
                     Resting::Passed(rested) => {
                         left = lesser(left, rested, span);
+                        self.rows.leave(false);
                         self.account.rests += 1;
                         continue;
                     }
@@ -206,9 +208,11 @@ impl Adaptive {
         {
             *stalled = if at > 0.0 { 0 } else { *stalled + 1 };
             self.next = self.natural;
+            self.rows.leave(true);
             return at;
         }
         *stalled = 0;
+        self.rows.leave(false);
         self.learn(swing, law, &attempt, span);
         Stepper::<f64, L>::accept(swing, law, state, &attempt, false);
         let grown = span * (0.9 * relative.max(1e-12).powf(-0.25)).clamp(0.3, GROWTH);
@@ -258,6 +262,9 @@ impl Adaptive {
         let velocity = swing.run.velocity;
         let surplus = square - decay * decay;
         let (net, over) = (swing.net(law, state), self.over);
+        if square > 0.0 && self.rows.linear() {
+            return FREE;
+        }
         if square > 0.0 && self.swings(over * net / self.stiffness, over * velocity, square) {
             return FREE;
         }

@@ -126,11 +126,14 @@ impl Verlet<f64> {
     /// The same, bent so that a body on a spring of this stiffness beside this damping would be taken
     /// where it goes, however long the step: what is left for the step to be short for is how the
     /// friction differs from that.
-    pub(super) fn fitted(span: f64, inertia: f64, stiffness: f64, damping: f64) -> Self {
+    ///
+    /// An effort beside them that rises at some rate is left out: where the velocity is ahead by the
+    /// second number times that rate, and stays so, the positions are right nevertheless.
+    pub(super) fn fitted(span: f64, inertia: f64, stiffness: f64, damping: f64) -> (Self, f64) {
         // What a soft spring does in the step would be lost in round-off.
         let soft = stiffness * span * span < SOFTEST * inertia;
         let stiffness = if soft { 0.0 } else { stiffness };
-        let (_, Response { impulse, slope, first, .. }) =
+        let (_, Response { impulse, slope, first, second, .. }) =
             halves(stiffness / inertia, 0.5 * damping / inertia, span);
         // x₁ = g·v₀ + G₁/J·(E − σ₀), v₁ = P·v₀ + Q·(2·E − σ₀ − σ₁), which P and Q make exact for
         // σ₁ = σ₀ + k·x₁.
@@ -139,13 +142,15 @@ impl Verlet<f64> {
         let left = slope + braking * stiffness * impulse;
         let half = braking * inertia / (1.0 - braking * damping);
         let share = inertia + half * damping;
-        Self {
+        let verlet = Self {
             half,
             lever,
             stride: impulse + lever * damping,
             kept: left * share + half * damping,
             ..Self::new(span, inertia, 1.0 / inertia)
-        }
+        };
+        // A step leaves out G₂·r'/J, and goes g times the velocity further.
+        (verlet, second / (impulse * inertia))
     }
 }
 

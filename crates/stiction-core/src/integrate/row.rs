@@ -4,6 +4,8 @@
 //! that stop at turns are not worth what one of them costs; short ones of [`FrictionLaw::glide`] are,
 //! as long as the error allows.
 
+use std::cell::Cell;
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use super::glide::{Efforts, Glide, Seen, Verlet};
@@ -12,7 +14,7 @@ use super::swing::Swing;
 use crate::friction::FrictionLaw;
 
 /// Share of the tolerance that a ring may be off after a radian of its phase.
-const LOCAL: f64 = 0.02;
+const LOCAL: f64 = 0.01;
 /// Excess of that over which a row is taken again.
 const REFUSED: f64 = 2.0;
 /// What part of that the next row aims at.
@@ -21,12 +23,20 @@ const AIM: f64 = 0.8;
 const CHANGE: Range<f64> = 0.1..4.0;
 /// The longest step and the first after a new input, in steps of the fast integrator.
 const LONGEST: f64 = 12.0;
-const FIRST: f64 = 1.5;
+const FIRST: f64 = 1.0;
 /// The shortest, which is taken whatever its error.
 const SHORTEST: f64 = 1.0 / 64.0;
-/// Steps of a row, and of the first after a new input.
+/// Steps of a row at most and at least, and of the first after a new input; between them half a swing,
+/// so that steps grow as fast as a ring dies out.
 const STEPS: usize = 48;
+const FEWEST_STEPS: usize = 12;
 const FIRST_STEPS: usize = 16;
+/// Share of the tolerance that what is beside an oscillator may come to until a ring has died out.
+const LINEAR: f64 = 0.15;
+/// Radians that a ring is thought to last at most.
+const MOST_RADIANS: f64 = 100.0;
+/// What a step misses of the second difference of an effort.
+const TWELFTH: f64 = 1.0 / 12.0;
 /// Errors are weighed as if a spring had at least this share of its greatest stiffness.
 const SOFTEST: f64 = 0.1;
 
@@ -41,6 +51,11 @@ pub(super) struct Rows {
     bare: bool,
     span: f64,
     steps: usize,
+    /// The rate at which the force of the spring rose at the end of the last row; no number where
+    /// something else came after it.
+    rising: f64,
+    /// Whether the last row showed a ring of an oscillator and next to nothing beside it.
+    linear: bool,
 }
 
 /// A row that was taken.
@@ -59,7 +74,8 @@ pub(super) struct Taken {
 impl Rows {
     /// With this error allowed; a step of the fast integrator lasts `natural`.
     pub fn new(tolerance: f64, natural: f64) -> Self {
-        Self { natural, tolerance, bare: false, span: natural, steps: FIRST_STEPS }
+        let (rising, linear) = (f64::NAN, false);
+        Self { natural, tolerance, bare: false, span: natural, steps: FIRST_STEPS, rising, linear }
     }
 
     /// A new input: what steps were like before says nothing of the next.
@@ -67,13 +83,25 @@ impl Rows {
         self.bare = L::SPRINGS && swing.machine.is_bare() && swing.machine.glides(swing.run);
         self.span = self.span.min(FIRST * self.natural);
         self.steps = FIRST_STEPS;
+        self.linear = false;
+    }
+
+    /// The body goes on otherwise than in a row, maybe on another contact.
+    pub fn leave(&mut self, another: bool) {
+        self.rising = f64::NAN;
+        self.linear &= !another;
+    }
+
+    /// Whether the ring is so near to that of an oscillator that its turns are of no account.
+    pub fn linear(&self) -> bool {
+        self.linear
     }
 
     /// Beyond this a step of the oscillator is worth more than a row, where its error and the turns of
     /// the motion allow it; infinite where rows may still get longer.
     pub fn worth(&self) -> f64 {
-        let longest = LONGEST * self.natural;
-        if self.span < longest { f64::INFINITY } else { 0.5 * STEPS as f64 * longest }
+        let lengthens = self.span < LONGEST * self.natural && !self.linear;
+        if lengthens { f64::INFINITY } else { 0.5 * STEPS as f64 * self.span }
     }
 
     /// Plain steps from here, where there are any, up to the first that is not.
@@ -102,14 +130,15 @@ impl Rows {
                 span = left / steps as f64;
             }
             let oscillator = (stiffness, damping);
-            let went = go(law, state, swing.run, (inertia, effort), oscillator, (steps, span));
+            let begin = (&*swing.run, self.rising);
+            let went = go(law, state, begin, (inertia, effort), oscillator, (steps, span));
             swing.count(went.steps as u64);
             let weighed = stiffness.max(SOFTEST * greatest);
             let relative = went.strayed / weighed / (LOCAL * self.tolerance);
             if went.stiffness.is_finite() {
                 stiffness = went.stiffness.clamp(0.0, greatest);
             }
-            let change = (AIM / relative.max(f64::MIN_POSITIVE)).sqrt();
+            let change = (AIM / relative.max(f64::MIN_POSITIVE)).cbrt();
             let next = span * change.clamp(CHANGE.start, CHANGE.end);
             self.span = next.clamp(shortest, LONGEST * self.natural);
             // A state that is not finite cannot be mended by shorter steps.
@@ -118,12 +147,18 @@ impl Rows {
                 state.clone_from(&begun);
                 continue;
             }
-            self.steps = STEPS;
+            let half_a_swing = PI / (greatest / inertia).sqrt();
+            self.steps = ((half_a_swing / self.span).ceil() as usize).clamp(FEWEST_STEPS, STEPS);
             if went.steps == 0 {
                 return None;
             }
             *swing.run = went.run;
             let duration = went.steps as f64 * span;
+            // What comes again in every swing adds up as long as the ring lasts. A slide is no ring.
+            let lasts = ((inertia * stiffness).sqrt() / damping).min(MOST_RADIANS);
+            let beside = went.range / weighed * (1.0 + lasts);
+            let swung = (stiffness / inertia).sqrt() * duration >= 2.0 * PI;
+            (self.linear, self.rising) = (swung && beside < LINEAR * self.tolerance, went.rising);
             return Some(Taken { duration, steps: went.steps, refused, stiffness, damping });
         }
     }
@@ -136,37 +171,64 @@ struct Went {
     steps: usize,
     /// By what effort each of them was off, in the mean.
     strayed: f64,
+    /// How far apart the greatest and the least effort beside the oscillator are.
+    range: f64,
+    /// The rate at which the force of the spring rises at the end.
+    rising: f64,
     /// The stiffness that leaves least of a remainder; no number where nothing moved.
     stiffness: f64,
 }
 
-/// Goes through so many steps of a duration, or up to the first that is not plain.
+/// Goes through so many steps of a duration, or up to the first that is not plain, from where the body
+/// is and the rate at which the force of the spring rises, where that is known.
 #[inline(never)]
 fn go<L: FrictionLaw<f64>>(
     law: &L,
     state: &mut L::State,
-    run: &Run<f64>,
+    (run, rising): (&Run<f64>, f64),
     (inertia, effort): (f64, f64),
     (stiffness, damping): (f64, f64),
     (steps, span): (usize, f64),
 ) -> Went {
-    let verlet = Verlet::fitted(span, inertia, stiffness, damping);
-    let seen = Watch::from(run, stiffness, damping);
-    let (run, efforts) = (*run, Held(effort));
+    let (verlet, ahead) = Verlet::fitted(span, inertia, stiffness, damping);
+    let mut run = *run;
+    let hurry = |run: &mut Run<f64>, more: f64| {
+        run.velocity += more;
+        run.friction += damping * more;
+    };
+    if rising.is_finite() {
+        let more = ahead * (stiffness * run.velocity - rising);
+        hurry(&mut run, more);
+    }
+    let foreseen = Cell::new(0.0);
+    let seen = Watch::from(&run, stiffness, damping, &foreseen);
+    let efforts = Held { effort, foreseen: &foreseen };
     // Own places and a copy: nobody else can see them, so that they stay in registers.
     let mut glide = Glide { verlet, run, efforts, seen, samples: 0..steps, part: 0, parts: 1 };
     law.clone().glide(state, &mut glide);
-    let (run, steps, seen) = (glide.run, glide.samples.start, glide.seen);
-    Went { run, steps, strayed: seen.strayed(steps), stiffness: seen.products / seen.squares }
+    let (mut run, steps, seen) = (glide.run, glide.samples.start, glide.seen);
+    let slope = (seen.change + 0.5 * foreseen.get()) / span;
+    hurry(&mut run, -ahead * slope);
+    Went {
+        run,
+        steps,
+        strayed: seen.strayed(steps),
+        range: seen.most - seen.least,
+        rising: stiffness * run.velocity - slope,
+        stiffness: seen.products / seen.squares,
+    }
 }
 
-/// All effort but friction, held.
-struct Held(f64);
+/// All effort but friction, held; with it what a step would miss, as far as that is foreseen.
+struct Held<'a> {
+    effort: f64,
+    foreseen: &'a Cell<f64>,
+}
 
-impl Efforts<f64> for Held {
+impl Efforts<f64> for Held<'_> {
     #[inline(always)]
     fn at(&self, _: usize) -> f64 {
-        self.0
+        self.effort + TWELFTH * self.foreseen.get()
     }
 }
 
@@ -174,35 +236,56 @@ impl Efforts<f64> for Held {
 ///
 /// Verlet's steps x₂ − 2·x₁ + x₀ = h²/J·R₁ miss h²/12 of the second derivative of R, whatever acts
 /// beside the oscillator that they are fitted to: they go as if R₁ were off by a twelfth of its second
-/// difference.
-struct Watch {
+/// difference. The last one known is what is foreseen of the next, and added to the effort; what is
+/// left is the error.
+struct Watch<'a> {
     stiffness: f64,
     damping: f64,
     position: f64,
     force: f64,
     /// By how much the remainder k·x − σ changed in the last step; no number before the first.
     change: f64,
-    /// The sum of how these changes differ from one to the next.
+    /// The remainder since the first place, the least and the greatest of it.
+    remainder: f64,
+    least: f64,
+    most: f64,
+    /// How the last two changes differ: what is foreseen for the next.
+    foreseen: &'a Cell<f64>,
+    /// The sum of what was not foreseen.
     bends: f64,
     /// Sums of Δx² and of Δx·Δσ.
     squares: f64,
     products: f64,
 }
 
-impl Watch {
-    fn from(run: &Run<f64>, stiffness: f64, damping: f64) -> Self {
+impl<'a> Watch<'a> {
+    fn from(run: &Run<f64>, stiffness: f64, damping: f64, foreseen: &'a Cell<f64>) -> Self {
         let force = run.friction - damping * run.velocity;
-        let (change, bends, squares, products) = (f64::NAN, 0.0, 0.0, 0.0);
-        let position = run.position;
-        Self { stiffness, damping, position, force, change, bends, squares, products }
+        let (change, position) = (f64::NAN, run.position);
+        let (remainder, least, most) = (0.0, 0.0, 0.0);
+        let (bends, squares, products) = (0.0, 0.0, 0.0);
+        Self {
+            stiffness,
+            damping,
+            position,
+            force,
+            change,
+            remainder,
+            least,
+            most,
+            foreseen,
+            bends,
+            squares,
+            products,
+        }
     }
 
     fn strayed(&self, steps: usize) -> f64 {
-        self.bends / (12.0 * steps.saturating_sub(1).max(1) as f64)
+        TWELFTH * self.bends / steps.saturating_sub(1).max(1) as f64
     }
 }
 
-impl<T> Seen<f64, T> for Watch {
+impl<T> Seen<f64, T> for Watch<'_> {
     #[inline(always)]
     fn looks(&self) -> bool {
         false
@@ -218,8 +301,15 @@ impl<T> Seen<f64, T> for Watch {
         let force = run.friction - self.damping * run.velocity;
         let (way, rise) = (run.position - self.position, force - self.force);
         let change = self.stiffness * way - rise;
+        self.remainder += change;
+        self.least = self.least.min(self.remainder);
+        self.most = self.most.max(self.remainder);
+        let bend = change - self.change;
         // What is no number, of the first step, is no bend.
-        self.bends += (change - self.change).abs().max(0.0);
+        if !bend.is_nan() {
+            self.bends += (bend - self.foreseen.get()).abs();
+            self.foreseen.set(bend);
+        }
         self.squares += way * way;
         self.products += way * rise;
         (self.position, self.force, self.change) = (run.position, force, change);
@@ -236,7 +326,8 @@ mod tests {
         let (inertia, effort) = (0.0076, 0.2);
         for (stiffness, damping) in [(3000.0, 0.45), (3000.0, 0.0), (40.0, 3.0), (0.0, 0.3)] {
             for span in [1e-4, 8e-4, 3e-3] {
-                let verlet = Verlet::fitted(span, inertia, stiffness, damping).dragged(damping);
+                let (verlet, _) = Verlet::fitted(span, inertia, stiffness, damping);
+                let verlet = verlet.dragged(damping);
                 let (start, velocity, force) = (1e-5, 0.02, stiffness * 1e-5);
                 let push = effort - force;
                 let gone = verlet.displacement(velocity, push);
@@ -254,7 +345,7 @@ mod tests {
 
     #[test]
     fn a_spring_too_soft_to_tell_is_none() {
-        let [soft, none] = [1e-13, 0.0].map(|k| Verlet::fitted(8e-4, 0.002, k, 0.3));
+        let [soft, none] = [1e-13, 0.0].map(|k| Verlet::fitted(8e-4, 0.002, k, 0.3).0);
         assert_eq!(soft.displacement(0.02, 0.1), none.displacement(0.02, 0.1));
     }
 }
