@@ -165,6 +165,10 @@ pub trait Seen<S: Scalar, T> {
     -> bool;
     /// Sees a sample; the contact is as it was before the first where it is not looked at.
     fn see(&mut self, sample: usize, run: &Run<S>, contact: &T);
+    /// Sees how far the body goes in a step and the force of its spring then, before the velocity
+    /// is known: of a law that has one ([`FrictionLaw::springs`]).
+    #[inline(always)]
+    fn pulled(&mut self, _displacement: S, _force: S) {}
 }
 
 /// The places of position and velocity, where nothing else is wanted of a row of plain steps: what a

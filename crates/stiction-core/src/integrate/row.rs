@@ -207,7 +207,7 @@ fn go<L: FrictionLaw<f64>>(
     let mut glide = Glide { verlet, run, efforts, seen, samples: 0..steps, part: 0, parts: 1 };
     law.clone().glide(state, &mut glide);
     let (mut run, steps, seen) = (glide.run, glide.samples.start, glide.seen);
-    let slope = (seen.change + 0.5 * foreseen.get()) / span;
+    let slope = (seen.change + 0.5 * seen.bend) / span;
     hurry(&mut run, -ahead * slope);
     Went {
         run,
@@ -228,7 +228,7 @@ struct Held<'a> {
 impl Efforts<f64> for Held<'_> {
     #[inline(always)]
     fn at(&self, _: usize) -> f64 {
-        self.effort + TWELFTH * self.foreseen.get()
+        self.effort + self.foreseen.get()
     }
 }
 
@@ -240,8 +240,6 @@ impl Efforts<f64> for Held<'_> {
 /// left is the error.
 struct Watch<'a> {
     stiffness: f64,
-    damping: f64,
-    position: f64,
     force: f64,
     /// By how much the remainder k·x − σ changed in the last step; no number before the first.
     change: f64,
@@ -249,7 +247,8 @@ struct Watch<'a> {
     remainder: f64,
     least: f64,
     most: f64,
-    /// How the last two changes differ: what is foreseen for the next.
+    /// How the last two changes differ; a twelfth of that is what is foreseen for the next.
+    bend: f64,
     foreseen: &'a Cell<f64>,
     /// The sum of what was not foreseen.
     bends: f64,
@@ -261,18 +260,17 @@ struct Watch<'a> {
 impl<'a> Watch<'a> {
     fn from(run: &Run<f64>, stiffness: f64, damping: f64, foreseen: &'a Cell<f64>) -> Self {
         let force = run.friction - damping * run.velocity;
-        let (change, position) = (f64::NAN, run.position);
-        let (remainder, least, most) = (0.0, 0.0, 0.0);
+        let change = f64::NAN;
+        let (remainder, least, most, bend) = (0.0, 0.0, 0.0, 0.0);
         let (bends, squares, products) = (0.0, 0.0, 0.0);
         Self {
             stiffness,
-            damping,
-            position,
             force,
             change,
             remainder,
             least,
             most,
+            bend,
             foreseen,
             bends,
             squares,
@@ -297,22 +295,26 @@ impl<T> Seen<f64, T> for Watch<'_> {
     }
 
     #[inline(always)]
-    fn see(&mut self, _: usize, run: &Run<f64>, _: &T) {
-        let force = run.friction - self.damping * run.velocity;
-        let (way, rise) = (run.position - self.position, force - self.force);
-        let change = self.stiffness * way - rise;
+    fn see(&mut self, _: usize, _: &Run<f64>, _: &T) {}
+
+    #[inline(always)]
+    fn pulled(&mut self, way: f64, force: f64) {
+        // The next step waits for what is done with the force: as little as can be.
+        let before = self.stiffness * way + self.force;
+        let bend = (before - self.change) - force;
+        let change = before - force;
+        // What is no number, of the first step, is no bend.
+        if !bend.is_nan() {
+            self.foreseen.set(TWELFTH * bend);
+            self.bends += (bend - self.bend).abs();
+            self.bend = bend;
+        }
         self.remainder += change;
         self.least = self.least.min(self.remainder);
         self.most = self.most.max(self.remainder);
-        let bend = change - self.change;
-        // What is no number, of the first step, is no bend.
-        if !bend.is_nan() {
-            self.bends += (bend - self.foreseen.get()).abs();
-            self.foreseen.set(bend);
-        }
         self.squares += way * way;
-        self.products += way * rise;
-        (self.position, self.force, self.change) = (run.position, force, change);
+        self.products += way * (force - self.force);
+        (self.force, self.change) = (force, change);
     }
 }
 

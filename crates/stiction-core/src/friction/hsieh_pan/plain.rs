@@ -127,6 +127,7 @@ impl<S: Scalar> HsiehPan<S> {
             if looks {
                 now.keep(state);
             }
+            glide.seen.pulled(displacement, now.here.force);
             glide.accept(displacement, velocity, now.here.force + damping * velocity, state);
         }
         now.apart().keep(state);

@@ -36,6 +36,7 @@ impl<S: Scalar> MaxwellSlip<S> {
             if looks {
                 state.spring.slide(&here.apart());
             }
+            glide.seen.pulled(displacement, here.force);
             glide.accept(displacement, velocity, here.force + damping * velocity, state);
         }
         state.spring.slide(&here.apart());
