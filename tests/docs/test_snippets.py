@@ -156,7 +156,7 @@ CORE = REPOSITORY / "crates" / "stiction-core" / "src"
     [("adding-a-law.md", "friction", "FrictionLaw"), ("adding-an-effect.md", "effects", "Effect")],
 )
 def test_quoted_rust_implements_the_trait_as_it_is(page: str, folder: str, trait: str) -> None:
-    source = "\n".join(file.read_text("utf-8") for file in sorted((CORE / folder).glob("*.rs")))
+    source = "\n".join(file.read_text("utf-8") for file in sorted((CORE / folder).rglob("*.rs")))
     body = re.search(rf"^pub trait {trait}<.*?^}}$", source, re.M | re.S)
     assert body is not None
     members = r"^    (?:fn|const|type) (\w+)"

@@ -3,14 +3,11 @@
 //! A law is one file in this folder plus one line in [`laws!`] below. From that line it appears in
 //! simulation, binding, command line, documentation and the generic tests.
 
-mod contact;
 pub mod elements;
-mod entry;
-mod law;
 
-pub use contact::{Arrival, Channels, Event, Motion, Outcome, Push, Rest, Statistics};
-pub use entry::{Entry, EntryReader};
-pub use law::{FrictionLaw, INTERNAL, LawState};
+pub use elements::contact::{Arrival, Channels, Event, Motion, Outcome, Push, Rest, Statistics};
+pub use elements::entry::{Entry, EntryReader};
+pub use elements::law::{FrictionLaw, INTERNAL, LawState};
 
 use crate::error::{Error, Result};
 use crate::parameter::{OptionSpec, ParameterSpec};

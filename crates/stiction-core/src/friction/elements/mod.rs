@@ -1,4 +1,4 @@
-//! Building blocks that several laws share.
+//! What laws are made of: the trait that all of them fulfil, and blocks that several of them share.
 
 pub mod approach;
 pub mod arcsinh;
@@ -6,8 +6,11 @@ pub mod bell;
 pub mod bond;
 pub mod branch;
 pub mod bristle;
+pub mod contact;
 pub mod contact_age;
+pub mod entry;
 pub mod lag;
+pub mod law;
 pub mod loading;
 pub mod memory;
 pub mod plastic;
