@@ -60,7 +60,6 @@ impl<S: Scalar> Effect<S> for Backlash<S> {
         Self(BacklashParameters::from_values(values))
     }
 
-
     fn second_mass(&self) -> Option<SecondMass<S>> {
         let BacklashParameters { inertia_share, gap } = self.0;
         Some(SecondMass { share: inertia_share, coupling: Coupling::Gap { width: gap } })

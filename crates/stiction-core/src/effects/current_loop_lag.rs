@@ -51,7 +51,6 @@ impl<S: Scalar> Effect<S> for CurrentLoopLag<S> {
         Self(CurrentLoopLagParameters::from_values(values))
     }
 
-
     fn lag(&self) -> Option<S> {
         Some(self.0.time)
     }

@@ -41,7 +41,12 @@ impl<S: Scalar> Effect<S> for DirectionAsymmetry<S> {
         experiment: "pre-sliding loops and rests at zero input; a change of load",
         plan: "loops",
         gains: &["coulomb", "viscous"],
-        shapes: &[Shape { parameter: "velocity", scale: Scale::Speed, grid: &[-0.2, 0.15, 0.4], fitted: true }],
+        shapes: &[Shape {
+            parameter: "velocity",
+            scale: Scale::Speed,
+            grid: &[-0.2, 0.15, 0.4],
+            fitted: true,
+        }],
         second: &[],
         law_terms: &[],
         rotary_only: false,
@@ -54,8 +59,7 @@ impl<S: Scalar> Effect<S> for DirectionAsymmetry<S> {
     #[inline]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
-        let direction =
-            at.velocity / (at.velocity * at.velocity + p.velocity * p.velocity).sqrt();
+        let direction = at.velocity / (at.velocity * at.velocity + p.velocity * p.velocity).sqrt();
         LevelChange { friction: p.coulomb * direction, viscous: p.viscous * direction }
     }
 }

@@ -40,9 +40,12 @@ impl<S: Scalar> Effect<S> for DriveSaturation<S> {
                  greatest input",
         plan: "pulses",
         gains: &["share"],
-        shapes: &[
-            Shape { parameter: "limit", scale: Scale::Input, grid: &[0.3, 0.5, 0.7, 0.85, 0.95], fitted: true },
-        ],
+        shapes: &[Shape {
+            parameter: "limit",
+            scale: Scale::Input,
+            grid: &[0.3, 0.5, 0.7, 0.85, 0.95],
+            fitted: true,
+        }],
         second: &[],
         law_terms: &[],
         rotary_only: false,
@@ -51,7 +54,6 @@ impl<S: Scalar> Effect<S> for DriveSaturation<S> {
     fn build(values: &[S]) -> Self {
         Self(DriveSaturationParameters::from_values(values))
     }
-
 
     #[inline]
     fn input(&self, input: S, _at: &Situation<S>) -> S {

@@ -59,12 +59,7 @@ impl<S: Scalar> Effect<S> for DwellStrengthening<S> {
                 grid: &[2.0, 7.0],
                 fitted: true,
             },
-            Shape {
-                parameter: "window",
-                scale: Scale::Presliding,
-                grid: &[1.0],
-                fitted: false,
-            },
+            Shape { parameter: "window", scale: Scale::Presliding, grid: &[1.0], fitted: false },
         ],
         second: &[],
         law_terms: &[],

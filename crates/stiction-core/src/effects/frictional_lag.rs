@@ -49,7 +49,12 @@ impl<S: Scalar> Effect<S> for FrictionalLag<S> {
         plan: "sines",
         gains: &["excess"],
         shapes: &[
-            Shape { parameter: "velocity", scale: Scale::Speed, grid: &[0.1, 0.4, 0.7, 0.95], fitted: true },
+            Shape {
+                parameter: "velocity",
+                scale: Scale::Speed,
+                grid: &[0.1, 0.4, 0.7, 0.95],
+                fitted: true,
+            },
             Shape { parameter: "time", scale: Scale::Kernel, grid: &[0.7, 3.0], fitted: true },
         ],
         second: &[],
@@ -60,7 +65,6 @@ impl<S: Scalar> Effect<S> for FrictionalLag<S> {
     fn build(values: &[S]) -> Self {
         Self(FrictionalLagParameters::from_values(values))
     }
-
 
     #[inline]
     fn level(&self, at: &Situation<S>, memory: &Memory<S>) -> LevelChange<S> {

@@ -50,7 +50,6 @@ impl<S: Scalar> Effect<S> for GravityUnbalance<S> {
         Self(GravityUnbalanceParameters::from_values(values))
     }
 
-
     #[inline]
     fn effort(&self, at: &Situation<S>, _memory: &Memory<S>) -> S {
         let (sine, cosine) = at.position.sin_cos();

@@ -44,9 +44,7 @@ impl<S: Scalar> Effect<S> for LoadDependentFriction<S> {
         experiment: "load steps at constant speed, both ways",
         plan: "ramps",
         gains: &["drive", "back_drive"],
-        shapes: &[
-            Shape { parameter: "velocity", scale: Scale::One, grid: &[0.01], fitted: false },
-        ],
+        shapes: &[Shape { parameter: "velocity", scale: Scale::One, grid: &[0.01], fitted: false }],
         second: &[],
         law_terms: &[],
         rotary_only: false,
@@ -55,7 +53,6 @@ impl<S: Scalar> Effect<S> for LoadDependentFriction<S> {
     fn build(values: &[S]) -> Self {
         Self(LoadDependentFrictionParameters::from_values(values))
     }
-
 
     #[inline]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {

@@ -1,6 +1,8 @@
 //! Break-away that falls the faster the contact is loaded.
 
-use super::{Effect, EffectFacts, Hook, LevelChange, MEMORY, Memory, Passage, Scale, Shape, Situation};
+use super::{
+    Effect, EffectFacts, Hook, LevelChange, MEMORY, Memory, Passage, Scale, Shape, Situation,
+};
 use crate::friction::elements::contact_age::slide;
 use crate::parameter::ParameterSpec;
 use crate::parameters;

@@ -40,9 +40,7 @@ impl<S: Scalar> Effect<S> for SteadyRelaxation<S> {
         experiment: "holds of 5 s and more at three levels from 0.3 to 0.95 of break-away",
         plan: "loops",
         gains: &["speed"],
-        shapes: &[
-            Shape { parameter: "exponent", scale: Scale::One, grid: &[2.0], fitted: true },
-        ],
+        shapes: &[Shape { parameter: "exponent", scale: Scale::One, grid: &[2.0], fitted: true }],
         second: &[],
         law_terms: &[],
         rotary_only: false,
@@ -51,7 +49,6 @@ impl<S: Scalar> Effect<S> for SteadyRelaxation<S> {
     fn build(values: &[S]) -> Self {
         Self(SteadyRelaxationParameters::from_values(values))
     }
-
 
     fn relaxation(&self) -> Option<Relaxation<S>> {
         let SteadyRelaxationParameters { speed, exponent } = self.0;

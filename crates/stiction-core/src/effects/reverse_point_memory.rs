@@ -1,6 +1,8 @@
 //! Friction that builds up after each reversal and remembers where that was.
 
-use super::{Effect, EffectFacts, Hook, LevelChange, MEMORY, Memory, Passage, Scale, Shape, Situation};
+use super::{
+    Effect, EffectFacts, Hook, LevelChange, MEMORY, Memory, Passage, Scale, Shape, Situation,
+};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -58,9 +60,12 @@ impl<S: Scalar> Effect<S> for ReversePointMemory<S> {
         experiment: "small loops below break-away, nested in one another",
         plan: "loops",
         gains: &["share"],
-        shapes: &[
-            Shape { parameter: "distance", scale: Scale::Presliding, grid: &[1.0, 4.0, 16.0], fitted: true },
-        ],
+        shapes: &[Shape {
+            parameter: "distance",
+            scale: Scale::Presliding,
+            grid: &[1.0, 4.0, 16.0],
+            fitted: true,
+        }],
         second: &[],
         law_terms: &["law.remembers"],
         rotary_only: false,
@@ -69,7 +74,6 @@ impl<S: Scalar> Effect<S> for ReversePointMemory<S> {
     fn build(values: &[S]) -> Self {
         Self(ReversePointMemoryParameters::from_values(values))
     }
-
 
     #[inline]
     fn level(&self, _at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {

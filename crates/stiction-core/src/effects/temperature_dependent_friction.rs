@@ -28,7 +28,8 @@ parameters! {
 pub struct TemperatureDependentFriction<S>(TemperatureDependentFrictionParameters<S>);
 
 impl<S: Scalar> Effect<S> for TemperatureDependentFriction<S> {
-    const PARAMETERS: &'static [ParameterSpec] = TemperatureDependentFrictionParameters::<f64>::SPECS;
+    const PARAMETERS: &'static [ParameterSpec] =
+        TemperatureDependentFrictionParameters::<f64>::SPECS;
     const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
     const FACTS: EffectFacts = EffectFacts {
         summary: "friction changes with temperature",
@@ -43,9 +44,12 @@ impl<S: Scalar> Effect<S> for TemperatureDependentFriction<S> {
                  than by running",
         plan: "cycle",
         gains: &["coulomb", "viscous"],
-        shapes: &[
-            Shape { parameter: "reference", scale: Scale::One, grid: &[25.0], fitted: false },
-        ],
+        shapes: &[Shape {
+            parameter: "reference",
+            scale: Scale::One,
+            grid: &[25.0],
+            fitted: false,
+        }],
         second: &[],
         law_terms: &[],
         rotary_only: false,
@@ -54,7 +58,6 @@ impl<S: Scalar> Effect<S> for TemperatureDependentFriction<S> {
     fn build(values: &[S]) -> Self {
         Self(TemperatureDependentFrictionParameters::from_values(values))
     }
-
 
     #[inline]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {

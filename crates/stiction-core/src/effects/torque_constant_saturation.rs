@@ -40,9 +40,7 @@ impl<S: Scalar> Effect<S> for TorqueConstantSaturation<S> {
                  through large friction",
         plan: "pulses",
         gains: &["loss"],
-        shapes: &[
-            Shape { parameter: "input", scale: Scale::Input, grid: &[1.0], fitted: false },
-        ],
+        shapes: &[Shape { parameter: "input", scale: Scale::Input, grid: &[1.0], fitted: false }],
         second: &[],
         law_terms: &[],
         rotary_only: false,
@@ -51,7 +49,6 @@ impl<S: Scalar> Effect<S> for TorqueConstantSaturation<S> {
     fn build(values: &[S]) -> Self {
         Self(TorqueConstantSaturationParameters::from_values(values))
     }
-
 
     #[inline]
     fn input(&self, input: S, _at: &Situation<S>) -> S {

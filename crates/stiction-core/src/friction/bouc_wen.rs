@@ -2,7 +2,9 @@
 
 use super::elements::approach::approach;
 use super::elements::reachable::reachable;
-use super::{Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics};
+use super::{
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
+};
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -208,7 +210,8 @@ impl<S: Scalar> FrictionLaw<S> for BoucWen<S> {
 
     const PARAMETERS: &'static [ParameterSpec] = BoucWenParameters::<f64>::SPECS;
     const START: &'static [ParameterSpec] = BoucWenStart::<f64>::SPECS;
-    const SUMMARY: &'static str = "smooth hysteresis of one equation, with a knee as sharp as one likes";
+    const SUMMARY: &'static str =
+        "smooth hysteresis of one equation, with a knee as sharp as one likes";
     const SOURCE: &'static str = "Wen, J. Eng. Mech. Div. ASCE 102 (1976)";
 
     fn build(values: &[S], _choices: &[usize]) -> Self {
@@ -288,7 +291,12 @@ impl<S: Scalar> FrictionLaw<S> for BoucWen<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &BoucWenState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, BoucWenTrial<S>>> {
+    fn rest(
+        &self,
+        state: &BoucWenState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, BoucWenTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

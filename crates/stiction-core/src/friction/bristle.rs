@@ -436,7 +436,8 @@ impl<S: Scalar> FrictionLaw<S> for Bristle<S> {
         _event: Event,
     ) -> S {
         let at = (state.position + motion.displacement) / self.limit;
-        let left = |(bristle, bond): (usize, &Bond)| -((at - self.place(bristle, *bond)).abs() - 1.0);
+        let left =
+            |(bristle, bond): (usize, &Bond)| -((at - self.place(bristle, *bond)).abs() - 1.0);
         let margins = state.bonds.iter().enumerate().map(left);
         margins.reduce(|a, b| if b.re() < a.re() { b } else { a }).unwrap_or(S::constant(0.0))
     }

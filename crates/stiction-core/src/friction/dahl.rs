@@ -68,11 +68,7 @@ pub struct DahlTrial<S> {
 impl<S: Scalar> DahlState<S> {
     /// The same state over another number type.
     pub fn map<T: Scalar>(&self, convert: impl Fn(S) -> T) -> DahlState<T> {
-        DahlState {
-            dry: convert(self.dry),
-            direction: self.direction,
-            reversals: self.reversals,
-        }
+        DahlState { dry: convert(self.dry), direction: self.direction, reversals: self.reversals }
     }
 }
 
@@ -125,7 +121,11 @@ impl<S: Scalar> Dahl<S> {
     /// |r|^i, the slope by displacement as a share of γ.
     #[inline(always)]
     fn share(&self, r: S) -> S {
-        if r.re() == 0.0 { S::constant(0.0) } else { r.power_of_magnitude(self.0.exponent) * sign(r.re()) }
+        if r.re() == 0.0 {
+            S::constant(0.0)
+        } else {
+            r.power_of_magnitude(self.0.exponent) * sign(r.re())
+        }
     }
 }
 
@@ -135,7 +135,8 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
 
     const PARAMETERS: &'static [ParameterSpec] = DahlParameters::<f64>::SPECS;
     const START: &'static [ParameterSpec] = DahlStart::<f64>::SPECS;
-    const SUMMARY: &'static str = "pre-sliding whose slope falls with the force; forgets its reverse points";
+    const SUMMARY: &'static str =
+        "pre-sliding whose slope falls with the force; forgets its reverse points";
     const SOURCE: &'static str = "Dahl, AIAA J. 14 (1976); eq. (1) of Hsieh, Pan, Wear 242 (2000)";
 
     fn build(values: &[S], _choices: &[usize]) -> Self {
@@ -255,7 +256,12 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &DahlState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, DahlTrial<S>>> {
+    fn rest(
+        &self,
+        state: &DahlState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, DahlTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

@@ -136,7 +136,12 @@ impl<S: Scalar> FrictionLaw<S> for DahlWithMemory<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &MaxwellSlipState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, MaxwellSlipTrial<S>>> {
+    fn rest(
+        &self,
+        state: &MaxwellSlipState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, MaxwellSlipTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

@@ -3,8 +3,7 @@
 use super::elements::reachable::reachable;
 use super::elements::slip_hardening::SlipHardening;
 use super::{
-    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome,
-    Rest, Statistics,
+    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
@@ -207,7 +206,12 @@ impl<S: Scalar> FrictionLaw<S> for ElasticPerfectlyPlastic<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &ElasticPerfectlyPlasticState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, ElasticPerfectlyPlasticTrial<S>>> {
+    fn rest(
+        &self,
+        state: &ElasticPerfectlyPlasticState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, ElasticPerfectlyPlasticTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

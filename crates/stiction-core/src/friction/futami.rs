@@ -1,11 +1,10 @@
 //! A linear spring, then a nonlinear one, then rolling: Futami's two regions.
 
-use super::elements::reachable::reachable;
 use super::elements::loading::{Loading, Response, masing};
+use super::elements::reachable::reachable;
 use super::elements::spring::{SpringState, Walk};
 use super::{
-    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
-    Rest, Statistics,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
@@ -90,10 +89,7 @@ impl<S: Scalar> RegionCurve<S> {
         }
         let steepness = left.power_of_magnitude(self.exponent - 1.0);
         let missing = -(self.share - 1.0) * steepness * left;
-        Response {
-            force: -(self.coulomb * (missing - 1.0)),
-            slope: self.stiffness * steepness,
-        }
+        Response { force: -(self.coulomb * (missing - 1.0)), slope: self.stiffness * steepness }
     }
 
     /// Where the first loading has a force below F_c.
@@ -214,10 +210,7 @@ impl<S: Scalar> FrictionLaw<S> for Futami<S> {
     }
 
     fn initial(&self) -> FutamiState<S> {
-        FutamiState {
-            spring: SpringState::relaxed(&self.curve),
-            statistics: Statistics::default(),
-        }
+        FutamiState { spring: SpringState::relaxed(&self.curve), statistics: Statistics::default() }
     }
 
     fn primed(&self, values: &[S]) -> FutamiState<S> {
@@ -275,7 +268,12 @@ impl<S: Scalar> FrictionLaw<S> for Futami<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &FutamiState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, FutamiTrial<S>>> {
+    fn rest(
+        &self,
+        state: &FutamiState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, FutamiTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

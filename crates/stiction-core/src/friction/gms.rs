@@ -5,8 +5,7 @@ use super::elements::reachable::reachable;
 use super::elements::slides::Slides;
 use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::{
-    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest,
-    Statistics,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::{Error, Result};
 use crate::parameter::ParameterSpec;
@@ -190,7 +189,13 @@ impl<S: Scalar> Gms<S> {
 
     /// Where an element with this force along the motion starts to follow its level, if it does.
     #[inline]
-    fn departure(&self, along: S, slips: bool, share: S, course: &Course<S>) -> Option<Departure<S>> {
+    fn departure(
+        &self,
+        along: S,
+        slips: bool,
+        share: S,
+        course: &Course<S>,
+    ) -> Option<Departure<S>> {
         let risen = share * course.steepness;
         let zero = S::constant(0.0);
         if slips {
@@ -231,8 +236,11 @@ impl<S: Scalar> Gms<S> {
         let begun = start + (target - start) * left.gone;
         let rest = -(left.gone - 1.0);
         let way = course.duration * course.rate * rest;
-        let followed =
-            if left.gone.re() == 0.0 { course.whole } else { follow(S::constant(0.0), S::constant(0.0), S::constant(1.0), way) };
+        let followed = if left.gone.re() == 0.0 {
+            course.whole
+        } else {
+            follow(S::constant(0.0), S::constant(0.0), S::constant(1.0), way)
+        };
         let apart = left.force - begun;
         let value = begun + (target - begun) * followed.end_share + apart * followed.remainder;
         if value.re() > most.re() {
@@ -256,10 +264,8 @@ impl<S: Scalar> FrictionLaw<S> for Gms<S> {
         &["breakaway", "stribeck_velocity", "stribeck_exponent", "attraction"];
     const START: &'static [ParameterSpec] = GmsStart::<f64>::SPECS;
     const REMEMBERS: bool = true;
-    const SUMMARY: &'static str =
-        "elasto-slide elements whose level falls with speed: closing loops, frictional lag, Stribeck";
-    const SOURCE: &'static str =
-        "Al-Bender, Lampaert, Swevers, IEEE Trans. Autom. Control 50 (2005); passive by a bound of ours";
+    const SUMMARY: &'static str = "elasto-slide elements whose level falls with speed: closing loops, frictional lag, Stribeck";
+    const SOURCE: &'static str = "Al-Bender, Lampaert, Swevers, IEEE Trans. Autom. Control 50 (2005); passive by a bound of ours";
 
     fn build(values: &[S], _choices: &[usize]) -> Self {
         let p = GmsParameters::from_values(values);
@@ -384,7 +390,12 @@ impl<S: Scalar> FrictionLaw<S> for Gms<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &GmsState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, GmsTrial<S>>> {
+    fn rest(
+        &self,
+        state: &GmsState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, GmsTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

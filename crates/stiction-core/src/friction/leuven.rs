@@ -8,8 +8,7 @@ use super::elements::spring::{SpringState, Walk};
 use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::elements::yield_curve::{GROUPS, YieldCurve};
 use super::{
-    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest,
-    Statistics,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
@@ -273,10 +272,8 @@ impl<S: Scalar> FrictionLaw<S> for Leuven<S> {
     const OPTIONAL: &'static [&'static str] =
         &["breakaway", "stribeck_velocity", "stribeck_exponent", "damping_velocity"];
     const START: &'static [ParameterSpec] = LeuvenStart::<f64>::SPECS;
-    const SUMMARY: &'static str =
-        "LuGre's dynamics on a hysteresis with reverse points: lag, Stribeck fall, loops within loops";
-    const SOURCE: &'static str =
-        "Swevers, Al-Bender, Ganseman, Prajogo (2000), as modified by Lampaert, Swevers, Al-Bender (2002)";
+    const SUMMARY: &'static str = "LuGre's dynamics on a hysteresis with reverse points: lag, Stribeck fall, loops within loops";
+    const SOURCE: &'static str = "Swevers, Al-Bender, Ganseman, Prajogo (2000), as modified by Lampaert, Swevers, Al-Bender (2002)";
 
     fn build(values: &[S], _choices: &[usize]) -> Self {
         let p = LeuvenParameters::from_values(values);
@@ -379,11 +376,8 @@ impl<S: Scalar> FrictionLaw<S> for Leuven<S> {
             let path = motion.displacement * s;
             let (to, steepness) = bristle.level.at(motion.velocity);
             let held = motion.start_velocity.re() == motion.velocity.re();
-            let level = if held {
-                to
-            } else {
-                (to + bristle.level.at(motion.start_velocity).0) * 0.5
-            };
+            let level =
+                if held { to } else { (to + bristle.level.at(motion.start_velocity).0) * 0.5 };
             walk = self.walked(spring, s, path, level);
             let slip = self.slip(walk.end.force, motion.velocity);
             let mut slope = walk.end.slope * motion.duration * -(slip.share - 1.0);
@@ -409,7 +403,12 @@ impl<S: Scalar> FrictionLaw<S> for Leuven<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &LeuvenState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, LeuvenTrial<S>>> {
+    fn rest(
+        &self,
+        state: &LeuvenState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, LeuvenTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

@@ -3,8 +3,7 @@
 use super::elements::rigid::{Rigid, held};
 use super::elements::stribeck::{check_levels, fall, steepest};
 use super::{
-    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome,
-    Statistics,
+    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::ParameterSpec;

@@ -271,7 +271,12 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &BristleState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, BristleTrial<S>>> {
+    fn rest(
+        &self,
+        state: &BristleState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, BristleTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

@@ -5,8 +5,7 @@ mod plain;
 use super::elements::spring::{SpringState, Walk};
 use super::elements::yield_curve::YieldCurve;
 use super::{
-    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
-    Rest, Statistics,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::Result;
 use crate::integrate::{Efforts, Glide, Seen};
@@ -245,7 +244,12 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &MaxwellSlipState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, MaxwellSlipTrial<S>>> {
+    fn rest(
+        &self,
+        state: &MaxwellSlipState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, MaxwellSlipTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

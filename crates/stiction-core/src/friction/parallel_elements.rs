@@ -1,8 +1,7 @@
 //! A few elastic elements in parallel that harden linearly: plasticity by mechanical models.
 
 use super::{
-    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome,
-    Rest, Statistics,
+    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::{Error, Result};
 use crate::parameter::{OptionSpec, ParameterSpec};
@@ -245,9 +244,10 @@ impl<S: Scalar> FrictionLaw<S> for ParallelElements<S> {
         if !whole || !forces.iter().all(|row| [-1.0, 0.0, 1.0].contains(&row[1])) {
             return Err(Error::State {
                 name: "elements".to_owned(),
-                problem: "and 'yield_shifts' do not hold four rows each, of a force and -1, 0 or 1 \
+                problem:
+                    "and 'yield_shifts' do not hold four rows each, of a force and -1, 0 or 1 \
                           and of two forces"
-                    .to_owned(),
+                        .to_owned(),
             });
         }
         let mut state = self.initial();
@@ -315,7 +315,12 @@ impl<S: Scalar> FrictionLaw<S> for ParallelElements<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &ParallelElementsState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, ParallelElementsTrial<S>>> {
+    fn rest(
+        &self,
+        state: &ParallelElementsState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, ParallelElementsTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

@@ -2,8 +2,7 @@
 
 use super::elements::stop::Stop;
 use super::{
-    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome,
-    Rest, Statistics,
+    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::{Error, Result};
 use crate::parameter::ParameterSpec;
@@ -115,7 +114,8 @@ impl<S: Scalar> FrictionLaw<S> for PrandtlIshlinskii<S> {
 
     const PARAMETERS: &'static [ParameterSpec] = PrandtlIshlinskiiParameters::<f64>::SPECS;
     const REMEMBERS: bool = true;
-    const SUMMARY: &'static str = "ten stops in parallel, weighted by a density of their thresholds";
+    const SUMMARY: &'static str =
+        "ten stops in parallel, weighted by a density of their thresholds";
     const SOURCE: &'static str =
         "Krasnosel'skii, Pokrovskii (1989); Al Janaideh, Rakheja, Su (2009); from memory";
 
@@ -220,7 +220,12 @@ impl<S: Scalar> FrictionLaw<S> for PrandtlIshlinskii<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &PrandtlIshlinskiiState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, PrandtlIshlinskiiTrial<S>>> {
+    fn rest(
+        &self,
+        state: &PrandtlIshlinskiiState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, PrandtlIshlinskiiTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

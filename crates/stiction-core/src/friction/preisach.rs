@@ -1,11 +1,10 @@
 //! Relays on a bounded Preisach plane, their density in closed form.
 
-use super::elements::reachable::reachable;
 use super::elements::loading::{Loading, Response, virgin_inverse};
+use super::elements::reachable::reachable;
 use super::elements::spring::{SpringState, Walk};
 use super::{
-    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
-    Rest, Statistics,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
@@ -80,7 +79,8 @@ impl<S: Scalar> Plane<S> {
     #[inline]
     fn risen(&self, m: S, h: S) -> Response<S> {
         let (mm, hh) = (m * m, h * h);
-        let force = self.r * h * 2.0 - self.a * hh * 4.0 - self.b * hh * (mm * 4.0 + hh * (2.0 / 3.0));
+        let force =
+            self.r * h * 2.0 - self.a * hh * 4.0 - self.b * hh * (mm * 4.0 + hh * (2.0 / 3.0));
         let bend = h * (mm * 3.0 + m * h * 3.0 + hh);
         let slope = self.r - self.a * h * 4.0 - self.b * bend * (4.0 / 3.0);
         Response { force: self.coulomb * force, slope: self.coulomb / self.half * slope }
@@ -278,7 +278,12 @@ impl<S: Scalar> FrictionLaw<S> for Preisach<S> {
     }
 
     // Where the body stays, so does the force.
-    fn rest(&self, state: &PreisachState<S>, channels: &Channels<S>, duration: S) -> Option<Rest<S, PreisachTrial<S>>> {
+    fn rest(
+        &self,
+        state: &PreisachState<S>,
+        channels: &Channels<S>,
+        duration: S,
+    ) -> Option<Rest<S, PreisachTrial<S>>> {
         Some(Rest::still(self, state, channels, duration))
     }
 

@@ -2,8 +2,7 @@
 
 use super::elements::arcsinh::{Balance, Series, arcsinh_of_exp};
 use super::{
-    Arrival, Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome,
-    Push, Statistics,
+    Arrival, Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Push, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::{OptionSpec, ParameterSpec};
@@ -250,7 +249,6 @@ impl<S: Scalar> RateAndState<S> {
         }
         RateAndStateState { log_age, dry, mode, statistics }
     }
-
 }
 
 impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
@@ -269,8 +267,7 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
         ],
     }];
     const STEEP: bool = true;
-    const SUMMARY: &'static str =
-        "logarithms of speed and of contact age: rises at once with speed, then falls with distance";
+    const SUMMARY: &'static str = "logarithms of speed and of contact age: rises at once with speed, then falls with distance";
     const SOURCE: &'static str = "Dieterich (1979); Ruina (1983); Rice, Lapusta, Ranjith (2001)";
 
     fn build(values: &[S], choices: &[usize]) -> Self {
@@ -339,7 +336,8 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
         channels: &Channels<S>,
     ) -> RateAndStateTrial<S> {
         let p = &self.parameters;
-        let (log_age, by_way) = self.aged(state.log_age, motion.displacement.abs(), motion.duration);
+        let (log_age, by_way) =
+            self.aged(state.log_age, motion.displacement.abs(), motion.duration);
         let viscous = p.viscous * channels.viscous_level;
         let level = channels.level;
         if self.yields {

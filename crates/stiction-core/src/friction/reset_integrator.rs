@@ -1,8 +1,8 @@
 //! A bond that is integrated until it tears: Haessig and Friedland's second model.
 
 use super::elements::bond::{Bond, BondTrial, DampedBond};
-use super::{Channels, Entry, EntryReader, Event, FrictionLaw, Motion, Outcome};
 use super::elements::stribeck::check_levels;
+use super::{Channels, Entry, EntryReader, Event, FrictionLaw, Motion, Outcome};
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -98,12 +98,7 @@ impl<S: Scalar> FrictionLaw<S> for ResetIntegrator<S> {
     }
 
     #[inline]
-    fn advance(
-        &self,
-        state: &Bond<S>,
-        motion: &Motion<S>,
-        channels: &Channels<S>,
-    ) -> BondTrial<S> {
+    fn advance(&self, state: &Bond<S>, motion: &Motion<S>, channels: &Channels<S>) -> BondTrial<S> {
         self.bond.advance(state, motion, channels)
     }
 

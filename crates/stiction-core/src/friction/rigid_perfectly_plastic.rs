@@ -3,8 +3,7 @@
 use super::elements::rigid::{Rigid, held};
 use super::elements::slip_hardening::SlipHardening;
 use super::{
-    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome,
-    Statistics,
+    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, Statistics,
 };
 use crate::error::Result;
 use crate::parameter::ParameterSpec;
@@ -135,8 +134,7 @@ impl<S: Scalar> FrictionLaw<S> for RigidPerfectlyPlastic<S> {
             return state.contact.force;
         }
         let (level, _) = self.level.level(state.slid);
-        level * channels.level * mode
-            + self.parameters.viscous * channels.viscous_level * velocity
+        level * channels.level * mode + self.parameters.viscous * channels.viscous_level * velocity
     }
 
     #[inline]

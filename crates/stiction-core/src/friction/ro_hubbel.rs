@@ -88,12 +88,7 @@ impl<S: Scalar> FrictionLaw<S> for RoHubbel<S> {
     }
 
     #[inline]
-    fn advance(
-        &self,
-        state: &Bond<S>,
-        motion: &Motion<S>,
-        channels: &Channels<S>,
-    ) -> BondTrial<S> {
+    fn advance(&self, state: &Bond<S>, motion: &Motion<S>, channels: &Channels<S>) -> BondTrial<S> {
         self.bond.advance(state, motion, channels)
     }
 

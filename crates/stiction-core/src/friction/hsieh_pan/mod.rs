@@ -8,11 +8,11 @@ mod state;
 mod stick;
 
 use super::elements::lag::follow;
+use super::elements::loading::{Curve, Loading, VirginCurve};
 use super::elements::plastic::Plastic;
 use super::elements::reachable::reachable;
 use super::elements::series;
-use super::elements::loading::{Curve, Loading, VirginCurve};
-use super::elements::spring::{SpringState};
+use super::elements::spring::SpringState;
 use super::elements::stribeck::{check_levels, steepest};
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, Motion, Outcome, Rest, Statistics,
@@ -438,13 +438,9 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         }
         let [plastic, hardening, filtered] = *internal;
         let walk = state.spring.walk(&self.curve, motion.displacement - (plastic - state.plastic));
-        let (series, creep) =
-            self.series_force(walk.end.force, hardening, motion.velocity);
-        let extra = if self.damper_on_spring {
-            zero
-        } else {
-            self.parameters.damping * motion.velocity
-        };
+        let (series, creep) = self.series_force(walk.end.force, hardening, motion.velocity);
+        let extra =
+            if self.damper_on_spring { zero } else { self.parameters.damping * motion.velocity };
         let lag = (series - filtered) / self.parameters.loading_time;
         let lag = if self.rated { lag } else { zero };
         (series * channels.level + extra, [creep * sign(series.re()), creep, lag])

@@ -1,9 +1,9 @@
 //! Steps of a bare body in which no mode changes, in loops of their own.
 
 use super::super::elements::branch::{Fading, Here};
-use super::super::elements::plastic::Creep;
 use super::super::elements::loading::{Curve, Loading};
-use super::super::elements::spring::{SpringState};
+use super::super::elements::plastic::Creep;
+use super::super::elements::spring::SpringState;
 use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;
 use super::state::HsiehPanState;
@@ -78,11 +78,7 @@ impl<S: Scalar> HsiehPan<S> {
 
     /// Steps of a sticking hook until it breaks away.
     #[inline(always)]
-    fn glide_sticking<
-        const SQUARE: bool,
-        E: Efforts<S>,
-        V: Seen<S, HsiehPanState<S>>,
-    >(
+    fn glide_sticking<const SQUARE: bool, E: Efforts<S>, V: Seen<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,
         glide: &mut Glide<S, E, V>,
@@ -104,8 +100,13 @@ impl<S: Scalar> HsiehPan<S> {
             let towards = |direction| {
                 if direction == here.direction { here.slope } else { after_reversal(curve) }
             };
-            let creep =
-                module.plain_creep::<SQUARE>(now.hardening, here.force, towards, displacement, &pacing);
+            let creep = module.plain_creep::<SQUARE>(
+                now.hardening,
+                here.force,
+                towards,
+                displacement,
+                &pacing,
+            );
             let unbraked = verlet.unbraked(velocity, push + effort, share);
             let plain = creep.and_then(|creep| Some((creep, here.onward(&branch, creep.left)?)));
             let arrived;

@@ -1,7 +1,7 @@
 //! Steps of a sliding hook.
 
 use super::super::elements::lag::follow_by;
-use super::super::elements::loading::{Loading};
+use super::super::elements::loading::Loading;
 use super::super::elements::stribeck::{fall_power, fall_slope};
 use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;
@@ -95,8 +95,7 @@ impl<S: Scalar> HsiehPan<S> {
         let per_distance = S::constant(1.0) / p.slip_distance;
         let z = distance * per_distance;
         let [left, left_before, gone] = fading_twice_and_faded_of(-after, -before, -z);
-        let (to, steepness) =
-            self.sliding_level(latched, motion.velocity, (after, left), channels);
+        let (to, steepness) = self.sliding_level(latched, motion.velocity, (after, left), channels);
         let (from, from_steepness) =
             self.sliding_level(latched, motion.start_velocity, (before, left_before), channels);
         let followed = follow_by(series * s, from, to, z, gone);
@@ -109,8 +108,7 @@ impl<S: Scalar> HsiehPan<S> {
         // Held velocity: start and end level move together, and the distance with them.
         let held = steepness * followed.end_share
             + from_steepness * (-(followed.end_share - 1.0) - followed.remainder);
-        let catching_up =
-            (to - series * s) * followed.remainder * motion.duration * per_distance;
+        let catching_up = (to - series * s) * followed.remainder * motion.duration * per_distance;
         let slope = match held_back {
             None => (held + catching_up) * (s * turning),
             Some(stiffness) => stiffness * motion.duration,

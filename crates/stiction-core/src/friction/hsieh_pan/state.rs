@@ -1,6 +1,6 @@
 //! What the contact keeps, and what a step would make of it.
 
-use super::super::elements::loading::{Curve};
+use super::super::elements::loading::Curve;
 use super::super::elements::spring::{SpringState, Walk};
 use super::super::{Entry, LawState, Outcome, Statistics};
 use crate::scalar::Scalar;
@@ -40,9 +40,15 @@ pub struct HsiehPanTrial<S> {
 
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Mode<S> {
-    Stick { walk: Walk<S>, plastic: S, hardening: S },
+    Stick {
+        walk: Walk<S>,
+        plastic: S,
+        hardening: S,
+    },
     /// `pull` is T − s·σ: how far the force lags behind its sliding level.
-    Slip { pull: S },
+    Slip {
+        pull: S,
+    },
 }
 
 impl<S: Scalar> HsiehPanState<S> {

@@ -2,7 +2,7 @@
 
 use super::super::elements::plastic::Creep;
 use super::super::elements::series;
-use super::super::elements::spring::{Walk};
+use super::super::elements::spring::Walk;
 use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;
 use super::state::{HsiehPanState, HsiehPanTrial, Mode};
@@ -32,7 +32,14 @@ impl<S: Scalar> HsiehPan<S> {
                 damping: step.damping * channels.level,
             };
             let undamped = outcome.force - outcome.damping * motion.velocity;
-            return self.stuck(state, motion, step.walk, step.force, step.creep, (outcome, undamped));
+            return self.stuck(
+                state,
+                motion,
+                step.walk,
+                step.force,
+                step.creep,
+                (outcome, undamped),
+            );
         }
         let creep = self.plastic.creep(
             state.hardening,
@@ -45,9 +52,8 @@ impl<S: Scalar> HsiehPan<S> {
         let damping = self.parameters.damping;
         let undamped = walk.end.force * channels.level;
         let force = undamped + damping * motion.velocity;
-        let slope = walk.end.slope * channels.level * motion.duration
-            * (-(creep.share - 1.0))
-            + damping;
+        let slope =
+            walk.end.slope * channels.level * motion.duration * (-(creep.share - 1.0)) + damping;
         let outcome = Outcome { force, slope, damping };
         self.stuck(state, motion, walk, walk.end.force, creep, (outcome, undamped))
     }

@@ -8,9 +8,9 @@ mod stick;
 use std::array::from_mut;
 
 use super::{HsiehPan, HsiehPanState};
+use crate::friction::elements::loading::Loading;
 use crate::friction::elements::memory::ReversePoint;
-use crate::friction::elements::loading::{Loading};
-use crate::friction::elements::spring::{SpringState};
+use crate::friction::elements::spring::SpringState;
 use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH};
 use crate::scalar::Scalar;
 
