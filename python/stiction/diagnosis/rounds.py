@@ -166,7 +166,8 @@ def _round(
             found.rows[score.candidate.name] = listing.screened(score)
             if not score.testable:
                 found.blind.append(score.candidate.record)
-    passing = [score for score in scores if promises(score) or score is _outstanding(scores)]
+    outstanding = _outstanding(scores)
+    passing = [score for score in scores if promises(score) or score is outstanding]
     trials: list[Trial] = []
     refitted = passing[:REFITTED]
     asked = [s for s in scores if _is_asked(screening, s) and s not in refitted]

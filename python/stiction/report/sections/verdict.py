@@ -23,7 +23,7 @@ TITLES: Final = {
     "missing_effect": "The simulation lacks an effect that is known by name",
     "nothing_missing": "Nothing is missing from the simulation",
 }
-NAMED_IN_PART: Final = "The simulation lacks a known effect, and something that has no name"
+NAMED_IN_PART: Final = "The simulation lacks {}, and something that has no name"
 SEVERAL: Final = "The simulation lacks effects that are known by name"
 
 
@@ -49,7 +49,8 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section:
 
 def _title(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unexplained" and diagnosis.effects:
-        return NAMED_IN_PART
+        several = len(diagnosis.effects) > 1
+        return NAMED_IN_PART.format("known effects" if several else "a known effect")
     if diagnosis.verdict == "missing_effect" and len(diagnosis.effects) > 1:
         return SEVERAL
     return TITLES[diagnosis.verdict]
