@@ -39,6 +39,7 @@ STRENGTHS = {
     "gravity_unbalance": lambda a, s: _wave(a, s),
     "drive_saturation": lambda a, s: {"share": a},
     "back_emf": lambda a, s: {"slope": a},
+    "voltage_limit": lambda a, s: {"share": a},
     "current_loop_lag": lambda a, s: {"time": a},
     "frictional_lag": lambda a, s: {"excess": a},
     "reverse_point_memory": lambda a, s: {"share": a},

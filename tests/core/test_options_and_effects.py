@@ -373,3 +373,36 @@ def test_a_damper_on_the_spring_gives_no_more_than_both_can_at_any_step(seed):
     parameters = model.parameters
     most = parameters["initial_stiffness"] * way + parameters["damping"] * np.abs(velocity).max()
     assert np.abs(force).max() < 2.0 * most
+
+
+@pytest.mark.parametrize("name", ["fast", "reference"])
+def test_a_voltage_limit_runs_out_of_effort_towards_its_speed_without_load(name):
+    given, limit, no_load = 0.8, 1.0, 12.0
+    frictionless = st.FrictionModel("coulomb", coulomb=0.0)
+    shape = {"share": 1.0, "limit": limit, "no_load": no_load}
+    # Slow for the reference integrator's samples, so that both follow the line closely.
+    inertia, dt = 0.05, 1e-3
+    machine = st.Motor(
+        inertia=inertia, friction=frictionless, effects={"voltage_limit": shape}, integrator=name
+    )
+    run = machine.simulate(np.full(3000, given), dt)
+    time = np.asarray(run.time)
+    reached = no_load * (1.0 - given / limit)  # up to there all of it arrives
+    begin = reached * inertia / given
+    falling = no_load + (reached - no_load) * np.exp(-limit * (time - begin) / (no_load * inertia))
+    expected = np.where(time < begin, given * time / inertia, falling)
+    np.testing.assert_allclose(run.velocity, expected, atol=2e-3 * no_load)
+
+
+def test_a_voltage_limit_reaches_further_against_the_motion():
+    shape = {"share": 0.5, "limit": 1.0, "no_load": 10.0}
+    inputs = np.array([0.9, 1.4, -0.9, -1.4, 3.0])
+    speeds = np.array([5.0, -5.0, 5.0, 5.0, 20.0])
+    # R is 0.5, 1.5, 1.5, 1.5 and, beyond the speed without load, 0.
+    expected = [0.7, 1.4, -0.9, -1.4, 1.5]
+    drawn = []
+    for given, speed in zip(inputs, speeds, strict=True):
+        machine = motor("coulomb", effects={"voltage_limit": shape})
+        motion = st.Motion(np.array([0.0, speed * 1e-3, 2e-3 * speed]), np.full(2, given), 1e-3)
+        drawn.append(machine.follow(motion)[0][-1])
+    np.testing.assert_allclose(drawn, expected, rtol=1e-12)

@@ -40,6 +40,7 @@ HIDDEN = (
     "temperature_dependent_friction",
     "load_dependent_friction",
     "backlash",
+    "voltage_limit",
 )
 BASES = {"reverse_point_memory": "coulomb"}
 """Of a machine that can have the effect, where that is not `maxwell_slip`."""

@@ -110,8 +110,8 @@ class DriveSaturation(DriveLoss):
 class BackEmf(Effect):
     """Effort -a |u| v: a bridge that coasts in its off-time, 1/a is the no-load speed.
 
-    Foreign: a current loop reaches u only as far as U (1 - sgn(u) v / v_0); the share a v_0 of
-    what is beyond that is lost, all of it with a = 1/v_0.
+    Foreign: from an input K on the current does not die out in the off-time any more, and what is
+    lost grows no further with the input, -a K v.
     """
 
     forms = ("library", "foreign")
@@ -123,23 +123,51 @@ class BackEmf(Effect):
     def draw(rng, plant, form):
         if form == "library":
             return {}
-        # Reached above some 4 rad/s, so that a fast sweep is out of torque.
-        return {
-            "stall": plant["coulomb"] * rng.uniform(2.0, 3.5),
-            "no_load": rng.uniform(0.75, 1.0) * BackEmf.FASTEST,
-        }
+        return {"knee": 0.4 * quick_input(plant) * rng.uniform(0.8, 1.2)}
 
     @staticmethod
     def usual(plant):
         return 2e-3
 
     def effort(self, s):
+        size, v = np.abs(s.input[self.lanes]), s.v[self.lanes]
+        if hasattr(self, "knee"):
+            size = np.minimum(size, self.knee)
+        return -self.amplitude * size * v
+
+
+class VoltageLimit(Effect):
+    """A current loop reaches u only as far as L (1 - sgn(u) v / v_0); the share a beyond is lost.
+
+    Foreign: the corner rounds off, R + w tanh((|u| - R) / w) with R what is reached.
+    """
+
+    forms = ("library", "foreign")
+    hooks = ("effort",)
+    largest = 1.0
+
+    @staticmethod
+    def draw(rng, plant, form):
+        # Reached above some 4 rad/s, so that a fast sweep is out of torque.
+        shape = {
+            "limit": plant["coulomb"] * rng.uniform(2.0, 3.5),
+            "no_load": rng.uniform(0.75, 1.0) * BackEmf.FASTEST,
+        }
+        if form == "foreign":
+            shape["width"] = shape["limit"] * rng.uniform(0.2, 0.4)
+        return shape
+
+    @staticmethod
+    def usual(plant):
+        return 0.05
+
+    def effort(self, s):
         u, v = s.input[self.lanes], s.v[self.lanes]
-        if not hasattr(self, "stall"):
-            return -self.amplitude * np.abs(u) * v
-        reach = np.maximum(self.stall * (1.0 - np.sign(u) * v / self.no_load), 0.0)
+        reach = np.maximum(self.limit * (1.0 - np.sign(u) * v / self.no_load), 0.0)
         beyond = np.maximum(np.abs(u) - reach, 0.0)
-        return -self.amplitude * self.no_load * np.copysign(beyond, u)
+        if hasattr(self, "width"):
+            beyond = beyond - self.width * np.tanh(beyond / self.width)
+        return -self.amplitude * np.copysign(beyond, u)
 
 
 class CurrentLoopLag(Effect):

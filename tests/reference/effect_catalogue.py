@@ -32,6 +32,7 @@ LIBRARY = {
     "torque_constant_saturation": drive_effect_reference.TorqueConstantSaturation,
     "drive_saturation": drive_effect_reference.DriveSaturation,
     "back_emf": drive_effect_reference.BackEmf,
+    "voltage_limit": drive_effect_reference.VoltageLimit,
     "current_loop_lag": drive_effect_reference.CurrentLoopLag,
     "frictional_lag": drive_effect_reference.FrictionalLag,
     "reverse_point_memory": contact_effect_reference.ReversePointMemory,

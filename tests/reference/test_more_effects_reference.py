@@ -18,6 +18,7 @@ DRIVES = (
     "torque_constant_saturation",
     "drive_saturation",
     "back_emf",
+    "voltage_limit",
     "current_loop_lag",
 )
 CONTACTS = (
@@ -184,17 +185,34 @@ def test_a_coasting_bridge_ends_at_its_no_load_speed():
     np.testing.assert_allclose(run.velocity[:, 0], expected, atol=1e-5 * no_load)
     coasting = run_of("back_emf", np.where(T < 0.02, u, 0.0), 1.0 / no_load)
     assert np.ptp(coasting.velocity[20:, 0]) == 0.0
+    # Beyond the knee the loss is that of the knee, so the speed that is reached grows with u.
+    above = run_of("back_emf", np.full(400, u), 1.0 / no_load, {"knee": 0.5})
+    expected = no_load * u / 0.5 * -np.expm1(-0.5 * T / (no_load * J))
+    np.testing.assert_allclose(above.velocity[:, 0], expected, atol=1e-5 * no_load)
+    below = run_of("back_emf", np.full(400, u), 1.0 / no_load, {"knee": 1.0})
+    np.testing.assert_array_equal(below.velocity, run.velocity)
 
 
 def test_a_current_loop_out_of_voltage_ends_at_its_no_load_speed():
     u, stall, no_load = 0.5, 1.0, 12.0
-    run = run_of("back_emf", np.full(400, u), 1.0 / no_load, {"stall": stall, "no_load": no_load})
+    run = run_of("voltage_limit", np.full(400, u), 1.0, {"limit": stall, "no_load": no_load})
     at = 0.5 * no_load  # from where on there is less than u
     begin = at * J / u
     falling = no_load + (at - no_load) * np.exp(-stall * (T - begin) / (no_load * J))
     np.testing.assert_allclose(
         run.velocity[:, 0], np.where(begin > T, u * T / J, falling), atol=1e-4 * no_load
     )
+
+
+def test_what_a_rounded_voltage_limit_reaches_runs_out_with_speed():
+    u = np.concatenate([np.zeros(10), np.full(390, 3.0)])
+    shape = {"limit": 1.0, "no_load": 1e9, "width": 0.3}
+    still = run_of("voltage_limit", u, 1.0, shape)
+    np.testing.assert_allclose(3.0 + still.hidden[0, 50, 0], 1.0 + 0.3 * math.tanh(2.0 / 0.3))
+    running = run_of("voltage_limit", u, 1.0, shape | {"no_load": 12.0})
+    reached = u + running.hidden[0, :, 0]
+    assert np.all(np.diff(reached[20:]) <= 1e-12)
+    assert reached[-1] == pytest.approx(0.3, abs=0.01)
 
 
 @pytest.mark.parametrize("lags", [1.0, 2.0])

@@ -94,6 +94,7 @@ OWN: Final[dict[str, str | Wave]] = {
     "torque_constant_saturation": "effort",
     "drive_saturation": "effort",
     "back_emf": "velocity, by what the effort gives",
+    "voltage_limit": "velocity, by what the effort gives",
     "current_loop_lag": "rate of the effort",
     "frictional_lag": "speed, speeding up or slowing down",
     "reverse_point_memory": "distance since the reversal",

@@ -176,6 +176,7 @@ effects! {
     torque_constant_ripple => TorqueConstantRipple,
     torque_constant_saturation => TorqueConstantSaturation,
     viscous_quadratic => ViscousQuadratic,
+    voltage_limit => VoltageLimit,
     warm_up => WarmUp,
 }
 
