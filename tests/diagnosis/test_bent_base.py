@@ -1,13 +1,15 @@
-"""A base without an effect bends itself towards it, and a refit that begins there is caught."""
+"""Refits that begin where a base without the effect stands, and would be caught there."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
 from stiction.diagnosis.base import based
+from stiction.diagnosis.model import stepped
 
 # One seed in which the elements that yield first vanish from the base: small efforts move nothing.
 HIDDEN = ("drive_deadband", 0.0129)
@@ -25,3 +27,35 @@ def test_an_effect_towards_which_the_base_has_bent_itself_is_found() -> None:
     assert width.value == pytest.approx(made.effects[0].amplitude, rel=0.1)
     assert found.gain is not None
     assert found.gain.ci95[0] > 0.2
+
+
+# Two machines on hsieh_pan whose bases end at kinks: at one a Gauss-Newton step leads to fourteen
+# times the power, at the other the base does not follow once the effect is there.
+CAUGHT = (
+    (7720000, "viscous_quadratic", 0.014204, 0.25),
+    (7720018, "position_dependent_friction:foreign", 0.01495, 0.7),
+)
+
+
+@pytest.mark.parametrize(("seed", "hidden", "size", "least"), CAUGHT)
+def test_a_base_at_a_kink_keeps_no_cause_from_being_found(
+    seed: int, hidden: str, size: float, least: float
+) -> None:
+    (made,) = make_sessions([{"seed": seed, "base": "hsieh_pan", "hidden": ((hidden, size),)}])
+    found = st.diagnose(as_plant(made), as_session(made))
+    assert [cause.name for cause in found.effects] == [hidden.partition(":")[0]]
+    assert found.gain is not None
+    assert found.gain.value > least
+
+
+def test_what_nothing_explains_moves_no_base() -> None:
+    (made,) = make_sessions([{"seed": 7720000, "base": "hsieh_pan", "seconds": 78.0}])
+    _, base = based(as_plant(made), as_session(made).recordings)
+    rows = len(base.residual)
+    for path, given in stepped(base, np.zeros(rows)).parameters.items():
+        assert given.value == pytest.approx(base.plant.parameters[path].value, rel=1e-12)
+    # What is explained in its place by something else it gives up.
+    column = base.columns[:, list(base.solution.variables.paths).index("friction.viscous")]
+    before = base.plant.parameters["friction.viscous"].value
+    moved = stepped(base, 0.01 * before * column).parameters["friction.viscous"].value
+    assert moved == pytest.approx(1.01 * before, rel=1e-3)

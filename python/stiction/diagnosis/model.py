@@ -253,6 +253,8 @@ def fitted(
         most=most,
         nuisances=nuisances,
         converged=converged,
+        # What is fitted here starts from a model that was fitted.
+        beyond_kinks=False,
     )
     return Model(evidence, solution)
 
@@ -269,7 +271,9 @@ def power_of(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
 def stepped(model: Model, explained: FloatArray) -> Plant:
     """The plant of a model, moved to where it is best once something else explains a part.
 
-    One Gauss-Newton step over the fitted rows; a refit that starts there has little left to do.
+    One Gauss-Newton step over the fitted rows, in the variables of the fit; a refit that starts
+    there has little left to do. What the model leaves beside that part moves nothing: at a minimum
+    with a kink slopes would lead far away from it.
 
     Parameters
     ----------
@@ -277,17 +281,15 @@ def stepped(model: Model, explained: FloatArray) -> Plant:
     explained : numpy.ndarray, shape (n,)
         Part of the residual that an effect takes over.
     """
-    paths = list(model.solution.variables.paths)
-    fit = model.evidence.fitted
+    solution, fit = model.solution, model.evidence.fitted
+    variables, number = solution.variables, len(solution.variables.paths)
     columns = model.columns[fit]
+    columns[:, :number] = variables.chain(columns[:, :number], solution.vector)
     scale = np.sqrt(np.sum(columns**2, axis=0))
     scale[scale == 0.0] = 1.0
-    left = (model.residual - explained)[fit]
-    moved = -np.linalg.lstsq(columns / scale, left, rcond=FLAT)[0] / scale
-    values = model.solution.variables.values(model.solution.vector) + moved[: len(paths)]
-    variables = model.solution.variables
-    kept = np.clip(values, variables.lower, variables.upper)
-    return variables.plant(model.plant, variables.vector(kept))
+    moved = np.linalg.lstsq(columns / scale, explained[fit], rcond=FLAT)[0] / scale
+    vector = np.clip(solution.vector + moved[:number], *variables.bounds())
+    return variables.plant(model.plant, vector)
 
 
 def without_effect(plant: Plant, name: str) -> Plant:

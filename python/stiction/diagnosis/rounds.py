@@ -31,7 +31,7 @@ from .result import CandidateRow
 from .screen import Score, Signatures
 from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
-from .trials import Screening, promises, whole_fit
+from .trials import Screening, promises, unstuck, whole_fit
 
 __all__ = ["MOST_EFFECTS", "friction_of", "search"]
 
@@ -102,7 +102,7 @@ def search(
             found.models.append(choice.winner.model)
             _logger.info("found %s", choice.winner.name)
             found.choices[-1] = sharpened(screening, found.choices[-1])
-            found.models[-1] = found.choices[-1].winner.model
+            found.models[-1] = unstuck(found.choices[-1].winner.model)
             dropped |= _drop(evidence, found)
             rests |= _take_back(screening, found)
         for place in range(len(found.choices) - 1):

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from ..catalogue import effects
+from ..fitting.minimise import from_usual_exponents
 from ..fitting.rows import Nuisances
 from ..plant import Plant
 from ..trajectory import FloatArray
@@ -17,12 +18,14 @@ from .evidence import Evidence
 from .model import Model, fitted, power_of, stepped, with_effect
 from .screen import Problem, Score, Signatures, screen
 
-__all__ = ["Screening", "promises", "whole_fit"]
+__all__ = ["Screening", "promises", "unstuck", "whole_fit"]
 
 LATE_SHARE: Final = 0.5
 """Of the kernel's support: a follower that keeps noise from friction is late by less."""
 SHARES: Final = (0.1, 0.3, 0.6, 1.0, 1.7, 3.0)
 """Shares of the screened gain among which a refit by simulation picks its start."""
+FEW_SHARES: Final = (0.3, 1.0)
+"""The same along a measured motion."""
 KEPT: Final = 0.75
 """Share of what the screening promises that a refit keeps, unless it is caught."""
 CAUTIOUS: Final = 0.1
@@ -30,6 +33,8 @@ CAUTIOUS: Final = 0.1
 MUCH: Final = 0.05
 MANY_TIMES: Final = 5.0
 """A score of this size, and so many times its threshold, is refitted whatever it does held out."""
+WORTH_MOVING: Final = 1e-3
+"""Share of the power that makes another minimum a better one."""
 LEAST_OF_NOISE: Final = 0.01
 """What leaves a smaller share of the power that noise alone leaves explains nothing: it makes what
 was measured vanish."""
@@ -130,11 +135,10 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
         plant = stepped(base, share * explained)
         return with_effect(plant, score.candidate, (share * gains).tolist())
 
-    # A simulated motion breaks away or does not: slopes tell little of what a whole gain does.
-    start = begun(1.0)
-    if any(form.simulated for form in evidence.forms):
-        plants = [begun(share) for share in SHARES]
-        start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
+    # A contact breaks away or does not: slopes tell little of what a whole gain does.
+    simulated = any(form.simulated for form in evidence.forms)
+    plants = [begun(share) for share in (SHARES if simulated else FEW_SHARES)]
+    start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
     model = whole_fit(evidence, start, base.nuisances)
     if model.power < (1.0 - KEPT * score.score) * base.power:
         return model
@@ -148,7 +152,19 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
         tried.append(whole_fit(evidence, alone.plant, alone.nuisances))
         if alone.power < base.power:
             break
-    return min(tried, key=lambda each: each.power)
+    return unstuck(min(tried, key=lambda each: each.power))
+
+
+def unstuck(model: Model) -> Model:
+    """A model, or a better one from where exponents of its law have their usual values.
+
+    What is fitted on from a base that made up for the effect may end in the valley of that base.
+    """
+    solution = from_usual_exponents(model.solution, model.evidence.train)
+    if solution.interrupted:
+        raise KeyboardInterrupt
+    better = solution.power < (1.0 - WORTH_MOVING) * model.solution.power
+    return Model(model.evidence, solution) if better else model
 
 
 def whole_fit(evidence: Evidence, plant: Plant, nuisances: Nuisances, *, only: str = "") -> Model:

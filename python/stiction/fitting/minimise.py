@@ -82,6 +82,7 @@ def minimise(
     most: int = MOST_EVALUATIONS,
     nuisances: Nuisances | None = None,
     converged: float = CONVERGED,
+    beyond_kinks: bool = True,
 ) -> Solution:
     """Minimise Σ w²·r² over the rows by parameters of the plant and by nuisances.
 
@@ -99,13 +100,17 @@ def minimise(
         rows tell of.
     converged : float
         Relative change of cost or parameters at which it ends.
+    beyond_kinks : bool
+        Whether starts from beyond a kink are tried where the law sticks without a spring: from a
+        minimum that has been through that before, they cost more than the fit and lead nowhere.
 
     Returns
     -------
     Solution
         The best so far after Ctrl-C or too many evaluations, and ``success`` False.
     """
-    return _Minimiser(plant, paths, rows, most, nuisances, converged).run()
+    escapes = MOST_ESCAPES if beyond_kinks and not start_quantities(plant) else 0
+    return _Minimiser(plant, paths, rows, most, nuisances, converged).run(escapes)
 
 
 def launch(
@@ -238,7 +243,7 @@ class _Minimiser:
         stiffness = self.plant.friction.parameters.get("initial_stiffness")
         return 1e-4 if stiffness is None else max(effort / stiffness.value, 1e-300)
 
-    def run(self) -> Solution:
+    def run(self, escapes: int) -> Solution:
         lower, upper = self.variables.bounds()
         late = timing_bound(self.plant, self.rows)
         most = START_TIMES * max(float(np.max(np.abs(each.form.effort))) for each in self.rows)
@@ -263,7 +268,7 @@ class _Minimiser:
             self._best = None
         try:
             found = self.descend(begin, bounds, scale)
-            for _ in range(MOST_ESCAPES if not start_quantities(self.plant) else 0):
+            for _ in range(escapes):
                 beyond = escaped(self.residual, self.jacobian, found, bounds)
                 if beyond is None:
                     break
