@@ -170,3 +170,34 @@ def test_what_explains_many_times_what_others_do_is_refitted_though_it_does_harm
     assert (rounds._outstanding(scores) is scores[0]) is asked
     assert rounds._outstanding(scores) in (scores[0], None)
     assert rounds._outstanding([]) is None
+
+
+@pytest.mark.parametrize(("explained", "refused"), [(0.03, True), (0.1, False)])
+def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: bool) -> None:
+    """Half of what is held out comes back by what explains next to nothing elsewhere."""
+    number = 40
+    block = np.arange(number)
+    train = np.where(block % 2 == 0, 1.0, 0.0)
+    held = 1.0 - train
+    cells = SimpleNamespace(block=block, recording=block % 4, kind=block % 2, kinds=("a", "b"))
+    evidence = SimpleNamespace(cells=cells, loop=False, fitted=train > 0.0)
+    plant = SimpleNamespace(inertia=1.0, effects=(SimpleNamespace(name="cogging", parameters={}),))
+    base: Any = SimpleNamespace(evidence=evidence, power=100.0, plant=plant, blocks=(train, held))
+    # Every block gains, one a little more than another.
+    left = 0.5 * held * (1.0 + 0.01 * block / number)
+    model: Any = SimpleNamespace(
+        power=100.0 * (1.0 - explained),
+        given=1.0,
+        plant=plant,
+        blocks=((1.0 - explained) * train, left),
+        strength=lambda _: 9.0,
+        columns=np.ones((number, 1)),
+        residual=np.ones(number),
+    )
+    record = SimpleNamespace(late=False, before_drive=False, shapes=(), family="angle")
+    candidate = SimpleNamespace(name="cogging", record=record, parameters=2)
+    score: Any = SimpleNamespace(score=explained, threshold=0.01, candidate=candidate)
+    judged = decide.judge(base, score, model, np.ones(number), 0.1)
+    assert ("the base had lost the machine" in judged.reason) == refused, judged.reason
+    if refused:
+        assert not judged.by_blocks

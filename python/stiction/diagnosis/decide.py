@@ -57,6 +57,9 @@ LEAST_INERTIA: Final = 0.2
 LEAST_STRENGTH: Final = 3.5
 """Gains over their standard errors (the root of Wald's statistic), from residuals correlated within
 blocks: one number that no number of rows makes large by itself."""
+MOST_AGAIN: Final = 8.0
+"""A cause gains less than so many times on rows held out what it explains of those it was fitted
+to."""
 MOST_UNEVEN: Final = 0.3
 """What strengths of their own by kind of recording may add, as a share of a gain: with more
 the effect imitates something else."""
@@ -191,6 +194,11 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
     elif gain <= 0.0:
         reason = "does not help on rows held out"
+    elif gain > MOST_AGAIN * explained:
+        reason = (
+            f"gains {gain / explained:.0f} times on rows held out what it explains where it was "
+            "fitted: there the base had lost the machine, and anything finds it again"
+        )
     elif gain <= LEAST_GAIN:
         reason = f"gains {100 * gain:.2f} % on rows held out, below {100 * LEAST_GAIN:.2f} %"
     elif z <= LEAST_Z:
