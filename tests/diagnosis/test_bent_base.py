@@ -29,23 +29,14 @@ def test_an_effect_towards_which_the_base_has_bent_itself_is_found() -> None:
     assert found.gain.ci95[0] > 0.2
 
 
-# Two machines on hsieh_pan whose bases end at kinks: at one a Gauss-Newton step leads to fourteen
-# times the power, at the other the base does not follow once the effect is there.
-CAUGHT = (
-    (7720000, "viscous_quadratic", 0.014204, 0.25),
-    (7720018, "position_dependent_friction:foreign", 0.01495, 0.7),
-)
-
-
-@pytest.mark.parametrize(("seed", "hidden", "size", "least"), CAUGHT)
-def test_a_base_at_a_kink_keeps_no_cause_from_being_found(
-    seed: int, hidden: str, size: float, least: float
-) -> None:
-    (made,) = make_sessions([{"seed": seed, "base": "hsieh_pan", "hidden": ((hidden, size),)}])
+def test_a_base_at_a_kink_keeps_no_cause_from_being_found() -> None:
+    """On hsieh_pan a base may end where it does not follow once the effect is there."""
+    hidden = (("position_dependent_friction:foreign", 0.01495),)
+    (made,) = make_sessions([{"seed": 7720018, "base": "hsieh_pan", "hidden": hidden}])
     found = st.diagnose(as_plant(made), as_session(made))
-    assert [cause.name for cause in found.effects] == [hidden.partition(":")[0]]
+    assert [cause.name for cause in found.effects] == ["position_dependent_friction"]
     assert found.gain is not None
-    assert found.gain.value > least
+    assert found.gain.value > 0.7
 
 
 def test_what_nothing_explains_moves_no_base() -> None:

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from ..catalogue import effects
-from ..fitting.minimise import from_usual_exponents
+from ..fitting.minimise import from_elsewhere
 from ..fitting.rows import Nuisances
 from ..plant import Plant
 from ..trajectory import FloatArray
@@ -160,7 +160,7 @@ def unstuck(model: Model) -> Model:
 
     What is fitted on from a base that made up for the effect may end in the valley of that base.
     """
-    solution = from_usual_exponents(model.solution, model.evidence.train)
+    solution = from_elsewhere(model.solution, model.evidence.train)
     if solution.interrupted:
         raise KeyboardInterrupt
     better = solution.power < (1.0 - WORTH_MOVING) * model.solution.power

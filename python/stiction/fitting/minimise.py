@@ -17,7 +17,7 @@ from .rows import Nuisances, Rows, Start, numbers, primed, start_quantities, tim
 from .slopes import places_of, slopes
 from .variables import Variables, records
 
-__all__ = ["MOST_EVALUATIONS", "Solution", "from_usual_exponents", "launch", "minimise"]
+__all__ = ["MOST_EVALUATIONS", "Solution", "from_elsewhere", "launch", "minimise"]
 
 MOST_EVALUATIONS: Final = 60
 CONVERGED: Final = 1e-8
@@ -30,6 +30,9 @@ FEW_EVALUATIONS: Final = 14
 """After so many it shows which of several starts leads on."""
 MOST_ESCAPES: Final = 4
 """Starts from beyond a kink, for laws that stick without a spring."""
+HARDENING: Final = "friction.hardening_coefficient"
+LONGER: Final = 4.0
+"""Times the way over which a contact hardens that is tried as well."""
 SHRINKING: Final = 10.0
 """Rows that a factor e of a shape parameter away from its neutral value weighs as much as, or a
 start of the usual size: about a single independent piece of evidence, for neighbouring rows share
@@ -160,32 +163,49 @@ def _further(
     return replace(further, begin=solution.begin)
 
 
-def from_usual_exponents(solution: Solution, rows: Sequence[Rows]) -> Solution:
-    """The better of a solution and a short fit from it with each exponent at its usual value.
+def from_elsewhere(solution: Solution, rows: Sequence[Rows]) -> Solution:
+    """The better of a solution and short fits from starts that it may not have seen.
 
-    An exponent of a law far from that makes up for the number that it belongs to, in a valley that
-    no small step leaves. Where the law has none, or the fit was interrupted, the solution.
+    With each exponent at its usual value: one far from that makes up for the number that it belongs
+    to, in a valley that no small step leaves. And with a contact that hardens over a longer way:
+    one that hardens too soon breaks away here and there, and each time is a kink from which slopes
+    lead back. Where the law has neither, or the fit was interrupted, the solution.
     """
-    known = records(solution.plant)
+    better, spent = solution, solution.evaluations
+    for start in _elsewhere(solution):
+        paths, nuisances = better.variables.paths, better.nuisances
+        again = minimise(start, paths, rows, most=FEW_EVALUATIONS, nuisances=nuisances)
+        spent += again.evaluations
+        if again.power < better.power and not again.interrupted and not again.success:
+            again = minimise(
+                again.plant, paths, rows, most=MOST_EVALUATIONS, nuisances=again.nuisances
+            )
+            spent += again.evaluations
+        if again.power < better.power:
+            better = again
+        if again.interrupted:
+            better = _stopped(better, again)
+            break
+    return replace(better, evaluations=spent, begin=solution.begin)
+
+
+def _elsewhere(solution: Solution) -> list[Plant]:
+    """Starts apart from a solution."""
+    if solution.interrupted:
+        return []
+    plant, known = solution.plant, records(solution.plant)
+    paths = solution.variables.paths
     usual = {
         path: known[path].default
-        for path in solution.variables.paths
+        for path in paths
         if path.startswith("friction.") and path.endswith("exponent") and not known[path].optional
     }
-    if not usual or solution.interrupted:
-        return solution
-    paths, nuisances = solution.variables.paths, solution.nuisances
-    start = solution.plant.with_values(usual)
-    again = minimise(start, paths, rows, most=FEW_EVALUATIONS, nuisances=nuisances)
-    spent = solution.evaluations + again.evaluations
-    better = solution
-    if again.power < solution.power and not again.interrupted:
-        nuisances = again.nuisances
-        better = minimise(again.plant, paths, rows, most=MOST_EVALUATIONS, nuisances=nuisances)
-        spent += better.evaluations
-    if again.interrupted:
-        better = _stopped(solution, again)
-    return replace(better, evaluations=spent, begin=solution.begin)
+    starts = [usual] if usual else []
+    if HARDENING in paths:
+        longer = LONGER * plant.parameters[HARDENING].value
+        index = paths.index(HARDENING)
+        starts.append({HARDENING: float(min(longer, solution.variables.upper[index]))})
+    return [plant.with_values(start) for start in starts]
 
 
 class _Minimiser:

@@ -16,7 +16,7 @@ from ..recording.split import BLOCK_S, name_of, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from .forms import followable, forms_of, horizon_of, set_clocks, shows_its_ring, stiffen
-from .minimise import MOST_EVALUATIONS, Solution, from_usual_exponents, launch, minimise
+from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, launch, minimise
 from .pushes import Watch, told
 from .result import FitParameter, FitResult
 from .rows import Nuisances, Rows, primed, rows_of
@@ -193,7 +193,7 @@ def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
         most=most,
         nuisances=primed(first.plant, rows, first.nuisances),
     )
-    return from_usual_exponents(second, rows)
+    return from_elsewhere(second, rows)
 
 
 def reweighted(rows: Sequence[Rows], plant: Plant, nuisances: Nuisances) -> None:
