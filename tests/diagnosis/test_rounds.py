@@ -201,3 +201,10 @@ def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: 
     assert ("the base had lost the machine" in judged.reason) == refused, judged.reason
     if refused:
         assert not judged.by_blocks
+
+
+def test_where_an_effect_touches_nothing_its_gain_has_no_standard_error() -> None:
+    base: Any = SimpleNamespace(blocks=BLOCKS)
+    model: Any = SimpleNamespace(blocks=(0.5 * BLOCKS[0], 0.5 * BLOCKS[1]))
+    gain, z = decide.heldout_gain(base, model, np.zeros(30, dtype=bool))
+    assert (gain, z) == (0.5, 0.0)

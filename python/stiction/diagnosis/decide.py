@@ -294,6 +294,8 @@ def _sign_z(values: FloatArray) -> float:
     Where a few blocks hold most of the power, a sum over its standard error says little however
     clearly every block improves.
     """
+    if len(values) == 0:
+        return 0.0
     telling = values[np.abs(values) > TELLING * float(np.mean(np.abs(values)))]
     if len(telling) == 0:
         return 0.0
