@@ -83,15 +83,33 @@ impl<S: Scalar> Along<S> {
         Self { displacement, duration, velocities, channels, passed: zero, outcome, mean: zero }
     }
 
+    #[inline(always)]
     fn velocity_at(&self, share: S) -> S {
         self.velocities.0 + (self.velocities.1 - self.velocities.0) * share
+    }
+
+    /// Whether a step of this duration is the whole sample, as nearly all are: then nothing is shared
+    /// out.
+    #[inline(always)]
+    fn whole(&self, span: &S) -> bool {
+        self.passed.re() == 0.0 && span.re() == self.duration.re()
     }
 }
 
 impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Along<S> {
     type Attempt = (L::Trial, Motion<S>);
 
+    #[inline(always)]
     fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt {
+        if self.whole(&span) {
+            let motion = Motion {
+                displacement: self.displacement,
+                duration: span,
+                start_velocity: self.velocities.0,
+                velocity: self.velocities.1,
+            };
+            return (law.advance(state, &motion, &self.channels), motion);
+        }
         let share = span / self.duration;
         let motion = Motion {
             displacement: self.displacement * share,
@@ -102,12 +120,15 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Along<S> {
         (law.advance(state, &motion, &self.channels), motion)
     }
 
+    #[inline(always)]
     fn contact<'a>(&self, attempt: &'a Self::Attempt) -> (&'a L::Trial, &'a Motion<S>) {
         (&attempt.0, &attempt.1)
     }
 
+    #[inline(always)]
     fn accept(&mut self, law: &L, state: &mut L::State, attempt: &Self::Attempt, _stopped: bool) {
-        let share = attempt.1.duration / self.duration;
+        let whole = self.whole(&attempt.1.duration);
+        let share = if whole { S::constant(1.0) } else { attempt.1.duration / self.duration };
         if L::RIGID {
             // Half-way: inside one mode friction is smooth, and at its ends it may jump.
             let (trial, _) = Stepper::<S, L>::attempt(self, law, state, attempt.1.duration * 0.5);
@@ -118,8 +139,9 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Along<S> {
         self.passed += share;
     }
 
+    #[inline(always)]
     fn velocity(&self) -> S {
-        self.velocity_at(self.passed)
+        if self.passed.re() == 0.0 { self.velocities.0 } else { self.velocity_at(self.passed) }
     }
 
     fn hold(&mut self, _law: &L, _state: &mut L::State, _span: S) -> bool {
