@@ -131,6 +131,33 @@ fn options_and_divided_samples_change_no_bit() {
 }
 
 #[test]
+fn hooks_of_many_kinds_do_the_same_side_by_side_as_alone() {
+    let mut seed = 88_172_645_463_325_252_u64;
+    let mut share = move || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for round in 0..24 {
+        let stiffness = 3000.0 * 10_f64.powf(share() - 0.5);
+        let any = [
+            ("final_stiffness", stiffness * (0.05 + 0.8 * share())),
+            ("viscous", 0.1 * share()),
+            ("slip_distance", 10_f64.powf(-7.0 + 4.0 * share())),
+            ("stribeck_velocity", 10_f64.powf(-3.0 + 3.0 * share())),
+            ("creep_rate", 10_f64.powf(3.0 * share())),
+            ("hardening_coefficient", 1.6e-3 * 10_f64.powf(2.0 * share() - 1.0)),
+            ("damping", share()),
+        ];
+        let mut stated: Vec<_> = any.into_iter().filter(|_| share() < 0.5).collect();
+        stated.push(("initial_stiffness", stiffness));
+        stated.push(("decay_distance", 2.9e-4 * 10_f64.powf(share() - 0.5)));
+        stated.push(("coulomb", 0.05 + 0.34 * share()));
+        println!("round {round}: {stated:?}");
+        agrees(&motor("hsieh_pan", &stated), if share() < 0.5 { 1e-4 } else { 3e-4 });
+    }
+}
+
+#[test]
 fn what_is_kept_is_made_of_the_same_samples() {
     let motor = motor("hsieh_pan", &[("viscous", 0.02)]);
     let (masses, inputs, dt) = (masses(), inputs(), 2e-4);

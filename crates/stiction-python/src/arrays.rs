@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 use stiction_core::motor::{PerSample, Surroundings};
-use stiction_dispatch::fetch;
+use stiction_dispatch::{Task, Width, fetch};
 
 use crate::error::{duration, input_error};
 
@@ -48,15 +48,7 @@ pub fn samples<'py>(
     }
     let array = array.readonly();
     let values = array.as_slice()?;
-    // By chunks without a choice in them, which become vectors; what lies a page ahead is asked for,
-    // for a processor guesses no further than to the end of one.
-    let finite = |(chunk, some): (usize, &[f64])| {
-        for ahead in values.iter().skip(64 * chunk + 512).take(64).step_by(8) {
-            fetch(ahead);
-        }
-        some.iter().fold(true, |all, x| all & x.is_finite())
-    };
-    if !values.chunks(64).enumerate().all(finite)
+    if !Width::widest().run(Finite(values))
         && let Some(bad) = values.iter().position(|x| !x.is_finite())
     {
         let given = values[bad];
@@ -66,6 +58,30 @@ pub fn samples<'py>(
         ));
     }
     Ok(array)
+}
+
+/// Whether all numbers are finite.
+struct Finite<'a>(&'a [f64]);
+
+impl Task for Finite<'_> {
+    type Output = bool;
+
+    // By chunks without a choice in them, which become vectors; what lies a page ahead is asked for,
+    // for a processor guesses no further than to the end of one.
+    #[inline(always)]
+    fn run(self) -> bool {
+        let all = |some: &[f64]| some.iter().fold(true, |all, x| all & x.is_finite());
+        let (chunks, rest) = self.0.as_chunks::<64>();
+        for (k, chunk) in chunks.iter().enumerate() {
+            for ahead in chunks.get(k + 8).map_or(&[][..], |ahead| ahead).chunks_exact(8) {
+                fetch(&ahead[0]);
+            }
+            if !all(chunk) {
+                return false;
+            }
+        }
+        all(rest)
+    }
 }
 
 /// A one-dimensional [`samples`].

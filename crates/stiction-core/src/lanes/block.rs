@@ -215,8 +215,9 @@ pub trait Contacts<S: Scalar, L: FrictionLaw<S>>: Clone + Default {
     /// Takes a step of all lanes of some blocks under their efforts; those that it is not plain for stay
     /// where they are and say so in `missed`. Compiled for several widths: mark it as
     /// `#[inline(always)]`. A processor looks a few hundred operations ahead, which is one block: what
-    /// takes as many stage by stage shares the waiting among them.
-    fn step<const N: usize>(blocks: &mut [Block<Self>; N]);
+    /// takes as many stage by stage shares the waiting among them. Returns which of them may have left
+    /// something in `missed` or `changed`.
+    fn step<const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N];
 }
 
 /// [`WIDTH`] motors.

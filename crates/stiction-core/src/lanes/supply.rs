@@ -49,9 +49,43 @@ impl Supply {
         &self.members
     }
 
+    /// What is to be asked for in the samples before this one.
+    pub fn ahead<'a>(&'a self, plan: &Plan<'a>, next: usize) -> Ahead<'a> {
+        let values = match plan.inputs {
+            Inputs::Each(values) => values,
+            Inputs::Shared(_) => &[],
+        };
+        Ahead { values, members: &self.members, samples: plan.samples, next }
+    }
+
     /// Works out the efforts of some samples.
     pub fn fill(&mut self, plan: &Plan<'_>, first: usize, length: usize) {
         plan.width.run(Fill { supply: self, plan, first, length });
+    }
+}
+
+/// What members are about to do after these samples, to be asked for while they go through them.
+/// Each has its own place in memory, too short a way for the processor to see, and all places at once
+/// are more than it fetches at a time.
+#[derive(Clone, Copy)]
+pub struct Ahead<'a> {
+    values: &'a [f64],
+    members: &'a [usize],
+    samples: usize,
+    next: usize,
+}
+
+impl Ahead<'_> {
+    /// Asks for the share of this sample: the lines of all members in as many samples as are given.
+    #[inline(always)]
+    pub fn fetch(&self, sample: usize) {
+        let (lane, tile) = (sample % WIDTH, sample / WIDTH);
+        for member in self.members.iter().skip(lane).step_by(WIDTH) {
+            let place = member * self.samples + self.next + tile * TILE;
+            if let Some(value) = self.values.get(place) {
+                fetch(value);
+            }
+        }
     }
 }
 
@@ -111,6 +145,8 @@ fn driven(input: Row, load: Row, (gain, limit, weight): (Row, Row, Row)) -> Row 
 
 /// Samples that are put across lanes at a time: as many as are side by side in the caches.
 const TILE: usize = 8;
+// A line of each member is asked for in each stretch of samples.
+const _: () = assert!(SAMPLES == WIDTH * TILE);
 
 /// Numbers of some samples, lane by lane.
 #[inline(always)]
@@ -132,11 +168,6 @@ pub fn spread(
         }
         Rows::Each(values) => {
             for (block, members) in members.chunks(WIDTH).enumerate() {
-                // Each member has its own place in memory, too short a way for the processor to see.
-                for member in members {
-                    let ahead = &values[member * samples + first + length..(member + 1) * samples];
-                    ahead.iter().take(SAMPLES).step_by(TILE).for_each(fetch);
-                }
                 // Lanes that are left over see what the first one sees.
                 let given: [_; WIDTH] = from_fn(|lane| {
                     let member = members.get(lane).unwrap_or(&members[0]);

@@ -7,7 +7,7 @@ use stiction_dispatch::Task;
 
 use super::block::{Block, Bodies, Contacts, Row, WIDTH};
 use super::record::{Record, SAMPLES};
-use super::supply::{Supply, load_of};
+use super::supply::{Ahead, Supply, load_of};
 use super::tally::Tally;
 use crate::ensemble::{Keep, Plan};
 use crate::friction::{FrictionLaw, LawState};
@@ -124,6 +124,7 @@ struct Stretch<'a, 'b, S: Scalar, L: FrictionLaw<S>, C> {
     room: &'a mut [usize],
     /// Efforts of each block in each sample of this stretch.
     efforts: &'a [Row],
+    ahead: Ahead<'a>,
     record: &'a mut Record,
     /// The first sample.
     first: usize,
@@ -137,6 +138,7 @@ impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Task for Stretch<'_, '_, S
         let (count, parts) = (self.blocks.len(), self.team.job.parts);
         let blocks = std::mem::take(&mut self.blocks);
         for (sample, row) in self.efforts.chunks_exact(count).enumerate() {
+            self.ahead.fetch(sample);
             for part in 1..=parts {
                 let ends = part == parts;
                 let (pairs, rest) = blocks.as_chunks_mut::<2>();
@@ -165,12 +167,12 @@ impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Stretch<'_, '_, S, L, C> {
         for (block, effort) in blocks.iter_mut().zip(efforts) {
             block.bodies.effort = *effort;
         }
-        C::step(blocks);
+        let open = C::step(blocks);
         for (k, block) in blocks.iter_mut().enumerate() {
-            if block.bodies.changes() {
+            if open[k] && block.bodies.changes() {
                 self.team.note(first + k, block, self.room);
             }
-            if block.bodies.misses() {
+            if open[k] && block.bodies.misses() {
                 self.team.make_up(first + k, self.first + sample, block, self.room);
             }
             if ends {
@@ -185,7 +187,8 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
     pub fn walk<C: Contacts<S, L>>(&mut self) {
         let mut blocks = self.blocks::<C>();
         let count = blocks.len();
-        let samples = self.job.plan.samples;
+        let plan = self.job.plan;
+        let samples = plan.samples;
         let mut record = Record::new(self.kept(), count);
         let mut supply = Supply::new(&self.members);
         let mut tally = Tally::new(self.job, count);
@@ -193,12 +196,13 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
         let mut first = 0;
         while first < samples {
             let length = SAMPLES.min(samples - first);
-            supply.fill(self.job.plan, first, length);
-            self.job.plan.width.run(Stretch {
+            supply.fill(plan, first, length);
+            plan.width.run(Stretch {
                 team: self,
                 blocks: &mut blocks,
                 room: &mut room,
                 efforts: &supply.efforts()[..length * count],
+                ahead: supply.ahead(plan, first + length),
                 record: &mut record,
                 first,
             });

@@ -40,12 +40,13 @@ impl<S: Scalar> Contacts<S, Coulomb<S>> for Lanes {
     }
 
     #[inline(always)]
-    fn step<const N: usize>(blocks: &mut [Block<Self>; N]) {
+    fn step<const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
         for Block { bodies, contacts } in blocks {
             for lane in 0..WIDTH {
                 contacts.step(lane, bodies);
             }
         }
+        [true; N]
     }
 }
 

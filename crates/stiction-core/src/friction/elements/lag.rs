@@ -1,6 +1,7 @@
 //! First-order following of a target that changes linearly.
 
 use crate::exponential::{faded, faded_of, faded_within};
+use crate::lanes::pick;
 use crate::scalar::Scalar;
 
 /// What [`follow`] returns.
@@ -51,7 +52,8 @@ pub fn follow_by<S: Scalar>(y: S, from: S, to: S, z: S, gone: S) -> Followed<S> 
 #[inline(always)]
 pub fn shares(z: f64) -> (f64, f64) {
     let gone = faded(-z);
-    let mean = if z < 1e-5 { -(z * 0.5 - 1.0) } else { gone * (1.0 / z) };
+    // By bits, or a division that is left out for some would be a branch.
+    let mean = pick(z < 1e-5, -(z * 0.5 - 1.0), gone * (1.0 / z));
     (-(gone - 1.0), -(mean - 1.0))
 }
 

@@ -1,7 +1,11 @@
 //! Plain steps of eight contacts at once: what [`FrictionLaw::glide`] does, without a choice.
 //!
-//! Sticking and sliding lanes go through a pass each, which is left out where a block has none.
+//! Most rows stick and go on along their branches (`onward`), or slide forward (`forward`); where a
+//! lane of a row does anything else, those that do go through another pass (`stick`, `slide`), in which
+//! what few need is left out where none does.
 
+mod forward;
+mod onward;
 mod slide;
 mod stick;
 
@@ -14,6 +18,8 @@ use crate::friction::elements::spring::SpringState;
 use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH};
 use crate::scalar::Scalar;
 
+use forward::forward;
+use onward::onward;
 use slide::slide;
 use stick::stick;
 
@@ -34,6 +40,8 @@ pub struct Lanes {
     /// Of the branch: its direction and the share of d_0 that a displacement is.
     direction: Row,
     per_displacement: Row,
+    /// Where it closes, times that direction.
+    closing: Row,
     /// 1 on the first loading, and where the first loop closes at the mirror of its reverse point.
     first: Row,
     mirrors: Row,
@@ -44,6 +52,9 @@ pub struct Lanes {
     fading: Row,
     faded_force: Row,
     inverse_distance: Row,
+    distance: Row,
+    /// How many times as large branches are as the first loading.
+    twice: Row,
     initial_stiffness: Row,
     final_stiffness: Row,
     /// Creep: α, c, 2·c, α·h and the product of the last two.
@@ -65,10 +76,20 @@ pub struct Lanes {
     per_velocity: Row,
     viscous: Row,
     per_distance: Row,
-    /// ℓ·k_inf.
+    /// Just under what the slope of the spring is at the level of break-away, below which it is steeper.
+    softest: Row,
+    /// ℓ, and that times this slope.
+    reach: Row,
     least: Row,
+    /// 1/J and h/2 of that.
+    undamped_share: Row,
+    undamped_braking: Row,
     sticks: bool,
     slides: bool,
+    /// No lane has been given a hardening below 0, where a contact that cannot creep would.
+    tame: bool,
+    /// No level of a slide rises with speed.
+    falls: bool,
 }
 
 /// Branches, one in each lane.
@@ -112,6 +133,20 @@ pub fn fits<S: Scalar>(law: &HsiehPan<S>) -> bool {
     bell && law.plastic.is_square() && !law.damper_on_spring && !law.rated
 }
 
+/// Of a force, what is more than round-off.
+const ROUNDING: f64 = 1e-13;
+
+/// Just under the slope of the spring at the level of break-away, or that far from a reverse point
+/// where it never breaks away.
+fn softest<S: Scalar>(law: &HsiehPan<S>) -> f64 {
+    let p = &law.parameters;
+    if !p.breakaway.re().is_finite() {
+        return p.final_stiffness.re();
+    }
+    let slope = law.curve.virgin(law.curve.virgin_inverse(p.breakaway)).slope.re();
+    (slope * (1.0 - 1e-9)).max(p.final_stiffness.re())
+}
+
 impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
     fn fit(&mut self, lane: usize, law: &HsiehPan<S>, bodies: &Bodies) {
         let p = &law.parameters;
@@ -138,7 +173,14 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         self.per_velocity.0[lane] = 1.0 / p.stribeck_velocity.re();
         self.viscous.0[lane] = p.viscous.re();
         self.per_distance.0[lane] = 1.0 / p.slip_distance.re();
-        self.least.0[lane] = p.slip_distance.re() * p.final_stiffness.re();
+        self.reach.0[lane] = p.slip_distance.re();
+        self.distance.0[lane] = distance;
+        self.twice.0[lane] = if law.curve.closes_at_mirror() { 2.0 } else { 1.0 };
+        self.softest.0[lane] = softest(law);
+        self.least.0[lane] = p.slip_distance.re() * self.softest.0[lane];
+        let undamped = bodies.dragged(lane, 0.0);
+        self.undamped_share.0[lane] = undamped.share;
+        self.undamped_braking.0[lane] = undamped.braking;
         self.mirrors.0[lane] = f64::from(u8::from(law.curve.closes_at_mirror()));
     }
 
@@ -156,6 +198,9 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         self.excess.0[lane] = (state.latched - law.parameters.coulomb).re();
         self.sticks = self.mode.0.contains(&0.0);
         self.slides = self.mode.0.iter().any(|mode| *mode != 0.0);
+        self.falls = self.viscous.0.iter().all(|viscous| *viscous == 0.0)
+            && self.excess.0.iter().all(|excess| *excess >= 0.0);
+        self.tame = self.hardening.0.iter().all(|hardening| *hardening >= 0.0);
     }
 
     #[inline]
@@ -190,28 +235,66 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
     }
 
     #[inline(always)]
-    fn step<const N: usize>(blocks: &mut [Block<Self>; N]) {
-        for Block { bodies, .. } in &mut *blocks {
-            bodies.missed = [0; WIDTH];
-            bodies.changed = [0; WIDTH];
-        }
-        if blocks.iter().all(|block| block.contacts.sticks) {
-            stick::<false, N>(blocks);
+    fn step<const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
+        let onwards = |block: &Block<Self>| !block.contacts.slides && block.contacts.tame;
+        let forwards = |block: &Block<Self>| !block.contacts.sticks && block.contacts.falls;
+        let open = if blocks.iter().all(onwards) {
+            onward::<false, N>(blocks)
+        } else if blocks.iter().all(forwards) {
+            forward::<false, N>(blocks)
         } else {
-            for block in blocks.iter_mut().filter(|block| block.contacts.sticks) {
-                stick::<false, 1>(from_mut(block));
+            let mut open = [true; N];
+            for (block, open) in blocks.iter_mut().zip(&mut open) {
+                let row = from_mut(block);
+                [*open] = if onwards(&row[0]) {
+                    onward::<false, 1>(row)
+                } else if forwards(&row[0]) {
+                    forward::<false, 1>(row)
+                } else {
+                    mixed(row)
+                };
+            }
+            open
+        };
+        for (block, open) in blocks.iter_mut().zip(&open) {
+            if *open {
+                any(block);
             }
         }
-        for block in blocks.iter_mut().filter(|block| block.bodies.misses()) {
-            stick::<true, 1>(from_mut(block));
-        }
-        if blocks.iter().all(|block| block.contacts.slides) {
-            slide(blocks);
-        } else {
-            for block in blocks.iter_mut().filter(|block| block.contacts.slides) {
-                slide(from_mut(block));
-            }
-        }
+        open
+    }
+}
+
+/// Steps of a row of which some stick and some slide.
+#[inline(always)]
+fn mixed(row: &mut [Block<Lanes>; 1]) -> [bool; 1] {
+    let (tame, falls) = (row[0].contacts.tame, row[0].contacts.falls);
+    row[0].bodies.missed = row[0].bodies.alive;
+    if tame && row[0].contacts.sticks {
+        onward::<true, 1>(row);
+    }
+    if falls && row[0].contacts.slides {
+        forward::<true, 1>(row);
+    }
+    [true]
+}
+
+/// Steps of those of a row that have missed theirs.
+#[inline(always)]
+fn any(block: &mut Block<Lanes>) {
+    block.bodies.changed = [0; WIDTH];
+    let (mut sticks, mut slides) = (0, 0);
+    for lane in 0..WIDTH {
+        let missed = block.bodies.missed[lane] & block.bodies.alive[lane];
+        let stuck = u64::from(block.contacts.mode.0[lane] == 0.0).wrapping_neg();
+        sticks |= missed & stuck;
+        slides |= missed & !stuck;
+    }
+    if sticks != 0 {
+        stick(block);
+    }
+    if slides != 0 {
+        slide(block);
     }
 }
 
@@ -230,6 +313,7 @@ impl Lanes {
         self.older.take(lane, &last[..last.len().saturating_sub(2)], mirrors, direction);
         let branch = spring.present(&law.curve);
         self.direction.0[lane] = direction;
+        self.closing.0[lane] = self.present.target.0[lane] * direction;
         self.first.0[lane] = f64::from(u8::from(points.is_empty()));
         self.per_displacement.0[lane] = law.curve.per_displacement(&branch, direction).re();
     }

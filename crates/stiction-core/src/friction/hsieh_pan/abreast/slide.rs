@@ -1,96 +1,200 @@
-//! Steps of sliding hooks.
+//! Any steps of sliding hooks.
 
-use super::Lanes;
-use crate::exponential::fading;
+use super::{Lanes, ROUNDING};
+use crate::exponential::{faded, fading};
 use crate::friction::elements::lag::shares;
-use crate::lanes::{Block, Bodies, WIDTH};
+use crate::lanes::{Block, Bodies, Row, WIDTH, pick};
 use crate::scalar::sign;
 
-/// Steps of sliding hooks in one block or two, stage by stage.
+/// Steps of those sliding hooks of a row that have missed theirs. The spring is asked only where it
+/// may hold one of them back or catch its hook.
 #[inline(always)]
-pub(super) fn slide<const N: usize>(blocks: &mut [Block<Lanes>; N]) {
-    const { assert!(N == 1 || N == 2) };
+#[allow(clippy::needless_range_loop)] // a lane of all rows at a time
+pub(super) fn slide(block: &mut Block<Lanes>) {
+    let Block { bodies, contacts } = block;
+    let mut here = [0; WIDTH];
+    let mut slid = Slides::default();
+    let (mut faster, mut pulled) = (0, 0);
     for lane in 0..WIDTH {
-        let (p, q) = (&blocks[0], &blocks[N - 1]);
-        let levels = [p.contacts.level(lane, &p.bodies), q.contacts.level(lane, &q.bodies)];
-        let lags = [p.contacts.lag(lane, &levels[0]), q.contacts.lag(lane, &levels[1])];
-        for (k, Block { bodies, contacts }) in blocks.iter_mut().enumerate() {
-            contacts.slide(lane, &levels[k], &lags[k], bodies);
+        here[lane] =
+            u64::from((bodies.missed[lane] != 0) & (contacts.mode.0[lane] != 0.0)) & bodies.alive[lane];
+        faster |= here[lane] & u64::from(slid.take(lane, contacts, bodies));
+    }
+    if faster != 0 {
+        let mut behind = Row::ZERO;
+        for lane in 0..WIDTH {
+            behind.0[lane] = contacts.force.0[lane] * contacts.mode.0[lane];
         }
+        let mut asked = here;
+        for lane in 0..WIDTH {
+            asked[lane] &= u64::from(!contacts.follows(lane, &slid));
+        }
+        let at = contacts.virgin_inverse(&behind, asked);
+        for lane in 0..WIDTH {
+            let limit = contacts.virgin(lane, at.0[lane] + slid.displacement.0[lane].abs()).0;
+            let least = contacts.final_stiffness.0[lane] * slid.displacement.0[lane].abs();
+            let slower = slid.sigma.0[lane] <= behind.0[lane] + least;
+            let within = slid.sigma.0[lane] <= limit;
+            let held_back = (asked[lane] != 0) & !slower & !within;
+            slid.sigma.take(lane, held_back, limit);
+            slid.damping.take(lane, held_back, 0.0);
+        }
+    }
+    let mut asked = here;
+    for lane in 0..WIDTH {
+        asked[lane] &= u64::from(!contacts.slides_on(lane, &slid));
+        pulled |= asked[lane];
+    }
+    let mut catches = [0; WIDTH];
+    if pulled != 0 {
+        let mut force = Row::ZERO;
+        for lane in 0..WIDTH {
+            force.0[lane] = slid.sigma.0[lane] * contacts.mode.0[lane];
+        }
+        let at = contacts.virgin_inverse(&force, asked);
+        for lane in 0..WIDTH {
+            let slope = contacts.virgin(lane, at.0[lane]).1;
+            let pull = slid.to.0[lane] - slid.sigma.0[lane];
+            let margin = contacts.reach.0[lane] * slope - pull;
+            let goes_on = margin > 0.0;
+            catches[lane] = asked[lane] & u64::from(!goes_on);
+        }
+    }
+    for lane in 0..WIDTH {
+        contacts.slid(lane, (here[lane] != 0) & (catches[lane] == 0), &slid, bodies);
     }
 }
 
-/// Sliding levels at the start and at the end of a step, and how the latter falls with speed.
-#[derive(Clone, Copy)]
-struct Levels {
-    net: f64,
-    displacement: f64,
-    predicted: f64,
-    from: f64,
-    to: f64,
-    steepness: f64,
+/// Steps of sliding hooks, one in each lane.
+#[derive(Clone, Copy, Default)]
+struct Slides {
+    net: Row,
+    displacement: Row,
+    predicted: Row,
+    /// The sliding level at the end, and the force times the mode.
+    to: Row,
+    sigma: Row,
+    damping: Row,
 }
 
-/// How a force follows them.
-#[derive(Clone, Copy)]
-struct Lag {
-    remainder: f64,
-    end_share: f64,
-}
-
-impl Lanes {
-    /// Where a step of a sliding hook goes to, and `HsiehPan::sliding_level`.
+impl Slides {
+    /// Takes in the step of a hook that no spring holds back: `HsiehPan::sliding_level` and `follow`.
+    /// Returns whether it may be faster than the spring.
     #[inline(always)]
-    fn level(&self, lane: usize, bodies: &Bodies) -> Levels {
-        let velocity = bodies.velocity.0[lane];
-        let net = bodies.effort.0[lane] - self.force.0[lane];
+    fn take(&mut self, lane: usize, contacts: &Lanes, bodies: &Bodies) -> bool {
+        let (velocity, mode) = (bodies.velocity.0[lane], contacts.mode.0[lane]);
+        let net = bodies.effort.0[lane] - contacts.force.0[lane];
         let (displacement, predicted) = bodies.depart(lane, net);
-        let (coulomb, excess) = (self.coulomb.0[lane], self.excess.0[lane]);
-        let viscous = self.viscous.0[lane];
-        let (share, before) =
-            (predicted * self.per_velocity.0[lane], velocity * self.per_velocity.0[lane]);
+        let (coulomb, excess) = (contacts.coulomb.0[lane], contacts.excess.0[lane]);
+        let viscous = contacts.viscous.0[lane];
+        let per_velocity = contacts.per_velocity.0[lane];
+        let (share, before) = (predicted * per_velocity, velocity * per_velocity);
         let (power, power_before) = (share * share, before * before);
         let (left, left_before) = (fading(-power), fading(-power_before));
         let to = coulomb + excess * left + viscous * predicted.abs();
         let from = coulomb + excess * left_before + viscous * velocity.abs();
-        let fall = if predicted == 0.0 { 0.0 } else { -(left * (2.0 * power / predicted.abs())) };
+        let fall = -(left * (2.0 * power / predicted.abs()));
+        let fall = pick(predicted == 0.0, 0.0, fall);
         let steepness = excess * fall + viscous;
-        Levels { net, displacement, predicted, from, to, steepness }
+
+        let (remainder, end_share) = shares(displacement.abs() * contacts.per_distance.0[lane]);
+        let behind = contacts.force.0[lane] * mode;
+        let damping = steepness * end_share * (mode * sign(predicted));
+        self.net.0[lane] = net;
+        self.displacement.0[lane] = displacement;
+        self.predicted.0[lane] = predicted;
+        self.to.0[lane] = to;
+        self.sigma.0[lane] = from + (to - from) * end_share + (behind - from) * remainder;
+        self.damping.0[lane] = if damping > 0.0 { damping } else { 0.0 };
+        !contacts.follows(lane, self)
+    }
+}
+
+impl Lanes {
+    /// Whether the force rises for certain by less than that of the spring, whose curve is no softer
+    /// anywhere below the level of break-away.
+    #[inline(always)]
+    fn follows(&self, lane: usize, slid: &Slides) -> bool {
+        let behind = self.force.0[lane] * self.mode.0[lane];
+        let distance = slid.displacement.0[lane].abs();
+        (slid.sigma.0[lane] <= behind - ROUNDING * behind.abs() + self.softest.0[lane] * distance)
+            & (slid.sigma.0[lane] <= self.greatest.0[lane])
     }
 
-    /// `follow`.
+    /// Whether the hook goes on for certain, whatever the slope of the spring.
     #[inline(always)]
-    fn lag(&self, lane: usize, levels: &Levels) -> Lag {
-        let z = levels.displacement.abs() * self.per_distance.0[lane];
-        let (remainder, end_share) = shares(z);
-        Lag { remainder, end_share }
+    fn slides_on(&self, lane: usize, slid: &Slides) -> bool {
+        let (sigma, pull) = (slid.sigma.0[lane], slid.to.0[lane] - slid.sigma.0[lane]);
+        let force = (sigma * self.mode.0[lane]).abs();
+        (self.least.0[lane] - pull > 0.0) | (self.greatest.0[lane] - force <= 0.0)
     }
 
-    /// The end of a step of a sliding hook, accepted where it is plain.
+    /// The virgin curve at an elongation and its slope there.
     #[inline(always)]
-    fn slide(&mut self, lane: usize, levels: &Levels, lag: &Lag, bodies: &mut Bodies) {
-        let Levels { net, displacement, predicted, from, to, steepness } = *levels;
+    fn virgin(&self, lane: usize, x: f64) -> (f64, f64) {
+        let d = x.abs() * self.twice.0[lane];
+        let gone = faded(-(d * self.inverse_distance.0[lane]));
+        let force = self.final_stiffness.0[lane] * d + self.faded_force.0[lane] * gone;
+        let slope = self.initial_stiffness.0[lane] - self.fading.0[lane] * gone;
+        (force * (1.0 / self.twice.0[lane]).copysign(x), slope)
+    }
+
+    /// `Curve::virgin_inverse`, good where it is `asked` for.
+    #[inline(always)]
+    #[allow(clippy::needless_range_loop)] // likewise
+    fn virgin_inverse(&self, force: &Row, asked: [u64; WIDTH]) -> Row {
+        let mut at = Row::ZERO;
+        let mut found = asked.map(|asked| asked ^ 1);
+        for lane in 0..WIDTH {
+            let (twice, target) = (self.twice.0[lane], force.0[lane].abs());
+            let (last, distance) = (self.final_stiffness.0[lane], self.distance.0[lane]);
+            let rest = last / self.fading.0[lane];
+            let share = twice * target / self.faded_force.0[lane];
+            let linear = rest + 1.0 - 0.5 * share;
+            let root = (linear * linear + 2.0 * rest * share).sqrt();
+            let near = 2.0 * share / (linear + root);
+            let u = pick(linear > 0.0, near, (root - linear) / rest);
+            at.0[lane] = u * distance / twice;
+        }
+        for _ in 0..60 {
+            let mut more = 0;
+            for lane in 0..WIDTH {
+                let (x, target) = (at.0[lane], force.0[lane].abs());
+                let (there, slope) = self.virgin(lane, x);
+                let last = self.final_stiffness.0[lane];
+                let bend = (last - slope) * self.twice.0[lane] / self.distance.0[lane];
+                let step = (target - there) / slope;
+                let moved = step / (1.0 + 0.5 * step * bend / slope);
+                let next = pick(found[lane] != 0, x, x + moved);
+                at.0[lane] = next;
+                found[lane] |= u64::from(moved.abs() <= 1e-3 * next);
+                more |= found[lane] ^ 1;
+            }
+            if more == 0 {
+                break;
+            }
+        }
+        for lane in 0..WIDTH {
+            let s = if force.0[lane] < 0.0 { -1.0 } else { 1.0 };
+            let (there, slope) = self.virgin(lane, at.0[lane]);
+            at.0[lane] = ((force.0[lane] * s - there) / slope + at.0[lane]) * s;
+        }
+        at
+    }
+
+    /// The end of a step of a sliding hook, accepted where one is `here` and goes on.
+    #[inline(always)]
+    fn slid(&mut self, lane: usize, here: bool, slid: &Slides, bodies: &mut Bodies) {
         let (effort, velocity) = (bodies.effort.0[lane], bodies.velocity.0[lane]);
-        let mode = self.mode.0[lane];
-        let behind = self.force.0[lane] * mode;
-        let sigma = from + (to - from) * lag.end_share + (behind - from) * lag.remainder;
-        let follows = sigma <= behind + self.final_stiffness.0[lane] * displacement.abs();
-
-        let damping = steepness * lag.end_share * (mode * sign(predicted));
-        let damping = if damping > 0.0 { damping } else { 0.0 };
-        let force = sigma * mode;
-        let undamped = force - damping * predicted;
-        let arrived = bodies.arrive(lane, net + effort, damping, undamped);
-        let pull = to - sigma;
-        let held = (self.least.0[lane] - pull > 0.0) | (self.greatest.0[lane] - force.abs() <= 0.0);
-
+        let (mode, damping) = (self.mode.0[lane], slid.damping.0[lane]);
+        let force = slid.sigma.0[lane] * mode;
+        let undamped = force - damping * slid.predicted.0[lane];
+        let arrived = bodies.arrive(lane, slid.net.0[lane] + effort, damping, undamped);
         let (turned, stops) = (mode * velocity < 0.0, mode * arrived <= 0.0);
-        let here = mode != 0.0;
-        let plain = follows & held & !turned & !stops;
-        let accepted = here & plain;
-        bodies.missed[lane] |= u64::from(here & !plain);
+        let accepted = here & !turned & !stops;
+        bodies.missed[lane] &= u64::from(!accepted);
         self.force.take(lane, accepted, force);
         let friction = undamped + damping * arrived;
-        bodies.accept(lane, accepted, displacement, arrived, friction);
+        bodies.accept(lane, accepted, slid.displacement.0[lane], arrived, friction);
     }
 }
