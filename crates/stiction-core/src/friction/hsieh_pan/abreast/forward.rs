@@ -1,15 +1,17 @@
 //! Steps of rows in which every hook slides forward under a level that does not rise with speed, so
 //! that nothing damps it: nothing in them is chosen. Whatever leaves a doubt is left to `slide`.
 
-use super::{Lanes, ROUNDING};
 use super::onward::{accept, flipped};
+use super::{Lanes, ROUNDING};
 use crate::exponential::{faded, fading};
 use crate::lanes::{Block, Bodies, Row, WIDTH};
 
 /// Steps of rows of hooks of which all slide, two of them stage by stage, or with `MIXED` of those
 /// lanes in `missed` that do. Says which rows have lanes left that have not gone on, in `missed`.
 #[inline(always)]
-pub(super) fn forward<const MIXED: bool, const N: usize>(blocks: &mut [Block<Lanes>; N]) -> [bool; N] {
+pub(super) fn forward<const MIXED: bool, const N: usize>(
+    blocks: &mut [Block<Lanes>; N],
+) -> [bool; N] {
     const { assert!(N == 1 || N == 2) };
     let mut ends = [Ends::default(); N];
     let mut odds = [false; N];
@@ -119,7 +121,8 @@ impl Lanes {
         ends.displacement.0[lane] = displacement;
         ends.arrived.0[lane] = arrived;
         ends.force.0[lane] = force;
-        let follows = sigma <= behind - ROUNDING * behind.abs() + self.softest.0[lane] * slid.distance;
+        let follows =
+            sigma <= behind - ROUNDING * behind.abs() + self.softest.0[lane] * slid.distance;
         let held = self.least.0[lane] - (to - sigma) > 0.0;
         let inside = (sigma > 0.0) & (sigma <= self.greatest.0[lane]);
         goes & slid.far & follows & held & inside & (flipped(arrived, mode) > 0.0)

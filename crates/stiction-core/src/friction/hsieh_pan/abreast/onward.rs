@@ -13,7 +13,9 @@ const SURE: f64 = 0.99;
 /// Steps of rows of hooks of which all stick, two of them stage by stage, or with `MIXED` of those
 /// lanes in `missed` that do. Says which rows have lanes left that have not gone on, in `missed`.
 #[inline(always)]
-pub(super) fn onward<const MIXED: bool, const N: usize>(blocks: &mut [Block<Lanes>; N]) -> [bool; N] {
+pub(super) fn onward<const MIXED: bool, const N: usize>(
+    blocks: &mut [Block<Lanes>; N],
+) -> [bool; N] {
     const { assert!(N == 1 || N == 2) };
     let mut ends = [Ends::default(); N];
     let mut odds = [false; N];

@@ -16,8 +16,8 @@ pub(super) fn slide(block: &mut Block<Lanes>) {
     let mut slid = Slides::default();
     let (mut faster, mut pulled) = (0, 0);
     for lane in 0..WIDTH {
-        here[lane] =
-            u64::from((bodies.missed[lane] != 0) & (contacts.mode.0[lane] != 0.0)) & bodies.alive[lane];
+        here[lane] = u64::from((bodies.missed[lane] != 0) & (contacts.mode.0[lane] != 0.0))
+            & bodies.alive[lane];
         faster |= here[lane] & u64::from(slid.take(lane, contacts, bodies));
     }
     if faster != 0 {

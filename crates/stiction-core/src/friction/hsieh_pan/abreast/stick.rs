@@ -17,8 +17,8 @@ pub(super) fn stick(block: &mut Block<Lanes>) {
     let (mut crept, mut pulled) = (Creeps::default(), Pulls::default());
     let mut odd = 0;
     for lane in 0..WIDTH {
-        here[lane] =
-            u64::from((bodies.missed[lane] != 0) & (contacts.mode.0[lane] == 0.0)) & bodies.alive[lane];
+        here[lane] = u64::from((bodies.missed[lane] != 0) & (contacts.mode.0[lane] == 0.0))
+            & bodies.alive[lane];
         let begun = contacts.depart(lane, bodies);
         odd |= here[lane] & !crept.take(lane, contacts.creep(lane, &begun));
     }
