@@ -6,6 +6,7 @@ The data are made by the independent machines of ``tests/reference``, not by the
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,10 @@ from tests.reference.coulomb_reference import simulate_coulomb
 import stiction as st
 from stiction import InputError, Plant, Recording, fit
 from stiction.cli import run
+from stiction.fitting import minimise
+from stiction.fitting.minimise import HARDENING, Solution
 from stiction.fitting.rows import Nuisances, Rows
+from stiction.fitting.variables import Variables
 from stiction.weak_form import Start, WeakForm
 
 DT = 1e-3
@@ -325,3 +329,47 @@ def test_short_recordings_with_roles_are_fitted_as_they_are() -> None:
     # A fit decides nothing, so nothing is cut or left out for a decision.
     assert "select" not in found.split
     assert "blocks" not in found.split
+
+
+def hardening_solution() -> Solution:
+    """A fit of `hsieh_pan` that has ended, with one exponent and a hardening that may vary."""
+    stated = Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm", "gain": 1.0},
+            "body": {"inertia": 0.01},
+            "friction": {
+                "law": "hsieh_pan",
+                "hardening_exponent": 3.0,
+                "hardening_coefficient": 0.01,
+            },
+        }
+    )
+    variables = Variables.of(stated, ["friction.hardening_exponent", HARDENING])
+    vector = variables.vector(np.array([3.0, 0.01]))
+    return Solution(stated, variables, vector, vector, Nuisances(), True, False, "", 7, 5.0)
+
+
+def test_other_starts_keep_to_the_evaluations_that_were_allowed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    solution, asked = hardening_solution(), []
+
+    def few(plant: Plant, *_: object, most: int, **__: object) -> Solution:
+        asked.append((plant.parameters[HARDENING].value, most))
+        return replace(solution, power=4.0, success=False, evaluations=most)
+
+    monkeypatch.setattr(minimise, "minimise", few)
+    found = minimise.from_elsewhere(solution, [], most=3)
+    assert asked == [(0.01, 3), (0.01, 3), (pytest.approx(0.04), 3)]
+    assert (found.power, found.evaluations) == (4.0, 7 + 9)
+
+
+def test_an_interrupted_other_start_keeps_the_solution(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object, **__: object) -> Solution:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(minimise, "minimise", interrupted)
+    solution = hardening_solution()
+    found = minimise.from_elsewhere(solution, [])
+    assert found.interrupted
+    assert found.vector is solution.vector

@@ -194,13 +194,13 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
     elif gain <= 0.0:
         reason = "does not help on rows held out"
-    elif gain > MOST_AGAIN * explained:
-        reason = (
-            f"gains {gain / explained:.0f} times on rows held out what it explains where it was "
-            "fitted: there the base had lost the machine, and anything finds it again"
-        )
     elif gain <= LEAST_GAIN:
         reason = f"gains {100 * gain:.2f} % on rows held out, below {100 * LEAST_GAIN:.2f} %"
+    elif gain > MOST_AGAIN * (again := max(explained, _again(base, model))):
+        reason = (
+            f"gains {gain / again:.0f} times on rows held out what it explains where it "
+            "was fitted: there the base had lost the machine, and anything finds it again"
+        )
     elif z <= LEAST_Z:
         reason = f"its held-out gain is {z:.2f} standard errors, below {LEAST_Z:.2f}"
         by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
@@ -247,6 +247,13 @@ def _out_of_its_range(candidate: Candidate, model: Model) -> str:
         if shape.scale == "kernel" and stated.value <= stated.min / AT_THE_EDGE:
             return f"{shape.parameter} went below what a kernel shows"
     return ""
+
+
+def _again(base: Model, model: Model) -> float:
+    """Share of the fitted power that a model removes, no block counting for too much."""
+    before, after = limited(base.blocks[0], model.blocks[0])
+    total = float(before.sum())
+    return 1.0 - float(after.sum()) / total if total > 0.0 else 0.0
 
 
 def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tuple[float, float]:

@@ -33,6 +33,8 @@ REFIT_EVALUATIONS: Final = 30
 """A refit starts from the base and an estimate of the gain: it needs few steps."""
 REFIT_CONVERGED: Final = 1e-5
 """Of the power: a fifth of a standard error of any parameter."""
+FARTHEST: Final = 7.0
+"""Step of the logarithm of a parameter at most: of one that hardly tells, a step may be any."""
 FLAT: Final = 1e-8
 """Directions of the base with less than this share of the strongest one are left alone."""
 MOST_TAKEN: Final = 0.5
@@ -288,7 +290,10 @@ def stepped(model: Model, explained: FloatArray) -> Plant:
     scale = np.sqrt(np.sum(columns**2, axis=0))
     scale[scale == 0.0] = 1.0
     moved = np.linalg.lstsq(columns / scale, explained[fit], rcond=FLAT)[0] / scale
-    vector = np.clip(solution.vector + moved[:number], *variables.bounds())
+    way = np.where(
+        variables.logarithmic, np.clip(moved[:number], -FARTHEST, FARTHEST), moved[:number]
+    )
+    vector = np.clip(solution.vector + way, *variables.bounds())
     return variables.plant(model.plant, vector)
 
 

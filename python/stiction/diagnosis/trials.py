@@ -156,7 +156,7 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
 
 
 def unstuck(model: Model) -> Model:
-    """A model, or a better one from where exponents of its law have their usual values.
+    """A model, or a better one from starts that it may not have seen (see ``from_elsewhere``).
 
     What is fitted on from a base that made up for the effect may end in the valley of that base.
     """

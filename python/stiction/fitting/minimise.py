@@ -40,6 +40,7 @@ a kernel."""
 START_TIMES: Final = 2.0
 """A force at the start is at most this many times the greatest effort that was measured."""
 RUNAWAY: Final = 1e6
+INTERRUPTED: Final = "interrupted: these are the best values so far"
 
 _logger = logging.getLogger(__name__)
 
@@ -163,24 +164,31 @@ def _further(
     return replace(further, begin=solution.begin)
 
 
-def from_elsewhere(solution: Solution, rows: Sequence[Rows]) -> Solution:
+def from_elsewhere(
+    solution: Solution, rows: Sequence[Rows], *, most: int = MOST_EVALUATIONS
+) -> Solution:
     """The better of a solution and short fits from starts that it may not have seen.
 
     With each exponent at its usual value: one far from that makes up for the number that it belongs
     to, in a valley that no small step leaves. And with a contact that hardens over a longer way:
     one that hardens too soon breaks away here and there, and each time is a kink from which slopes
-    lead back. Where the law has neither, or the fit was interrupted, the solution.
+    lead back. Where the law has neither, or the fit was interrupted, the solution. ``most``: of
+    evaluations of each start, at most.
     """
     better, spent = solution, solution.evaluations
+    paths = solution.variables.paths
+    few = min(FEW_EVALUATIONS, most)
     for start in _elsewhere(solution):
-        paths, nuisances = better.variables.paths, better.nuisances
-        again = minimise(start, paths, rows, most=FEW_EVALUATIONS, nuisances=nuisances)
-        spent += again.evaluations
-        if again.power < better.power and not again.interrupted and not again.success:
-            again = minimise(
-                again.plant, paths, rows, most=MOST_EVALUATIONS, nuisances=again.nuisances
-            )
+        try:
+            again = minimise(start, paths, rows, most=few, nuisances=better.nuisances)
             spent += again.evaluations
+            if again.power < better.power and not again.interrupted and not again.success:
+                again = minimise(again.plant, paths, rows, most=most, nuisances=again.nuisances)
+                spent += again.evaluations
+        except KeyboardInterrupt:
+            # Before that start had anything to keep.
+            better = replace(better, success=False, interrupted=True, message=INTERRUPTED)
+            break
         if again.power < better.power:
             better = again
         if again.interrupted:
@@ -303,7 +311,7 @@ class _Minimiser:
             if self._best is None:
                 raise
             full, success, interrupted = self._best[1], False, True
-            message = "interrupted: these are the best values so far"
+            message = INTERRUPTED
         plant, nuisances = self.split(full)
         return Solution(
             plant,

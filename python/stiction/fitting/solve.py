@@ -193,7 +193,7 @@ def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
         most=most,
         nuisances=primed(first.plant, rows, first.nuisances),
     )
-    return from_elsewhere(second, rows)
+    return from_elsewhere(second, rows, most=most)
 
 
 def reweighted(rows: Sequence[Rows], plant: Plant, nuisances: Nuisances) -> None:
