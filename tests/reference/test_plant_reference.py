@@ -3,6 +3,7 @@
 import csv
 import math
 import tomllib
+import zlib
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from .contact_reference import LadderContact, SeriesContact, branch_curve, conta
 from .effect_catalogue import EFFECTS
 from .excitation_reference import BASES, KINDS, draw_plant
 from .plant_reference import EffectGroup, Lanes, simulate
-from .session_reference import Draft, Spec, lanes_of, make_session, make_sessions
+from .session_reference import LARGEST_FACTOR, Draft, Spec, lanes_of, make_session, make_sessions
 
 STEP = 1e-4
 COUNT = 2.0 * math.pi / 2**18
@@ -301,24 +302,37 @@ def test_delay_moves_the_torque_by_exactly_its_time(late):
 
 
 def sizes(specs):
-    """Sizes reached by sessions of one effect each."""
+    """Effects of sessions of one effect each, at the amplitude that was found for them."""
     for session in make_sessions(specs):
         (effect,) = session.effects
         hidden = np.concatenate([r.truth["hidden"] for r in session.recordings])
         rms = np.sqrt(np.mean(hidden**2)) / session.plant["coulomb"]
         assert effect.raw == pytest.approx(rms, rel=1e-9)
-        yield effect.name, effect.reached
+        yield session, effect
 
 
-def test_sizes_are_reached():
+@pytest.mark.parametrize("machine", [40, 70, 100])
+def test_sizes_are_reached_or_stated(machine):
+    """A short recording may keep one out of reach: no rest to relax in, a patch never passed."""
     short = {"roles": ("train",), "seconds": 6 * 0.6, "rate": 5e3}
     quick = {"run_in": {"distance": 5.0}, "warm_up": {"time": 5.0}}
+    # The seed is of the form alone, so that a new effect does not give others another machine.
     specs = [
-        {"seed": 40 + i, "hidden": [(f"{name}:{form}", 0.012, quick.get(name))]} | short
-        for i, (name, form) in enumerate(FORMS)
+        {"seed": machine + zlib.crc32(form.encode()), "hidden": [(form, 0.012, quick.get(name))]}
+        | short
+        for name, form in ((name, f"{name}:{form}") for name, form in FORMS)
     ]
-    for name, reached in sizes(specs):
-        assert reached == pytest.approx(0.012, rel=0.05), name
+    out_of_reach = 0
+    for session, effect in sizes(specs):
+        if effect.reached == pytest.approx(0.012, rel=0.05):
+            continue
+        kind = EFFECTS[effect.name]
+        bound = min(LARGEST_FACTOR * kind.usual(session.plant) * 1.2, kind.largest)
+        at_bound = effect.amplitude == pytest.approx(bound) and effect.reached < 0.012
+        never_passed = effect.name == "stick_patch" and effect.reached == 0.0
+        assert at_bound or never_passed, f"{effect.name} {session.spec.seed} {effect.reached}"
+        out_of_reach += 1
+    assert out_of_reach <= 0.1 * len(FORMS)
 
 
 @pytest.mark.parametrize("base", ["hsieh_pan", "coulomb"])
@@ -326,8 +340,8 @@ def test_sizes_are_reached_on_other_bases(base):
     short = {"base": base, "roles": ("train",), "seconds": 6 * 0.6, "rate": 5e3}
     names = ("stribeck", "viscous_quadratic", "cogging", "dwell_strengthening")
     specs = [{"seed": 90, "hidden": [(name, 0.02)]} | short for name in names]
-    for name, reached in sizes(specs):
-        assert reached == pytest.approx(0.02, rel=0.05), name
+    for _, effect in sizes(specs):
+        assert effect.reached == pytest.approx(0.02, rel=0.05), effect.name
 
 
 def test_two_effects_have_sizes_of_their_own():
