@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
 from ..errors import NotEnoughData
-from ..fitting.forms import followable, horizon_of, shows_its_ring, stiffen
-from ..fitting.minimise import MOST_EVALUATIONS, launch
+from ..fitting.first_pass import first_pass
+from ..fitting.minimise import MOST_EVALUATIONS
 from ..fitting.solve import settled
-from ..fitting.start import complete, free_paths
 from ..plant import Plant
 from ..recording import Recording
 from .evidence import Evidence
@@ -26,8 +24,6 @@ first, is gone."""
 SHOWS: Final = 0.3
 """Share of the residual that it would move, from which on it would have shown."""
 
-_logger = logging.getLogger(__name__)
-
 
 def based(
     plant: Plant, recordings: Sequence[Recording], *, threads: int | None = None
@@ -35,9 +31,7 @@ def based(
     """A session and the base that is fitted to its rows of train.
 
     The way is that of `stiction.fit`: a first pass from starts that the data give, a second with
-    recordings weighted by what the first left in each; where the first one shows that readings are
-    too coarse to drive friction, both on short simulations from there. Of a servo both are on its
-    simulated loop: what its law makes of the measured motion may never have been its effort.
+    recordings weighted by what the first left in each.
 
     Returns
     -------
@@ -51,34 +45,19 @@ def based(
         As for ``Evidence``; a base that lost the inertia that the motion shows.
     """
     evidence = Evidence(plant, recordings, threads=threads)
-    starts = complete(plant, [rows.form for rows in evidence.train])
-    paths = free_paths(starts[0])
-    first = launch(starts, paths, evidence.train, most=MOST_EVALUATIONS)
-    horizon = None
-    if not first.interrupted:
-        horizon = horizon_of(first.plant, first.nuisances, evidence.train, evidence.forms)
-    servo = plant.servo and not first.interrupted
-    if horizon is not None or servo:
-        _logger.info("fitting it again, simulated")
-        simulated = Evidence(
-            first.plant,
-            recordings,
-            threads=threads,
-            horizon=horizon,
-            loop=servo,
-            watch=evidence.watch,
-        )
-        # As in a fit: along the measured motion a servo may lead anywhere.
-        begun = [first.plant, starts[0]] if servo else [first.plant]
-        begun = [followable(start, simulated.forms) for start in begun]
-        again = launch(begun, paths, simulated.train, most=MOST_EVALUATIONS)
-        if servo or shows_its_ring(again.plant, simulated.forms):
-            evidence, first = simulated, again
-            stiffen(evidence.forms, first.plant)
-    solution = settled(first, evidence.train, most=MOST_EVALUATIONS)
+    first = first_pass(
+        plant,
+        evidence,
+        lambda found, horizon, loop, watch: Evidence(
+            found, recordings, threads=threads, horizon=horizon, loop=loop, watch=watch
+        ),
+        most=MOST_EVALUATIONS,
+    )
+    evidence = first.seen
+    solution = settled(first.solution, evidence.train, most=MOST_EVALUATIONS)
     evidence.weigh()
     base = Model(evidence, solution)
-    _refuse_what_does_not_move(evidence, starts[0], base)
+    _refuse_what_does_not_move(evidence, first.start, base)
     return evidence, base
 
 

@@ -40,6 +40,8 @@ keeps out a reach that is short only because the data do not tell the stiffness.
 HORIZONS_S: Final = (0.100, 0.300)
 """Shortest and longest window: shorter ones see the rounding, longer ones average fast causes away
 and let a motion that hangs on a break-away run away."""
+BEYOND_SHOWN: Final = 2.0
+"""A contact simulated over windows may become so many times stiffer than samples show."""
 RINGS: Final = 3.0
 """Periods of its ring on the pre-sliding stiffness that a window holds: a start that is wrong by a
 count sets a machine ringing, and of a ring three times as fast as itself the kernel leaves 1 %."""
@@ -158,17 +160,20 @@ def horizon_of(
 
 
 def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
-    """The plant with a contact no stiffer than the samples of a loop show; else as it is.
+    """The plant with a contact that can be simulated again and again; what is fixed stays.
 
-    A loop is simulated whole, again and again: see ``shows_its_ring``. What is fixed stays.
+    A loop is simulated whole, with a contact no stiffer than its samples show (see
+    ``shows_its_ring``). Windows may come somewhat further, to where they are given up: without an
+    end a contact that is rigid would be simulated stiffer and stiffer, each time for longer.
     """
     stiffness = plant.friction.parameters.get("initial_stiffness")
-    loops = all(isinstance(form, LoopForm) for form in forms)
-    if stiffness is None or stiffness.fixed or not loops:
+    if stiffness is None or stiffness.fixed:
         return plant
-    most = plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
+    shown = plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
+    loops = all(isinstance(form, LoopForm) for form in forms)
+    most, start = (shown, 0.5) if loops else (BEYOND_SHOWN * shown, 1.0)
     ends = max(min(stiffness.max or most, most), stiffness.min or 0.0)
-    held = replace(stiffness, value=min(stiffness.value, 0.5 * ends), max=ends)
+    held = replace(stiffness, value=min(stiffness.value, start * ends), max=ends)
     parameters = {**plant.friction.parameters, "initial_stiffness": held}
     return replace(plant, friction=replace(plant.friction, parameters=parameters))
 

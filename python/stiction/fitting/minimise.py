@@ -376,9 +376,7 @@ class _Minimiser:
     def jacobian(self, full: FloatArray) -> FloatArray:
         plant, nuisances = self.split(full)
         count, paths = len(self.begin), self.variables.paths
-        self._slopes = finite(
-            np.vstack([slopes(each, plant, paths, nuisances) for each in self.rows])
-        )
+        self._slopes = np.vstack([slopes(each, plant, paths, nuisances) for each in self.rows])
         found: FloatArray = self._slopes.copy()
         found[:, :count] = self.variables.chain(found[:, :count], full[:count])
         if len(self.shrunk):

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..finite import finite
 from ..plant import Plant
 from ..trajectory import FloatArray
 from .rows import Nuisances, Rows
@@ -32,7 +33,7 @@ def slopes(rows: Rows, plant: Plant, paths: Sequence[str], nuisances: Nuisances)
     -------
     numpy.ndarray, shape (n, paths + 1 + starts)
         By parameters, by the timing offset, by the starts of all recordings; those of other
-        recordings are 0.
+        recordings are 0, and so are those of a simulation that ran away.
     """
     places = places_of(nuisances)
     own = [(j, name) for j, (index, name) in enumerate(places) if index == rows.index]
@@ -43,4 +44,4 @@ def slopes(rows: Rows, plant: Plant, paths: Sequence[str], nuisances: Nuisances)
     block[:, len(paths)] = rows.late[rows.mask]
     for column, (j, _) in enumerate(own):
         block[:, len(paths) + 1 + j] = found[:, len(paths) + column]
-    return rows.weight * block
+    return finite(rows.weight * block)

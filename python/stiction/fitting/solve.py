@@ -15,13 +15,13 @@ from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.split import BLOCK_S, name_of, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
-from .forms import followable, forms_of, horizon_of, set_clocks, shows_its_ring, stiffen
-from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, launch, minimise
+from .first_pass import first_pass
+from .forms import forms_of, set_clocks
+from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise
 from .pushes import Watch, told
 from .result import FitParameter, FitResult
 from .rows import Nuisances, Rows, primed, rows_of
 from .slopes import slopes
-from .start import complete, free_paths
 from .statistics import (
     correlations,
     covariance,
@@ -121,37 +121,26 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     Raises
     ------
     InputError
-        Nothing to fit: no recordings, no motion, no free parameter, too few rows.
+        Nothing to fit: no recordings, no motion, no free parameter, too few rows; a plant that
+        runs away from every start.
     """
     recordings = [session] if isinstance(session, Recording) else list(session)
     if not recordings:
         raise InputError("there are no recordings to fit; give at least one")
     recordings, faults = _without_faults(recordings)
     seen = _Seen(plant, recordings)
-    train = seen.train
-    starts = complete(plant, [each.form for each in train])
-    paths = free_paths(starts[0])
-    if not paths:
-        raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
-    first = launch(starts, paths, train, most=max_evaluations)
-    evaluations = first.evaluations
-    begin = first.begin
-    horizon = None
-    if not first.interrupted:
-        horizon = horizon_of(first.plant, first.nuisances, train, seen.forms)
-    servo = plant.servo and not first.interrupted
-    if horizon is not None or servo:
-        simulated = _Seen(first.plant, recordings, horizon, loop=servo, watch=seen.watch)
-        # Along the measured motion a servo that is not yet understood may lead anywhere.
-        begun = [first.plant, starts[0]] if servo else [first.plant]
-        begun = [followable(start, simulated.forms) for start in begun]
-        again = launch(begun, paths, simulated.train, most=max_evaluations)
-        evaluations += again.evaluations
-        if servo or shows_its_ring(again.plant, simulated.forms):
-            seen, train, first = simulated, simulated.train, again
-            stiffen(seen.forms, first.plant)
-    solution = settled(first, train, most=max_evaluations)
-    if solution is not first:
+    first = first_pass(
+        plant,
+        seen,
+        lambda found, horizon, loop, watch: _Seen(
+            found, recordings, horizon, loop=loop, watch=watch
+        ),
+        most=max_evaluations,
+    )
+    seen, train = first.seen, first.seen.train
+    begin, evaluations = first.solution.begin, first.solution.evaluations
+    solution = settled(first.solution, train, most=max_evaluations)
+    if solution is not first.solution:
         evaluations += solution.evaluations
     names = [name_of(recording, k) for k, recording in enumerate(recordings)]
     pushed = [f"{name}: {c.what}; {c.means}." for name, c in told(seen.pushes, names)]

@@ -28,7 +28,8 @@ LINEAR: Final = ("coulomb", "breakaway", "viscous", "order")
 """Positive parameters that are varied as they are: the residual is linear in them, or they may well
 be 0. The others are varied by their logarithm: a stiffness or a rate is known to a factor."""
 LEAST_SHARE: Final = 1e-6
-"""A parameter varied by its logarithm stays above this share of where it starts."""
+"""A parameter varied by its logarithm stays above this share of where it starts, and below the
+same multiple: beyond, a step of the optimiser only finds where numbers end."""
 
 INPUT_UNITS: Final = {
     "current_a": "A",
@@ -118,6 +119,7 @@ class Variables:
         logarithmic = positive & np.array(chosen, dtype=bool)
         logarithmic[list(ratios)] = False
         lower = np.where(logarithmic, np.maximum(lower, LEAST_SHARE * begin), lower)
+        upper = np.where(logarithmic, np.minimum(upper, begin / LEAST_SHARE), upper)
         return cls(tuple(paths), lower, upper, ratios, logarithmic)
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:

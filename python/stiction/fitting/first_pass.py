@@ -1,0 +1,129 @@
+"""The first pass of a fit: from starts that the data give, by the residual that they allow."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+
+from ..errors import InputError
+from ..plant import Plant
+from ..weak_form import WeakForm
+from .forms import followable, horizon_of, shows_its_ring, stiffen
+from .minimise import Solution, launch
+from .pushes import Watch
+from .rows import Rows
+from .start import complete, free_paths
+
+__all__ = ["FirstPass", "Seen", "first_pass"]
+
+_logger = logging.getLogger(__name__)
+
+
+class Seen(Protocol):
+    """Recordings through kernels."""
+
+    @property
+    def train(self) -> Sequence[Rows]:
+        """Fitted rows."""
+
+    @property
+    def forms(self) -> Sequence[WeakForm]:
+        """Of all recordings."""
+
+    @property
+    def watch(self) -> Watch:
+        """Who looks out for pushes from outside."""
+
+
+S = TypeVar("S", bound=Seen)
+
+
+@dataclass(frozen=True)
+class FirstPass(Generic[S]):
+    """Where the first pass ended.
+
+    Attributes
+    ----------
+    seen : Seen
+        Through the residual that was chosen.
+    solution : Solution
+        ``begin`` is where the first minimisation started, ``evaluations`` are all of this pass.
+    start : Plant
+        What the data gave to start from, before anything was fitted.
+    """
+
+    seen: S
+    solution: Solution
+    start: Plant
+
+
+def first_pass(
+    plant: Plant,
+    seen: S,
+    simulated: Callable[[Plant, float | None, bool, Watch], S],
+    *,
+    most: int,
+) -> FirstPass[S]:
+    """Fit a plant to rows of the weak form, and simulated where these do not do.
+
+    Where readings turn out too coarse to drive friction (see ``horizon_of``), the fit goes on from
+    there with the plant simulated over short windows. Of a servo it goes on with the simulated
+    loop: what its law makes of the measured motion may never have been its effort.
+
+    Parameters
+    ----------
+    plant : Plant
+    seen : Seen
+        Recordings through the kernels of the weak form.
+    simulated : callable
+        The same recordings for a plant, a length of windows in s (None without windows), whether
+        the loop of a servo is simulated, and the watch of ``seen``.
+    most : int
+        Evaluations of the residual at most, of each start.
+
+    Raises
+    ------
+    InputError
+        Every parameter is fixed; no start along which the plant gives numbers.
+    """
+    starts = complete(plant, [each.form for each in seen.train])
+    paths = free_paths(starts[0])
+    if not paths:
+        raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
+    weak = launch(starts, paths, seen.train, most=most)
+    if weak.interrupted:
+        return FirstPass(seen, weak, starts[0])
+    horizon = horizon_of(weak.plant, weak.nuisances, seen.train, seen.forms)
+    servo = plant.servo
+    if horizon is not None or servo:
+        _logger.info("fitting it again, simulated")
+        other = simulated(weak.plant, horizon, servo, seen.watch)
+        # Along the measured motion a servo that is not yet understood may lead anywhere.
+        begun = [weak.plant, starts[0]] if servo else [weak.plant]
+        begun = [followable(each, other.forms) for each in begun]
+        again = launch(begun, paths, other.train, most=most)
+        again = replace(again, begin=weak.begin, evaluations=weak.evaluations + again.evaluations)
+        if servo or (
+            shows_its_ring(again.plant, other.forms) and _gives_numbers(again, other.train)
+        ):
+            seen, weak = other, again
+            stiffen(seen.forms, weak.plant)
+        else:
+            weak = replace(weak, evaluations=again.evaluations)
+    if not _gives_numbers(weak, seen.train):
+        raise InputError(
+            f"{plant.source}: simulated with what was fitted, the plant runs away from every start "
+            "that the data give; state starting values in [friction] nearer to the machine, or "
+            "bounds for them"
+        )
+    return FirstPass(seen, weak, starts[0])
+
+
+def _gives_numbers(solution: Solution, rows: Sequence[Rows]) -> bool:
+    """Whether what is left of the rows are numbers: a simulation may run away."""
+    left = (each.residual(solution.plant, solution.nuisances)[each.mask] for each in rows)
+    return all(bool(np.all(np.isfinite(own))) for own in left)
