@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Final
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .candidates import Candidate
+from .confirmed import confirmed as is_confirmed
 from .homogeneity import unevenness
 from .influence import limited
 from .model import LEAST_GIVEN, Model
@@ -57,6 +59,8 @@ LEAST_INERTIA: Final = 0.2
 LEAST_STRENGTH: Final = 3.5
 """Gains over their standard errors (the root of Wald's statistic), from residuals correlated within
 blocks: one number that no number of rows makes large by itself."""
+SURE: Final = 35.0
+"""Of the same, for a few blocks held out to confirm it: mimics that these spoke for came to 9."""
 MOST_AGAIN: Final = 8.0
 """A cause gains less than so many times on rows held out what it explains of those it was fitted
 to."""
@@ -173,6 +177,8 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     reason = ""
     by_blocks = False
     strength = model.strength(score.candidate)
+    # What is known so well where it was fitted, blocks held out may confirm however few they are.
+    confirmed = cache(lambda: strength >= SURE and is_confirmed(base, model, contributed))
     if model.given <= LEAST_GIVEN:
         reason = "takes away the effort itself, so that nothing is left to explain"
     elif model.plant.inertia < LEAST_INERTIA * base.plant.inertia:
@@ -189,7 +195,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             f"explains {100 * explained:.1f} % of the residual where its signature can explain "
             f"{100 * score.score:.1f} %: the base was freed, which is no effect's gain"
         )
-    elif unseen:
+    elif unseen and not confirmed():
         reason = "the rows held out hardly excite it"
         by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
     elif gain <= 0.0:
@@ -201,10 +207,10 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             f"gains {gain / again:.0f} times on rows held out what it explains where it "
             "was fitted: there the base had lost the machine, and anything finds it again"
         )
-    elif z <= LEAST_Z:
+    elif z <= LEAST_Z and not confirmed():
         reason = f"its held-out gain is {z:.2f} standard errors, below {LEAST_Z:.2f}"
         by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
-    elif _without_the_best(base, model, contributed) <= 0.5 * LEAST_GAIN:
+    elif _without_the_best(base, model, contributed) <= 0.5 * LEAST_GAIN and not confirmed():
         reason = "gains on rows held out in one recording alone"
     elif strength < LEAST_STRENGTH:
         reason = f"its strength is {strength:.2f} standard errors, below {LEAST_STRENGTH:.2f}"

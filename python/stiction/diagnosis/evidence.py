@@ -99,6 +99,8 @@ class Evidence:
         these are opened.
     train : list of Rows
         Fitted on.
+    overlap : float
+        Rows under one kernel.
     split : Split
     names : list of str
     shown : list of Rows
@@ -135,6 +137,7 @@ class Evidence:
         self.names = [name_of(recording, k) for k, recording in enumerate(self.recordings)]
         self.forms = forms_of(plant, self.recordings, self.each, horizon=horizon, loop=loop)
         self.support = max(form.kernel.support for form in self.forms)
+        self.overlap = max(f.kernel.support / (f.dt * f.stride) for f in self.forms)
         self.split: Split = split(self.recordings, edge_s=min(self.support, 0.25 * BLOCK_S))
         seen = {part.recording for part in (*self.split.train, *self.split.select)}
         set_clocks(self.forms, self.recordings, set(range(len(self.forms))) - seen)

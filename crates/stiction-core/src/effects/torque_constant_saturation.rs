@@ -9,7 +9,7 @@ parameters! {
     /// Parameters of [`TorqueConstantSaturation`].
     pub struct TorqueConstantSaturationParameters {
         loss: One, "share of the gain that is lost at the input below",
-            default Value(0.0), neutral Some(0.0), typical 0.05, bounds -0.3, 0.9;
+            default Value(0.0), neutral Some(0.0), typical 0.05, bounds 0.0, 0.9;
         input: Input, "input at which that share is lost, u_0",
             default Value(1.0), neutral None, typical 1.0, bounds 1e-12, 1e12;
     }

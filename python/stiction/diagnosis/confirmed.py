@@ -1,0 +1,61 @@
+"""Whether rows held out confirm a cause that only few of them excite.
+
+How much a gain varies over blocks says little of a cause that acts in two of fifty: it varies with
+what the machine did there. But what was learnt from the rows that were fitted says how much these
+two must gain, and by noise alone they do not come near it. A mimic may: this is asked only of what
+the fitted rows leave no doubt of.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from ..trajectory import FloatArray
+from .model import Model
+
+__all__ = ["confirmed"]
+
+CLEAR: Final = 4.0
+"""Size of what is expected on rows held out over its standard error there: far from noise."""
+AS_EXPECTED: Final = (0.75, 1.33)
+"""Strength on rows held out as a share of that on fitted ones, which a mimic does not keep."""
+FLAT: Final = 1e-9
+
+
+def confirmed(base: Model, model: Model, contributed: FloatArray) -> bool:
+    """Whether a contribution has about the same strength on rows held out as on those fitted.
+
+    Parameters
+    ----------
+    base : Model
+        Without the effect.
+    model : Model
+        With it.
+    contributed : numpy.ndarray, shape (n,)
+        What the effect explains of each row after its refit.
+    """
+    evidence = base.evidence
+    fitted = evidence.fitted
+    columns = base.columns
+    # What the base cannot make up for; its slopes are learnt where it was fitted.
+    absorbed = np.linalg.lstsq(columns[fitted], contributed[fitted], rcond=FLAT)[0]
+    own = contributed - columns @ absorbed
+    block = evidence.cells.block
+    count = int(block.max()) + 1
+    rows = np.maximum(np.bincount(block[~fitted], minlength=count), 1)
+    noise = np.bincount(block[~fitted], model.residual[~fitted] ** 2, count) / rows
+    power = np.bincount(block[~fitted], own[~fitted] ** 2, count)
+    expected = float(power.sum())
+    # Rows under one kernel are one reading: so many times worse than if they were independent.
+    error = float(np.sqrt(evidence.overlap * (power @ noise)))
+    if expected <= CLEAR * error:
+        return False
+    seen, learnt = (_strength(base.residual[rows], own[rows]) for rows in (~fitted, fitted))
+    return learnt > 0.0 and AS_EXPECTED[0] < seen / learnt < AS_EXPECTED[1]
+
+
+def _strength(residual: FloatArray, own: FloatArray) -> float:
+    power = float(own @ own)
+    return float(residual @ own) / power if power > 0.0 else 0.0

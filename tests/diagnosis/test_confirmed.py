@@ -1,0 +1,60 @@
+"""A cause that few rows held out excite: these must gain what was learnt from those fitted."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from stiction.diagnosis.confirmed import confirmed
+
+BLOCKS, ROWS = 40, 200
+FITTED = np.repeat(np.arange(BLOCKS) < 28, ROWS)
+BLOCK = np.repeat(np.arange(BLOCKS), ROWS)
+
+
+def acting(*blocks: int, seed: int = 1) -> np.ndarray:
+    """Something that acts in these blocks alone, white and of unit size."""
+    wave = np.random.default_rng(seed).standard_normal(BLOCKS * ROWS)
+    return np.where(np.isin(BLOCK, blocks), wave, 0.0)
+
+
+def asked(there: np.ndarray, explained: np.ndarray, columns: np.ndarray | None = None) -> bool:
+    """Whether a machine in which ``there`` acts confirms what explains ``explained``."""
+    noise = np.random.default_rng(2).standard_normal(len(there))
+    own = np.zeros((len(there), 1)) if columns is None else columns
+    evidence = SimpleNamespace(fitted=FITTED, cells=SimpleNamespace(block=BLOCK), overlap=6.0)
+    base = SimpleNamespace(evidence=evidence, columns=own, residual=there + noise)
+    return confirmed(base, SimpleNamespace(residual=there - explained + noise), explained)
+
+
+def test_one_block_held_out_confirms_what_was_learnt() -> None:
+    cause = 3.0 * acting(3, 9, 33)
+    assert asked(cause, cause)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4, 2.0, -1.0])
+def test_another_strength_held_out_does_not(share: float) -> None:
+    cause = 3.0 * acting(3, 9, 33)
+    assert not asked(np.where(FITTED, cause, share * cause), cause)
+
+
+def test_another_shape_held_out_does_not() -> None:
+    cause = 3.0 * acting(3, 9, 33)
+    assert not asked(np.where(FITTED, cause, 9.0 * acting(33, seed=7)), cause)
+
+
+def test_what_noise_would_hide_does_not() -> None:
+    cause = 0.3 * acting(3, 9, 33)
+    assert not asked(cause, cause)
+
+
+def test_what_rows_held_out_do_not_excite_does_not() -> None:
+    cause = 3.0 * acting(3, 9)
+    assert not asked(cause, cause)
+
+
+def test_what_the_base_makes_up_for_does_not() -> None:
+    cause = 3.0 * acting(3, 9, 33)
+    assert not asked(cause, cause, columns=cause[:, None])
