@@ -185,6 +185,10 @@ impl Scalar for Dual {
         Self::new(value, |k| self.slopes[k])
     }
     #[inline(always)]
+    fn put(&mut self, value: f64) {
+        self.re = alone(value);
+    }
+    #[inline(always)]
     fn alone(self) -> Self {
         self // every value is
     }

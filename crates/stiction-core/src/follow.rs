@@ -2,15 +2,17 @@
 
 use std::ops::Range;
 
+use stiction_dispatch::Task;
+
 use crate::drive::Way;
 use crate::effects::{Passage, Situation};
-use crate::friction::{FrictionLaw, LawState};
-use crate::integrate::{Along, Beyond, Machine, Run, through_events};
+use crate::friction::{Channels, FrictionLaw, LawState, Motion};
+use crate::integrate::{Along, Beyond, Machine, Run};
 use crate::model::CHUNK;
-use crate::motor::{PerSample, Running, Surroundings};
+use crate::motor::Running;
 use crate::scalar::Scalar;
 use crate::sensitivity::MeasuredMotion;
-use crate::track::Track;
+use crate::track::{Stop, Track};
 
 /// Efforts at the end of a sample.
 #[derive(Debug, Clone, Copy)]
@@ -49,6 +51,58 @@ impl<S: Scalar> Whereabouts<'_, S> {
     }
 }
 
+/// Who sees the efforts of each sample, in the loop itself: a function might be one of its own, to
+/// which rows of derivatives go through memory.
+pub(crate) trait Sees<S: Scalar> {
+    /// Sees those of a sample.
+    fn see(&mut self, sample: usize, efforts: &Efforts<S>, there: &Whereabouts<'_, S>);
+}
+
+/// What is called with sample, efforts and whereabouts.
+type Row<'a, S> = dyn FnMut(usize, &Efforts<S>, &Whereabouts<'_, S>) + 'a;
+
+/// A function that sees them: one loop for all of these.
+struct Called<'a, 'b, S: Scalar>(&'a mut Row<'b, S>);
+
+impl<S: Scalar> Sees<S> for Called<'_, '_, S> {
+    #[inline(always)]
+    fn see(&mut self, sample: usize, efforts: &Efforts<S>, there: &Whereabouts<'_, S>) {
+        (self.0)(sample, efforts, there);
+    }
+}
+
+/// Who sees efforts that may be averaged about the end of each sample.
+pub(crate) trait SeesAbout<S: Scalar> {
+    /// Sees those about the end of a sample.
+    fn see(&mut self, sample: usize, efforts: &Efforts<S>);
+}
+
+/// Friction of a rigid contact, which jumps inside samples, as its mean over the sample before and the
+/// one after.
+struct About<'a, S, R> {
+    row: &'a mut R,
+    waiting: Option<(usize, Efforts<S>)>,
+}
+
+impl<S: Scalar, R: SeesAbout<S>> Sees<S> for About<'_, S, R> {
+    #[inline(always)]
+    fn see(&mut self, sample: usize, efforts: &Efforts<S>, _: &Whereabouts<'_, S>) {
+        let Some(mean) = efforts.mean else { return self.row.see(sample, efforts) };
+        let Some((before, last)) = &mut self.waiting else {
+            self.waiting = Some((sample, Efforts { friction: mean, ..*efforts }));
+            return;
+        };
+        last.friction = (last.friction + mean) * 0.5;
+        self.row.see(*before, last);
+        // One by one, or a copy of all would be a call.
+        *before = sample;
+        last.friction = mean;
+        last.driven = efforts.driven;
+        last.ambient = efforts.ambient;
+        last.ahead = efforts.ahead;
+    }
+}
+
 impl<S: Scalar> Running<S> {
     /// The position at which the sensor reads this.
     pub fn actual(&self, reading: f64) -> f64 {
@@ -61,42 +115,39 @@ impl<S: Scalar> Running<S> {
     pub fn follow(
         &mut self,
         motion: &MeasuredMotion<'_>,
-        row: impl FnMut(usize, Efforts<S>, Whereabouts<'_, S>),
+        mut row: impl FnMut(usize, &Efforts<S>, &Whereabouts<'_, S>),
     ) {
-        self.follow_on(motion, 0..motion.samples(), row);
+        self.follow_on(motion, 0..motion.samples(), &mut Called(&mut row));
+    }
+
+    /// Moves the contact along some of the samples and tells nobody.
+    pub(crate) fn follow_to(&mut self, motion: &MeasuredMotion<'_>, samples: Range<usize>) {
+        self.follow_on(motion, samples, &mut Called(&mut |_, _, _| ()));
     }
 
     /// The same with efforts that may be averaged about the end of each sample: friction of a rigid
     /// contact, which jumps inside samples, is then its mean over the sample before and the one after,
     /// as a held input is.
-    pub fn follow_about(
+    pub(crate) fn follow_about(
         &mut self,
         motion: &MeasuredMotion<'_>,
-        mut row: impl FnMut(usize, &Efforts<S>),
+        row: &mut impl SeesAbout<S>,
     ) {
-        let mut waiting: Option<(usize, Efforts<S>)> = None;
-        self.follow(motion, |k, efforts, _| {
-            let Some(mean) = efforts.mean else { return row(k, &efforts) };
-            if let Some((before, last)) = &mut waiting {
-                last.friction = (last.friction + mean) * 0.5;
-                row(*before, last);
-            }
-            waiting = Some((k, Efforts { friction: mean, ..efforts }));
-        });
-        if let Some((k, last)) = waiting {
-            row(k, &last);
+        let mut about = About { row, waiting: None };
+        self.follow_on(motion, 0..motion.samples(), &mut about);
+        if let Some((k, last)) = about.waiting {
+            about.row.see(k, &last);
         }
     }
 
     /// Follows some of the samples, from where the last one before them ended. A second mass swings
     /// in from rest.
-    pub(crate) fn follow_on(
+    fn follow_on(
         &mut self,
         motion: &MeasuredMotion<'_>,
         samples: Range<usize>,
-        row: impl FnMut(usize, Efforts<S>, Whereabouts<'_, S>),
+        row: &mut impl Sees<S>,
     ) {
-        let MeasuredMotion { positions, inputs, around, dt, averaged } = *motion;
         let misreads = self.machine.effects.misreads();
         let sensor = self.machine.effects.clone();
         let behind = |reading: f64| sensor.behind(S::constant(reading));
@@ -106,24 +157,10 @@ impl<S: Scalar> Running<S> {
         let mut beyond: Vec<Beyond<S>> = masses.map(|mass| Beyond::new(mass, inertia)).collect();
         let (way, machine, run) = (self.way.as_mut(), &mut self.machine, &mut self.run);
         let beyond = beyond.as_mut_slice();
-        let track = Track::new(positions, actual, samples.start);
+        let track = Track::new(motion.positions, actual, samples.start);
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let contact = (law, state);
-            Following {
-                way,
-                machine,
-                run,
-                beyond,
-                contact,
-                track,
-                samples,
-                inputs,
-                around,
-                dt,
-                averaged,
-                row,
-            }
-            .run()
+            S::run(Following { way, machine, run, beyond, contact, track, samples, motion, row });
         });
     }
 }
@@ -137,95 +174,148 @@ struct Following<'a, 'b, S: Scalar, L: FrictionLaw<S>, R> {
     contact: (&'a L, &'a mut L::State),
     track: Track<'b, S>,
     samples: Range<usize>,
-    inputs: PerSample<'a>,
-    around: Surroundings<'a>,
-    dt: PerSample<'a>,
-    averaged: bool,
-    row: R,
+    motion: &'a MeasuredMotion<'b>,
+    row: &'a mut R,
 }
 
-impl<S, L, R> Following<'_, '_, S, L, R>
+impl<S, L, R> Task for Following<'_, '_, S, L, R>
 where
     S: Scalar,
     L: FrictionLaw<S>,
-    R: FnMut(usize, Efforts<S>, Whereabouts<'_, S>),
+    R: Sees<S>,
 {
+    type Output = ();
+
+    #[inline(always)]
     fn run(self) {
         let Self { mut way, machine, run, beyond, contact: (law, state), mut track, .. } = self;
-        let Self { samples, inputs, around, dt, averaged, mut row, .. } = self;
+        let Self { samples, motion, row, .. } = self;
+        let MeasuredMotion { inputs, around, dt, averaged, .. } = *motion;
         let located = L::RIGID && averaged;
         let zero = S::constant(0.0);
         let misreads = machine.effects.misreads();
-        let slope = |track: &Track<'_, S>| {
-            if located { track.velocity_or_rest(&dt) } else { track.velocity(&dt) }
-        };
-        let mut velocity = slope(&track);
+        let remembers = machine.effects.remembers();
+        let relaxes = machine.relaxes();
+        let direct = machine.is_direct();
+        let servo = machine.drive.servo.is_some();
+        let earlier = samples.start.checked_sub(1).filter(|_| located);
+        let earlier = earlier.and_then(|sample| track.stop(sample));
+        let (velocity, mut stop) = track.slope(&dt, located, earlier);
         let mut at = run.situation();
         let some = !samples.is_empty();
+        // What readings show as it is depends on no parameter: of these only the values change.
+        let mut step =
+            Motion { displacement: zero, duration: zero, start_velocity: zero, velocity };
+        let mut load = zero;
+        if some && !misreads {
+            (at.position, at.velocity) = (zero, zero);
+        }
+        let mut channels = machine.channels(&at, zero, zero);
+        let mean = located.then_some(zero);
+        let friction = run.friction;
+        let mut efforts = Efforts { driven: zero, ambient: zero, friction, mean, ahead: zero };
         for (passed, k) in samples.enumerate() {
             if passed % CHUNK == 0 {
                 state.make_room(CHUNK + CHUNK / 4);
             }
             let duration = dt.at(k);
-            let span = S::constant(duration);
-            let load = S::constant(around.load.at(k));
-            let before = velocity;
+            load.put(around.load.at(k));
+            let stops = stop;
             track.advance();
-            velocity = slope(&track);
-            let displacement = track.displacement();
-            at.position = track.position();
-            at.velocity = velocity;
-            at.time += span;
-            at.path += displacement.abs();
+            step.duration.put(duration);
+            at.time.put(at.time.re() + duration);
+            if misreads {
+                step.start_velocity = step.velocity;
+                (step.velocity, stop) = track.slope(&dt, located, stops);
+                step.displacement = track.displacement();
+                at.position = track.position();
+                at.velocity = step.velocity;
+                at.path += step.displacement.abs();
+            } else {
+                let (velocity, next) = track.slope_read(&dt, located, stops);
+                let displacement = track.displacement_read();
+                stop = next;
+                step.start_velocity.put(step.velocity.re());
+                step.velocity.put(velocity);
+                step.displacement.put(displacement);
+                at.position.put(track.reading());
+                at.velocity.put(velocity);
+                at.path.put(at.path.re() + displacement.abs());
+            }
             at.temperature = around.temperature_at(k);
             at.enabled = around.enabled_at(k);
-            if machine.effects.remembers() {
-                let passage = Passage { displacement, friction: run.friction, span };
+            if remembers {
+                let Motion { displacement, duration: span, .. } = step;
+                let passage = Passage { displacement, friction: efforts.friction, span };
                 machine.effects.remember(&passage);
             }
             let input = arriving(&mut way, inputs.at(k), duration);
-            let (effort, driven, ambient) = machine.efforts(&at, input, load);
-            let channels = machine.channels(&at, effort, load);
-            let mut at_contact = displacement;
-            if machine.relaxes() {
-                let (hardened, crept) = machine.relax(run.relaxed, run.friction, span);
+            let Efforts { driven, ambient, .. } = &mut efforts;
+            if direct {
+                machine.reach_directly(&at, input, load, &mut channels, [driven, ambient]);
+            } else {
+                machine.reach(&at, input, load, &mut channels, [driven, ambient]);
+            }
+            if relaxes {
+                let friction = efforts.friction;
+                let (hardened, crept) = machine.relax(run.relaxed, friction, step.duration);
                 run.relaxed = hardened;
-                at_contact -= crept;
+                step.displacement -= crept;
             }
-            // Where a machine with a rigid contact stops, the rest of the sample is one at rest.
-            let stop = if located { track.stop(k) } else { None };
-            let share = stop.map_or(1.0, |stop| stop.left.min(1.0));
-            let moving = if share < 1.0 { span * share } else { span };
-            let mut held = Along::new(at_contact, moving, (before, velocity), channels);
-            if share > 0.0 {
-                through_events(&mut held, law, state, moving);
+            let Efforts { friction, mean, .. } = &mut efforts;
+            let (contact, mean) = ((law, &mut *state), mean.as_mut());
+            match stops {
+                Some(Stop { left, .. }) if left < 1.0 => {
+                    stopping(&step, left, &channels, contact, friction, mean);
+                }
+                _ => Along::through_events(&step, &channels, contact, friction, mean),
             }
-            if share < 1.0 {
-                let (moved, rest) = (held.mean * share, span * (1.0 - share));
-                held = Along::new(zero, rest, (zero, zero), channels);
-                through_events(&mut held, law, state, rest);
-                held.mean = moved + held.mean * (1.0 - share);
+            if relaxes {
+                step.displacement = zero;
             }
-            run.friction = held.outcome.force;
-            let mut ahead = zero;
-            if misreads {
-                ahead += at.position - track.reading();
+            if misreads || !beyond.is_empty() {
+                efforts.ahead = if misreads { at.position - track.reading() } else { zero };
+                for mass in &mut *beyond {
+                    efforts.ahead += mass.advance(track.acceleration(&dt), duration);
+                }
             }
-            for mass in &mut *beyond {
-                ahead += mass.advance(track.acceleration(&dt), duration);
-            }
-            let there = Whereabouts { machine: &*machine, at: &at, input, load };
-            let (friction, mean) = (run.friction, located.then_some(held.mean));
-            row(k, Efforts { driven, ambient, friction, mean, ahead }, there);
-            if machine.drive.servo.is_some() {
+            row.see(k, &efforts, &Whereabouts { machine: &*machine, at: &at, input, load });
+            if servo {
+                run.friction = efforts.friction;
                 run.stand(&at);
                 machine.wind(run, input, duration);
                 at.wound = run.wound;
             }
         }
         if some {
+            run.friction = efforts.friction;
             run.stand(&at);
         }
+    }
+}
+
+/// A sample in which a machine with a rigid contact stops after this share of it: the rest of it is one
+/// at rest.
+#[cold]
+#[inline(never)]
+fn stopping<S: Scalar, L: FrictionLaw<S>>(
+    step: &Motion<S>,
+    share: f64,
+    channels: &Channels<S>,
+    (law, state): (&L, &mut L::State),
+    force: &mut S,
+    mean: Option<&mut S>,
+) {
+    let zero = S::constant(0.0);
+    let (mut moved, mut rested) = (zero, zero);
+    if share > 0.0 {
+        let moving = Motion { duration: step.duration * share, ..*step };
+        Along::through_events(&moving, channels, (law, &mut *state), force, Some(&mut moved));
+    }
+    let rest = Motion::held(zero, step.duration * (1.0 - share));
+    Along::through_events(&rest, channels, (law, state), force, Some(&mut rested));
+    if let Some(mean) = mean {
+        *mean = moved * share + rested * (1.0 - share);
     }
 }
 

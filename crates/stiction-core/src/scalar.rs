@@ -44,6 +44,8 @@ pub trait Scalar:
     fn chain(self, value: f64, slope: f64) -> Self;
     /// The same derivatives with this value: the same quantity, summed in another order.
     fn with_value(self, value: f64) -> Self;
+    /// Changes the value alone, where the number is: rows of derivatives are not carried to and fro.
+    fn put(&mut self, value: f64);
 
     /// The number, as one that is in no vector of values, see [`alone`].
     fn alone(self) -> Self;
@@ -173,6 +175,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn with_value(self, value: f64) -> Self {
         value
+    }
+    #[inline(always)]
+    fn put(&mut self, value: f64) {
+        *self = value;
     }
     #[inline(always)]
     fn alone(self) -> Self {

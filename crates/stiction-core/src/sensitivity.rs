@@ -1,11 +1,12 @@
 //! Exact derivatives by parameters: the same simulation over dual numbers.
 
 use crate::error::{Error, Result};
+use crate::follow::{Efforts, SeesAbout};
 use crate::integrate::{Machine, Run};
 use crate::kernel::RowKernel;
 use crate::motor::{MotorSpec, PerSample, Rows, Running, Surroundings};
 use crate::scalar::{COLUMNS, Dual, Scalar};
-use crate::traces::{Stretch, Traces, put_all};
+use crate::traces::{Filling, Stretch, Traces, put_all};
 
 /// Derivatives of position and velocity at the end of every sample.
 #[derive(Debug, Clone)]
@@ -220,14 +221,19 @@ impl MeasuredMotion<'_> {
         &self,
         running: &mut Running<Dual>,
         traces: &mut Traces,
-        take: impl FnMut(usize, usize, Stretch<'_>),
+        mut take: impl FnMut(usize, usize, Stretch<'_>),
     ) {
-        let mut traces = traces.to(take);
-        running.follow_about(self, |k, efforts| {
-            let short = efforts.friction - efforts.ambient;
-            traces.put(k, [&short, &efforts.driven, &efforts.ahead]);
-        });
+        let mut traces = traces.to(&mut take);
+        running.follow_about(self, &mut traces);
         traces.hand_over();
+    }
+}
+
+impl SeesAbout<Dual> for Filling<'_> {
+    #[inline(always)]
+    fn see(&mut self, k: usize, efforts: &Efforts<Dual>) {
+        let short = efforts.friction - efforts.ambient;
+        self.put(k, [&short, &efforts.driven, &efforts.ahead]);
     }
 }
 

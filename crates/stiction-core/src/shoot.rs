@@ -67,7 +67,7 @@ impl<S: Scalar> Running<S> {
         let mut reached = 0;
         for window in 0..windows.number(motion.samples()) {
             let start = window * windows.stride.max(1);
-            self.follow_on(motion, reached..start, |_, _, _| ());
+            self.follow_to(motion, reached..start);
             reached = start;
             let end = start + length;
             let track = Track::new(positions, actual, start);

@@ -46,7 +46,7 @@ impl Traces {
     }
 
     /// Ready for the first sample; `take` is given column, first sample and stretch.
-    pub fn to<F: FnMut(usize, usize, Stretch<'_>)>(&mut self, take: F) -> Filling<'_, F> {
+    pub fn to<'a>(&'a mut self, take: &'a mut Take<'a>) -> Filling<'a> {
         self.there = [true, false, false];
         Filling { traces: self, begin: 0, end: 0, take }
     }
@@ -60,17 +60,20 @@ impl Traces {
     }
 }
 
+/// What takes column, first sample and stretch: no type of its own, or there would be one more loop
+/// that fills traces for each.
+pub type Take<'a> = dyn FnMut(usize, usize, Stretch<'_>) + 'a;
+
 /// Traces that are being filled.
-#[derive(Debug)]
-pub struct Filling<'a, F> {
+pub struct Filling<'a> {
     traces: &'a mut Traces,
     /// The first sample there is, and the first beyond.
     begin: usize,
     end: usize,
-    take: F,
+    take: &'a mut Take<'a>,
 }
 
-impl<F: FnMut(usize, usize, Stretch<'_>)> Filling<'_, F> {
+impl Filling<'_> {
     /// Takes the derivatives of the next sample.
     #[inline(always)]
     pub fn put(&mut self, sample: usize, of: [&Dual; 3]) {
@@ -161,7 +164,7 @@ mod tests {
             let mut traces = Traces::new(samples, kernel);
             let mut seen = [0, 0];
             let mut places = 0;
-            let mut filling = traces.of(2).to(|column, begin, [needed, driven, _]| {
+            let mut take = |column: usize, begin, [needed, driven, _]: Stretch<'_>| {
                 assert!(begin <= seen[column]);
                 for (k, needed) in needed.iter().enumerate() {
                     assert_eq!(*needed, (begin + k) as f64 * [1.0, 2.0][column]);
@@ -172,7 +175,8 @@ mod tests {
                     assert!(begin <= places * kernel.every);
                     places = kernel.rows(seen[0]);
                 }
-            });
+            };
+            let mut filling = traces.of(2).to(&mut take);
             let zero = Dual::constant(0.0);
             for k in 0..samples {
                 let x = (Dual::variable(0.0, 0) + Dual::variable(0.0, 1) * 2.0) * k as f64;
@@ -189,10 +193,11 @@ mod tests {
         let mut traces = Traces::new(1200, None);
         for begins in [0, 300, 700, 1200] {
             let mut seen = vec![0.0; 1200];
-            let mut filling = traces.of(1).to(|_, begin, [_, driven, ahead]| {
+            let mut take = |_, begin: usize, [_, driven, ahead]: Stretch<'_>| {
                 seen[begin..begin + driven.len()].copy_from_slice(driven);
                 assert!(ahead.is_empty());
-            });
+            };
+            let mut filling = traces.of(1).to(&mut take);
             for k in 0..1200 {
                 filling.put(k, [&one, if k < begins { &zero } else { &one }, &zero]);
             }

@@ -66,6 +66,13 @@ impl<'a, S: Scalar> Track<'a, S> {
         self.between(0, 1)
     }
 
+    /// The same as it is read.
+    #[inline(always)]
+    pub fn displacement_read(&self) -> f64 {
+        let near = self.near();
+        near[1] - near[0]
+    }
+
     /// Displacement from one of the three stamps to another.
     #[inline(always)]
     fn between(&self, from: usize, to: usize) -> S {
@@ -91,26 +98,77 @@ impl<'a, S: Scalar> Track<'a, S> {
     /// the first and the last stamp there is only one side.
     #[inline(always)]
     pub fn velocity(&self, dt: &PerSample<'_>) -> S {
-        let last = self.readings.len() - 1;
-        let (before, after) = (self.stamp.saturating_sub(1), (self.stamp + 1).min(last));
-        let span: f64 = (before..after).map(|j| dt.at(j)).sum();
         if self.actual.is_some() {
-            return (self.at[2] - self.at[0]) / span;
+            return (self.at[2] - self.at[0]) / self.span(dt);
         }
-        S::constant((self.readings[after] - self.readings[before]) / span)
+        S::constant(self.velocity_read(dt))
     }
 
-    /// The same slope for a rigid contact: 0 where the machine rests before or after, and where it
-    /// stopped. Between the neighbours it would seem to slide on for a sample or two.
-    pub fn velocity_or_rest(&self, dt: &PerSample<'_>) -> S {
-        let before = self.stamp.wrapping_sub(1);
-        if let Some(stop) = self.stop(self.stamp) {
-            S::constant(stop.way / dt.at(self.stamp))
-        } else if self.rests(before) || self.rests(self.stamp) || self.stop(before).is_some() {
-            S::constant(0.0)
-        } else {
-            self.velocity(dt)
+    /// The same as it is read.
+    #[inline(always)]
+    fn velocity_read(&self, dt: &PerSample<'_>) -> f64 {
+        let near = self.near();
+        (near[2] - near[0]) / self.span(dt)
+    }
+
+    /// Time between the neighbours.
+    #[inline(always)]
+    fn span(&self, dt: &PerSample<'_>) -> f64 {
+        let last = self.readings.len() - 1;
+        let (before, after) = (self.stamp.saturating_sub(1), (self.stamp + 1).min(last));
+        if after - before == 2 {
+            return dt.at(before) + dt.at(before + 1);
         }
+        (before..after).map(|j| dt.at(j)).sum()
+    }
+
+    /// The velocity at the present stamp; where a contact is rigid that of [`Self::rests_at`], and with
+    /// it the stop in the sample that begins here. `before` is the one in the sample that ends.
+    #[inline(always)]
+    pub fn slope(
+        &self,
+        dt: &PerSample<'_>,
+        rigid: bool,
+        before: Option<Stop>,
+    ) -> (S, Option<Stop>) {
+        if !rigid {
+            return (self.velocity(dt), None);
+        }
+        let stop = self.stop(self.stamp);
+        let rest = self.rests_at(dt, before, stop);
+        (rest.map_or_else(|| self.velocity(dt), S::constant), stop)
+    }
+
+    /// The same as it is read.
+    #[inline(always)]
+    pub fn slope_read(
+        &self,
+        dt: &PerSample<'_>,
+        rigid: bool,
+        before: Option<Stop>,
+    ) -> (f64, Option<Stop>) {
+        if !rigid {
+            return (self.velocity_read(dt), None);
+        }
+        let stop = self.stop(self.stamp);
+        let rest = self.rests_at(dt, before, stop);
+        (rest.unwrap_or_else(|| self.velocity_read(dt)), stop)
+    }
+
+    /// The velocity of a machine with a rigid contact that rests before or after the present stamp, 0,
+    /// or stops: between the neighbours it would seem to slide on for a sample or two.
+    #[inline(always)]
+    fn rests_at(
+        &self,
+        dt: &PerSample<'_>,
+        before: Option<Stop>,
+        stop: Option<Stop>,
+    ) -> Option<f64> {
+        if let Some(stop) = stop {
+            return Some(stop.way / dt.at(self.stamp));
+        }
+        let ended = self.stamp.wrapping_sub(1);
+        (before.is_some() || self.rests(ended) || self.rests(self.stamp)).then_some(0.0)
     }
 
     /// Second difference; 0 where a side is missing.

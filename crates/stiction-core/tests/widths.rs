@@ -1,12 +1,12 @@
-//! Exact derivatives of whole trajectories are the same to the bit on every processor. Alone in this
-//! file: the width is one of the whole process.
+//! Exact derivatives of whole trajectories and along a motion are the same to the bit on every
+//! processor. Alone in this file: the width is one of the whole process.
 #![allow(missing_docs)]
 
 use stiction_core::friction::LAWS;
 use stiction_core::lanes::Width;
 use stiction_core::model::LawSpec;
-use stiction_core::motor::{Motor, MotorSpec, PerSample, Surroundings};
-use stiction_core::sensitivity::sensitivity;
+use stiction_core::motor::{Column, Motor, MotorSpec, PerSample, Surroundings};
+use stiction_core::sensitivity::{MeasuredMotion, follow_sensitivity, sensitivity};
 
 const SAMPLES: usize = 4000;
 
@@ -22,7 +22,7 @@ fn inputs() -> Vec<f64> {
 }
 
 #[test]
-fn derivatives_of_trajectories_are_the_same_at_every_width() {
+fn derivatives_are_the_same_at_every_width() {
     let inputs = inputs();
     for record in LAWS {
         let stated = [("breakaway".to_owned(), 0.4)];
@@ -34,15 +34,22 @@ fn derivatives_of_trajectories_are_the_same_at_every_width() {
         let finite = known.iter().filter(|(_, value)| value.is_finite());
         let paths: Vec<String> = finite.map(|(path, _)| path.clone()).collect();
         let motor = Motor::new(spec.clone()).unwrap();
+        let (around, dt) = (Surroundings::from(PerSample::Same(0.01)), PerSample::Same(2e-4));
+        let mut positions = vec![0.0; SAMPLES + 1];
+        let mut columns = [(Column::Position, &mut positions[1..])];
+        motor.clone().simulate(&inputs, around, dt, &mut columns).unwrap();
+        let each = PerSample::Each(&inputs);
+        let motion =
+            MeasuredMotion { positions: &positions, inputs: each, around, dt, averaged: true };
         let at = |width: Width| {
             width.limit();
             assert!(Width::widest() <= width);
-            let around = Surroundings::from(PerSample::Same(0.01));
-            let found =
-                sensitivity(&spec, motor.running(), &inputs, around, PerSample::Same(2e-4), &paths)
-                    .unwrap();
-            let both = found.position.into_iter().chain(found.velocity);
-            both.map(f64::to_bits).collect::<Vec<_>>()
+            let start = motor.running();
+            let found = sensitivity(&spec, start, &inputs, around, dt, &paths).unwrap();
+            let along = follow_sensitivity(&spec, start.into(), &motion, &paths).unwrap();
+            let found = found.position.into_iter().chain(found.velocity);
+            let along = along.needed.into_iter().chain(along.driven);
+            found.chain(along).map(f64::to_bits).collect::<Vec<_>>()
         };
         let plain = at(Width::Baseline);
         assert!(plain.iter().any(|bits| *bits << 1 != 0), "{}", record.name);

@@ -84,7 +84,7 @@ impl<S: Scalar> LawState<S> for CoulombState<S> {
 
 impl<S: Scalar> Coulomb<S> {
     /// Force and its slope by velocity while sliding in direction `mode`.
-    #[inline]
+    #[inline(always)]
     fn sliding(&self, mode: f64, velocity: S, channels: &Channels<S>) -> (S, S) {
         let p = &self.parameters;
         let viscous = p.viscous * channels.viscous_level;
@@ -166,6 +166,16 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
 
     #[inline]
     fn advance(
+        &self,
+        state: &CoulombState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> CoulombTrial<S> {
+        self.advance_within(state, motion, channels)
+    }
+
+    #[inline(always)]
+    fn advance_within(
         &self,
         state: &CoulombState<S>,
         motion: &Motion<S>,

@@ -111,14 +111,14 @@ impl<S: Scalar> LawState<S> for MaxwellSlipState<S> {
 }
 
 impl<S: Scalar> MaxwellSlip<S> {
-    #[inline]
+    /// A step in which the spring goes this way.
+    #[inline(always)]
     fn moved(
         &self,
-        state: &MaxwellSlipState<S>,
+        walk: Walk<S>,
         motion: &Motion<S>,
         channels: &Channels<S>,
     ) -> MaxwellSlipTrial<S> {
-        let walk = state.spring.walk(&self.curve, motion.displacement);
         let damping = self.parameters.viscous * channels.viscous_level;
         let undamped = walk.end.force * channels.level;
         let force = undamped + damping * motion.velocity;
@@ -201,7 +201,17 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
         motion: &Motion<S>,
         channels: &Channels<S>,
     ) -> MaxwellSlipTrial<S> {
-        self.moved(state, motion, channels)
+        self.moved(state.spring.walk(&self.curve, motion.displacement), motion, channels)
+    }
+
+    #[inline(always)]
+    fn advance_within(
+        &self,
+        state: &MaxwellSlipState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> MaxwellSlipTrial<S> {
+        self.moved(state.spring.walk_within(&self.curve, motion.displacement), motion, channels)
     }
 
     #[inline(always)]

@@ -51,7 +51,7 @@ pub fn through_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
 /// The same for a step in which an event is due; whether the contact holds was asked already.
 #[cold]
 #[inline(never)]
-fn pass_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
+pub(super) fn pass_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
     stepper: &mut P,
     law: &L,
     state: &mut L::State,

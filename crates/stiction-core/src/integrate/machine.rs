@@ -280,7 +280,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Effort of the drive of a bare machine.
-    #[inline]
+    #[inline(always)]
     pub(super) fn bare_drive(&self, input: S, enabled: bool) -> S {
         if enabled { self.drive.direct(input) } else { S::constant(0.0) }
     }
@@ -317,6 +317,45 @@ impl<S: Scalar> Machine<S> {
     #[inline]
     pub fn at_contact(&self, at: &Situation<S>, load: S) -> Situation<S> {
         Situation { load: load + self.body.gravity(at.position), sliding: self.sliding, ..*at }
+    }
+
+    /// Whether efforts are those of a plain drive and of a weight, and no effect lies between them
+    /// and the contact.
+    pub fn is_direct(&self) -> bool {
+        self.drive.servo.is_none() && self.body.is_level() && self.effects.lets_pass()
+    }
+
+    /// What reaches the contact, and the effort of the drive and the rest of it but the load, where
+    /// [`Self::is_direct`]; to places that hold what was there before, which few samples change.
+    #[inline(always)]
+    pub fn reach_directly(
+        &self,
+        at: &Situation<S>,
+        input: S,
+        load: S,
+        channels: &mut Channels<S>,
+        [driven, ambient]: [&mut S; 2],
+    ) {
+        *driven = self.bare_drive(input, at.enabled);
+        *ambient = self.weight();
+        channels.effort = *driven + load + *ambient;
+        channels.load = load + self.body.level_gravity();
+        channels.temperature = at.temperature;
+    }
+
+    /// The same of any machine.
+    #[inline(never)] // once for all laws
+    pub fn reach(
+        &self,
+        at: &Situation<S>,
+        input: S,
+        load: S,
+        channels: &mut Channels<S>,
+        [driven, ambient]: [&mut S; 2],
+    ) {
+        let effort;
+        (effort, *driven, *ambient) = self.efforts(at, input, load);
+        *channels = self.channels(at, effort, load);
     }
 
     /// What reaches the contact of a bare machine.

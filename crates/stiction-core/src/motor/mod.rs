@@ -8,6 +8,7 @@ mod surroundings;
 use crate::drive::Way;
 use crate::effects::Effects;
 use crate::error::{Error, Result};
+use crate::follow::{Efforts, SeesAbout};
 use crate::friction::{AnyState, Entry, LawState, Statistics};
 use crate::kernel::RowKernel;
 use crate::sensitivity::MeasuredMotion;
@@ -92,12 +93,7 @@ impl Motor {
                 return Err(Error::Length { name, given: array.len(), wanted });
             }
         }
-        self.running.follow_about(motion, |k, efforts| {
-            driven[k] = efforts.driven;
-            ambient[k] = efforts.ambient;
-            friction[k] = efforts.friction;
-            ahead[k] = efforts.ahead;
-        });
+        self.running.follow_about(motion, &mut Four([driven, ambient, friction, ahead]));
         Ok(())
     }
 
@@ -110,12 +106,8 @@ impl Motor {
     ) -> Result<Vec<f64>> {
         motion.check()?;
         let mut traces = [(); 3].map(|()| vec![0.0; motion.samples()]);
-        let [needed, driven, ahead] = &mut traces;
-        self.running.follow_about(motion, |k, efforts| {
-            needed[k] = efforts.friction - efforts.ambient;
-            driven[k] = efforts.driven;
-            ahead[k] = efforts.ahead;
-        });
+        let places = traces.each_mut().map(Vec::as_mut_slice);
+        self.running.follow_about(motion, &mut Three(places));
         let mut rows = vec![0.0; kernel.rows(motion.samples())];
         kernel.column(traces.each_ref().map(Vec::as_slice), &mut rows);
         Ok(rows)
@@ -262,3 +254,30 @@ const BODY: [&str; 10] = [
     "wound",
     "ambient",
 ];
+
+/// Rows of the efforts of the drive, of gravity and added efforts, of friction and of how far the
+/// centre of mass is ahead.
+struct Four<'a>([&'a mut [f64]; 4]);
+
+impl SeesAbout<f64> for Four<'_> {
+    #[inline(always)]
+    fn see(&mut self, k: usize, efforts: &Efforts<f64>) {
+        let Efforts { driven, ambient, friction, ahead, .. } = *efforts;
+        for (row, value) in self.0.iter_mut().zip([driven, ambient, friction, ahead]) {
+            row[k] = value;
+        }
+    }
+}
+
+/// Rows of what a column is made of, see [`RowKernel::column`].
+struct Three<'a>([&'a mut [f64]; 3]);
+
+impl SeesAbout<f64> for Three<'_> {
+    #[inline(always)]
+    fn see(&mut self, k: usize, efforts: &Efforts<f64>) {
+        let needed = efforts.friction - efforts.ambient;
+        for (row, value) in self.0.iter_mut().zip([needed, efforts.driven, efforts.ahead]) {
+            row[k] = value;
+        }
+    }
+}

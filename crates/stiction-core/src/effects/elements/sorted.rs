@@ -192,6 +192,11 @@ impl<S: Scalar> Effects<S> {
         !self.efforts.is_empty() || self.unit.2.derivative_is_nonzero()
     }
 
+    /// Whether inputs, efforts and levels are as they are without any effect.
+    pub fn lets_pass(&self) -> bool {
+        self.inputs.is_empty() && !self.adds_efforts() && !self.changes_levels()
+    }
+
     /// What the input becomes.
     #[inline]
     pub fn input(&self, input: S, at: &Situation<S>) -> S {

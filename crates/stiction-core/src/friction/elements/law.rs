@@ -109,6 +109,16 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         motion: &Motion<S>,
         channels: &Channels<S>,
     ) -> Self::Trial;
+    /// The same as part of the loop that asks for it.
+    #[inline(always)]
+    fn advance_within(
+        &self,
+        state: &Self::State,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> Self::Trial {
+        self.advance(state, motion, channels)
+    }
     /// Friction, slope and damping of a step.
     fn outcome(&self, trial: &Self::Trial) -> Outcome<S>;
     /// Friction of a step less its damping times the velocity at the end: what does not change with

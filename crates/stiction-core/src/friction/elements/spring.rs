@@ -91,10 +91,25 @@ impl<S: Scalar> SpringState<S> {
     /// Read-only walk to another elongation.
     #[inline(always)]
     pub fn walk(&self, curve: &impl Loading<S>, displacement: S) -> Walk<S> {
-        let fading = curve.fading(&self.present(curve), self.direction);
-        let onward = fading.and_then(|fading| self.here().onward(&fading, displacement));
-        let Some(there) = onward else { return self.walk_through_points(curve, displacement) };
-        Walk {
+        let onward = self.walk_onward(curve, displacement);
+        onward.unwrap_or_else(|| self.walk_through_points(curve, displacement))
+    }
+
+    /// The same as part of the loop that asks for it.
+    #[inline(always)]
+    pub fn walk_within(&self, curve: &impl Loading<S>, displacement: S) -> Walk<S> {
+        if let Some(walk) = self.walk_onward(curve, displacement) {
+            return walk;
+        }
+        self.walk_to(curve, self.position + displacement, sign(displacement.re()))
+    }
+
+    /// A short walk that stays on a branch which fades.
+    #[inline(always)]
+    fn walk_onward(&self, curve: &impl Loading<S>, displacement: S) -> Option<Walk<S>> {
+        let fading = curve.fading(&self.present(curve), self.direction)?;
+        let there = self.here().onward(&fading, displacement)?;
+        Some(Walk {
             position: there.position,
             end: Response { force: there.force, slope: there.slope },
             direction: there.direction,
@@ -103,7 +118,7 @@ impl<S: Scalar> SpringState<S> {
             added: None,
             reversed: false,
             steps: there.steps,
-        }
+        })
     }
 
     /// Where it is.

@@ -78,7 +78,7 @@ impl<S: Scalar> YieldCurve<S> {
     }
 
     /// Force and slope of the first loading at x ≥ 0.
-    #[inline]
+    #[inline(always)]
     fn loading(&self, x: S) -> Response<S> {
         let y = x * self.inverse_distance;
         if self.exponential {
@@ -89,7 +89,7 @@ impl<S: Scalar> YieldCurve<S> {
         self.any_loading(y)
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn any_loading(&self, y: S) -> Response<S> {
         if (self.shape * y).re() >= 1.0 {
             return Response { force: self.coulomb, slope: S::constant(0.0) };
@@ -193,7 +193,7 @@ impl<S: Scalar> YieldCurve<S> {
 }
 
 /// v(y) and its slope, for κ·y < 1; beyond, everything slides.
-#[inline]
+#[inline(always)]
 fn plain<S: Scalar>(y: S, shape: S) -> (S, S) {
     let u = shape * y;
     if u.re() >= 1.0 {
@@ -209,14 +209,14 @@ impl<S: Scalar> Loading<S> for YieldCurve<S> {
         self.stiffness
     }
 
-    #[inline]
+    #[inline(always)]
     fn branch(&self, d: S) -> Response<S> {
         debug_assert!(d.re() >= 0.0, "branch evaluated behind its reverse point: {d:?}");
         let half = self.loading(d * 0.5);
         Response { force: half.force * 2.0, slope: half.slope }
     }
 
-    #[inline]
+    #[inline(always)]
     fn virgin(&self, x: S) -> Response<S> {
         masing(self, x)
     }

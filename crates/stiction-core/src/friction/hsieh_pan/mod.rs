@@ -255,6 +255,20 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
     }
 
     #[inline(always)]
+    fn advance_within(
+        &self,
+        state: &HsiehPanState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> HsiehPanTrial<S> {
+        if state.mode == 0.0 {
+            self.stick(state, motion, channels)
+        } else {
+            self.slip_within(state, motion, channels)
+        }
+    }
+
+    #[inline(always)]
     fn outcome(&self, trial: &HsiehPanTrial<S>) -> Outcome<S> {
         trial.outcome
     }

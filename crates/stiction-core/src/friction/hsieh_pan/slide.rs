@@ -63,6 +63,17 @@ impl<S: Scalar> HsiehPan<S> {
         motion: &Motion<S>,
         channels: &Channels<S>,
     ) -> HsiehPanTrial<S> {
+        self.slip_within(state, motion, channels)
+    }
+
+    /// The same as part of the loop that asks for it.
+    #[inline(always)]
+    pub(super) fn slip_within(
+        &self,
+        state: &HsiehPanState<S>,
+        motion: &Motion<S>,
+        channels: &Channels<S>,
+    ) -> HsiehPanTrial<S> {
         let slide = self.slide(state.mode, state.latched, state.series, motion, channels);
         let (filtered, breakaway) =
             self.breakaway_after(state.filtered, state.series, slide.series, motion.duration);
