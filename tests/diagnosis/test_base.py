@@ -89,3 +89,28 @@ def test_where_they_must_differ_both_say_so() -> None:
 
 def replace_role(recording: st.Recording, role: str) -> st.Recording:
     return st.Recording(recording.time, recording.input, recording.position, role=role)
+
+
+@pytest.mark.parametrize("law", ["coulomb", "maxwell_slip"])
+def test_a_plant_of_which_all_is_known_is_diagnosed_as_it_is(law: str) -> None:
+    """A fit of it has nothing to do; what it lacks may be asked all the same."""
+    known = {"coulomb": 0.25, "viscous": 0.02}
+    if law == "maxwell_slip":
+        known["initial_stiffness"] = 300.0
+    named = plant(law).friction.record.parameters
+    known |= {p.name: p.default for p in named if p.name not in known and not p.optional}
+    fixed = {name: {"value": value, "fixed": True} for name, value in known.items()}
+    whole = st.Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm", "gain": {"value": 1.0, "fixed": True}},
+            "body": {"inertia": {"value": 0.006, "fixed": True}},
+            "friction": {"law": law, **fixed},
+        }
+    )
+    session = [recorded(k, role=role) for k, role in enumerate(("train", "train", "select"))]
+    _, base = based(whole, session, threads=1)
+    assert base.plant.parameters["friction.coulomb"].value == 0.25
+    if law == "coulomb":
+        assert not base.solution.variables.paths
+        with pytest.raises(st.InputError, match="every parameter is fixed"):
+            st.fit(whole, session)

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from stiction.diagnosis.confirmed import confirmed
+from stiction.diagnosis.evidence import Plan
 
 BLOCKS, ROWS = 40, 200
 FITTED = np.repeat(np.arange(BLOCKS) < 28, ROWS)
+MANY = (3, 5, 9, 12, 17, 20, 26)
 BLOCK = np.repeat(np.arange(BLOCKS), ROWS)
 
 
@@ -20,41 +22,56 @@ def acting(*blocks: int, seed: int = 1) -> np.ndarray:
     return np.where(np.isin(BLOCK, blocks), wave, 0.0)
 
 
-def asked(there: np.ndarray, explained: np.ndarray, columns: np.ndarray | None = None) -> bool:
+def asked(
+    there: np.ndarray, explained: np.ndarray, columns: np.ndarray | None = None, folds: bool = False
+) -> bool:
     """Whether a machine in which ``there`` acts confirms what explains ``explained``."""
     noise = np.random.default_rng(2).standard_normal(len(there))
     own = np.zeros((len(there), 1)) if columns is None else columns
-    evidence = SimpleNamespace(fitted=FITTED, cells=SimpleNamespace(block=BLOCK), overlap=6.0)
+    plans = [Plan(FITTED, ~FITTED, FITTED if folds else None)]
+    evidence = SimpleNamespace(plans=plans, cells=SimpleNamespace(block=BLOCK), overlap=6.0)
     base = SimpleNamespace(evidence=evidence, columns=own, residual=there + noise)
     return confirmed(base, SimpleNamespace(residual=there - explained + noise), explained)
 
 
 def test_one_block_held_out_confirms_what_was_learnt() -> None:
-    cause = 3.0 * acting(3, 9, 33)
+    cause = 3.0 * acting(*MANY, 33)
     assert asked(cause, cause)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.4, 2.0, -1.0])
 def test_another_strength_held_out_does_not(share: float) -> None:
-    cause = 3.0 * acting(3, 9, 33)
+    cause = 3.0 * acting(*MANY, 33)
     assert not asked(np.where(FITTED, cause, share * cause), cause)
 
 
 def test_another_shape_held_out_does_not() -> None:
-    cause = 3.0 * acting(3, 9, 33)
+    cause = 3.0 * acting(*MANY, 33)
     assert not asked(np.where(FITTED, cause, 9.0 * acting(33, seed=7)), cause)
 
 
 def test_what_noise_would_hide_does_not() -> None:
-    cause = 0.3 * acting(3, 9, 33)
+    cause = 0.3 * acting(*MANY, 33)
     assert not asked(cause, cause)
 
 
 def test_what_rows_held_out_do_not_excite_does_not() -> None:
-    cause = 3.0 * acting(3, 9)
+    cause = 3.0 * acting(*MANY)
     assert not asked(cause, cause)
 
 
 def test_what_the_base_makes_up_for_does_not() -> None:
-    cause = 3.0 * acting(3, 9, 33)
-    assert not asked(cause, cause, columns=cause[:, None])
+    cause = 3.0 * acting(*MANY, 33)
+    assert not asked(cause, cause, columns=1e-10 * cause[:, None])
+
+
+@pytest.mark.parametrize("blocks", [(3,), (3, 9), (3, 9, 12)])
+def test_few_blocks_that_were_fitted_leave_doubt(blocks: tuple[int, ...]) -> None:
+    """What is fitted to one block leaves nothing there, and looks as if it were known exactly."""
+    cause = 3.0 * acting(*blocks, 33)
+    assert not asked(cause, cause)
+
+
+def test_rows_held_out_by_turns_confirm_nothing() -> None:
+    cause = 3.0 * acting(*MANY, 33)
+    assert not asked(cause, cause, folds=True)

@@ -2,8 +2,8 @@
 
 How much a gain varies over blocks says little of a cause that acts in two of fifty: it varies with
 what the machine did there. But what was learnt from the rows that were fitted says how much these
-two must gain, and by noise alone they do not come near it. A mimic may: this is asked only of what
-the fitted rows leave no doubt of.
+two must gain, and by noise alone they do not come near it. A mimic may, where the machine does the
+same again: this is asked only of what many fitted blocks leave no doubt of.
 """
 
 from __future__ import annotations
@@ -14,18 +14,24 @@ import numpy as np
 
 from ..trajectory import FloatArray
 from .model import Model
+from .regression import refitted
 
 __all__ = ["confirmed"]
 
 CLEAR: Final = 4.0
 """Size of what is expected on rows held out over its standard error there: far from noise."""
 AS_EXPECTED: Final = (0.75, 1.33)
-"""Strength on rows held out as a share of that on fitted ones, which a mimic does not keep."""
-FLAT: Final = 1e-9
+"""Strength on rows held out as a share of that on fitted ones."""
+FEWEST_BLOCKS: Final = 5.0
+"""Fitted blocks, counted by their share of the power, in which a cause acts. What acts in one or
+two is fitted to them: its standard error, taken over blocks, is no measure of doubt."""
 
 
 def confirmed(base: Model, model: Model, contributed: FloatArray) -> bool:
     """Whether a contribution has about the same strength on rows held out as on those fitted.
+
+    Where rows are held out by turns, in folds, there are none that were never fitted, and nothing
+    is confirmed.
 
     Parameters
     ----------
@@ -37,22 +43,25 @@ def confirmed(base: Model, model: Model, contributed: FloatArray) -> bool:
         What the effect explains of each row after its refit.
     """
     evidence = base.evidence
-    fitted = evidence.fitted
-    columns = base.columns
+    plan = evidence.plans[0]
+    if plan.whole is not None:
+        return False
+    fitted, held, block = plan.fit, plan.held, evidence.cells.block
     # What the base cannot make up for; its slopes are learnt where it was fitted.
-    absorbed = np.linalg.lstsq(columns[fitted], contributed[fitted], rcond=FLAT)[0]
-    own = contributed - columns @ absorbed
-    block = evidence.cells.block
+    own = refitted(base.columns, contributed, fitted)
     count = int(block.max()) + 1
-    rows = np.maximum(np.bincount(block[~fitted], minlength=count), 1)
-    noise = np.bincount(block[~fitted], model.residual[~fitted] ** 2, count) / rows
-    power = np.bincount(block[~fitted], own[~fitted] ** 2, count)
+    learnt_from = np.bincount(block[fitted], own[fitted] ** 2, count)
+    if learnt_from.sum() ** 2 < FEWEST_BLOCKS * float(np.sum(learnt_from**2)):
+        return False
+    rows = np.maximum(np.bincount(block[held], minlength=count), 1)
+    noise = np.bincount(block[held], model.residual[held] ** 2, count) / rows
+    power = np.bincount(block[held], own[held] ** 2, count)
     expected = float(power.sum())
     # Rows under one kernel are one reading: so many times worse than if they were independent.
     error = float(np.sqrt(evidence.overlap * (power @ noise)))
     if expected <= CLEAR * error:
         return False
-    seen, learnt = (_strength(base.residual[rows], own[rows]) for rows in (~fitted, fitted))
+    seen, learnt = (_strength(base.residual[rows], own[rows]) for rows in (held, fitted))
     return learnt > 0.0 and AS_EXPECTED[0] < seen / learnt < AS_EXPECTED[1]
 
 

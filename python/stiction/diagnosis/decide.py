@@ -60,7 +60,8 @@ LEAST_STRENGTH: Final = 3.5
 """Gains over their standard errors (the root of Wald's statistic), from residuals correlated within
 blocks: one number that no number of rows makes large by itself."""
 SURE: Final = 35.0
-"""Of the same, for a few blocks held out to confirm it: mimics that these spoke for came to 9."""
+"""Of the same, for blocks held out to confirm it: mimics in many blocks that these spoke for came
+to 9."""
 MOST_AGAIN: Final = 8.0
 """A cause gains less than so many times on rows held out what it explains of those it was fitted
 to."""
@@ -177,7 +178,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     reason = ""
     by_blocks = False
     strength = model.strength(score.candidate)
-    # What is known so well where it was fitted, blocks held out may confirm however few they are.
+    # What is known so well where it was fitted, rows held out may confirm, however they vary.
     confirmed = cache(lambda: strength >= SURE and is_confirmed(base, model, contributed))
     if model.given <= LEAST_GIVEN:
         reason = "takes away the effort itself, so that nothing is left to explain"

@@ -88,12 +88,10 @@ def first_pass(
     Raises
     ------
     InputError
-        Every parameter is fixed; no start along which the plant gives numbers.
+        No start along which the plant gives numbers.
     """
     starts = complete(plant, [each.form for each in seen.train])
     paths = free_paths(starts[0])
-    if not paths:
-        raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
     weak = launch(starts, paths, seen.train, most=most)
     if weak.interrupted:
         return FirstPass(seen, weak, starts[0])
@@ -114,7 +112,9 @@ def first_pass(
             stiffen(seen.forms, weak.plant)
         else:
             weak = replace(weak, evaluations=again.evaluations)
-    if not _gives_numbers(weak, seen.train):
+            if again.interrupted:
+                weak = replace(weak, success=False, interrupted=True, message=again.message)
+    if not weak.interrupted and not _gives_numbers(weak, seen.train):
         raise InputError(
             f"{plant.source}: simulated with what was fitted, the plant runs away from every start "
             "that the data give; state starting values in [friction] nearer to the machine, or "

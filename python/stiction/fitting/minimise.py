@@ -286,7 +286,8 @@ class _Minimiser:
         )
         begin = np.clip(self.full, *bounds)
         own = np.abs(begin[: len(self.begin)])
-        size = np.where(own > 0.0, own, 1e-3 * max(float(np.max(own, initial=0.0)), 1e-300))
+        # Where everything is 0, as a bend that is the one free number, nothing tells a size.
+        size = np.where(own > 0.0, own, 1e-3 * (float(np.max(own, initial=0.0)) or 1.0))
         size[self.variables.logarithmic] = 1.0
         scale = np.concatenate([np.where(size > 0.0, size, 1.0), [late], self.usual])
         interrupted = False

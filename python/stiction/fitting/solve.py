@@ -137,6 +137,8 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         ),
         most=max_evaluations,
     )
+    if not first.solution.variables.paths:
+        raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
     seen, train = first.seen, first.seen.train
     begin, evaluations = first.solution.begin, first.solution.evaluations
     solution = settled(first.solution, train, most=max_evaluations)
