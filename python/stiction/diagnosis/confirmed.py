@@ -1,8 +1,8 @@
-"""Whether rows held out confirm a cause that only few of them excite.
+"""Whether rows held out confirm a cause that is known well from those that were fitted.
 
-How much a gain varies over blocks says little of a cause that acts in two of fifty: it varies with
-what the machine did there. But what was learnt from the rows that were fitted says how much these
-two must gain, and by noise alone they do not come near it. A mimic may, where the machine does the
+How much a gain varies over blocks says little of a cause that acts in a few of them: it varies with
+what the machine did there. But what was learnt from the rows that were fitted says how much those
+must gain, and by noise alone they do not come near it. A mimic may, where the machine does the
 same again: this is asked only of what many fitted blocks leave no doubt of.
 """
 
