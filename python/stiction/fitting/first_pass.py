@@ -92,35 +92,35 @@ def first_pass(
     """
     starts = complete(plant, [each.form for each in seen.train])
     paths = free_paths(starts[0])
-    weak = launch(starts, paths, seen.train, most=most)
-    if weak.interrupted:
-        return FirstPass(seen, weak, starts[0])
-    horizon = horizon_of(weak.plant, weak.nuisances, seen.train, seen.forms)
+    found = launch(starts, paths, seen.train, most=most)
+    if found.interrupted:
+        return FirstPass(seen, found, starts[0])
+    horizon = horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
     servo = plant.servo
     if horizon is not None or servo:
         _logger.info("fitting it again, simulated")
-        other = simulated(weak.plant, horizon, servo, seen.watch)
+        other = simulated(found.plant, horizon, servo, seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
-        begun = [weak.plant, starts[0]] if servo else [weak.plant]
+        begun = [found.plant, starts[0]] if servo else [found.plant]
         begun = [followable(each, other.forms) for each in begun]
         again = launch(begun, paths, other.train, most=most)
-        again = replace(again, begin=weak.begin, evaluations=weak.evaluations + again.evaluations)
+        again = replace(again, begin=found.begin, evaluations=found.evaluations + again.evaluations)
         if servo or (
             shows_its_ring(again.plant, other.forms) and _gives_numbers(again, other.train)
         ):
-            seen, weak = other, again
-            stiffen(seen.forms, weak.plant)
+            seen, found = other, again
+            stiffen(seen.forms, found.plant)
         else:
-            weak = replace(weak, evaluations=again.evaluations)
+            found = replace(found, evaluations=again.evaluations)
             if again.interrupted:
-                weak = replace(weak, success=False, interrupted=True, message=again.message)
-    if not weak.interrupted and not _gives_numbers(weak, seen.train):
+                found = replace(found, success=False, interrupted=True, message=again.message)
+    if not found.interrupted and not _gives_numbers(found, seen.train):
         raise InputError(
             f"{plant.source}: simulated with what was fitted, the plant runs away from every start "
             "that the data give; state starting values in [friction] nearer to the machine, or "
             "bounds for them"
         )
-    return FirstPass(seen, weak, starts[0])
+    return FirstPass(seen, found, starts[0])
 
 
 def _gives_numbers(solution: Solution, rows: Sequence[Rows]) -> bool:
