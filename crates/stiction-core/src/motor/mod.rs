@@ -93,7 +93,7 @@ impl Motor {
                 return Err(Error::Length { name, given: array.len(), wanted });
             }
         }
-        self.running.follow_about(motion, &mut Four([driven, ambient, friction, ahead]));
+        self.running.follow_about(motion, &mut EffortRows([driven, ambient, friction, ahead]));
         Ok(())
     }
 
@@ -107,7 +107,7 @@ impl Motor {
         motion.check()?;
         let mut traces = [(); 3].map(|()| vec![0.0; motion.samples()]);
         let places = traces.each_mut().map(Vec::as_mut_slice);
-        self.running.follow_about(motion, &mut Three(places));
+        self.running.follow_about(motion, &mut ColumnTraces(places));
         let mut rows = vec![0.0; kernel.rows(motion.samples())];
         kernel.column(traces.each_ref().map(Vec::as_slice), &mut rows);
         Ok(rows)
@@ -257,9 +257,9 @@ const BODY: [&str; 10] = [
 
 /// Rows of the efforts of the drive, of gravity and added efforts, of friction and of how far the
 /// centre of mass is ahead.
-struct Four<'a>([&'a mut [f64]; 4]);
+struct EffortRows<'a>([&'a mut [f64]; 4]);
 
-impl SeesAbout<f64> for Four<'_> {
+impl SeesAbout<f64> for EffortRows<'_> {
     #[inline(always)]
     fn see(&mut self, k: usize, efforts: &Efforts<f64>) {
         let Efforts { driven, ambient, friction, ahead, .. } = *efforts;
@@ -270,9 +270,9 @@ impl SeesAbout<f64> for Four<'_> {
 }
 
 /// Rows of what a column is made of, see [`RowKernel::column`].
-struct Three<'a>([&'a mut [f64]; 3]);
+struct ColumnTraces<'a>([&'a mut [f64]; 3]);
 
-impl SeesAbout<f64> for Three<'_> {
+impl SeesAbout<f64> for ColumnTraces<'_> {
     #[inline(always)]
     fn see(&mut self, k: usize, efforts: &Efforts<f64>) {
         let needed = efforts.friction - efforts.ambient;
