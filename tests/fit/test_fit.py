@@ -17,11 +17,9 @@ import stiction as st
 from stiction import InputError, Plant, Recording, fit
 from stiction.cli import run
 from stiction.fitting import minimise
-from stiction.fitting.forms import followable, shows_its_ring
 from stiction.fitting.minimise import HARDENING, Solution
 from stiction.fitting.rows import Nuisances, Rows
 from stiction.fitting.variables import Variables
-from stiction.shooting import ShootingForm
 from stiction.weak_form import Start, WeakForm
 
 DT = 1e-3
@@ -385,27 +383,3 @@ def test_two_parameters_that_do_the_same_end_at_numbers() -> None:
     assert all(np.isfinite(p.value) for p in found.parameters.values())
     assert found.parameters["friction.coulomb"].value == pytest.approx(TRUE["coulomb"], rel=0.1)
     assert found.r2 > 0.9
-
-
-def test_a_rigid_contact_is_not_simulated_stiffer_and_stiffer() -> None:
-    """Bristles on a machine without any: of a ring that no sample shows nothing is believed."""
-    windows = [ShootingForm(plant(), recorded(), horizon=0.1)]
-
-    def bristles(stiffness: float) -> Plant:
-        own = {"law": "lugre", "coulomb": 0.3, "initial_stiffness": stiffness}
-        return plant("lugre", friction=own, body={"inertia": TRUE["inertia"]})
-
-    stiff = bristles(1e9)
-    held = followable(stiff, windows).friction.parameters["initial_stiffness"]
-    assert held.value == held.max
-    assert not shows_its_ring(followable(stiff, windows), windows)
-    soft = bristles(100.0)
-    assert followable(soft, windows).friction.parameters["initial_stiffness"].value == 100.0
-
-
-def test_a_plant_that_runs_away_from_every_start_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    gone = np.full_like
-    whole = Rows.residual
-    monkeypatch.setattr(Rows, "residual", lambda *given: gone(whole(*given), np.nan), raising=True)
-    with pytest.raises(InputError, match="runs away from every start"):
-        fit(plant(), recorded())

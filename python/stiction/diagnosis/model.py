@@ -106,6 +106,7 @@ class Model:
             self.solution,
             self.evidence.train,
             [],
+            given=self.evidence.plant,
             begin=self.solution.begin,
             described=self.evidence.split.describe(),
             evaluations=self.solution.evaluations,

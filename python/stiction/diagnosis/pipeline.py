@@ -214,7 +214,7 @@ def _testable(
     data = {
         **found.data,
         "split": dealt,
-        "residual": residual_told([rows.form for rows in evidence.shown]),
+        "residual": residual_told([rows.form for rows in evidence.shown], base.plant),
     }
     _logger.info("replaying it with noise, %d times", surrogates)
     null, noises = _surrogates(evidence, base, surrogates, found.seed)
@@ -379,7 +379,7 @@ def _concluded(
         sentence=("" if better is None else f"{better.words(own_law, bool(causes))} ")
         + sentence(verdict, causes, gain, unexplained, reason)
         + no_machine(max(left, lost_on_test(test, len(causes), null)), bool(causes), verdict),
-        plant=final.plant,
+        plant=extended.plant,
         effects=tuple(causes),
         gain=gain,
         candidates=in_order(selection.rows.values(), selection.choices),
@@ -453,7 +453,7 @@ def _summary(
         (plan,) = evidence.plans
         select = float(np.sqrt(np.mean((model.residual / evidence.weights)[plan.held] ** 2)))
     return ModelSummary(
-        plant=model.plant,
+        plant=result.plant,
         parameters=result.parameters,
         unit=result.unit,
         train_rms=result.train_rms,

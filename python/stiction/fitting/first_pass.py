@@ -106,7 +106,7 @@ def first_pass(
         again = launch(begun, paths, other.train, most=most)
         again = replace(again, begin=found.begin, evaluations=found.evaluations + again.evaluations)
         if servo or (
-            shows_its_ring(again.plant, other.forms) and _gives_numbers(again, other.train)
+            shows_its_ring(again.plant, other.forms) and _lost(again, other.train) is None
         ):
             seen, found = other, again
             stiffen(seen.forms, found.plant)
@@ -114,16 +114,20 @@ def first_pass(
             found = replace(found, evaluations=again.evaluations)
             if again.interrupted:
                 found = replace(found, success=False, interrupted=True, message=again.message)
-    if not found.interrupted and not _gives_numbers(found, seen.train):
+    lost = None if found.interrupted else _lost(found, seen.train)
+    if lost is not None:
         raise InputError(
             f"{plant.source}: simulated with what was fitted, the plant runs away from every start "
-            "that the data give; state starting values in [friction] nearer to the machine, or "
-            "bounds for them"
+            f"that the data give, in recording {lost + 1}; state starting values in [friction] "
+            "nearer to the machine, or bounds for them"
         )
     return FirstPass(seen, found, starts[0])
 
 
-def _gives_numbers(solution: Solution, rows: Sequence[Rows]) -> bool:
-    """Whether what is left of the rows are numbers: a simulation may run away."""
-    left = (each.residual(solution.plant, solution.nuisances)[each.mask] for each in rows)
-    return all(bool(np.all(np.isfinite(own))) for own in left)
+def _lost(solution: Solution, rows: Sequence[Rows]) -> int | None:
+    """The first recording in which what is left are no numbers: a simulation may run away."""
+    for each in rows:
+        left = each.residual(solution.plant, solution.nuisances)[each.mask]
+        if not np.all(np.isfinite(left)):
+            return each.index
+    return None

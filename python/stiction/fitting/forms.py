@@ -20,6 +20,7 @@ from .rows import Nuisances, Rows
 
 __all__ = [
     "EVERY_S",
+    "as_stated",
     "followable",
     "forms_of",
     "horizon_of",
@@ -145,9 +146,7 @@ def horizon_of(
         return None
     if not {"coulomb", "initial_stiffness"} <= friction.keys():
         return None
-    reach = friction["coulomb"].value / friction["initial_stiffness"].value
-    step = float(np.median([_step(each.form) for each in rows]))
-    if reach >= FEWEST_COUNTS * step or not shows_its_ring(plant, forms):
+    if _fine(plant, [each.form for each in rows]) or not shows_its_ring(plant, forms):
         return None
     left = [each.residual(plant, nuisances)[each.mask] for each in rows]
     measured = [each.form.measured(plant)[each.mask] for each in rows]
@@ -178,6 +177,20 @@ def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
     return replace(plant, friction=replace(plant.friction, parameters=parameters))
 
 
+def as_stated(plant: Plant, given: Plant) -> Plant:
+    """The plant with the upper bound of its stiffness that was given.
+
+    One that ``followable`` set is an end of what can be simulated, and says nothing of the machine.
+    """
+    stiffness = plant.friction.parameters.get("initial_stiffness")
+    if stiffness is None:
+        return plant
+    stated = given.friction.parameters.get("initial_stiffness")
+    most = None if stated is None else stated.max
+    parameters = {**plant.friction.parameters, "initial_stiffness": replace(stiffness, max=most)}
+    return replace(plant, friction=replace(plant.friction, parameters=parameters))
+
+
 def shows_its_ring(plant: Plant, forms: Sequence[WeakForm]) -> bool:
     """Whether samples follow a machine that rings on its pre-sliding stiffness.
 
@@ -195,8 +208,8 @@ def stiffen(forms: Sequence[WeakForm], plant: Plant) -> None:
             form.stiffen(plant)
 
 
-def told(forms: Sequence[WeakForm]) -> str:
-    """Which residual was used and why, in one sentence."""
+def told(forms: Sequence[WeakForm], plant: Plant) -> str:
+    """Which residual was used and why, in one sentence; ``plant`` is the one that was fitted."""
     if isinstance(forms[0], LoopForm):
         return (
             "The servo was simulated from its goal over whole recordings (closed loop), because "
@@ -213,10 +226,27 @@ def told(forms: Sequence[WeakForm]) -> str:
     width = f"{min(supports):.0f}"
     if max(supports) > min(supports) + 0.5:
         width += f" to {max(supports):.0f}"
-    return (
-        f"The plant was led along the measured motion, averaged over {width} ms (weak form), "
-        "because the readings of the position are fine enough to drive friction."
+    led = f"The plant was led along the measured motion, averaged over {width} ms (weak form)"
+    if _fine(plant, forms):
+        return f"{led}, because the readings of the position are fine enough to drive friction."
+    over = (
+        f"pre-sliding is over within {FEWEST_COUNTS:.0f} of the steps in which positions are read"
     )
+    if shows_its_ring(plant, forms):
+        return f"{led}; {over}, so that it shows little."
+    return (
+        f"{led}, because the contact rings faster than it was sampled and cannot be simulated "
+        f"instead; {over}, so that it shows little."
+    )
+
+
+def _fine(plant: Plant, forms: Sequence[WeakForm]) -> bool:
+    """Whether readings resolve the reach of pre-sliding, so that friction can be driven by them."""
+    friction = plant.friction.parameters
+    if not {"coulomb", "initial_stiffness"} <= friction.keys():
+        return True
+    reach = friction["coulomb"].value / friction["initial_stiffness"].value
+    return reach >= FEWEST_COUNTS * float(np.median([_step(form) for form in forms]))
 
 
 def _step(form: WeakForm) -> float:

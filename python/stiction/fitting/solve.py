@@ -16,12 +16,13 @@ from ..recording.split import BLOCK_S, name_of, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from .first_pass import first_pass
-from .forms import forms_of, set_clocks
+from .forms import as_stated, forms_of, set_clocks
 from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise
 from .pushes import Watch, told
 from .result import FitParameter, FitResult
 from .rows import Nuisances, Rows, primed, rows_of
 from .slopes import slopes
+from .start import complete, free_paths
 from .statistics import (
     correlations,
     covariance,
@@ -43,6 +44,8 @@ SELECT_IS_FITTED: Final = (
     "fits those of train alone, and may end at values a little different."
 )
 """The one thing in which a fit and the base of a diagnosis differ."""
+STIFFNESS: Final = "friction.initial_stiffness"
+"""What windows can follow up to an end that nobody stated."""
 WEIGHT_FLOOR: Final = 0.1
 """A recording weighs at most this many times less residual than the worst one has."""
 
@@ -129,6 +132,8 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         raise InputError("there are no recordings to fit; give at least one")
     recordings, faults = _without_faults(recordings)
     seen = _Seen(plant, recordings)
+    if not free_paths(plant) and not free_paths(complete(plant, [r.form for r in seen.train])[0]):
+        raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
     first = first_pass(
         plant,
         seen,
@@ -137,8 +142,6 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         ),
         most=max_evaluations,
     )
-    if not first.solution.variables.paths:
-        raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
     seen, train = first.seen, first.seen.train
     begin, evaluations = first.solution.begin, first.solution.evaluations
     solution = settled(first.solution, train, most=max_evaluations)
@@ -150,6 +153,7 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         solution,
         train,
         seen.held,
+        given=plant,
         begin=begin,
         described="\n".join([*faults, *pushed, seen.parts.described]),
         evaluations=evaluations,
@@ -220,6 +224,7 @@ def evaluate(
     train: Sequence[Rows],
     held: Sequence[Rows],
     *,
+    given: Plant,
     begin: FloatArray,
     described: str,
     evaluations: int,
@@ -232,6 +237,8 @@ def evaluate(
     solution : Solution
     train, held : sequence of Rows
         Fitted and held-out rows.
+    given : Plant
+        What was asked for, with the bounds that were stated.
     begin : numpy.ndarray, shape (p,)
         Vector from which the first minimisation started.
     described : str
@@ -249,9 +256,9 @@ def evaluate(
     own = [j[:, : len(paths)] for j in jacobians]
     flat = undetermined_directions(own, paths)
     values, starts = variables.values(solution.vector), variables.values(begin)
-    given = [each.weight * each.form.measured(plant)[each.mask] for each in train]
+    measured = [each.weight * each.form.measured(plant)[each.mask] for each in train]
     pure = [unit_of(plant, path) == "1" for path in paths]
-    found = echoes(own, given, residuals, values, paths, pure)
+    found = echoes(own, measured, residuals, values, paths, pure)
     flat += [group for group in found if group not in flat]
     dead = {path for group in flat for path in group}
     errors = np.sqrt(np.maximum(np.diag(matrix), 0.0))
@@ -276,12 +283,13 @@ def evaluate(
         )
     fitted = _errors(plant, train, nuisances)
     heldout = _errors(plant, held, nuisances) if held else None
+    stated = as_stated(plant, given)
     return FitResult(
-        plant=plant,
+        plant=stated,
         parameters=parameters,
         covariance=matrix,
         correlations=correlations(matrix),
-        bounds_hit=_bound_sentences(parameters),
+        bounds_hit=_bound_sentences(parameters, stated),
         undetermined=_undetermined_sentences(parameters, flat, train),
         r2=fitted[2],
         train_rms=fitted[0],
@@ -336,13 +344,21 @@ def _errors(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> tuple[f
     )
 
 
-def _bound_sentences(parameters: dict[str, FitParameter]) -> tuple[str, ...]:
-    return tuple(
-        f"{path} ended at its {p.at_bound} bound, {p.value:.6g} {p.unit}: widen the bound, or the "
-        "data pull it where it has no meaning"
-        for path, p in parameters.items()
-        if p.at_bound
-    )
+def _bound_sentences(parameters: dict[str, FitParameter], stated: Plant) -> tuple[str, ...]:
+    sentences = []
+    for path, p in parameters.items():
+        most = stated.parameters[path].max
+        if path == STIFFNESS and p.at_bound == "upper" and (most is None or p.value < most):
+            sentences.append(
+                f"{path} ended at {p.value:.6g} {p.unit}, the stiffest contact that can be "
+                "simulated between these samples: record more often to tell it"
+            )
+        elif p.at_bound:
+            sentences.append(
+                f"{path} ended at its {p.at_bound} bound, {p.value:.6g} {p.unit}: widen the bound, "
+                "or the data pull it where it has no meaning"
+            )
+    return tuple(sentences)
 
 
 def _undetermined_sentences(

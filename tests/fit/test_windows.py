@@ -1,0 +1,97 @@
+"""Fits that go on simulated over windows, and what is told of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.fit.test_fit import TRUE, plant, recorded
+
+from stiction import InputError, Plant, fit
+from stiction.fitting import first_pass, forms
+from stiction.fitting.forms import as_stated, followable, shows_its_ring, told
+from stiction.fitting.minimise import Solution, launch
+from stiction.fitting.rows import Rows
+from stiction.shooting import ShootingForm
+from stiction.weak_form import WeakForm
+
+
+def bristles(stiffness: float | dict[str, Any]) -> Plant:
+    own = {"law": "lugre", "coulomb": 0.3, "initial_stiffness": stiffness}
+    return plant("lugre", friction=own, body={"inertia": TRUE["inertia"]})
+
+
+def test_a_rigid_contact_is_not_simulated_stiffer_and_stiffer() -> None:
+    """Bristles on a machine without any: of a ring that no sample shows nothing is believed."""
+    windows = [ShootingForm(plant(), recorded(), horizon=0.1)]
+    stiff = bristles(1e9)
+    held = followable(stiff, windows).friction.parameters["initial_stiffness"]
+    assert held.value == held.max
+    assert not shows_its_ring(followable(stiff, windows), windows)
+    soft = bristles(100.0)
+    assert followable(soft, windows).friction.parameters["initial_stiffness"].value == 100.0
+
+
+@pytest.mark.parametrize("most", [None, 5e4])
+def test_the_end_of_what_windows_follow_is_no_bound_of_the_plant(most: float | None) -> None:
+    windows = [ShootingForm(plant(), recorded(), horizon=0.1)]
+    stated = {"value": 100.0} if most is None else {"value": 100.0, "max": most}
+    given = bristles(stated)
+    held = followable(given, windows)
+    assert held.friction.parameters["initial_stiffness"].max is not None
+    back = as_stated(held, given).friction.parameters["initial_stiffness"]
+    assert (back.value, back.max) == (100.0, most)
+
+
+def test_what_is_told_of_the_residual_is_true_of_the_plant() -> None:
+    """Readings of 24 µrad: of a reach of 3 mrad they tell all, of 0.3 µrad nothing."""
+    seen = [WeakForm(plant(), recorded(), every=0.005)]
+    assert "fine enough" in told(seen, plant())
+    assert "fine enough" in told(seen, bristles(100.0))
+    assert "shows little" in told(seen, bristles(5e4))
+    assert "faster than it was sampled" not in told(seen, bristles(5e4))
+    assert "faster than it was sampled" in told(seen, bristles(1e6))
+
+
+def test_an_interrupt_over_windows_that_are_given_up_is_not_lost(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found: list[Solution] = []
+
+    def launched(*given: Any, **named: Any) -> Solution:
+        if not found:
+            found.append(launch(*given, **named))
+            return found[0]
+        return replace(found[0], interrupted=True, success=False, message="interrupted")
+
+    monkeypatch.setattr(first_pass, "launch", launched)
+    monkeypatch.setattr(first_pass, "horizon_of", lambda *_: 0.1)
+    best = fit(bristles({"value": 1e6, "fixed": True}), recorded(4000))
+    assert not best.success
+    assert "interrupted" in best.message
+    assert best["body.inertia"].value == found[0].plant.inertia
+
+
+def test_the_stiffest_contact_that_windows_follow_is_no_bound_to_widen(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(first_pass, "horizon_of", lambda *_: 0.1)
+    monkeypatch.setattr(forms, "BEYOND_SHOWN", 2e-3)
+    found = fit(bristles(100.0), recorded(4000))
+    stiffness = found["friction.initial_stiffness"]
+    assert stiffness.at_bound == "upper"
+    assert stiffness.value == pytest.approx(2e-3 * TRUE["inertia"] * (np.pi / 1e-3) ** 2, rel=0.05)
+    assert found.plant.friction.parameters["initial_stiffness"].max is None
+    (said,) = (each for each in found.bounds_hit if "initial_stiffness" in each)
+    assert "the stiffest contact that can be simulated" in said
+    assert "widen" not in said
+
+
+def test_a_plant_that_runs_away_from_every_start_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    gone = np.full_like
+    whole = Rows.residual
+    monkeypatch.setattr(Rows, "residual", lambda *given: gone(whole(*given), np.nan), raising=True)
+    with pytest.raises(InputError, match=r"runs away from every start .* in recording 1;"):
+        fit(plant(), recorded())
