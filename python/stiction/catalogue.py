@@ -134,6 +134,22 @@ class EffectRecord:
         """Whether it lets the effort follow the input late."""
         return not {"input delay", "input lag"}.isdisjoint(self.hooks)
 
+    def impossible(self, motion: str, *, servo: bool) -> str:
+        """Why such a machine cannot have it, "" where it can.
+
+        Parameters
+        ----------
+        motion : str
+            ``"rotary"`` or ``"linear"``.
+        servo : bool
+            Whether its drive is told where to go.
+        """
+        if self.rotary_only and motion != "rotary":
+            return "only a machine that turns can have it"
+        if "input rate" in self.hooks and not servo:
+            return "only a servo has a goal"
+        return ""
+
     def to_dict(self) -> dict[str, Any]:
         """The record as plain dicts and lists."""
         return asdict(self)

@@ -119,7 +119,7 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
         law=law,
         friction=friction,
         options=options,
-        effects=_effects(table.get("effects", []), source),
+        effects=_effects(table.get("effects", []), motion, drive.get("kind") == "servo", source),
         sensor=_sensor(section(table, "sensor", source), motion, source),
         controller=_controller(section(table, "controller", source), source),
     )
@@ -201,7 +201,9 @@ def _friction(
     return law, parameters, words
 
 
-def _effects(given: Any, source: str) -> list[tuple[str, dict[str, Parameter]]]:
+def _effects(
+    given: Any, motion: Motion, servo: bool, source: str
+) -> list[tuple[str, dict[str, Parameter]]]:
     from .catalogue import effects
 
     if not isinstance(given, list) or not all(isinstance(e, Mapping) for e in given):
@@ -216,6 +218,8 @@ def _effects(given: Any, source: str) -> list[tuple[str, dict[str, Parameter]]]:
         if any(effect == other for other, _ in result):
             raise InputError(f"{where}: '{effect}' is there twice; drop one")
         where = f"{where} ({effect})"
+        if reason := records[effect].impossible(motion, servo=servo):
+            raise InputError(f"{where}: {reason}; leave it out")
         known(entry, ["name", *(p.name for p in records[effect].parameters)], where)
         values = {
             key: Parameter.read(value, f"{where} {key}")

@@ -138,6 +138,15 @@ REFUSED = {
         '[friction]\nlaw = "coulomb"\n[[effects]]\nname = "cogging"\n[[effects]]\nname = "cogging"',
         "'cogging' is there twice",
     ),
+    "effect of a machine that turns": (
+        '[motion]\nkind = "linear"\n[friction]\nlaw = "coulomb"\n'
+        '[[effects]]\nname = "gravity_unbalance"',
+        r"1 \(gravity_unbalance\): only a machine that turns can have it; leave it out",
+    ),
+    "effect of a servo": (
+        '[friction]\nlaw = "coulomb"\n[[effects]]\nname = "goal_rate_limit"',
+        "only a servo has a goal",
+    ),
     "effects as a table": ('[friction]\nlaw = "coulomb"\n[effects]\nname = "cogging"', "not a li"),
     "value out of its own bounds": (
         '[friction]\nlaw = "coulomb"\ncoulomb = { value = 2.0, max = 1.0 }',

@@ -50,8 +50,6 @@ WORTH_RENEWING: Final = 0.005
 """Share of its residual's power that makes that worth while."""
 AT_THE_DRIVE: Final = frozenset({"input map", "input delay", "input lag"})
 """Hooks of effects that a machine without a drive cannot have."""
-AT_THE_GOAL: Final = "input rate"
-"""Hook of effects that a drive without a goal cannot have."""
 SWINGS: Final = "second mass"
 """Hook of effects whose mass swings faster than the samples of a servo show."""
 RELATED: Final = 0.2
@@ -124,25 +122,29 @@ def _candidates(
     for record in effects():
         if record.name in without:
             continue
+        reason = _refused(evidence, base.plant, record)
         missing = [name for name in record.channels if name not in channels]
-        if present(base.plant, record):
-            reason = _where(base.plant, record)
-        elif record.rotary_only and base.plant.motion != "rotary":
-            reason = "only a machine that turns can have it"
-        elif AT_THE_GOAL in record.hooks and not base.plant.servo:
-            reason = "only a servo has a goal"
-        elif evidence.loop and SWINGS in record.hooks:
-            reason = "not testable: what swings between samples shows in no loop that is simulated"
-        elif evidence.plant.prescribed_motion and not AT_THE_DRIVE.isdisjoint(record.hooks):
-            reason = "there is no drive where the motion is prescribed"
-        elif missing:
+        if not reason and missing:
             reason = f"not testable: no channel {missing[0]} was recorded"
             found.blind.append(record)
+        if reason:
+            found.rows[record.name] = CandidateRow(record.name, None, None, None, reason)
         else:
             tried += candidates(record, scales)
-            continue
-        found.rows[record.name] = CandidateRow(record.name, None, None, None, reason)
     return tried
+
+
+def _refused(evidence: Evidence, plant: Plant, record: EffectRecord) -> str:
+    """Why an effect is not tried on such a machine, "" where it is."""
+    if present(plant, record):
+        return _where(plant, record)
+    if reason := record.impossible(plant.motion, servo=plant.servo):
+        return reason
+    if evidence.loop and SWINGS in record.hooks:
+        return "not testable: what swings between samples shows in no loop that is simulated"
+    if plant.prescribed_motion and not AT_THE_DRIVE.isdisjoint(record.hooks):
+        return "there is no drive where the motion is prescribed"
+    return ""
 
 
 def _where(plant: Plant, record: EffectRecord) -> str:
