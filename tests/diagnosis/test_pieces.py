@@ -25,7 +25,6 @@ from stiction.diagnosis.periodic import waves_of
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.replay import centre, noise_of, surrogate_residuals
 from stiction.diagnosis.result import Cause, Diagnosis
-from stiction.diagnosis.screen import Signatures
 from stiction.diagnosis.verdict import relatives
 from stiction.diagnosis.words import joined, sentence, value_words
 from stiction.finite import finite
@@ -123,21 +122,6 @@ def test_surrogates_hold_the_noise_that_the_recording_holds() -> None:
     bias, centred = centre(null)
     assert np.allclose(centred.sum(axis=1), 0.0, atol=1e-12)
     assert bias.shape == real.shape
-
-
-def test_projection_takes_off_what_the_base_explains_and_the_same_from_held_rows() -> None:
-    source = np.random.default_rng(0)
-    base = source.standard_normal((200, 3))
-    fit = np.arange(200) < 120
-    projected = project(base, Plan(fit, ~fit)).project(base @ np.array([1.0, -2.0, 3.0]))
-    assert np.allclose(projected.fit, 0.0, atol=1e-10)
-    assert np.allclose(projected.held, 0.0, atol=1e-10)
-    other = project(base, Plan(fit, ~fit)).project(source.standard_normal(200))
-    assert np.allclose(base[fit].T @ other.fit, 0.0, atol=1e-10)
-    many = source.standard_normal((70, 120)).T
-    expected = project(base, Plan(fit, ~fit)).off(many)
-    project(base, Plan(fit, ~fit)).take_off(many)
-    assert np.allclose(many, expected, rtol=0.0, atol=1e-12)
 
 
 def test_a_fold_leaves_alone_what_its_rows_do_not_tell() -> None:
@@ -376,23 +360,6 @@ def test_a_rest_of_a_contact_without_a_spring_is_looked_for_in_two_lengths() -> 
     # A refit finds the length of others.
     gap = records["backlash"]
     assert len(candidates(gap, none)) == len(candidates(gap, own))
-
-
-def test_a_second_wave_has_another_order() -> None:
-    (record,) = (each for each in st.effects() if each.name == "cogging")
-    scales = Scales((0.1, 1.0), (1.0, 2.0, 3.0), True, {})
-    whole = tuple(candidates(record, scales))
-    columns = np.zeros((4, 2 * len(whole)))
-    slices = tuple(slice(2 * k, 2 * k + 2) for k in range(len(whole)))
-    effect = Effect("cogging", {"order": Parameter(2.0, fixed=True)})
-    second = Signatures(whole, columns, slices).second_of(effect)
-    assert [each.shape["order"] for each in second.candidates] == [1.0, 3.0]
-    assert all(each.second for each in second.candidates)
-    # Where an order is free a neighbour may come to it as well.
-    free = tuple(candidates(record, Scales((0.1, 1.0), (1.0, 2.0, 3.0, 4.0, 5.0), False, {})))
-    slices = tuple(slice(2 * k, 2 * k + 2) for k in range(len(free)))
-    second = Signatures(free, np.zeros((4, 10)), slices).second_of(effect)
-    assert [each.shape["order"] for each in second.candidates] == [4.0, 5.0]
 
 
 def test_every_row_has_a_reason() -> None:

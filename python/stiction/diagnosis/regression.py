@@ -18,8 +18,6 @@ FLAT: Final = 1e-8
 LEAST_TOLD: Final = 0.05
 """A direction of which a fold tells less than this share of what all fitted rows tell is left where
 those put it: what one block alone determines, the others cannot."""
-TOGETHER: Final = 32
-"""Columns from which the base is taken off at a time: they stay in the cache."""
 
 
 @dataclass(frozen=True)
@@ -70,11 +68,10 @@ class Base:
         """Columns of the fitted rows alone, without what the base explains; same shape."""
         return fit - self._left @ (self._left.T @ fit)
 
-    def take_off(self, fit: FloatArray) -> None:
-        """The same of many columns, each in one piece, in their place."""
-        for first in range(0, fit.shape[1], TOGETHER):
-            some = fit.T[first : first + TOGETHER]
-            some -= (some @ self._left) @ self._left.T
+    def share(self, fit: FloatArray) -> FloatArray:
+        """What of columns of the fitted rows lies in each direction of the base; shape (p, k)."""
+        found: FloatArray = self._left.T @ fit
+        return found
 
     def project(self, columns: FloatArray) -> Projected:
         """Columns of all rows, shape (n, k) or (n,), without what the base explains."""

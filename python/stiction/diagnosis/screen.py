@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Final
 
@@ -12,6 +13,7 @@ import numpy as np
 from ..finite import finite
 from ..fitting.rows import Nuisances, Rows
 from ..plant import Effect, Plant
+from ..recording.checks.signal import runs
 from ..trajectory import FloatArray
 from .candidates import Candidate
 from .evidence import Evidence, Plan
@@ -28,8 +30,48 @@ FLIPS: Final = 7
 """Seed of the signs by which blocks are turned round: always the same."""
 DEPENDENT: Final = 1e-12
 """Least eigenvalue of columns of size 1 below which they are taken as one and the same."""
+IMITATED: Final = 1e-10
+"""Share of a signature's power that must lie outside the base: less is what rounding leaves."""
 SEEN_SIZE: Final = 0.02
 """An effect whose effort is this share of the friction must be seen, or it is not testable."""
+
+
+@dataclass(frozen=True)
+class _Alike:
+    """Candidates with the same number of gains, q, which are regressed on all at once.
+
+    Attributes
+    ----------
+    places : numpy.ndarray of int, shape (m,)
+        Among all candidates.
+    own : numpy.ndarray of int, shape (m, q)
+        Columns of each.
+    normal : numpy.ndarray, shape (m, q, q)
+        SᵀS of each over the fitted rows.
+    low, high : numpy.ndarray, shape (m, q)
+        Bounds of the gains.
+    """
+
+    places: np.ndarray
+    own: np.ndarray
+    normal: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+    @classmethod
+    def of(cls, signatures: Signatures, number: int) -> _Alike:
+        """Those with so many gains."""
+        slices = signatures.slices
+        places = [k for k, own in enumerate(slices) if own.stop - own.start == number]
+        parts = [signatures.over_fitted[:, slices[k]] for k in places]
+        bounds = np.array([_bounds(signatures.candidates[k]) for k in places])
+        return cls(
+            np.array(places),
+            np.array([range(slices[k].start, slices[k].stop) for k in places]),
+            np.array([part.T @ part for part in parts]),
+            bounds[:, 0],
+            bounds[:, 1],
+        )
 
 
 @dataclass(frozen=True)
@@ -45,11 +87,20 @@ class Signatures:
         Weighted, of the rows that may be looked at; each in one piece.
     slices : tuple of slice
         Columns of each candidate.
+    over_fitted : numpy.ndarray, shape (n_fit, gains)
+        The same of the fitted rows alone: tens of megabytes, which every round reads.
     """
 
     candidates: tuple[Candidate, ...]
     columns: FloatArray
     slices: tuple[slice, ...]
+    over_fitted: FloatArray
+
+    @cached_property
+    def alike(self) -> tuple[_Alike, ...]:
+        """The candidates by their number of gains."""
+        numbers = {own.stop - own.start for own in self.slices}
+        return tuple(_Alike.of(self, number) for number in sorted(numbers))
 
     @classmethod
     def of(
@@ -71,12 +122,17 @@ class Signatures:
         def fill(place: tuple[Rows, slice]) -> None:
             rows, own = place
             found = rows.form.signatures(plant, wanted, nuisances.start(rows.index))
-            np.multiply(found.T[:, rows.mask], -rows.weight, out=columns[:, own])
+            at = own.start
+            for first, last in runs(rows.mask):
+                end = at + last - first
+                np.multiply(found.T[:, first:last], -rows.weight, out=columns[:, at:end])
+                at = end
 
         ends = np.cumsum([np.count_nonzero(rows.mask) for rows in evidence.shown]).tolist()
         places = [slice(*ends) for ends in pairwise([0, *ends])]
         evidence.each(fill, list(zip(evidence.shown, places, strict=True)))
-        return cls(tuple(candidates), finite(columns).T, tuple(slices))
+        over_fitted = np.compress(evidence.fitted, finite(columns), axis=1)
+        return cls(tuple(candidates), columns.T, tuple(slices), over_fitted.T)
 
     def second_of(self, effect: Effect) -> Signatures:
         """Second waves of an effect: at zero amplitude they look like first ones.
@@ -89,10 +145,15 @@ class Signatures:
             for k, each in enumerate(self.candidates)
             if each.name == effect.name and not _same_order(each, effect)
         ]
+        # Their columns lie side by side, apart from those of other effects.
+        slices = [self.slices[k] for k in own]
+        first = min((each.start for each in slices), default=0)
+        end = max((each.stop for each in slices), default=0)
         return Signatures(
             tuple(replace(self.candidates[k], second=True) for k in own),
-            self.columns,
-            tuple(self.slices[k] for k in own),
+            self.columns[:, first:end],
+            tuple(slice(each.start - first, each.stop - first) for each in slices),
+            self.over_fitted[:, first:end],
         )
 
 
@@ -179,13 +240,11 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     ``friction`` is the weighted rms of the friction, against which sizes are measured.
     """
     base = project(problem.base, Plan(problem.fitted, problem.fitted))
-    fitted = problem.fitted
+    fitted, columns = problem.fitted, signatures.over_fitted
+    # What is free of the base has the same products with columns as with what is left of them.
     residual, null = base.off(problem.residual[fitted]), base.off(problem.null[fitted])
-    # Tens of megabytes: one copy, which is changed in its place.
-    columns = np.compress(fitted, signatures.columns.T, axis=1).T
-    base.take_off(columns)
     power = max(float(residual @ residual), 1e-300)
-    scan = _Scan.of(columns, signatures)
+    scan = _Scan.of(signatures, base.share(columns))
     gains, explained = scan.regressed(columns.T @ residual)
     best: dict[str, int] = {}
     for index, candidate in enumerate(signatures.candidates):
@@ -195,20 +254,19 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     # What explains most and carries over: taken out for the thresholds of all others.
     carrying = [index for index in best.values() if heldout[index] > 0.0]
     strongest = max(carrying or best.values(), key=lambda index: explained[index])
-    unexplained = residual - columns[:, signatures.slices[strongest]] @ gains[strongest]
+    parts = {index: base.off(columns[:, signatures.slices[index]]) for index in best.values()}
+    unexplained = residual - parts[strongest] @ gains[strongest]
     flips = _flipped(unexplained, problem.block[fitted], null.shape[1])
     null_power = np.maximum(np.sum(null**2, axis=0), 1e-300)
-    # The columns are free of the base, so what of a residual lies in the base does not matter.
     noise = scan.explained(columns.T @ null) / null_power
-    turned = scan.explained(columns.T @ flips) / power
+    turned = scan.explained(columns.T @ base.off(flips)) / power
     names = np.array([candidate.name for candidate in signatures.candidates])
     thresholds = {name: _threshold(noise[names == name], turned[names == name]) for name in best}
     scores = []
     for name, index in best.items():
-        part = columns[:, signatures.slices[index]]
-        whole = signatures.columns[:, signatures.slices[index]][fitted]
-        total = float(np.sum(whole**2))
-        left = float(np.sum(part**2)) / total if total > 0.0 else 0.0
+        total = float(np.sum(columns[:, signatures.slices[index]] ** 2))
+        left = float(np.sum(parts[index] ** 2)) / total if total > 0.0 else 0.0
+        left = left if left > IMITATED else 0.0
         scores.append(
             Score(
                 candidate=signatures.candidates[index],
@@ -218,7 +276,7 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
                 heldout=heldout[index],
                 left=left,
                 visible=left * len(residual) * (SEEN_SIZE * friction) ** 2 / power,
-                signature=part @ gains[index],
+                signature=parts[index] @ gains[index],
             )
         )
     return sorted(scores, key=lambda s: -s.score)
@@ -233,39 +291,43 @@ class _Scan:
 
     Attributes
     ----------
-    candidates : tuple of Candidate
-    slices : tuple of slice
-    normal : list of numpy.ndarray, shape (q, q)
-        SᵀS of each candidate.
-    inverse : list of numpy.ndarray or None, shape (q, q)
-        None where its columns are not independent.
+    alike : tuple of _Alike
+    normal : list of numpy.ndarray, shape (m, q, q)
+        S⊥ᵀS⊥ of the candidates of each of them.
+    inverse : list of numpy.ndarray, shape (m, q, q)
+        0 where columns are not independent, or where the base imitates one of them.
     """
 
-    candidates: tuple[Candidate, ...]
-    slices: tuple[slice, ...]
+    alike: tuple[_Alike, ...]
     normal: list[FloatArray]
-    inverse: list[FloatArray | None]
+    inverse: list[FloatArray]
 
     @classmethod
-    def of(cls, columns: FloatArray, signatures: Signatures) -> _Scan:
-        normal = [columns[:, own].T @ columns[:, own] for own in signatures.slices]
-        inverse = [_inverse(matrix) for matrix in normal]
-        return cls(signatures.candidates, signatures.slices, normal, inverse)
+    def of(cls, signatures: Signatures, within: FloatArray) -> _Scan:
+        """Of columns that lie within the base by these shares, shape (p, columns)."""
+        normal, inverse = [], []
+        for some in signatures.alike:
+            inside = within[:, some.own].transpose(1, 2, 0)
+            left = some.normal - inside @ inside.transpose(0, 2, 1)
+            shown = _diagonals(left) > IMITATED * _diagonals(some.normal)
+            normal.append(left)
+            inverse.append(np.where(np.all(shown, axis=1)[:, None, None], _inverses(left), 0.0))
+        return cls(signatures.alike, normal, inverse)
 
     def regressed(self, products: FloatArray) -> tuple[list[FloatArray], FloatArray]:
         """Gains of each candidate within their bounds, and the power that they take away.
 
         ``products`` is Sᵀr, shape (columns,).
         """
-        gains, explained = [], np.zeros(len(self.candidates))
-        for k, (candidate, own) in enumerate(zip(self.candidates, self.slices, strict=True)):
-            inverse, product = self.inverse[k], products[own]
-            if inverse is None:
-                gains.append(np.zeros(len(product)))
-                continue
-            best = _bounded(candidate, inverse @ product)
-            gains.append(best)
-            explained[k] = 2.0 * float(best @ product) - float(best @ self.normal[k] @ best)
+        number = sum(len(some.places) for some in self.alike)
+        gains, explained = [np.zeros(0)] * number, np.zeros(number)
+        for some, normal, inverse in zip(self.alike, self.normal, self.inverse, strict=True):
+            product = products[some.own]
+            best = np.clip(np.einsum("kij,kj->ki", inverse, product), some.low, some.high)
+            taken = 2.0 * np.sum(best * product, axis=1)
+            explained[some.places] = taken - np.einsum("ki,kij,kj->k", best, normal, best)
+            for place, own in zip(some.places.tolist(), best, strict=True):
+                gains[place] = own
         return gains, explained
 
     def explained(self, products: FloatArray) -> FloatArray:
@@ -273,24 +335,31 @@ class _Scan:
 
         Shapes (columns, residuals) and (candidates, residuals).
         """
-        powers = np.zeros((len(self.candidates), products.shape[1]))
-        for k, own in enumerate(self.slices):
-            inverse = self.inverse[k]
-            if inverse is not None:
-                powers[k] = np.sum(products[own] * (inverse @ products[own]), axis=0)
+        number = sum(len(some.places) for some in self.alike)
+        powers = np.zeros((number, products.shape[1]))
+        for some, inverse in zip(self.alike, self.inverse, strict=True):
+            product = products[some.own]
+            powers[some.places] = np.sum(product * (inverse @ product), axis=1)
         return powers
 
 
-def _inverse(normal: FloatArray) -> FloatArray | None:
-    """Inverse of a normal matrix, None where its columns are not independent."""
-    size = np.sqrt(np.diag(normal))
-    if not np.all(size > 0.0):
-        return None
-    scaled = normal / np.outer(size, size)
-    if len(size) > 1 and float(np.linalg.eigvalsh(scaled)[0]) < DEPENDENT:
-        return None
-    inverse: FloatArray = np.linalg.inv(scaled) / np.outer(size, size)
-    return inverse
+def _diagonals(matrices: FloatArray) -> FloatArray:
+    """Shapes (m, q, q) and (m, q)."""
+    found: FloatArray = np.diagonal(matrices, axis1=1, axis2=2)
+    return found
+
+
+def _inverses(normal: FloatArray) -> FloatArray:
+    """Inverses of normal matrices, 0 where columns are not independent; shape (m, q, q)."""
+    size = np.sqrt(np.maximum(_diagonals(normal), 0.0))
+    sized = np.all(size > 0.0, axis=1)
+    size = np.where(sized[:, None], size, 1.0)
+    both = size[:, :, None] * size[:, None, :]
+    scaled = np.where(sized[:, None, None], normal / both, np.eye(size.shape[1]))
+    single = size.shape[1] == 1
+    told = sized if single else sized & (np.linalg.eigvalsh(scaled)[:, 0] >= DEPENDENT)
+    scaled = np.where(told[:, None, None], scaled, np.eye(size.shape[1]))
+    return np.where(told[:, None, None], np.linalg.inv(scaled) / both, 0.0)
 
 
 def _flipped(residual: FloatArray, block: np.ndarray, number: int) -> FloatArray:
@@ -320,14 +389,11 @@ def _threshold(noise: FloatArray, turned: FloatArray) -> float:
     )
 
 
-def _bounded(candidate: Candidate, gains: FloatArray) -> FloatArray:
-    """Gains within their bounds: a delay is not negative."""
-    bounds: Mapping[str, tuple[float, float]] = {
-        p.name: p.bounds for p in candidate.record.parameters
-    }
-    low, high = np.array([bounds[name] for name in candidate.gains]).T
-    clipped: FloatArray = np.clip(gains, low, high)
-    return clipped
+def _bounds(candidate: Candidate) -> tuple[list[float], list[float]]:
+    """Bounds of the gains: a delay is not negative."""
+    bounds = {p.name: p.bounds for p in candidate.record.parameters}
+    low, high = zip(*(bounds[name] for name in candidate.gains), strict=True)
+    return list(low), list(high)
 
 
 def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) -> dict[int, float]:
@@ -342,11 +408,9 @@ def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) ->
         before += np.bincount(block, residual.held**2, number)
         for index in chosen:
             part = base.project(signatures.columns[:, signatures.slices[index]])
-            inverse = _inverse(part.fit.T @ part.fit)
-            gains = np.zeros(part.fit.shape[1])
-            if inverse is not None:
-                candidate = signatures.candidates[index]
-                gains = _bounded(candidate, inverse @ (part.fit.T @ residual.fit))
+            (inverse,) = _inverses((part.fit.T @ part.fit)[None])
+            estimated = inverse @ (part.fit.T @ residual.fit)
+            gains = np.clip(estimated, *_bounds(signatures.candidates[index]))
             left = residual.held - part.held @ gains
             after[index] += np.bincount(block, left**2, number)
     shares = {}
