@@ -115,6 +115,12 @@ pub fn faded_of<S: Scalar>(x: S) -> S {
     x.chain(value, value - 1.0)
 }
 
+/// 1 − e^(−x): what has come about after x times its scale; by the library before it begins, x < 0.
+#[inline]
+pub fn come_about<S: Scalar>(x: S) -> S {
+    if x.re() < 0.0 { -(-x).exp_m1() } else { faded_of(-x) }
+}
+
 /// [`fading_of`], as part of the loop that asks for it where it is one of plain numbers.
 #[inline(always)]
 pub fn fading_within<S: Scalar>(x: S) -> S {

@@ -1,6 +1,7 @@
 //! Friction that grows while the contact rests.
 
 use super::{Effect, EffectFacts, Hook, LevelChange, Memory, Passage, Scale, Shape, Situation};
+use crate::exponential::come_about;
 use crate::friction::elements::contact_age::slide;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -81,7 +82,7 @@ impl<S: Scalar> Effect<S> for DwellStrengthening<S> {
         let slid = slide(&mut memory[OFFSET], passage.displacement, p.window);
         let q = memory[STRENGTH];
         memory[STRENGTH] = if slid.re() == 0.0 {
-            q - (q - 1.0) * -(-(passage.span / p.time)).exp_m1()
+            q - (q - 1.0) * come_about(passage.span / p.time)
         } else {
             q * (-(slid / p.distance)).exp()
         };

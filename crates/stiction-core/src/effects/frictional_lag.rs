@@ -1,6 +1,7 @@
 //! Friction that follows speed late.
 
 use super::{Effect, EffectFacts, Hook, LevelChange, Memory, Passage, Scale, Shape, Situation};
+use crate::exponential::come_about;
 use crate::friction::elements::stribeck::fall;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -78,6 +79,6 @@ impl<S: Scalar> Effect<S> for FrictionalLag<S> {
     #[inline]
     fn remember(&self, memory: &mut Memory<S>, passage: &Passage<S>) {
         let behind = passage.displacement / passage.span - memory[FOLLOWED];
-        memory[FOLLOWED] += behind * -(-(passage.span / self.0.time)).exp_m1();
+        memory[FOLLOWED] += behind * come_about(passage.span / self.0.time);
     }
 }

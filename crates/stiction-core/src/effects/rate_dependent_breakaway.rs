@@ -3,6 +3,7 @@
 use super::{
     Effect, EffectFacts, Hook, LevelChange, MEMORY, Memory, Passage, Scale, Shape, Situation,
 };
+use crate::exponential::come_about;
 use crate::friction::elements::contact_age::slide;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
@@ -100,11 +101,11 @@ impl<S: Scalar> Effect<S> for RateDependentBreakaway<S> {
         let p = &self.0;
         let slid = slide(&mut memory[OFFSET], passage.displacement, p.window);
         let short = passage.friction - memory[FILTERED];
-        memory[FILTERED] += short * -(-(passage.span / p.loading_time)).exp_m1();
+        memory[FILTERED] += short * come_about(passage.span / p.loading_time);
         let b = memory[STRENGTH];
         memory[STRENGTH] = if slid.re() == 0.0 {
             let slow = (-(short.abs() / (p.loading_time * p.loading_rate))).exp();
-            b + (slow - b) * -(-(passage.span / SETTLING)).exp_m1()
+            b + (slow - b) * come_about(passage.span / SETTLING)
         } else {
             b * (-(slid / p.distance)).exp()
         };

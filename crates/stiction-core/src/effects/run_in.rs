@@ -1,6 +1,7 @@
 //! Friction that falls with the path travelled.
 
 use super::{Effect, EffectFacts, Hook, LevelChange, Memory, Scale, Shape, Situation};
+use crate::exponential::come_about;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -57,7 +58,7 @@ impl<S: Scalar> Effect<S> for RunIn<S> {
     #[inline]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
-        let lost = (-(at.path / p.distance)).exp_m1();
+        let lost = -come_about(at.path / p.distance);
         LevelChange { friction: p.coulomb * lost, viscous: S::constant(0.0) }
     }
 }

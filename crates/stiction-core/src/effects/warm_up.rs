@@ -1,6 +1,7 @@
 //! Friction that falls while the machine warms up.
 
 use super::{Effect, EffectFacts, Hook, LevelChange, Memory, Scale, Shape, Situation};
+use crate::exponential::come_about;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
@@ -61,7 +62,7 @@ impl<S: Scalar> Effect<S> for WarmUp<S> {
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
         // Minus what is lost so far.
-        let lost = (-(at.time / p.time)).exp_m1();
+        let lost = -come_about(at.time / p.time);
         LevelChange { friction: p.coulomb * lost, viscous: p.viscous * lost }
     }
 }
