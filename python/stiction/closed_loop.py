@@ -261,21 +261,19 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
         )
     if recording.position is None:
         raise InputError(f"{source}: {NO_POSITION}")
-    time, dt = evenly(recording.time)
-    measured = np.interp(time, recording.time, recording.position)
-    reference = held(time, recording.time, recording.channels["reference"])
+    stamps, time, dt = evenly(recording.time)
+    measured = np.interp(time, stamps, recording.position)
+    reference = held(time, stamps, recording.channels["reference"])
     velocity = starting_velocity(time, measured, plant.count or count_of(measured))
     begin = {"reading": float(measured[0]), "velocity": velocity}
     needed = _along(controller, recording, reference, measured, dt, begin)
     missed, total = (None, 0.0) if needed is None else _compared(controller, plant, *needed, dt)
     load = recording.channels.get("load")
-    loads = [0.0] * len(time) if load is None else held(time, recording.time, load).tolist()
+    loads = [0.0] * len(time) if load is None else held(time, stamps, load).tolist()
     warmth = recording.channels.get("temperature")
-    warmths = [None] * len(time) if warmth is None else held(time, recording.time, warmth).tolist()
+    warmths = [None] * len(time) if warmth is None else held(time, stamps, warmth).tolist()
     on = recording.channels.get("enabled")
-    switched = (
-        [True] * len(time) if on is None else (held(time, recording.time, on) != 0.0).tolist()
-    )
+    switched = [True] * len(time) if on is None else (held(time, stamps, on) != 0.0).tolist()
     motor = started(plant, begin["reading"], begin["velocity"], start)
     act = controller.acting(reference, dt, **begin, total=total)
     bounds = _bounds(reference, measured)
@@ -351,14 +349,14 @@ def _along(
     speeds = recording.channels.get("velocity")
     if recording.input is None or (controller.rule == "measured" and speeds is None):
         return None
-    time = np.linspace(recording.time[0], recording.time[-1], len(measured))
+    stamps, time, _ = evenly(recording.time)
     moving = np.zeros_like(measured)
     if speeds is not None:
-        moving = np.interp(time, recording.time, speeds)
+        moving = np.interp(time, stamps, speeds)
     act = controller.acting(reference, dt, **begin)
     pairs = zip(measured.tolist(), moving.tolist(), strict=True)
     own = [act(k, reading, speed) for k, (reading, speed) in enumerate(pairs)]
-    return held(time, recording.time, recording.input), np.array(own)
+    return held(time, stamps, recording.input), np.array(own)
 
 
 def _compared(

@@ -10,10 +10,12 @@ import numpy as np
 from .errors import InputError
 from .trajectory import FloatArray
 
-__all__ = ["Kernel", "count_of", "evenly", "held", "noise_of", "play", "smooth"]
+__all__ = ["Kernel", "count_of", "evenly", "held", "noise_of", "play", "rested", "smooth"]
 
 WIDEST: Final = 1e6
 """Samples; a wider kernel is a slip of the units."""
+ALIKE: Final = 1e-3
+"""Share of a step within which stamps of a timer are even, but for the digits of a number."""
 STILL: Final = 20
 """Samples for which a reading that has noise does not stay the same to the last digit."""
 
@@ -152,14 +154,51 @@ def play(values: FloatArray, width: float) -> FloatArray:
     return followed
 
 
-def evenly(time: FloatArray) -> tuple[FloatArray, float]:
-    """Even stamps over the same span at about the median step, and that step.
+def rested(values: FloatArray, readings: FloatArray, window: int, width: float) -> FloatArray:
+    """Values that stay as they are as long as readings rest; same shape.
+
+    Readings rest where they keep within ``width`` over ``window`` samples. Noise at a stop exceeds
+    what it reached before, ever more seldom: each time a follower with a backlash moves a little,
+    and dry friction would take that for a machine that still slides.
+    """
+    if len(readings) <= window:
+        return values
+    windows = np.lib.stride_tricks.sliding_window_view(readings, window + 1)
+    still = np.max(windows, axis=1) - np.min(windows, axis=1) < width
+    # A sample rests if any window in which it lies does.
+    resting = np.convolve(still, np.ones(window)) > 0.5
+    since = np.where(np.concatenate([[True], ~resting]), np.arange(len(values)), 0)
+    kept: FloatArray = values[np.maximum.accumulate(since)]
+    return kept
+
+
+def evenly(time: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+    """Stamps as they were meant, even ones over the same span at the usual step, and that step.
+
+    Steps of 5 and 6 ms are those of a timer of 190 Hz if no stamp is further from an even one than
+    rounding to 1 ms takes it; rows that are missing change nothing. Taken to the letter such stamps
+    would make the input late by a part of a sample, now here, now there. Others stay as they are.
 
     The step divides the span exactly: a step wrong by 1e-5 is half a sample late after a minute.
     """
-    span = float(time[-1] - time[0])
-    count = max(1, round(span / float(np.median(np.diff(time)))))
-    return np.linspace(time[0], time[-1], count + 1), span / count
+    span, steps = float(time[-1] - time[0]), np.diff(time)
+    usual = float(np.median(steps))
+    for _ in range(2):
+        taken = np.maximum(np.round(steps / usual), 1.0)
+        usual = span / float(np.sum(taken))
+    place = np.concatenate([[0.0], np.cumsum(taken)])
+    slope, first = np.polyfit(place, time - time[0], 1)
+    timer = first + slope * place
+    beside = float(np.ptp((time - time[0]) - timer))
+    # What all stamps are multiples of shows in the differences of their steps.
+    known = np.unique(np.round(steps[taken == 1.0] / (ALIKE * usual)))
+    rounding = float(np.min(np.diff(known))) * ALIKE * usual if len(known) > 1 else 0.0
+    if beside <= rounding + ALIKE * usual:
+        stamps, count = time[0] + timer, int(place[-1])
+    else:
+        stamps, count = time, max(1, round(span / float(np.median(steps))))
+    even = np.linspace(stamps[0], stamps[-1], count + 1)
+    return stamps, even, float(stamps[-1] - stamps[0]) / count
 
 
 def held(stamps: FloatArray, time: FloatArray, values: FloatArray) -> FloatArray:

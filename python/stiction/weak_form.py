@@ -20,6 +20,7 @@ from .motion import (
     held,
     noise_of,
     play,
+    rested,
     smooth,
 )
 from .trajectory import FloatArray
@@ -71,6 +72,13 @@ motion is then smoothed over up to the widest kernel."""
 MOSTLY: Final = 0.9
 """Share of the kernel through which a machine with a rigid contact moves in rows that tell of
 noise."""
+RESTS_S: Final = 0.008
+"""A machine without a spring rests where readings keep within noise for so long..."""
+RESTS: Final = (4, 16)
+"""... for so many samples at least and at most..."""
+RESTING: Final = 6.0
+"""... within so many standard deviations. A slow motion that is taken for a rest does no harm: the
+contact then holds what acts on it, as slow sliding does."""
 BACKLASH_TIMES: Final = 4.0
 """Width of that backlash in standard deviations of the noise, a count at least: noise turns a slow
 motion round for a sample, and dry friction would turn with it."""
@@ -137,20 +145,20 @@ class WeakForm:
             raise InputError(
                 f"{source}: there is no effort; prescribed motion needs an effort column"
             )
-        time, self.dt = evenly(recording.time)
+        stamps, time, self.dt = evenly(recording.time)
         least = support or max(SUPPORTS_S[0], FEWEST_SAMPLES * self.dt)
         # Before any kernel is made: at 10 MHz one of 30 ms would have 300 000 samples.
         possible = support is None or support <= WIDEST * self.dt
         if possible and recording.duration < 1.5 * least:
             raise NotEnoughData(_too_few(source, len(time), least))
-        x = np.interp(time, recording.time, recording.position)
-        u = held(time, recording.time, driving)
+        x = np.interp(time, stamps, recording.position)
+        u = held(time, stamps, driving)
         # Of the readings themselves: between them, on even stamps, there are no steps.
         self.count = plant.count or count_of(recording.position)
         self.noise = noise = noise_of(x, self.count)
         warmth, on = (recording.channels.get(name) for name in ("temperature", "enabled"))
-        self.temperature = None if warmth is None else held(time, recording.time, warmth)
-        self.enabled = None if on is None else held(time, recording.time, on)
+        self.temperature = None if warmth is None else held(time, stamps, warmth)
+        self.enabled = None if on is None else held(time, stamps, on)
         driven = u if self.prescribed else _commanded(plant, u, x, self.dt)
         if support is not None:
             self.kernel = Kernel(support, self.dt)
@@ -167,12 +175,13 @@ class WeakForm:
             raise NotEnoughData(_too_few(source, len(time), self.kernel.support))
         self.stride = 1 if every is None else max(1, round(every / self.dt))
         load = recording.channels.get("load")
-        self.load = np.zeros_like(x) if load is None else held(time, recording.time, load)
+        self.load = np.zeros_like(x) if load is None else held(time, stamps, load)
         self.effort = driven / plant.gain
         white = float(np.sqrt(max(noise**2 - self.count**2 / 12.0, 0.0)))
-        flickers = white > FLICKER_SHARE * self.count
-        self._backlash = max(self.count, BACKLASH_TIMES * white) if flickers else 0.0
         self.springy = plant.friction.springy
+        # Of a contact that yields the smoothing keeps it out, which is not late.
+        flickers = white > FLICKER_SHARE * self.count and not self.springy
+        self._backlash = max(self.count, BACKLASH_TIMES * white) if flickers else 0.0
         self._noise = max(noise, self.count / np.sqrt(12.0))
         noisy = noise > NOISY_STEP * float(np.sqrt(np.mean(np.diff(x) ** 2)))
         self._smoothing = max(self.dt, SMOOTHING_SHARE * self.kernel.support) if noisy else self.dt
@@ -257,7 +266,7 @@ class WeakForm:
     @property
     def adapts(self) -> bool:
         """Whether readings are smoothed as far as their motion allows, and not all alike."""
-        return self.springy and self._backlash == 0.0
+        return self.springy
 
     @property
     def followed_late(self) -> bool:
@@ -301,7 +310,11 @@ class WeakForm:
             return adaptively_smoothed(readings, self.dt, self._noise)
         if self._steadied > 0.0:
             return smooth(readings, self.dt, self._steadied, drifts=True)
-        return smooth(play(readings, self._backlash), self.dt, self._smoothing)
+        followed = smooth(play(readings, self._backlash), self.dt, self._smoothing)
+        if self._backlash == 0.0:
+            return followed
+        window = int(np.clip(round(RESTS_S / self.dt), *RESTS))
+        return rested(followed, readings, window, RESTING * self._noise)
 
     def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
         """Measured effort, and what the plant needs for the measured motion; shape (n,) each.

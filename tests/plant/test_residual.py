@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from stiction import InputError, Plant, Recording
-from stiction.motion import Kernel, count_of, evenly, held, noise_of, play
+from stiction.motion import Kernel, count_of, evenly, held, noise_of, play, rested
 from stiction.residual import effort_residual, free_run
 from stiction.weak_form import WeakForm
 
@@ -134,10 +134,62 @@ def test_helpers_of_motion_do_what_they_say() -> None:
     assert noise_of(smooth + 1e-4 * rng.standard_normal(5000)) == pytest.approx(1e-4, rel=0.05)
     flicker = 0.1 + 1e-3 * (np.arange(100) % 2)
     assert np.ptp(play(flicker, 2e-3)) == 0.0
-    stamps, dt = evenly(np.array([0.0, 0.1, 0.21, 0.3]))
+    _, even, dt = evenly(np.array([0.0, 0.1, 0.21, 0.3]))
     assert dt == pytest.approx(0.1)
-    values = held(stamps, np.array([0.0, 0.1, 0.201, 0.3]), np.array([1.0, 2.0, 3.0, 4.0]))
+    values = held(even, np.array([0.0, 0.1, 0.201, 0.3]), np.array([1.0, 2.0, 3.0, 4.0]))
     assert values.tolist() == [1.0, 2.0, 3.0, 4.0]
+
+
+ROUNDED = {
+    "1 ms at 190 Hz": (1 / 190, 1e-3),
+    "1 ms at 600 Hz": (1 / 600, 1e-3),
+    "0.1 ms at 190 Hz": (1 / 190, 1e-4),
+    "a clock since 1970": (1e-3, 2.0**-22),
+    "nothing": (1e-3, None),
+}
+
+
+@pytest.mark.parametrize(("dt", "digit"), ROUNDED.values(), ids=list(ROUNDED))
+@pytest.mark.parametrize("lost", [False, True])
+def test_stamps_of_a_timer_are_even_whatever_they_were_rounded_to(
+    dt: float, digit: float | None, lost: bool
+) -> None:
+    meant = np.arange(12_000) * dt
+    if lost:
+        meant = np.delete(meant, [500, 501, 4000, 9000, 9001, 9002])
+    written = meant if digit is None else np.round(meant / digit) * digit
+    stamps, even, step = evenly(written)
+    assert step == pytest.approx(dt, rel=1e-6)
+    assert len(even) == 12_000
+    assert np.max(np.abs(stamps - meant)) < 0.5 * (digit or 0.0) + 2e-3 * dt
+    # As many rows as stamps: each row is held from its own stamp on.
+    if not lost:
+        assert held(even, stamps, np.arange(12_000.0)).tolist() == list(range(12_000))
+
+
+def test_stamps_that_scatter_stay_as_they_are() -> None:
+    rng = np.random.default_rng(0)
+    time = np.cumsum(1e-3 * rng.uniform(0.8, 1.2, 5000))
+    stamps, even, step = evenly(time)
+    assert stamps is time
+    assert (even[0], even[-1]) == (time[0], time[-1])
+    assert step == pytest.approx(1e-3, rel=0.01)
+
+
+def test_noise_moves_nothing_that_rests() -> None:
+    rng = np.random.default_rng(1)
+    time = np.arange(3000) * 1e-3
+    true = np.where(time < 1.0, 0.0, np.where(time < 2.0, 0.3 * (time - 1.0), 0.3))
+    readings = true + 2e-6 * rng.standard_normal(len(true))
+    followed = play(readings, 8e-6)
+    kept = rested(followed, readings, 8, 1.2e-5)
+    moved = np.diff(kept) != 0.0
+    assert not moved[:999].any()
+    assert moved[1001:1998].all()
+    assert not moved[2002:].any()
+    # The follower alone goes on after the stop.
+    assert np.any(np.diff(followed)[2002:] != 0.0)
+    assert np.max(np.abs(kept - true)) < 2e-5
 
 
 def test_readings_that_rest_to_the_last_digit_have_no_noise():
