@@ -14,6 +14,7 @@ import numpy as np
 
 from .errors import InputError
 from .motion import count_of, evenly, held
+from .recording.checks.signal import without_spikes
 from .residual import free_run, started, starting_velocity
 from .trajectory import FloatArray
 from .weak_form import Start
@@ -262,7 +263,7 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
     if recording.position is None:
         raise InputError(f"{source}: {NO_POSITION}")
     stamps, time, dt = evenly(recording.time)
-    measured = np.interp(time, stamps, recording.position)
+    measured = np.interp(time, stamps, without_spikes(recording.position))
     reference = held(time, stamps, recording.channels["reference"])
     velocity = starting_velocity(time, measured, plant.count or count_of(measured))
     begin = {"reading": float(measured[0]), "velocity": velocity}

@@ -23,6 +23,7 @@ from .motion import (
     rested,
     smooth,
 )
+from .recording.checks.signal import without_spikes
 from .trajectory import FloatArray
 from .wording import NO_POSITION
 
@@ -145,13 +146,15 @@ class WeakForm:
             raise InputError(
                 f"{source}: there is no effort; prescribed motion needs an effort column"
             )
+        if self.prescribed:
+            driving = without_spikes(driving)
         stamps, time, self.dt = evenly(recording.time)
         least = support or max(SUPPORTS_S[0], FEWEST_SAMPLES * self.dt)
         # Before any kernel is made: at 10 MHz one of 30 ms would have 300 000 samples.
         possible = support is None or support <= WIDEST * self.dt
         if possible and recording.duration < 1.5 * least:
             raise NotEnoughData(_too_few(source, len(time), least))
-        x = np.interp(time, stamps, recording.position)
+        x = np.interp(time, stamps, without_spikes(recording.position))
         u = held(time, stamps, driving)
         # Of the readings themselves: between them, on even stamps, there are no steps.
         self.count = plant.count or count_of(recording.position)

@@ -45,3 +45,15 @@ def test_intervals_cover_the_truth_where_readings_are_noisy() -> None:
             found[name].ci95[0] <= value <= found[name].ci95[1] for name, value in TRUE.items()
         )
     assert covered >= 0.75 * len(SEEDS) * len(TRUE)
+
+
+def test_a_reading_that_fails_for_one_sample_changes_no_fit() -> None:
+    good = noisy(0, 2e-6)
+    assert good.position is not None
+    assert good.input is not None
+    position = good.position.copy()
+    position[5000] = 1e5
+    bad = Recording(good.time, good.input, position)
+    one, other = fit(plant(), good), fit(plant(), bad)
+    for name in TRUE:
+        assert other[name].value == pytest.approx(one[name].value, rel=1e-4), name

@@ -193,6 +193,28 @@ def test_a_sensor_that_freezes_and_jumps_is_stuck() -> None:
     assert verdict(data, "stuck channel") == "note"
 
 
+def test_a_sensor_that_freezes_under_efforts_that_move_the_machine_is_stuck() -> None:
+    data = machine()
+    swings = np.sin(9.0 * data["time"])
+    data["position"] = swings + 1e-6 * np.random.default_rng(0).standard_normal(len(swings))
+    data["input"] = -swings
+    assert verdict(data, "stuck channel") == "fine"
+    # Back where it froze there is no jump by which to tell.
+    turn = round(2.0 * np.pi / 9.0 / np.median(np.diff(data["time"])))
+    frozen = {**data, "position": data["position"].copy()}
+    frozen["position"][1000 : 1000 + turn] = frozen["position"][1000]
+    frozen["position"][1000 + turn :] += data["position"][1000] - data["position"][1000 + turn]
+    assert verdict(frozen, "stuck channel") == "fault"
+    # Steady efforts hold a machine, and so do those under which it sticks elsewhere, too.
+    held = {**frozen, "input": frozen["input"].copy()}
+    held["input"][1000 : 1000 + turn] = 0.9
+    assert verdict(held, "stuck channel") == "fine"
+    sticks = {**frozen, "position": frozen["position"].copy()}
+    for first in range(3000, 6000, 1000):
+        sticks["position"][first : first + 700] = sticks["position"][first]
+    assert verdict(sticks, "stuck channel") == "fine"
+
+
 def test_a_sensor_that_freezes_from_full_speed_to_the_end_is_stuck() -> None:
     data = machine()
     data["position"] = np.sin(3.0 * data["time"])

@@ -16,6 +16,8 @@ from .signal import SPIKE_COUNTS, SPIKE_TIMES, channels_of, runs, spike_rows, wi
 _MEASURED: Final = ("position", "velocity", "effort")
 _BOUNDED: Final = ("position", "effort")
 _NEEDED: Final = ("input", "position", "effort")
+_OF_GOALS: Final = ("rad", "m")
+"""Units of an input that is a place to go to, and no effort."""
 
 
 def missing(recording: Recording) -> list[Check]:
@@ -113,7 +115,11 @@ def spikes(
             f"first at {at:.6g} s to {values[rows[0]]:.4g}"
         )
         means = "a reading failed: no machine goes there and back within one sample"
-        remedy = "replace the readings by the mean of their neighbours, and check the sensor's bus"
+        remedy = "check the sensor's bus"
+        if name in _BOUNDED:
+            means += "; fits and diagnoses take the mean of its neighbours"
+        else:
+            remedy = f"replace the readings by the mean of their neighbours, and {remedy}"
         fault = len(rows) > share * len(values)
         found.append(Check("spikes", "fault" if fault else "note", what, means, remedy))
     return found or [Check("spikes", "fine", "no reading leaves its neighbours for one sample")]
@@ -198,7 +204,68 @@ def stuck(
         means = "the sensor or its link was stuck while the machine went on"
         remedy = "check sensor and link, and record again, or cut these rows out"
         found.append(Check("stuck channel", "fault" if fault else "note", what, means, remedy))
+    found += _held_against_efforts(recording, share)
     return found or [Check("stuck channel", "fine", "no channel freezes in motion")]
+
+
+def _held_against_efforts(
+    recording: Recording,
+    share: float,
+    *,
+    fewest: int = 50,
+    swing: float = 0.5,
+    pushed: float = 0.1,
+    moves: float = 0.98,
+) -> list[Check]:
+    """A position that stays to the last digit under efforts that move the machine elsewhere.
+
+    Efforts within a freeze swing over a good part of their whole range, and as strong ones are
+    hardly ever without motion outside of it. What holds a machine, and what it sticks under, is
+    either steady or weaker than what moves it.
+
+    Parameters
+    ----------
+    recording : Recording
+    share : float
+        More than this share of the rows is a fault.
+    fewest : int
+        Rows of a freeze, and of those elsewhere that are pushed as strongly.
+    swing : float
+        Least range of the effort within a freeze over its whole range.
+    pushed : float
+        Share of a freeze's rows under the efforts that are compared: the strongest ones.
+    moves : float
+        Share of such rows elsewhere that must move.
+    """
+    position = recording.position
+    effort = recording.input if recording.effort is None else recording.effort
+    goal = recording.effort is None and recording.units.get("input") in _OF_GOALS
+    if position is None or effort is None or goal or np.ptp(effort) == 0.0:
+        return []
+    if not (np.all(np.isfinite(position)) and np.all(np.isfinite(effort))):
+        return []
+    moving = np.diff(position) != 0.0
+    frozen: list[tuple[int, int]] = []
+    for first, last in runs(~moving):
+        own = effort[first:last]
+        if last - first < fewest or np.ptp(own) < swing * np.ptp(effort):
+            continue
+        strong = float(np.quantile(np.abs(own), 1.0 - pushed))
+        alike = np.abs(effort[:-1]) >= strong
+        alike[first:last] = False
+        if alike.sum() >= fewest and float(np.mean(moving[alike])) >= moves:
+            frozen.append((first, last))
+    if not frozen:
+        return []
+    number = sum(last - first for first, last in frozen)
+    what = (
+        f"position does not change over {counted(number, 'row')} under efforts that move the "
+        f"machine elsewhere, first at {recording.time[frozen[0][0]]:.6g} s"
+    )
+    fault = number > share * len(position)
+    means = "the sensor or its link was stuck, or the machine stood against a stop"
+    remedy = "check sensor and link, and record again, or cut these rows out"
+    return [Check("stuck channel", "fault" if fault else "note", what, means, remedy)]
 
 
 def _frozen(values: FloatArray, fewest: int, jump: float, at_end: int) -> tuple[int, int]:
