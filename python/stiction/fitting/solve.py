@@ -387,6 +387,8 @@ def _undetermined_sentences(
 
 
 def _why(path: str, rows: Sequence[Rows]) -> str:
+    if path.startswith("effects.temperature") and all(r.form.temperature is None for r in rows):
+        return ": no temperature was recorded"
     speeds = np.concatenate([np.abs(each.form.velocity[each.mask]) for each in rows])
     moving = speeds[speeds > 0.0]
     if len(moving) == 0:
