@@ -74,6 +74,27 @@ impl<S: Scalar> HsiehPan<S> {
         (filtered, self.breakaway_at((to - filtered).abs() / p.loading_time))
     }
 
+    /// Whether the hook goes on whatever the slope of the spring. A force at its break-away level
+    /// cannot stick; with the damper on the spring the series cannot stop short: it catches at rest.
+    #[inline(always)]
+    fn drags(&self, trial: &HsiehPanTrial<S>, pull: S) -> bool {
+        let least = self.parameters.slip_distance * self.parameters.final_stiffness - pull;
+        let held_down = trial.breakaway.re() - trial.series.re().abs();
+        least.re() > 0.0 || held_down <= 0.0 || self.damper_on_spring
+    }
+
+    /// Whether the hook turned back in a slide: x_hook' = x' − x_s' with σ' = (T − σ)·x'/ℓ, so where the
+    /// pull exceeds ℓ times the stiffness.
+    #[inline(always)]
+    fn catches(&self, trial: &HsiehPanTrial<S>) -> bool {
+        let Mode::Slip { pull } = trial.mode else { return false };
+        if self.drags(trial, pull) {
+            return false;
+        }
+        let at = self.curve.virgin_inverse(trial.series);
+        (self.parameters.slip_distance * self.curve.virgin(at).slope - pull).re() <= 0.0
+    }
+
     #[inline(always)]
     fn breakaway_at(&self, rate: S) -> S {
         let p = &self.parameters;
@@ -375,7 +396,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
                     .then_some(Event::BreakAway)
             }
             Mode::Slip { .. } => {
-                if self.margin(state, trial, motion, Event::HookReturn).re() <= 0.0 {
+                if self.catches(trial) {
                     Some(Event::HookReturn)
                 } else if state.mode * motion.velocity.re() <= 0.0 {
                     Some(Event::Reversal)
@@ -397,17 +418,12 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         match (event, trial.mode) {
             (Event::Reversal, _) => motion.velocity * state.mode,
             (Event::HookReturn, Mode::Slip { pull }) => {
-                // x_hook' = x' − x_s' with σ' = (T − σ)·x'/ℓ: the hook turns back where the pull
-                // exceeds ℓ times the stiffness. A force at its break-away level cannot stick.
-                let reach = self.parameters.slip_distance;
-                // With the damper on the spring the series cannot stop short: it catches at rest.
-                let least = reach * self.parameters.final_stiffness - pull;
-                let held_down = trial.breakaway.re() - trial.series.re().abs();
-                if least.re() > 0.0 || held_down <= 0.0 || self.damper_on_spring {
+                let least = self.parameters.slip_distance * self.parameters.final_stiffness - pull;
+                if self.drags(trial, pull) {
                     return S::constant(least.re().abs().max(f64::MIN_POSITIVE));
                 }
-                let at = self.curve.virgin_inverse(trial.series);
-                reach * self.curve.virgin(at).slope - pull
+                // In forces, for which no inverse of the curve is needed: a step is attempted often.
+                self.curve.force_at_slope(pull / self.parameters.slip_distance) - trial.series.abs()
             }
             _ => trial.breakaway - trial.series.abs(),
         }
