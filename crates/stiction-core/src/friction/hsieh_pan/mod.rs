@@ -51,6 +51,18 @@ pub struct HsiehPan<S> {
     keeps_hardening: bool,
     /// Break-away depends on the loading rate.
     rated: bool,
+    /// Just under what the slope of the spring is at the level of break-away, below which it is steeper;
+    /// k_inf where it never breaks away.
+    softest: f64,
+}
+
+fn softest<S: Scalar>(curve: &Curve<S>, p: &HsiehPanParameters<S>) -> f64 {
+    if !p.breakaway.re().is_finite() {
+        return p.final_stiffness.re();
+    }
+    let at = curve.virgin_inverse(S::constant(p.breakaway.re()));
+    let slope = curve.virgin(at).slope.re();
+    (slope * (1.0 - 1e-9)).max(p.final_stiffness.re())
 }
 
 impl<S: Scalar> HsiehPan<S> {
@@ -126,8 +138,10 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         let p = HsiehPanParameters::from_values(values);
         let choice = |k: usize| choices.get(k).copied().unwrap_or(0);
         let virgin = if choice(0) == 0 { VirginCurve::Masing } else { VirginCurve::Same };
+        let curve = Curve::new(p.initial_stiffness, p.final_stiffness, p.decay_distance, virgin);
         Self {
-            curve: Curve::new(p.initial_stiffness, p.final_stiffness, p.decay_distance, virgin),
+            curve,
+            softest: softest(&curve, &p),
             plastic: Plastic {
                 coefficient: p.hardening_coefficient,
                 exponent: p.hardening_exponent,
