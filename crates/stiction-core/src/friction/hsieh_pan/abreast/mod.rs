@@ -433,9 +433,10 @@ impl Lanes {
         self.flush();
         let (mut most, mut tame) = (0.0_f64, true);
         for lane in 0..WIDTH {
-            let sticks = self.mode.0[lane] == 0.0;
-            most = most.max(pick(sticks, self.steps.0[lane], 0.0));
             let steepest = self.initial_stiffness.0[lane];
+            // Nobody is where there is no stiffness.
+            let sticks = (self.mode.0[lane] == 0.0) & (steepest > 0.0);
+            most = most.max(pick(sticks, self.steps.0[lane], 0.0));
             let short = (self.force.0[lane].abs() <= self.limit.0[lane])
                 & (self.slope.0[lane] * SLACK <= steepest);
             tame &= (self.hardening.0[lane] >= 0.0) & (short | !sticks);
