@@ -151,3 +151,24 @@ def test_a_machine_that_is_too_stiff_is_named_by_its_number() -> None:
     stiff = {"initial_stiffness": [3e3, 3e14], "final_stiffness": 800.0}
     with pytest.raises(st.InputError, match="member 1: dt = "):
         st.simulate_ensemble(motor(), np.zeros((2, 10)), 1e-3, parameters=stiff)
+
+
+@pytest.mark.parametrize("law", ["hsieh_pan", "maxwell_slip"])
+@pytest.mark.parametrize("n", [300, 1500])
+def test_a_number_that_is_not_finite_is_named_and_moves_nothing(law: str, n: int) -> None:
+    currents, load = efforts(9, n), np.zeros((9, n))
+    more = {"breakaway": 0.2} if law == "hsieh_pan" else {}
+    base = st.Motor(0.0076, friction=st.FrictionModel(law, **more))
+    machines = st.Ensemble(base, 9)
+    once = st.Ensemble(base, 9).simulate(currents, DT, load=load)
+    for name, rows in (("current", currents), ("load", load)):
+        bad = rows.copy()
+        bad[4, 17], bad[8, 3] = np.nan, np.inf
+        given = {"current": currents, "load": load, name: bad}
+        words = rf"{name}\[{4 * n + 17}\] = NaN is not a finite number; repair or drop the sample"
+        with pytest.raises(st.InputError, match=words):
+            machines.simulate(given["current"], DT, load=given["load"], threads=2)
+        with pytest.raises(st.InputError, match=words):
+            st.simulate_ensemble(base, given["current"], DT, load=given["load"])
+    after = machines.simulate(currents, DT, load=load)
+    np.testing.assert_array_equal(after.position, once.position)

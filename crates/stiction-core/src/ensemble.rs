@@ -5,8 +5,10 @@
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::{Error, Result};
+use crate::finite;
 use crate::friction::{Law, Statistics};
 use crate::lanes::{self, Job, Width};
 use crate::model::LawSpec;
@@ -55,6 +57,13 @@ impl<'a> Rows<'a> {
         }
         Err(Error::Length { name: name.to_owned(), given, wanted })
     }
+
+    fn all(&self) -> &'a [f64] {
+        match *self {
+            Self::Same(_) => &[],
+            Self::Shared(values) | Self::Each(values) => values,
+        }
+    }
 }
 
 /// Inputs for each sample.
@@ -72,6 +81,14 @@ impl<'a> Inputs<'a> {
         match *self {
             Self::Shared(values) => values,
             Self::Each(values) => &values[member * samples..(member + 1) * samples],
+        }
+    }
+
+    /// As numbers for each sample of each member.
+    pub fn rows(&self) -> Rows<'a> {
+        match *self {
+            Self::Shared(values) => Rows::Shared(values),
+            Self::Each(values) => Rows::Each(values),
         }
     }
 }
@@ -119,6 +136,32 @@ pub struct Plan<'a> {
     pub width: Width,
 }
 
+/// Samples from which on numbers are looked at on the way, where a copy of the machines, which takes
+/// back what they did until then, costs less than to read all numbers once more.
+const MANY: usize = 1000;
+
+impl<'a> Plan<'a> {
+    /// All that has a number for each sample.
+    fn tables(&self) -> [(&'static str, Rows<'a>); 3] {
+        let target = if let Keep::Rms(target) = self.keep { target } else { Rows::Same(0.0) };
+        [("current", self.inputs.rows()), ("load", self.loads), ("target", target)]
+    }
+
+    /// Refuses numbers that are not finite.
+    fn check_finite(&self) -> Result<()> {
+        self.tables().iter().try_for_each(|(name, rows)| finite::check(name, rows.all()))
+    }
+
+    /// Whether all numbers of a member are finite.
+    fn is_finite_for(&self, member: usize) -> bool {
+        let own = self.tables().map(|(name, rows)| match rows.of(member, self.samples) {
+            PerSample::Each(values) => finite::check(name, values).is_ok(),
+            PerSample::Same(_) => true,
+        });
+        own == [true; 3]
+    }
+}
+
 /// Machines of one kind, each with its state.
 #[derive(Debug, Clone)]
 pub struct Ensemble {
@@ -150,8 +193,10 @@ impl Ensemble {
             for (row, place) in places.iter().enumerate() {
                 values[*place] = changes.values[row * members + member];
             }
-            spec.allows(&values)
-                .map_err(|error| Error::Member { member, problem: error.to_string() })?;
+            if !places.is_empty() {
+                spec.allows(&values)
+                    .map_err(|error| Error::Member { member, problem: error.to_string() })?;
+            }
             let mut running = Running::new(spec, &values);
             running.resume(motor.running());
             Ok(running)
@@ -167,6 +212,11 @@ impl Ensemble {
     /// Branch counters of each member.
     pub fn statistics(&self) -> impl Iterator<Item = Statistics> {
         self.members.iter().map(Running::statistics)
+    }
+
+    /// The state of a member.
+    pub fn running(&self, member: usize) -> Option<&Running<f64>> {
+        self.members.get(member)
     }
 
     /// Number of members.
@@ -205,19 +255,13 @@ impl Ensemble {
     }
 
     /// Runs all members on. Each of `columns` is filled one member after the other, with
-    /// [`Keep::width`] values of each.
+    /// [`Keep::width`] values of each. Where a number is not finite, they stay where they are.
     pub fn run(&mut self, plan: &Plan<'_>, columns: &mut [(Column, &mut [f64])]) -> Result<()> {
         let (members, samples) = (self.members.len(), plan.samples);
-        match plan.inputs {
-            Inputs::Shared(values) => Rows::Shared(values),
-            Inputs::Each(values) => Rows::Each(values),
+        for (name, rows) in plan.tables() {
+            rows.check(name, members, samples)?;
         }
-        .check("current", members, samples)?;
-        plan.loads.check("load", members, samples)?;
         plan.dt.check("dt", samples)?;
-        if let Keep::Rms(target) = plan.keep {
-            target.check("target", members, samples)?;
-        }
         let width = plan.keep.width(samples);
         let kinds: Vec<Column> = columns.iter().map(|(kind, _)| *kind).collect();
         for (_, values) in columns.iter() {
@@ -226,13 +270,18 @@ impl Ensemble {
                 return Err(Error::Length { name: "out".to_owned(), given, wanted });
             }
         }
+        let before = (samples >= MANY).then(|| self.members.clone());
+        if before.is_none() {
+            plan.check_finite()?;
+        }
+        let halted = AtomicBool::new(false);
         let mut parts: Vec<_> =
             columns.iter_mut().map(|(_, values)| values.chunks_mut(width.max(1))).collect();
         let motors = self.members.iter_mut().enumerate().map(|(number, running)| {
             let own = parts.iter_mut().map(|part| part.next().unwrap_or_default()).collect();
             lanes::Motor { number, running, own }
         });
-        let queue = Mutex::new(Work::of(motors, plan, &kinds).into_iter());
+        let queue = Mutex::new(Work::of(motors, plan, &kinds, &halted).into_iter());
         let failed: Mutex<Option<(usize, Error)>> = Mutex::new(None);
         let labour = || {
             loop {
@@ -246,6 +295,10 @@ impl Ensemble {
                     Some(Work::Alone(motor)) => motor,
                 };
                 let member = motor.number;
+                if halted.load(Ordering::Relaxed) || !plan.is_finite_for(member) {
+                    halted.store(true, Ordering::Relaxed);
+                    break;
+                }
                 if let Err(error) =
                     simulate(motor.running, member, plan, &kinds, &mut motor.own)
                     && let Ok(mut failed) = failed.lock()
@@ -262,6 +315,12 @@ impl Ensemble {
             }
             labour();
         });
+        if halted.into_inner() {
+            if let Some(before) = before {
+                self.members = before;
+            }
+            plan.check_finite()?;
+        }
         match failed.into_inner() {
             Ok(Some((member, error))) => Err(Error::Member { member, problem: error.to_string() }),
             _ => Ok(()),
@@ -281,6 +340,7 @@ impl<'a> Work<'a> {
         motors: impl Iterator<Item = lanes::Motor<'a>>,
         plan: &'a Plan<'a>,
         kinds: &'a [Column],
+        halted: &'a AtomicBool,
     ) -> Vec<Self> {
         let mut work = Vec::new();
         let mut teams: BTreeMap<u32, Vec<lanes::Motor<'a>>> = BTreeMap::new();
@@ -297,7 +357,7 @@ impl<'a> Work<'a> {
                 if motors.len() < lanes::LEAST {
                     work.extend(motors.into_iter().map(Self::Alone));
                 } else {
-                    work.push(Self::Team(Job::new(plan, kinds, parts), motors));
+                    work.push(Self::Team(Job::new(plan, kinds, parts, halted), motors));
                 }
                 motors = rest;
             }
@@ -315,10 +375,7 @@ fn simulate(
     own: &mut [&mut [f64]],
 ) -> Result<()> {
     let samples = plan.samples;
-    let inputs = match plan.inputs {
-        Inputs::Shared(values) => values,
-        Inputs::Each(values) => &values[member * samples..(member + 1) * samples],
-    };
+    let inputs = plan.inputs.of(member, samples);
     let around = Surroundings::from(plan.loads.of(member, samples));
     match plan.keep {
         Keep::Every(every) => {

@@ -52,6 +52,16 @@ pub enum Error {
         /// The value as given.
         given: f64,
     },
+    /// A sample that must be finite.
+    #[error("{name}[{place}] = {given} is not a finite number; repair or drop the sample")]
+    BadSample {
+        /// What the samples are.
+        name: String,
+        /// Which one it is, one row after the other.
+        place: usize,
+        /// The value as given.
+        given: f64,
+    },
     /// Two parameters in the wrong order.
     #[error(
         "{lesser} = {lesser_value} must {relation} {greater} = {greater_value}; change one of them"

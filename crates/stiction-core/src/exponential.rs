@@ -49,16 +49,16 @@ fn parts<N: Numbers>(x: N, sign: N, kept: impl Fn(N) -> N) -> (N, N, N) {
 
 /// e^x for x ≤ 0, to 1.5 units in the last place.
 #[inline(always)]
-pub fn fading(x: f64) -> f64 {
-    let (scale, first, rest) = parts(x, 1.0, |sum| sum);
-    ((scale + first) + rest).unless_below(x, LEAST, 0.0)
+pub fn fading<N: Numbers>(x: N) -> N {
+    let (scale, first, rest) = parts(x, N::all(1.0), |sum| sum);
+    ((scale + first) + rest).unless_below(x, LEAST, N::all(0.0))
 }
 
 /// 1 − e^x for x ≤ 0, to 2 units in the last place.
 #[inline(always)]
-pub fn faded(x: f64) -> f64 {
-    let (scale, first, rest) = parts(x, 1.0, |sum| sum);
-    (((1.0 - scale) - first) - rest).unless_below(x, LEAST, 1.0)
+pub fn faded<N: Numbers>(x: N) -> N {
+    let (scale, first, rest) = parts(x, N::all(1.0), |sum| sum);
+    (((N::all(1.0) - scale) - first) - rest).unless_below(x, LEAST, N::all(1.0))
 }
 
 /// [`fading`] of the first and [`faded`] of the second, to the bit, for little more than one of them.

@@ -15,6 +15,7 @@ pub mod effects;
 pub mod ensemble;
 pub mod error;
 pub mod exponential;
+pub mod finite;
 pub mod follow;
 pub mod integrate;
 pub mod kernel;

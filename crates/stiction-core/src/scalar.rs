@@ -239,7 +239,7 @@ pub const SECOND: [f64; 4] = [
 ];
 
 /// The same over 0 … [`SHORTER`], off by 1.1e-13 at most.
-const SECOND_BELOW: [f64; 4] = [
+pub const SECOND_BELOW: [f64; 4] = [
     0.499_999_999_999_891_86,
     -0.166_666_666_320_488_85,
     0.041_666_493_519_787_12,

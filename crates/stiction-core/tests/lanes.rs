@@ -5,7 +5,7 @@ use stiction_core::ensemble::{Changes, Ensemble, Inputs, Keep, Plan, Rows};
 use stiction_core::friction::{LAWS, Statistics, law_record};
 use stiction_core::lanes::Width;
 use stiction_core::model::LawSpec;
-use stiction_core::motor::{Column, Motor, MotorSpec, PerSample, Surroundings};
+use stiction_core::motor::{Column, Motor, MotorSpec, PerSample, Running, Surroundings};
 
 const MEMBERS: usize = 21;
 const SAMPLES: usize = 3000;
@@ -128,6 +128,10 @@ fn options_and_divided_samples_change_no_bit() {
     agrees(&motor("hsieh_pan", &[("creep_rate", 300.0), ("slip_distance", 1e-7)]), 2e-4);
     agrees(&motor("hsieh_pan", &[("hardening_exponent", 1.7)]), 2e-4);
     agrees(&motor("hsieh_pan", &[("stribeck_exponent", 1.0)]), 2e-4);
+    // No creep, creep too fast for its short way, slides beyond all fall of the level.
+    agrees(&motor("hsieh_pan", &[("creep_rate", 0.0)]), 2e-4);
+    agrees(&motor("hsieh_pan", &[("creep_rate", 40.0), ("hardening_coefficient", 3e-2)]), 2e-4);
+    agrees(&motor("hsieh_pan", &[("stribeck_velocity", 1e-3), ("coulomb", 0.3)]), 1e-4);
 }
 
 #[test]
@@ -242,4 +246,93 @@ fn motors_without_effects_go_side_by_side() {
         assert!(motor(law, &[]).running().law.goes_abreast(), "{law}");
     }
     assert!(!motor("hsieh_pan", &[("hardening_exponent", 1.7)]).running().law.goes_abreast());
+}
+
+#[test]
+fn bodies_end_the_same_side_by_side() {
+    let (masses, inputs) = (masses(), inputs());
+    for law in ["coulomb", "hsieh_pan"] {
+        let motor = motor(law, &[]);
+        let paths = ["body.inertia".to_owned()];
+        let changes = Changes { paths: &paths, values: &masses };
+        let mut ensemble = Ensemble::new(&motor, MEMBERS, changes).unwrap();
+        let plan = Plan {
+            samples: SAMPLES,
+            inputs: Inputs::Each(&inputs),
+            loads: Rows::Same(0.01),
+            dt: PerSample::Same(3e-4),
+            keep: Keep::Last,
+            threads: 1,
+            width: Width::widest(),
+        };
+        for _ in 0..2 {
+            ensemble.run(&plan, &mut []).unwrap();
+        }
+        for (member, mass) in masses.iter().enumerate() {
+            let spec = MotorSpec { inertia: *mass, ..motor.spec().clone() };
+            let mut alone = Motor::new(spec).unwrap();
+            let given = &inputs[member * SAMPLES..(member + 1) * SAMPLES];
+            for _ in 0..2 {
+                let around = Surroundings::from(PerSample::Same(0.01));
+                alone.simulate(given, around, PerSample::Same(3e-4), &mut []).unwrap();
+            }
+            let numbers = |motor: &Running<f64>| {
+                let run = &motor.run;
+                [run.position, run.velocity, run.friction, run.path, run.time].map(f64::to_bits)
+            };
+            let ended = ensemble.running(member).unwrap();
+            assert_eq!(numbers(ended), numbers(alone.running()), "{law} {member}");
+        }
+    }
+}
+
+#[test]
+fn a_number_that_is_not_finite_leaves_all_where_they_are() {
+    let inputs = inputs();
+    let targets = vec![0.0; MEMBERS * SAMPLES];
+    for law in ["hsieh_pan", "maxwell_slip"] {
+        let motor = motor(law, &[]);
+        let none = Changes { paths: &[], values: &[] };
+        let mut ensemble = Ensemble::new(&motor, MEMBERS, none).unwrap();
+        let mut out = vec![0.0; MEMBERS];
+        for (samples, threads) in [(SAMPLES, 1), (SAMPLES, 2), (300, 1)] {
+            let n = MEMBERS * samples;
+            // Of two the first; at the very end; among what a tile leaves over.
+            for (table, places) in [
+                ("current", vec![n - 1]),
+                ("load", vec![5 * samples + 17, 40]),
+                ("target", vec![n / 2]),
+            ] {
+                let bad = |name: &str, of: &[f64]| {
+                    let mut of = of[..n].to_vec();
+                    for (k, place) in places.iter().enumerate().filter(|_| name == table) {
+                        of[*place] = [f64::NAN, f64::INFINITY][k % 2];
+                    }
+                    of
+                };
+                let (current, load) = (bad("current", &inputs), bad("load", &targets));
+                let target = bad("target", &targets);
+                let plan = Plan {
+                    samples,
+                    inputs: Inputs::Each(&current),
+                    loads: Rows::Each(&load),
+                    dt: PerSample::Same(2e-4),
+                    keep: Keep::Rms(Rows::Each(&target)),
+                    threads,
+                    width: Width::widest(),
+                };
+                let refused = ensemble.run(&plan, &mut [(Column::Position, &mut out)]);
+                let place = places.iter().min().unwrap();
+                let given = if places.len() == 1 { "NaN" } else { "inf" };
+                let said = format!(
+                    "{table}[{place}] = {given} is not a finite number; repair or drop the sample"
+                );
+                assert_eq!(refused.unwrap_err().to_string(), said, "{law} {samples} {threads}");
+                for member in 0..MEMBERS {
+                    let run = &ensemble.running(member).unwrap().run;
+                    assert_eq!((run.time, run.path), (0.0, 0.0), "{law} {samples} {threads}");
+                }
+            }
+        }
+    }
 }

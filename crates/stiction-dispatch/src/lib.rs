@@ -7,10 +7,12 @@
 #![deny(unsafe_op_in_unsafe_fn)]
 
 mod pair;
+mod vector;
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
 pub use pair::{Numbers, Pair, alone};
+pub use vector::{CHUNKS, Mask, ROW, Vector};
 
 /// Vectors to compile for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,6 +34,14 @@ pub trait Task {
     type Output;
     /// Runs it.
     fn run(self) -> Self::Output;
+}
+
+/// The same, written in vectors.
+pub trait Wide {
+    /// What it returns.
+    type Output;
+    /// Runs it in vectors of this kind.
+    fn run<V: Vector>(self) -> Self::Output;
 }
 
 impl Width {
@@ -85,6 +95,34 @@ impl Width {
         }
         task.run()
     }
+
+    /// Likewise of a task that is written in vectors.
+    #[inline]
+    pub fn run_wide<T: Wide>(self, task: T) -> T::Output {
+        #[cfg(target_arch = "x86_64")]
+        if self.is_there() {
+            match self {
+                // SAFETY: the processor has what the function is compiled for, as just asked.
+                Self::Eight => return unsafe { eight_wide(task) },
+                // SAFETY: likewise.
+                Self::Four => return unsafe { four_wide(task) },
+                Self::Baseline => (),
+            }
+        }
+        task.run::<vector::Two>()
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl")]
+fn eight_wide<T: Wide>(task: T) -> T::Output {
+    task.run::<vector::Eight>()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn four_wide<T: Wide>(task: T) -> T::Output {
+    task.run::<vector::Four>()
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -129,6 +167,101 @@ mod tests {
                 total += *y;
             }
             total
+        }
+    }
+
+    /// All operations of vectors on two rows, in the order below.
+    struct All<'a>(&'a [f64; ROW], &'a [f64; ROW]);
+
+    impl Wide for All<'_> {
+        type Output = Vec<u64>;
+
+        #[inline(always)]
+        fn run<V: Vector>(self) -> Vec<u64> {
+            let mut found = vec![[0.0; ROW]; 13];
+            let (mut bits, mut across) = ([0_u8; 3], vec![[0.0; ROW]; ROW]);
+            for chunk in 0..V::CHUNKS {
+                let (a, b) = (V::load(self.0, chunk), V::load(self.1, chunk));
+                let (below, within) = (a.below(b), a.within(b));
+                let all = [
+                    a + b,
+                    a - b,
+                    a * b,
+                    a / b,
+                    a.abs(),
+                    a.flipped(b),
+                    a.minus(),
+                    a.kept(below),
+                    a.or(within, b),
+                    V::all(0.3),
+                    a.unless_below(b, -0.5, V::all(7.0)),
+                    a.kept(below.same(within)),
+                    V::all(3.0).power_of_two(),
+                ];
+                for (row, one) in found.iter_mut().zip(all) {
+                    one.store(row, chunk);
+                }
+                let masks = [
+                    below.and(within),
+                    within.same(below),
+                    V::Mask::of(0b0110_1001 >> (chunk * V::LANES)),
+                ];
+                for (bits, mask) in bits.iter_mut().zip(masks) {
+                    let lanes = ((1_u32 << V::LANES) - 1) as u8;
+                    *bits |= (mask.bits() & lanes) << (chunk * V::LANES);
+                }
+                assert_eq!(a.below_in(within, b).bits(), below.and(within).bits());
+            }
+            let rows: [[f64; ROW]; ROW] =
+                std::array::from_fn(|row| std::array::from_fn(|k| (10 * row + k) as f64));
+            for (k, vectors) in V::across(rows.each_ref()).iter().enumerate() {
+                for (chunk, vector) in vectors.iter().enumerate().take(V::CHUNKS) {
+                    vector.store(&mut across[k], chunk);
+                }
+            }
+            for (k, row) in across.iter().enumerate() {
+                assert_eq!(*row, std::array::from_fn(|lane| (10 * lane + k) as f64));
+            }
+            let numbers = found.iter().flatten().map(|x| x.to_bits());
+            numbers.chain(bits.map(u64::from)).collect()
+        }
+    }
+
+    #[test]
+    fn vectors_of_every_kind_do_what_numbers_do() {
+        let a = [0.0, -0.0, 1.5, -2.25, f64::NAN, f64::INFINITY, -7e-300, 0.1];
+        let b = [-0.0, 0.0, 1.5, -2.0, 1.0, -f64::INFINITY, 3.0, -0.7];
+        let plain = Width::Baseline.run_wide(All(&a, &b));
+        for width in [Width::Four, Width::Eight] {
+            assert_eq!(width.run_wide(All(&a, &b)), plain, "{width:?}");
+        }
+        let row = |k: usize| &plain[k * ROW..(k + 1) * ROW];
+        for k in 0..ROW {
+            let (x, y) = (a[k], b[k]);
+            let (below, within) = (x < y, x <= y);
+            let flipped = if y.is_sign_negative() { -x } else { x };
+            let all = [
+                x + y,
+                x - y,
+                x * y,
+                x / y,
+                x.abs(),
+                flipped,
+                -x,
+                if below { x } else { 0.0 },
+                if within { y } else { x },
+                0.3,
+                if y < -0.5 { 7.0 } else { x },
+                if below == within { x } else { 0.0 },
+            ];
+            for (k_of, expected) in all.into_iter().enumerate() {
+                let given = f64::from_bits(row(k_of)[k]);
+                let alike = given.to_bits() == expected.to_bits();
+                assert!(alike || (given.is_nan() && expected.is_nan()), "{k_of} {x} {y} {given}");
+            }
+            let bit = |which: usize| plain[13 * ROW + which] >> k & 1 == 1;
+            assert_eq!((bit(0), bit(1)), (below && within, below == within));
+            assert_eq!(bit(2), 0b0110_1001 >> k & 1 == 1);
         }
     }
 

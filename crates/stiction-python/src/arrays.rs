@@ -8,15 +8,25 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
+use stiction_core::finite::check;
 use stiction_core::motor::{PerSample, Surroundings};
-use stiction_dispatch::{Task, Width, fetch};
 
-use crate::error::{duration, input_error};
+use crate::error::{IntoPython, duration, input_error};
 
 static ASARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
 
 /// A C-contiguous float64 array of at least one dimension and one element, all of it finite.
 pub fn samples<'py>(
+    name: &str,
+    values: &Bound<'py, PyAny>,
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let array = numbers(name, values)?;
+    check(name, array.as_slice()?).or_input_error(values.py())?;
+    Ok(array)
+}
+
+/// The same where whoever goes through it looks whether it is finite.
+pub fn numbers<'py>(
     name: &str,
     values: &Bound<'py, PyAny>,
 ) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
@@ -46,42 +56,7 @@ pub fn samples<'py>(
     if array.len() == 0 {
         return Err(input_error(py, format!("{name} is empty; give at least one sample")));
     }
-    let array = array.readonly();
-    let values = array.as_slice()?;
-    if !Width::widest().run(Finite(values))
-        && let Some(bad) = values.iter().position(|x| !x.is_finite())
-    {
-        let given = values[bad];
-        return Err(input_error(
-            py,
-            format!("{name}[{bad}] = {given} is not a finite number; repair or drop the sample"),
-        ));
-    }
-    Ok(array)
-}
-
-/// Whether all numbers are finite.
-struct Finite<'a>(&'a [f64]);
-
-impl Task for Finite<'_> {
-    type Output = bool;
-
-    // By chunks without a choice in them, which become vectors; what lies a page ahead is asked for,
-    // for a processor guesses no further than to the end of one.
-    #[inline(always)]
-    fn run(self) -> bool {
-        let all = |some: &[f64]| some.iter().fold(true, |all, x| all & x.is_finite());
-        let (chunks, rest) = self.0.as_chunks::<64>();
-        for (k, chunk) in chunks.iter().enumerate() {
-            for ahead in chunks.get(k + 8).map_or(&[][..], |ahead| ahead).chunks_exact(8) {
-                fetch(&ahead[0]);
-            }
-            if !all(chunk) {
-                return false;
-            }
-        }
-        all(rest)
-    }
+    Ok(array.readonly())
 }
 
 /// A one-dimensional [`samples`].

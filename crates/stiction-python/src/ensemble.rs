@@ -10,7 +10,7 @@ use stiction_core::lanes::Width;
 use stiction_core::motor::Column;
 
 use crate::arguments::threads_of;
-use crate::arrays::{Each, samples};
+use crate::arrays::{Each, numbers, samples};
 use crate::error::{IntoPython, duration, finite, input_error};
 use crate::motor::Motor;
 
@@ -41,7 +41,8 @@ impl<'py> Table<'py> {
         {
             return finite(py, name, number).map(Self::Same);
         }
-        let array = samples(name, given)?;
+        // The run itself looks whether they are finite.
+        let array = numbers(name, given)?;
         let shape = array.shape();
         let fits = match *shape {
             [length] => n.is_none_or(|n| length == n),

@@ -80,9 +80,8 @@ pub(super) fn pass_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
             return;
         };
         passed += 1;
-        let (event, at) = earliest(stepper, law, state, event, left);
         // Also where the event is due at once: a velocity that jumped has changed the force.
-        let shortened = apart(stepper, law, state, at);
+        let (event, at, shortened) = earliest(stepper, law, state, event, (left, attempt));
         stepper.accept(law, state, &shortened, event == Event::Reversal && at.re() > 0.0);
         left -= at;
         // What is left below round-off of the step still asks for the force after the event.
@@ -119,78 +118,91 @@ pub fn quiet<S: Scalar, L: FrictionLaw<S>>(
     law.event(state, &trial, &motion).is_none().then_some(trial)
 }
 
-/// The first event within `span`, and when.
+/// The first event within an attempt of this duration, when, and the attempt up to there.
 #[cold]
 pub(super) fn earliest<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
     stepper: &P,
     law: &L,
     state: &L::State,
     found: Event,
-    span: S,
-) -> (Event, S) {
-    let (mut event, mut span) = (found, span);
+    (span, attempt): (S, P::Attempt),
+) -> (Event, S, P::Attempt) {
+    let (mut event, mut span, mut attempt) = (found, span, attempt);
     // Each pass ends earlier than the one before; three kinds of event bound their number.
     for _ in 0..4 {
-        let at = locate(span, |h| {
-            let attempt = apart(stepper, law, state, h);
-            let (trial, motion) = stepper.contact(&attempt);
+        let left = |attempt: &P::Attempt| {
+            let (trial, motion) = stepper.contact(attempt);
             law.margin(state, trial, motion, event)
-        });
+        };
+        let beyond = left(&attempt).re();
+        let at = locate(span, beyond, |h| left(&apart(stepper, law, state, h)));
+        attempt = apart(stepper, law, state, at);
         if at.re() <= 0.0 {
-            return (event, at);
+            return (event, at, attempt);
         }
-        let attempt = apart(stepper, law, state, at);
         let (trial, motion) = stepper.contact(&attempt);
         match law.event(state, trial, motion) {
             Some(other) if other != event => {
                 (event, span) = (other, at);
             }
-            _ => return (event, at),
+            _ => return (event, at, attempt),
         }
     }
-    (event, span)
+    (event, span, attempt)
 }
 
-/// The zero of a margin that is positive at 0 and not at `span`.
+/// Of a step, how closely an event in it is enclosed: a margin is a difference of forces, or of
+/// velocities, of which a step changes a small part, so that round-off hides what is closer.
+const ENCLOSED: f64 = 1e-13;
+
+/// The zero of a margin that is positive at 0 and, `beyond`, not at `span`.
 ///
-/// Found on real parts by the Illinois rule with bisection as a guard; two Newton steps in the full
-/// number type then carry the derivatives of the time of the event (implicit function theorem).
-fn locate<S: Scalar>(span: S, mut margin: impl FnMut(S) -> S) -> S {
+/// Found on real parts by the secant of the last two attempts, bisection as a guard; two Newton steps
+/// in the full number type then carry the derivatives of the time of the event (implicit function
+/// theorem), where there are any.
+fn locate<S: Scalar>(span: S, beyond: f64, mut margin: impl FnMut(S) -> S) -> S {
     let (mut low, mut high) = (0.0, span.re());
     let mut at_low = margin(S::constant(0.0)).re();
     if at_low <= 0.0 || high <= 0.0 {
         return S::constant(0.0);
     }
-    let mut at_high = margin(span).re();
-    if at_high >= 0.0 {
+    if beyond >= 0.0 {
         return span;
     }
-    let tolerance = 1e-15 * high;
-    let mut side = 0;
+    let mut at_high = beyond;
+    let tolerance = ENCLOSED * high;
+    let (mut before, mut at_before, mut last, mut at_last) = (low, at_low, high, at_high);
+    // The last two moves, and how far a move that has come to its end goes past the zero.
+    let (mut moves, mut past) = ([2.0 * high; 2], tolerance);
     for _ in 0..100 {
         if high - low <= tolerance {
             break;
         }
-        let secant = (low * at_high - high * at_low) / (at_high - at_low);
-        let middle = if secant > low && secant < high { secant } else { 0.5 * (low + high) };
-        let there = margin(S::constant(middle)).re();
+        let secant = last - at_last * (last - before) / (at_last - at_before);
+        let sound = secant > low && secant < high && (secant - last).abs() <= 0.5 * moves[0];
+        let middle = 0.5 * (low + high);
+        let mut next = if sound { secant } else { middle };
+        if (next - last).abs() < tolerance {
+            next = if last == low { (low + past).min(middle) } else { (high - past).max(middle) };
+            past *= 4.0;
+        }
+        let there = margin(S::constant(next)).re();
+        moves = [moves[1], (next - last).abs()];
+        (before, at_before, last, at_last) = (last, at_last, next, there);
         if there == 0.0 {
-            (low, high) = (middle, middle);
+            (low, high) = (next, next);
         } else if there > 0.0 {
-            (low, at_low) = (middle, there);
-            if side == -1 {
-                at_high *= 0.5;
-            }
-            side = -1;
+            (low, at_low) = (next, there);
         } else {
-            (high, at_high) = (middle, there);
-            if side == 1 {
-                at_low *= 0.5;
-            }
-            side = 1;
+            (high, at_high) = (next, there);
         }
     }
-    let root = 0.5 * (low + high);
+    // Of so short a piece, its secant.
+    let within = if high > low { at_low / (at_low - at_high) } else { 0.0 };
+    let root = (low + (high - low) * within).clamp(low, high);
+    if !S::CARRIES {
+        return S::constant(root);
+    }
     // Wide enough to stand above round-off; two Newton steps square the error of this slope.
     let width = (1e-5 * span.re()).min(root.max(1e-9 * span.re()));
     let slope = (margin(S::constant(root + width)).re() - margin(S::constant(root - width)).re())
@@ -201,9 +213,8 @@ fn locate<S: Scalar>(span: S, mut margin: impl FnMut(S) -> S) -> S {
             at = at - margin(at) / slope;
         }
     }
-    // The corrections move the value by round-off only; an event is never outside its step.
-    let inside = at.re().clamp(0.0, span.re());
-    at.chain(inside, 1.0)
+    // The corrections move the value by round-off only.
+    at.with_value(root)
 }
 
 #[cfg(test)]
@@ -215,7 +226,7 @@ mod tests {
     fn an_event_is_located_with_the_derivative_of_its_time() {
         // margin(t) = a − t³ is zero at a^(1/3).
         let a = Dual::variable(0.3, 2);
-        let at = locate(Dual::constant(1.0), |t| a - t * t * t);
+        let at = locate(Dual::constant(1.0), 0.3 - 1.0, |t| a - t * t * t);
         assert!((at.re() - 0.3_f64.cbrt()).abs() < 1e-15);
         let exact = 1.0 / (3.0 * 0.3_f64.cbrt().powi(2));
         assert!((at.partial(2) - exact).abs() < 1e-9 * exact);
@@ -223,7 +234,37 @@ mod tests {
 
     #[test]
     fn an_event_at_the_start_or_the_end_stays_inside_the_step() {
-        assert_eq!(locate(1.0, |t: f64| -1e-20 - t), 0.0);
-        assert_eq!(locate(1.0, |t: f64| 1.0 - t), 1.0);
+        assert_eq!(locate(1.0, -1.0, |t: f64| -1e-20 - t), 0.0);
+        assert_eq!(locate(1.0, 0.0, |t: f64| 1.0 - t), 1.0);
+    }
+
+    #[test]
+    fn an_event_takes_few_attempts_and_a_jump_does_not_mislead() {
+        let mut attempts = 0;
+        let at = locate(1e-4, (-0.3_f64).exp() - 0.9, |t: f64| {
+            attempts += 1;
+            (-3e3 * t).exp() - 0.9
+        });
+        assert!((at - 0.9_f64.ln() / -3e3).abs() < 1e-18, "{at}");
+        assert!(attempts <= 8, "{attempts}");
+        for jump in [1e-9, 0.3, 0.999_999] {
+            for after in [-1.0, -1e-12] {
+                let margin = |t: f64| if t < jump { 1.0 } else { after * (0.5 + t) };
+                let at = locate(1.0, margin(1.0), margin);
+                assert!((at - jump).abs() < 1e-12, "{at} {jump}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_margin_that_round_off_hides_ends_the_search() {
+        let mut attempts = 0;
+        let coarse = |t: f64| ((0.3 - t) * 1e-3 + 1e3) - 1e3;
+        let at = locate(1.0, coarse(1.0), |t: f64| {
+            attempts += 1;
+            coarse(t)
+        });
+        assert!((at - 0.3).abs() < 2e-10, "{at}");
+        assert!(attempts <= 40, "{attempts}");
     }
 }

@@ -20,6 +20,7 @@ mod steep;
 mod swing;
 
 pub use adaptive::{Account, Adaptive};
+pub use clock::after_steps;
 pub use contact::{Along, Held};
 pub use events::{Stepper, quiet, through_events};
 pub use glide::{Efforts, Glide, Places, Plain, Seen, Verlet, glide_on};

@@ -222,8 +222,8 @@ pub fn located<L: FrictionLaw<f64>>(
         .map(|event| (event, 0.5 * span));
     let late = || law.event(state, &attempt.trial, &attempt.motion).map(|event| (event, span));
     let (event, within) = early.or_else(late)?;
-    let (event, at) = earliest(swing, law, state, event, within);
-    let shortened = swing.attempt(law, state, at);
+    let attempt = swing.attempt(law, state, within);
+    let (event, at, shortened) = earliest(swing, law, state, event, (within, attempt));
     let stopped = event == crate::friction::Event::Reversal && at > 0.0;
     Stepper::<f64, L>::accept(swing, law, state, &shortened, stopped);
     law.switch(state, event);

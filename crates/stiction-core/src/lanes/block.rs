@@ -1,11 +1,13 @@
 //! A row of bodies and of contacts, in the form in which they run.
 
+use stiction_dispatch::{Mask, Vector};
+
 use crate::friction::FrictionLaw;
-use crate::integrate::{Run, Verlet};
+use crate::integrate::{Run, Verlet, after_steps};
 use crate::scalar::Scalar;
 
 /// Lanes of a block: one vector of the widest processors, two or four of others.
-pub const WIDTH: usize = 8;
+pub const WIDTH: usize = stiction_dispatch::ROW;
 
 /// One number where `taken`, else the other.
 ///
@@ -32,6 +34,37 @@ impl Row {
         self.0[lane] = pick(taken, new, self.0[lane]);
     }
 
+    /// Some of its numbers.
+    #[inline(always)]
+    pub fn at<V: Vector>(&self, chunk: usize) -> V {
+        V::load(&self.0, chunk)
+    }
+
+    /// Replaces some of its numbers.
+    #[inline(always)]
+    pub fn put<V: Vector>(&mut self, chunk: usize, numbers: V) {
+        numbers.store(&mut self.0, chunk);
+    }
+
+    /// Adds to some of its numbers.
+    #[inline(always)]
+    pub fn more<V: Vector>(&mut self, chunk: usize, numbers: V) {
+        self.put(chunk, self.at::<V>(chunk) + numbers);
+    }
+
+    /// Replaces some of its numbers where something holds.
+    #[inline(always)]
+    pub fn put_where<V: Vector>(&mut self, chunk: usize, taken: V::Mask, numbers: V) {
+        self.put(chunk, self.at::<V>(chunk).or(taken, numbers));
+    }
+
+    /// Adds to some of its numbers where something holds.
+    #[inline(always)]
+    pub fn more_where<V: Vector>(&mut self, chunk: usize, taken: V::Mask, numbers: V) {
+        // −0 changes no number.
+        self.more(chunk, V::all(-0.0).or(taken, numbers));
+    }
+
     /// Adds to the number of a lane where `taken`.
     #[inline(always)]
     pub fn add(&mut self, lane: usize, taken: bool, more: f64) {
@@ -55,8 +88,12 @@ pub struct Bodies {
     pub friction: Row,
     /// Path travelled.
     pub path: Row,
-    /// Time.
-    pub time: Row,
+    /// Time at some step of the row, and which: all lanes take each, and the clock of a lane is
+    /// looked at seldom.
+    time: Row,
+    since: [usize; WIDTH],
+    /// Steps that the row has taken.
+    pub taken: usize,
     /// Duration of a step.
     pub span: Row,
     /// Half of it.
@@ -73,6 +110,8 @@ pub struct Bodies {
     pub changed: [u64; WIDTH],
     /// All bits where there is a body.
     pub alive: [u64; WIDTH],
+    /// The same, a bit for each lane.
+    pub present: u8,
 }
 
 impl Bodies {
@@ -86,6 +125,8 @@ impl Bodies {
             friction: zero,
             path: zero,
             time: zero,
+            since: [0; WIDTH],
+            taken: 0,
             span: zero,
             half: zero,
             inertia: Row([1.0; WIDTH]),
@@ -94,6 +135,7 @@ impl Bodies {
             missed: [0; WIDTH],
             changed: [0; WIDTH],
             alive: [0; WIDTH],
+            present: 0,
         }
     }
 
@@ -106,6 +148,7 @@ impl Bodies {
         self.pace.0[lane] = pace;
         self.lever.0[lane] = lever;
         self.alive[lane] = u64::MAX;
+        self.present |= 1 << lane;
     }
 
     /// Takes a body into a lane.
@@ -116,16 +159,67 @@ impl Bodies {
         self.friction.0[lane] = run.friction.re();
         self.path.0[lane] = run.path.re();
         self.time.0[lane] = run.time.re();
+        self.since[lane] = self.taken;
     }
 
-    /// Puts the body of a lane back.
+    /// Puts the body of a lane back, where it was after so many steps of the row.
     #[inline]
-    pub fn store<S: Scalar>(&self, lane: usize, run: &mut Run<S>) {
+    pub fn store<S: Scalar>(&self, lane: usize, taken: usize, run: &mut Run<S>) {
+        let steps = taken - self.since[lane];
+        let time = after_steps(self.time.0[lane], self.span.0[lane], steps);
         run.position = S::constant(self.position.0[lane]);
         run.velocity = S::constant(self.velocity.0[lane]);
         run.friction = S::constant(self.friction.0[lane]);
         run.path = S::constant(self.path.0[lane]);
-        run.time = S::constant(self.time.0[lane]);
+        run.time = S::constant(time);
+    }
+
+    /// Says of which lanes, a bit for each, the last step was not plain.
+    #[inline(always)]
+    pub fn miss(&mut self, lanes: u8) {
+        for (lane, missed) in self.missed.iter_mut().enumerate() {
+            *missed = u64::from(lanes >> lane & 1);
+        }
+    }
+
+    /// A bit for each lane of these that is there and where something does not hold, at its place in
+    /// the row.
+    #[inline(always)]
+    pub fn without<V: Vector>(&self, holds: V::Mask, chunk: usize) -> u8 {
+        let lanes = ((1_u32 << V::LANES) - 1) as u8;
+        ((!holds.bits() & lanes) << (chunk * V::LANES)) & self.present
+    }
+
+    /// [`Verlet::depart`] of some lanes.
+    #[inline(always)]
+    pub fn departs<V: Vector>(&self, chunk: usize, net: V) -> (V, V) {
+        let velocity = self.velocity.at::<V>(chunk);
+        let displacement = self.span.at::<V>(chunk) * velocity + self.lever.at::<V>(chunk) * net;
+        (displacement, velocity + self.pace.at::<V>(chunk) * net)
+    }
+
+    /// Moves some lanes on, but for their friction.
+    #[inline(always)]
+    pub fn go<V: Vector>(&mut self, chunk: usize, displacement: V, velocity: V) {
+        self.position.more(chunk, displacement);
+        self.path.more(chunk, displacement.abs());
+        self.velocity.put(chunk, velocity);
+    }
+
+    /// Moves some lanes on where something holds.
+    #[inline(always)]
+    pub fn go_where<V: Vector>(
+        &mut self,
+        chunk: usize,
+        taken: V::Mask,
+        displacement: V,
+        velocity: V,
+        friction: V,
+    ) {
+        self.position.more_where(chunk, taken, displacement);
+        self.path.more_where(chunk, taken, displacement.abs());
+        self.velocity.put_where(chunk, taken, velocity);
+        self.friction.put_where(chunk, taken, friction);
     }
 
     /// [`Verlet::depart`] of a lane.
@@ -182,7 +276,6 @@ impl Bodies {
     ) {
         self.position.add(lane, plain, displacement);
         self.path.add(lane, plain, displacement.abs());
-        self.time.add(lane, plain, self.span.0[lane]);
         self.velocity.take(lane, plain, velocity);
         self.friction.take(lane, plain, friction);
     }
@@ -212,12 +305,15 @@ pub trait Contacts<S: Scalar, L: FrictionLaw<S>>: Clone + Default {
     /// Notes what a step of a lane has changed besides its rows, by what it left in
     /// [`Bodies::changed`].
     fn note(&mut self, _lane: usize, _what: u64, _law: &L, _state: &mut L::State) {}
+    /// Brings up to date what steps leave to be known later: friction.
+    #[inline(always)]
+    fn settle(&mut self, _bodies: &mut Bodies) {}
     /// Takes a step of all lanes of some blocks under their efforts; those that it is not plain for stay
     /// where they are and say so in `missed`. Compiled for several widths: mark it as
     /// `#[inline(always)]`. A processor looks a few hundred operations ahead, which is one block: what
     /// takes as many stage by stage shares the waiting among them. Returns which of them may have left
     /// something in `missed` or `changed`.
-    fn step<const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N];
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N];
 }
 
 /// [`WIDTH`] motors.

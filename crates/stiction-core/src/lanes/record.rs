@@ -28,6 +28,12 @@ impl Record {
         }
     }
 
+    /// Whether friction is wanted.
+    #[inline(always)]
+    pub fn shows_friction(&self) -> bool {
+        self.friction.is_some()
+    }
+
     /// Records a block at a place.
     #[inline(always)]
     pub fn take(&mut self, place: usize, bodies: &Bodies) {

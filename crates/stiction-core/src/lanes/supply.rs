@@ -1,8 +1,6 @@
 //! Efforts of a team, a few samples ahead.
 
-use std::array::from_fn;
-
-use stiction_dispatch::{Task, fetch};
+use stiction_dispatch::{CHUNKS, Mask, ROW, Vector, Wide, fetch};
 
 use super::block::{Row, WIDTH};
 use super::record::SAMPLES;
@@ -58,9 +56,10 @@ impl Supply {
         Ahead { values, members: &self.members, samples: plan.samples, next }
     }
 
-    /// Works out the efforts of some samples.
-    pub fn fill(&mut self, plan: &Plan<'_>, first: usize, length: usize) {
-        plan.width.run(Fill { supply: self, plan, first, length });
+    /// Works out the efforts of some samples, where all that they are made of is finite. Returns whether
+    /// it is.
+    pub fn fill(&mut self, plan: &Plan<'_>, first: usize, length: usize) -> bool {
+        plan.width.run_wide(Fill { supply: self, plan, first, length })
     }
 }
 
@@ -97,96 +96,162 @@ struct Fill<'a> {
     length: usize,
 }
 
-impl Task for Fill<'_> {
-    type Output = ();
+impl Wide for Fill<'_> {
+    type Output = bool;
 
     #[inline(always)]
-    fn run(self) {
+    fn run<V: Vector>(self) -> bool {
         let Self { supply, plan, first, length } = self;
         let Supply { members, gains, limits, weights, efforts, loads } = supply;
-        let inputs = match plan.inputs {
-            Inputs::Shared(values) => Rows::Shared(values),
-            Inputs::Each(values) => Rows::Each(values),
-        };
-        spread(efforts, inputs, plan.samples, members, (first, length));
-        let drives = || gains.iter().zip(&*limits).zip(&*weights);
-        let samples = efforts.chunks_exact_mut(gains.len()).take(length);
-        if let Rows::Same(load) = plan.loads {
-            for efforts in samples {
-                for (effort, ((gain, limit), weight)) in efforts.iter_mut().zip(drives()) {
-                    *effort = driven(*effort, Row([load; WIDTH]), (*gain, *limit, *weight));
-                }
-            }
-            return;
+        let stretch = (first, length);
+        let load = if let Rows::Same(load) = plan.loads { Some(load) } else { None };
+        if load.is_none()
+            && !spread::<V, _>(loads, plan.loads, plan.samples, members, stretch, &AsTheyAre)
+        {
+            return false;
         }
-        spread(loads, plan.loads, plan.samples, members, (first, length));
-        for (efforts, loads) in samples.zip(loads.chunks_exact(gains.len())) {
-            for ((effort, load), ((gain, limit), weight)) in
-                efforts.iter_mut().zip(loads).zip(drives())
-            {
-                *effort = driven(*effort, *load, (*gain, *limit, *weight));
-            }
-        }
+        let drives = Drives { gains, limits, weights, load, loads };
+        spread::<V, _>(efforts, plan.inputs.rows(), plan.samples, members, stretch, &drives)
     }
 }
 
-/// Efforts of some lanes. Copies, so that nobody has to ask whether they overlap.
-#[inline(always)]
-fn driven(input: Row, load: Row, (gain, limit, weight): (Row, Row, Row)) -> Row {
-    let mut effort = Row::ZERO;
-    for lane in 0..WIDTH {
-        let (input, limit) = (input.0[lane], limit.0[lane]);
-        let low = if input < -limit { -limit } else { input };
-        let within = if input > limit { limit } else { low };
-        effort.0[lane] = gain.0[lane] * within + (0.0 + load.0[lane]) + weight.0[lane];
+/// What is made of numbers that come in a row.
+pub trait Through {
+    /// What this takes for some lanes of a block.
+    type Own<V: Vector>: Copy;
+    /// The same.
+    fn own<V: Vector>(&self, block: usize, chunk: usize) -> Self::Own<V>;
+    /// What is made of the numbers of these lanes in a row.
+    fn pass<V: Vector>(&self, numbers: V, own: Self::Own<V>, row: usize, chunk: usize) -> V;
+}
+
+/// Nothing.
+pub struct AsTheyAre;
+
+impl Through for AsTheyAre {
+    type Own<V: Vector> = ();
+
+    #[inline(always)]
+    fn own<V: Vector>(&self, _block: usize, _chunk: usize) {}
+
+    #[inline(always)]
+    fn pass<V: Vector>(&self, numbers: V, (): (), _row: usize, _chunk: usize) -> V {
+        numbers
     }
-    effort
+}
+
+/// Efforts, of inputs.
+struct Drives<'a> {
+    gains: &'a [Row],
+    limits: &'a [Row],
+    weights: &'a [Row],
+    /// The load, where it is the same for all.
+    load: Option<f64>,
+    loads: &'a [Row],
+}
+
+impl Through for Drives<'_> {
+    type Own<V: Vector> = [V; 3];
+
+    #[inline(always)]
+    fn own<V: Vector>(&self, block: usize, chunk: usize) -> [V; 3] {
+        [self.gains[block].at(chunk), self.limits[block].at(chunk), self.weights[block].at(chunk)]
+    }
+
+    #[inline(always)]
+    fn pass<V: Vector>(
+        &self,
+        input: V,
+        [gain, limit, weight]: [V; 3],
+        row: usize,
+        chunk: usize,
+    ) -> V {
+        let load = match self.load {
+            Some(load) => V::all(load),
+            None => self.loads[row].at::<V>(chunk),
+        };
+        let low = input.or(input.below(limit.minus()), limit.minus());
+        let within = low.or(limit.below(input), limit);
+        gain * within + (V::all(0.0) + load) + weight
+    }
 }
 
 /// Samples that are put across lanes at a time: as many as are side by side in the caches.
-const TILE: usize = 8;
+const TILE: usize = ROW;
 // A line of each member is asked for in each stretch of samples.
 const _: () = assert!(SAMPLES == WIDTH * TILE);
 
-/// Numbers of some samples, lane by lane.
+/// 0 where a number is finite, elsewhere none.
 #[inline(always)]
-pub fn spread(
+#[allow(clippy::eq_op)] // which tells it
+fn nought<V: Vector>(number: V) -> V {
+    number - number
+}
+
+/// What is made of the numbers of some samples, lane by lane. Returns whether all of them are finite.
+#[inline(always)]
+pub fn spread<V: Vector, T: Through>(
     rows: &mut [Row],
     numbers: Rows<'_>,
     samples: usize,
     members: &[usize],
     (first, length): (usize, usize),
-) {
+    through: &T,
+) -> bool {
     let blocks = members.len().div_ceil(WIDTH);
+    let mut nothing = V::all(0.0);
     match numbers {
-        Rows::Same(value) => rows[..length * blocks].fill(Row([value; WIDTH])),
-        Rows::Shared(values) => {
-            let given = &values[first..first + length];
-            for (rows, value) in rows.chunks_exact_mut(blocks).zip(given) {
-                rows.fill(Row([*value; WIDTH]));
+        Rows::Same(_) | Rows::Shared(_) => {
+            let same = Rows::of(&numbers, 0, samples);
+            for (k, row) in rows.iter_mut().enumerate().take(length * blocks) {
+                let number = V::all(same.at(first + k / blocks));
+                nothing = nothing + nought(number);
+                for chunk in 0..V::CHUNKS {
+                    let own = through.own::<V>(k % blocks, chunk);
+                    row.put(chunk, through.pass(number, own, k, chunk));
+                }
             }
         }
         Rows::Each(values) => {
             for (block, members) in members.chunks(WIDTH).enumerate() {
-                // Lanes that are left over see what the first one sees.
-                let given: [_; WIDTH] = from_fn(|lane| {
-                    let member = members.get(lane).unwrap_or(&members[0]);
-                    values[member * samples + first..][..length].as_chunks::<TILE>()
-                });
-                for tile in 0..length / TILE {
-                    let tiles: [&[f64; TILE]; WIDTH] = given.map(|(tiles, _)| &tiles[tile]);
-                    for k in 0..TILE {
-                        let row = Row(tiles.map(|values| values[k]));
-                        rows[(tile * TILE + k) * blocks + block] = row;
-                    }
+                let mut own = [through.own::<V>(block, 0); CHUNKS];
+                for (chunk, own) in own.iter_mut().enumerate().take(V::CHUNKS) {
+                    *own = through.own(block, chunk);
                 }
-                for k in 0..length % TILE {
-                    let row = Row(given.map(|(_, rest)| rest[k]));
-                    rows[(length - length % TILE + k) * blocks + block] = row;
+                let mut given: [&[f64]; WIDTH] = [&[]; WIDTH];
+                for (lane, given) in given.iter_mut().enumerate() {
+                    // Lanes that are left over see what the first one sees.
+                    let member = members.get(lane).unwrap_or(&members[0]);
+                    *given = &values[member * samples + first..][..length];
+                }
+                for tile in 0..length.div_ceil(TILE) {
+                    let mut last = [[0.0; TILE]; WIDTH];
+                    let mut tiles = [&[0.0; TILE]; WIDTH];
+                    for ((tiles, last), given) in tiles.iter_mut().zip(&mut last).zip(given) {
+                        *tiles = match given[tile * TILE..].first_chunk() {
+                            Some(numbers) => numbers,
+                            None => {
+                                let rest = &given[tile * TILE..];
+                                last[..rest.len()].copy_from_slice(rest);
+                                last
+                            }
+                        };
+                    }
+                    let across = V::across(tiles);
+                    for (place, across) in across.iter().enumerate() {
+                        let k = (tile * TILE + place) * blocks + block;
+                        let Some(row) = rows.get_mut(k) else { break };
+                        for chunk in 0..V::CHUNKS {
+                            let numbers = across[chunk];
+                            nothing = nothing + nought(numbers);
+                            row.put(chunk, through.pass(numbers, own[chunk], k, chunk));
+                        }
+                    }
                 }
             }
         }
     }
+    nothing.within(V::all(0.0)).bits().count_ones() as usize == V::LANES
 }
 
 /// Load of a sample, added up as a run of one motor adds it.

@@ -1,10 +1,10 @@
 //! What is reduced on the way.
 
-use stiction_dispatch::Task;
+use stiction_dispatch::{Vector, Wide};
 
 use super::block::{Row, WIDTH};
 use super::record::{Record, SAMPLES};
-use super::supply::spread;
+use super::supply::{AsTheyAre, spread};
 use super::team::{Job, Team};
 use crate::ensemble::{Keep, Rows};
 use crate::friction::FrictionLaw;
@@ -38,17 +38,19 @@ impl Tally {
         self.kept[column * self.blocks + member / WIDTH].map(|row| row.0[member % WIDTH])
     }
 
-    /// Takes in what was recorded of some samples of these members.
+    /// Takes in what was recorded of some samples of these members. Returns whether all targets of theirs
+    /// are finite.
     pub fn add<S: Scalar, L: FrictionLaw<S>>(
         &mut self,
         team: &Team<'_, S, L>,
         record: &Record,
         members: &[usize],
         (first, length): (usize, usize),
-    ) {
-        if matches!(team.job.plan.keep, Keep::Rms(_) | Keep::Extremes) {
-            team.job.plan.width.run(Add { tally: self, team, record, members, first, length });
+    ) -> bool {
+        if !matches!(team.job.plan.keep, Keep::Rms(_) | Keep::Extremes) {
+            return true;
         }
+        team.job.plan.width.run_wide(Add { tally: self, team, record, members, first, length })
     }
 }
 
@@ -62,19 +64,38 @@ struct Add<'a, S: Scalar, L: FrictionLaw<S>> {
     length: usize,
 }
 
-impl<S: Scalar, L: FrictionLaw<S>> Task for Add<'_, S, L> {
-    type Output = ();
+impl<S: Scalar, L: FrictionLaw<S>> Wide for Add<'_, S, L> {
+    type Output = bool;
 
     #[inline(always)]
-    fn run(self) {
+    fn run<V: Vector>(self) -> bool {
         let Self { tally, team, record, members, first, length } = self;
         let (blocks, plan) = (tally.blocks, team.job.plan);
         let squares = matches!(plan.keep, Keep::Rms(_));
         // The same for all is there since the start.
-        if let Keep::Rms(target @ (Rows::Shared(_) | Rows::Each(_))) = plan.keep {
-            spread(&mut tally.targets, target, plan.samples, members, (first, length));
+        if let Keep::Rms(target @ (Rows::Shared(_) | Rows::Each(_))) = plan.keep
+            && !spread::<V, _>(
+                &mut tally.targets,
+                target,
+                plan.samples,
+                members,
+                (first, length),
+                &AsTheyAre,
+            )
+        {
+            return false;
         }
         for (column, kind) in team.job.kinds.iter().enumerate() {
+            if squares && *kind != Column::Measured {
+                let kept = &mut tally.kept[column * blocks..][..blocks];
+                let rows = &record.of(*kind)[..length * blocks];
+                // Two blocks wait for their sums at the same time.
+                match blocks {
+                    2 => add_squares::<V, 2>(kept, rows, &tally.targets),
+                    _ => add_squares::<V, 1>(kept, rows, &tally.targets),
+                }
+                continue;
+            }
             for block in 0..blocks {
                 let kept = &mut tally.kept[column * blocks + block];
                 let targets = tally.targets.iter().skip(block % tally.targets.len());
@@ -94,6 +115,34 @@ impl<S: Scalar, L: FrictionLaw<S>> Task for Add<'_, S, L> {
                     *kept = taken_in(*kept, rows.copied().zip(targets), squares);
                 }
             }
+        }
+        true
+    }
+}
+
+/// Adds the squares of the distances of rows from targets, one for all or one for each, in so many
+/// blocks.
+#[inline(always)]
+fn add_squares<V: Vector, const BLOCKS: usize>(
+    kept: &mut [[Row; 2]],
+    rows: &[Row],
+    targets: &[Row],
+) {
+    let same = targets.len() == 1;
+    for chunk in 0..V::CHUNKS {
+        let mut sums = [V::all(0.0); BLOCKS];
+        for (sum, [kept, _]) in sums.iter_mut().zip(&*kept) {
+            *sum = kept.at(chunk);
+        }
+        for (k, rows) in rows.as_chunks::<BLOCKS>().0.iter().enumerate() {
+            for (block, (sum, row)) in sums.iter_mut().zip(rows).enumerate() {
+                let target = &targets[if same { 0 } else { k * BLOCKS + block }];
+                let beside = row.at::<V>(chunk) - target.at::<V>(chunk);
+                *sum = *sum + beside * beside;
+            }
+        }
+        for (sum, [kept, _]) in sums.iter().zip(&mut *kept) {
+            kept.put(chunk, *sum);
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use std::array::from_mut;
 use std::slice::from_ref;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use stiction_dispatch::Task;
+use stiction_dispatch::{Vector, Wide};
 
 use super::block::{Block, Bodies, Contacts, Row, WIDTH};
 use super::record::{Record, SAMPLES};
@@ -81,12 +82,19 @@ pub struct Job<'a> {
     pub dt: f64,
     /// Steps of a sample.
     pub parts: u32,
+    /// Whether a number was found that is not finite: then all is for nothing.
+    pub halted: &'a AtomicBool,
 }
 
 impl<'a> Job<'a> {
     /// What a team of motors does that divide each sample into so many steps.
-    pub fn new(plan: &'a Plan<'a>, kinds: &'a [Column], parts: u32) -> Self {
-        Self { plan, kinds, dt: plan.dt.at(0), parts }
+    pub fn new(
+        plan: &'a Plan<'a>,
+        kinds: &'a [Column],
+        parts: u32,
+        halted: &'a AtomicBool,
+    ) -> Self {
+        Self { plan, kinds, dt: plan.dt.at(0), parts, halted }
     }
 
     /// Into how many steps this motor divides each sample of a plan, where it can go through that
@@ -130,11 +138,11 @@ struct Stretch<'a, 'b, S: Scalar, L: FrictionLaw<S>, C> {
     first: usize,
 }
 
-impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Task for Stretch<'_, '_, S, L, C> {
+impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Wide for Stretch<'_, '_, S, L, C> {
     type Output = ();
 
     #[inline(always)]
-    fn run(mut self) {
+    fn run<V: Vector>(mut self) {
         let (count, parts) = (self.blocks.len(), self.team.job.parts);
         let blocks = std::mem::take(&mut self.blocks);
         for (sample, row) in self.efforts.chunks_exact(count).enumerate() {
@@ -143,11 +151,11 @@ impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Task for Stretch<'_, '_, S
                 let ends = part == parts;
                 let (pairs, rest) = blocks.as_chunks_mut::<2>();
                 for (k, (pair, efforts)) in pairs.iter_mut().zip(row.chunks_exact(2)).enumerate() {
-                    self.step(pair, efforts, (2 * k, sample, count), ends);
+                    self.step::<V, 2>(pair, efforts, (2 * k, sample, count), ends);
                 }
                 for (block, effort) in rest.iter_mut().zip(row.last()) {
                     let efforts = from_ref(effort);
-                    self.step(from_mut(block), efforts, (count - 1, sample, count), ends);
+                    self.step::<V, 1>(from_mut(block), efforts, (count - 1, sample, count), ends);
                 }
             }
         }
@@ -157,7 +165,7 @@ impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Task for Stretch<'_, '_, S
 impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Stretch<'_, '_, S, L, C> {
     /// A step of some blocks, of which this is the first.
     #[inline(always)]
-    fn step<const N: usize>(
+    fn step<V: Vector, const N: usize>(
         &mut self,
         blocks: &mut [Block<C>; N],
         efforts: &[Row],
@@ -167,8 +175,9 @@ impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Stretch<'_, '_, S, L, C> {
         for (block, effort) in blocks.iter_mut().zip(efforts) {
             block.bodies.effort = *effort;
         }
-        let open = C::step(blocks);
+        let open = C::step::<V, N>(blocks);
         for (k, block) in blocks.iter_mut().enumerate() {
+            block.bodies.taken += 1;
             if open[k] && block.bodies.changes() {
                 self.team.note(first + k, block, self.room);
             }
@@ -176,6 +185,9 @@ impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Stretch<'_, '_, S, L, C> {
                 self.team.make_up(first + k, self.first + sample, block, self.room);
             }
             if ends {
+                if self.record.shows_friction() {
+                    block.contacts.settle(&mut block.bodies);
+                }
                 self.record.take(sample * count + first + k, &block.bodies);
             }
         }
@@ -196,8 +208,12 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
         let mut first = 0;
         while first < samples {
             let length = SAMPLES.min(samples - first);
-            supply.fill(plan, first, length);
-            plan.width.run(Stretch {
+            let finite = supply.fill(plan, first, length);
+            if !finite || self.job.halted.load(Ordering::Relaxed) {
+                self.job.halted.store(true, Ordering::Relaxed);
+                return;
+            }
+            plan.width.run_wide(Stretch {
                 team: self,
                 blocks: &mut blocks,
                 room: &mut room,
@@ -207,12 +223,18 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
                 first,
             });
             self.show(&record, first, length, count);
-            tally.add(self, &record, supply.members(), (first, length));
+            if !tally.add(self, &record, supply.members(), (first, length)) {
+                self.job.halted.store(true, Ordering::Relaxed);
+                return;
+            }
             first += length;
+        }
+        for block in &mut blocks {
+            block.contacts.settle(&mut block.bodies);
         }
         for (k, member) in self.members.iter_mut().enumerate() {
             let block = &blocks[k / WIDTH];
-            block.bodies.store(k % WIDTH, member.run);
+            block.bodies.store(k % WIDTH, block.bodies.taken, member.run);
             block.contacts.store(k % WIDTH, member.state);
         }
         self.end(&tally);
@@ -272,7 +294,8 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
     ) {
         let Some(member) = self.members.get_mut(k) else { return };
         let lane = k % WIDTH;
-        block.bodies.store(lane, member.run);
+        // The row is through with the step already.
+        block.bodies.store(lane, block.bodies.taken - 1, member.run);
         block.contacts.store(lane, member.state);
         member.make_room(&mut room[k]);
         let (input, load) = applied(self.job.plan, member.number, sample);

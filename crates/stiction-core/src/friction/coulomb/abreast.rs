@@ -1,5 +1,7 @@
 //! Plain steps of eight contacts at once: rests that hold, and slides that go on.
 
+use stiction_dispatch::Vector;
+
 use super::{Coulomb, CoulombState};
 use crate::friction::elements::bell::Bells;
 use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH};
@@ -40,7 +42,7 @@ impl<S: Scalar> Contacts<S, Coulomb<S>> for Lanes {
     }
 
     #[inline(always)]
-    fn step<const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
         for Block { bodies, contacts } in blocks {
             for lane in 0..WIDTH {
                 contacts.step(lane, bodies);

@@ -1,5 +1,7 @@
 //! Steps of eight contacts at once: each is plain.
 
+use stiction_dispatch::Vector;
+
 use super::{Dahl, DahlState};
 use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH};
 use crate::scalar::{Scalar, sign};
@@ -54,7 +56,7 @@ impl<S: Scalar> Contacts<S, Dahl<S>> for Lanes {
     }
 
     #[inline(always)]
-    fn step<const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
         for Block { bodies, contacts } in blocks {
             for lane in 0..WIDTH {
                 contacts.step(lane, bodies);

@@ -51,6 +51,18 @@ pub struct HsiehPan<S> {
     keeps_hardening: bool,
     /// Break-away depends on the loading rate.
     rated: bool,
+    /// Just under what the slope of the spring is at the level of break-away, below which it is steeper;
+    /// k_inf where it never breaks away.
+    softest: f64,
+}
+
+fn softest<S: Scalar>(curve: &Curve<S>, p: &HsiehPanParameters<S>) -> f64 {
+    if !p.breakaway.re().is_finite() {
+        return p.final_stiffness.re();
+    }
+    let at = curve.virgin_inverse(S::constant(p.breakaway.re()));
+    let slope = curve.virgin(at).slope.re();
+    (slope * (1.0 - 1e-9)).max(p.final_stiffness.re())
 }
 
 impl<S: Scalar> HsiehPan<S> {
@@ -72,6 +84,27 @@ impl<S: Scalar> HsiehPan<S> {
         }
         let filtered = follow(filtered, from, to, duration / p.loading_time).value;
         (filtered, self.breakaway_at((to - filtered).abs() / p.loading_time))
+    }
+
+    /// Whether the hook goes on whatever the slope of the spring. A force at its break-away level
+    /// cannot stick; with the damper on the spring the series cannot stop short: it catches at rest.
+    #[inline(always)]
+    fn drags(&self, trial: &HsiehPanTrial<S>, pull: S) -> bool {
+        let least = self.parameters.slip_distance * self.parameters.final_stiffness - pull;
+        let held_down = trial.breakaway.re() - trial.series.re().abs();
+        least.re() > 0.0 || held_down <= 0.0 || self.damper_on_spring
+    }
+
+    /// Whether the hook turned back in a slide: x_hook' = x' − x_s' with σ' = (T − σ)·x'/ℓ, so where the
+    /// pull exceeds ℓ times the stiffness.
+    #[inline(always)]
+    fn catches(&self, trial: &HsiehPanTrial<S>) -> bool {
+        let Mode::Slip { pull } = trial.mode else { return false };
+        if self.drags(trial, pull) {
+            return false;
+        }
+        let at = self.curve.virgin_inverse(trial.series);
+        (self.parameters.slip_distance * self.curve.virgin(at).slope - pull).re() <= 0.0
     }
 
     #[inline(always)]
@@ -105,8 +138,10 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         let p = HsiehPanParameters::from_values(values);
         let choice = |k: usize| choices.get(k).copied().unwrap_or(0);
         let virgin = if choice(0) == 0 { VirginCurve::Masing } else { VirginCurve::Same };
+        let curve = Curve::new(p.initial_stiffness, p.final_stiffness, p.decay_distance, virgin);
         Self {
-            curve: Curve::new(p.initial_stiffness, p.final_stiffness, p.decay_distance, virgin),
+            curve,
+            softest: softest(&curve, &p),
             plastic: Plastic {
                 coefficient: p.hardening_coefficient,
                 exponent: p.hardening_exponent,
@@ -375,7 +410,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
                     .then_some(Event::BreakAway)
             }
             Mode::Slip { .. } => {
-                if self.margin(state, trial, motion, Event::HookReturn).re() <= 0.0 {
+                if self.catches(trial) {
                     Some(Event::HookReturn)
                 } else if state.mode * motion.velocity.re() <= 0.0 {
                     Some(Event::Reversal)
@@ -397,17 +432,12 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         match (event, trial.mode) {
             (Event::Reversal, _) => motion.velocity * state.mode,
             (Event::HookReturn, Mode::Slip { pull }) => {
-                // x_hook' = x' − x_s' with σ' = (T − σ)·x'/ℓ: the hook turns back where the pull
-                // exceeds ℓ times the stiffness. A force at its break-away level cannot stick.
-                let reach = self.parameters.slip_distance;
-                // With the damper on the spring the series cannot stop short: it catches at rest.
-                let least = reach * self.parameters.final_stiffness - pull;
-                let held_down = trial.breakaway.re() - trial.series.re().abs();
-                if least.re() > 0.0 || held_down <= 0.0 || self.damper_on_spring {
+                let least = self.parameters.slip_distance * self.parameters.final_stiffness - pull;
+                if self.drags(trial, pull) {
                     return S::constant(least.re().abs().max(f64::MIN_POSITIVE));
                 }
-                let at = self.curve.virgin_inverse(trial.series);
-                reach * self.curve.virgin(at).slope - pull
+                // In forces, for which no inverse of the curve is needed: a step is attempted often.
+                self.curve.force_at_slope(pull / self.parameters.slip_distance) - trial.series.abs()
             }
             _ => trial.breakaway - trial.series.abs(),
         }

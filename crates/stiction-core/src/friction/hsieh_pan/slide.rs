@@ -9,6 +9,9 @@ use super::state::{HsiehPanState, HsiehPanTrial, Mode};
 use crate::exponential::fading_twice_and_faded_of;
 use crate::scalar::{Scalar, sign};
 
+/// Of a force, what is more than round-off.
+pub(super) const ROUNDING: f64 = 1e-13;
+
 /// A step of a slide.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slide<S> {
@@ -51,6 +54,12 @@ impl<S: Scalar> HsiehPan<S> {
     #[cold]
     #[inline(never)]
     fn held_back(&self, from: S, to: S, distance: S) -> (S, Option<S>) {
+        // Up to the level of break-away the curve is nowhere softer than there.
+        let (behind, now) = (from.re(), to.re());
+        let sure = behind - ROUNDING * behind.abs() + self.softest * distance.re();
+        if now <= sure && now <= self.parameters.breakaway.re() {
+            return (to, None);
+        }
         let limit = self.curve.virgin(self.curve.virgin_inverse(from) + distance);
         if to.re() <= limit.force.re() { (to, None) } else { (limit.force, Some(limit.slope)) }
     }

@@ -1,6 +1,8 @@
 //! Steps of eight contacts at once: what [`FrictionLaw::glide`](crate::friction::FrictionLaw::glide)
 //! does.
 
+use stiction_dispatch::Vector;
+
 use super::{BristleState, LuGre};
 use crate::friction::elements::bell::Bells;
 use crate::friction::elements::lag::shares;
@@ -51,7 +53,7 @@ impl<S: Scalar> Contacts<S, LuGre<S>> for Lanes {
     }
 
     #[inline(always)]
-    fn step<const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
         for Block { bodies, contacts } in blocks {
             for lane in 0..WIDTH {
                 contacts.step(lane, bodies);

@@ -1,156 +1,162 @@
 //! Steps of rows in which every hook slides forward under a level that does not rise with speed, so
 //! that nothing damps it: nothing in them is chosen. Whatever leaves a doubt is left to `slide`.
 
-use super::onward::{accept, flipped};
-use super::{Lanes, ROUNDING};
+use stiction_dispatch::{CHUNKS, Mask, Vector};
+
+use super::{Lanes, Odds, ROUNDING, accept};
 use crate::exponential::{faded, fading};
-use crate::lanes::{Block, Bodies, Row, WIDTH};
+use crate::lanes::{Block, Bodies};
 
 /// Steps of rows of hooks of which all slide, two of them stage by stage, or with `MIXED` of those
-/// lanes in `missed` that do. Says which rows have lanes left that have not gone on, in `missed`.
+/// lanes that do. Says of each row which lanes have not gone on.
 #[inline(always)]
-pub(super) fn forward<const MIXED: bool, const N: usize>(
+#[allow(clippy::needless_range_loop)] // a vector of all rows at a time
+pub(super) fn forward<V: Vector, const MIXED: bool, const N: usize>(
     blocks: &mut [Block<Lanes>; N],
-) -> [bool; N] {
+) -> Odds<N> {
     const { assert!(N == 1 || N == 2) };
-    let mut ends = [Ends::default(); N];
-    let mut odds = [false; N];
-    for lane in 0..WIDTH {
+    let mut ends = [[Ends::<V>::default(); N]; CHUNKS];
+    let mut odds = [0; N];
+    for chunk in 0..V::CHUNKS {
         let (p, q) = (&blocks[0], &blocks[N - 1]);
-        let begun = [p.contacts.push_off(lane, &p.bodies), q.contacts.push_off(lane, &q.bodies)];
-        let slid = [p.contacts.slid_by(lane, &begun[0]), q.contacts.slid_by(lane, &begun[1])];
+        let begun = [p.contacts.push_off(chunk, &p.bodies), q.contacts.push_off(chunk, &q.bodies)];
+        let slid =
+            [p.contacts.slid_by::<V>(chunk, &begun[0]), q.contacts.slid_by::<V>(chunk, &begun[1])];
         for k in 0..N {
             let Block { bodies, contacts } = &blocks[k];
-            let goes_on = contacts.go_forward(lane, &begun[k], &slid[k], bodies, &mut ends[k]);
-            let here = !MIXED | (contacts.mode.0[lane] != 0.0);
-            let odd = !(goes_on & here) & (bodies.alive[lane] != 0);
-            // The compiler makes no vectors of a loop over two rows that notes this as well.
-            if MIXED {
-                ends[k].odd[lane] = u64::from(odd);
-            }
-            odds[k] |= odd;
+            let goes_on =
+                contacts.go_forward(chunk, &begun[k], &slid[k], bodies, &mut ends[chunk][k]);
+            let here = if MIXED {
+                let mode = contacts.mode.at::<V>(chunk).abs();
+                goes_on.and(V::all(0.0).below(mode))
+            } else {
+                goes_on
+            };
+            odds[k] |= bodies.without::<V>(here, chunk);
         }
     }
-    if MIXED {
-        for (Block { bodies, contacts }, ends) in blocks.iter_mut().zip(&ends) {
-            contacts.come_some(ends, bodies);
-        }
-        return [true; N];
-    }
-    accept(blocks, odds, |k, Block { bodies, contacts }| contacts.come(&ends[k], bodies))
+    accept::<V, _, MIXED, N>(blocks, odds, &ends)
 }
 
-/// Where a step of a row ends.
+/// Where a step of some lanes ends.
 #[derive(Clone, Copy, Default)]
-struct Ends {
-    displacement: Row,
-    arrived: Row,
-    force: Row,
-    /// Not 0 where something else happens.
-    odd: [u64; WIDTH],
+struct Ends<V> {
+    displacement: V,
+    arrived: V,
+    force: V,
 }
 
 /// Departure, and levels at the start and at the end.
 #[derive(Clone, Copy)]
-struct Begun {
-    net: f64,
-    displacement: f64,
-    from: f64,
-    to: f64,
+struct Begun<V: Vector> {
+    net: V,
+    displacement: V,
+    from: V,
+    to: V,
     /// Velocity at the start and the predicted one are those of a slide forward.
-    goes: bool,
+    goes: V::Mask,
 }
 
 /// How the force follows the level, see `shares`.
 #[derive(Clone, Copy)]
-struct Slid {
-    distance: f64,
-    remainder: f64,
-    end_share: f64,
+struct Slid<V: Vector> {
+    distance: V,
+    remainder: V,
+    end_share: V,
     /// Far enough for the mean of what is left of a distance to be a quotient.
-    far: bool,
+    far: V::Mask,
 }
 
 impl Lanes {
     #[inline(always)]
-    fn push_off(&self, lane: usize, bodies: &Bodies) -> Begun {
-        let (velocity, mode) = (bodies.velocity.0[lane], self.mode.0[lane]);
-        let net = bodies.effort.0[lane] - self.force.0[lane];
-        let (displacement, predicted) = bodies.depart(lane, net);
-        let per_velocity = self.per_velocity.0[lane];
+    fn push_off<V: Vector>(&self, chunk: usize, bodies: &Bodies) -> Begun<V> {
+        let (velocity, mode) = (bodies.velocity.at::<V>(chunk), self.mode.at::<V>(chunk));
+        let net = bodies.effort.at::<V>(chunk) - self.force.at::<V>(chunk);
+        let (displacement, predicted) = bodies.departs(chunk, net);
+        let per_velocity = self.per_velocity.at::<V>(chunk);
         let (share, before) = (predicted * per_velocity, velocity * per_velocity);
-        let (left, left_before) = (fading(-(share * share)), fading(-(before * before)));
-        let (coulomb, excess) = (self.coulomb.0[lane], self.excess.0[lane]);
+        let (left, left_before) =
+            (fading((share * share).minus()), fading((before * before).minus()));
+        let (coulomb, excess) = (self.coulomb.at::<V>(chunk), self.excess.at::<V>(chunk));
+        let zero = V::all(0.0);
         Begun {
             net,
             displacement,
             from: coulomb + excess * left_before,
             to: coulomb + excess * left,
-            goes: (flipped(velocity, mode) >= 0.0) & (flipped(predicted, mode) > 0.0),
+            goes: zero.within(velocity.flipped(mode)).and(zero.below(predicted.flipped(mode))),
         }
     }
 
     #[inline(always)]
-    fn slid_by(&self, lane: usize, begun: &Begun) -> Slid {
+    fn slid_by<V: Vector>(&self, chunk: usize, begun: &Begun<V>) -> Slid<V> {
         let distance = begun.displacement.abs();
-        let z = distance * self.per_distance.0[lane];
-        let gone = faded(-z);
-        let mean = gone * (1.0 / z);
-        Slid { distance, remainder: -(gone - 1.0), end_share: -(mean - 1.0), far: z >= 1e-5 }
+        let z = distance * self.per_distance.at::<V>(chunk);
+        let gone = faded(z.minus());
+        let mean = gone * (V::all(1.0) / z);
+        Slid {
+            distance,
+            remainder: (gone - V::all(1.0)).minus(),
+            end_share: (mean - V::all(1.0)).minus(),
+            far: V::all(1e-5).within(z),
+        }
     }
 
-    /// The end of a step. Returns whether all of it goes on as it went.
+    /// The end of a step. Returns where all of it goes on as it went.
     #[inline(always)]
-    fn go_forward(
+    fn go_forward<V: Vector>(
         &self,
-        lane: usize,
-        begun: &Begun,
-        slid: &Slid,
+        chunk: usize,
+        begun: &Begun<V>,
+        slid: &Slid<V>,
         bodies: &Bodies,
-        ends: &mut Ends,
-    ) -> bool {
+        ends: &mut Ends<V>,
+    ) -> V::Mask {
         let Begun { net, displacement, from, to, goes } = *begun;
-        let (effort, velocity) = (bodies.effort.0[lane], bodies.velocity.0[lane]);
-        let mode = self.mode.0[lane];
-        let behind = flipped(self.force.0[lane], mode);
+        let (effort, velocity) = (bodies.effort.at::<V>(chunk), bodies.velocity.at::<V>(chunk));
+        let mode = self.mode.at::<V>(chunk);
+        let behind = self.force.at::<V>(chunk).flipped(mode);
         let sigma = from + (to - from) * slid.end_share + (behind - from) * slid.remainder;
-        let force = flipped(sigma, mode);
-        let unbraked = (bodies.inertia.0[lane] * velocity + bodies.half.0[lane] * (net + effort))
-            * self.undamped_share.0[lane];
-        let arrived = unbraked - self.undamped_braking.0[lane] * force;
-        ends.displacement.0[lane] = displacement;
-        ends.arrived.0[lane] = arrived;
-        ends.force.0[lane] = force;
-        let follows =
-            sigma <= behind - ROUNDING * behind.abs() + self.softest.0[lane] * slid.distance;
-        let held = self.least.0[lane] - (to - sigma) > 0.0;
-        let inside = (sigma > 0.0) & (sigma <= self.greatest.0[lane]);
-        goes & slid.far & follows & held & inside & (flipped(arrived, mode) > 0.0)
+        let force = sigma.flipped(mode);
+        let (inertia, half) = (bodies.inertia.at::<V>(chunk), bodies.half.at::<V>(chunk));
+        let unbraked =
+            (inertia * velocity + half * (net + effort)) * self.undamped_share.at::<V>(chunk);
+        let arrived = unbraked - self.undamped_braking.at::<V>(chunk) * force;
+        *ends = Ends { displacement, arrived, force };
+        let zero = V::all(0.0);
+        let follows = sigma.within(
+            behind - V::all(ROUNDING) * behind.abs() + self.softest.at::<V>(chunk) * slid.distance,
+        );
+        let held = zero.below(self.least.at::<V>(chunk) - (to - sigma));
+        let inside = zero.below(sigma).and(sigma.within(self.greatest.at::<V>(chunk)));
+        let moves = zero.below(arrived.flipped(mode));
+        goes.and(slid.far).and(follows).and(held).and(inside).and(moves)
+    }
+}
+
+impl<V: Vector> super::Ends<V> for Ends<V> {
+    #[inline(always)]
+    fn take_over(&self, chunk: usize, Block { bodies, contacts }: &mut Block<Lanes>) {
+        contacts.force.put(chunk, self.force);
+        bodies.friction.put(chunk, self.force);
+        bodies.go(chunk, self.displacement, self.arrived);
     }
 
-    /// Accepts the step of a row.
     #[inline(always)]
-    fn come(&mut self, ends: &Ends, bodies: &mut Bodies) {
-        for lane in 0..WIDTH {
-            let displacement = ends.displacement.0[lane];
-            bodies.position.0[lane] += displacement;
-            bodies.path.0[lane] += displacement.abs();
-            bodies.time.0[lane] += bodies.span.0[lane];
+    fn went(block: &mut Block<Lanes>) {
+        let Block { bodies, contacts } = block;
+        let mut coasts = 0;
+        for chunk in 0..V::CHUNKS {
+            let coasting = contacts.coasting::<V>(chunk, bodies.velocity.at(chunk));
+            coasts |= bodies.without::<V>(coasting, chunk);
         }
-        self.force = ends.force;
-        bodies.friction = ends.force;
-        bodies.velocity = ends.arrived;
+        contacts.coasts = coasts == 0;
     }
 
-    /// Accepts the steps of those that are not `odd`.
     #[inline(always)]
-    fn come_some(&mut self, ends: &Ends, bodies: &mut Bodies) {
-        for lane in 0..WIDTH {
-            let here = ends.odd[lane] == 0;
-            bodies.missed[lane] &= ends.odd[lane];
-            let (displacement, force) = (ends.displacement.0[lane], ends.force.0[lane]);
-            self.force.take(lane, here, force);
-            bodies.accept(lane, here, displacement, ends.arrived.0[lane], force);
-        }
+    fn take_some(&self, chunk: usize, here: V::Mask, block: &mut Block<Lanes>) {
+        let Block { bodies, contacts } = block;
+        contacts.force.put_where(chunk, here, self.force);
+        bodies.go_where(chunk, here, self.displacement, self.arrived, self.force);
     }
 }

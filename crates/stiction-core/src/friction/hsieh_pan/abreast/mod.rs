@@ -4,6 +4,7 @@
 //! lane of a row does anything else, those that do go through another pass (`stick`, `slide`), in which
 //! what few need is left out where none does.
 
+mod coast;
 mod forward;
 mod onward;
 mod slide;
@@ -11,13 +12,18 @@ mod stick;
 
 use std::array::from_mut;
 
+use stiction_dispatch::{CHUNKS, Mask, Vector};
+
+use super::slide::ROUNDING;
 use super::{HsiehPan, HsiehPanState};
+use crate::friction::elements::branch::SYNCHRONISED;
 use crate::friction::elements::loading::Loading;
 use crate::friction::elements::memory::ReversePoint;
 use crate::friction::elements::spring::SpringState;
-use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH};
-use crate::scalar::Scalar;
+use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH, pick};
+use crate::scalar::{SHORTER, Scalar};
 
+use coast::coast;
 use forward::forward;
 use onward::onward;
 use slide::slide;
@@ -34,7 +40,11 @@ pub struct Lanes {
     force: Row,
     position: Row,
     slope: Row,
+    /// Steps of each spring that go on from the one before, but for those of the row as a whole that
+    /// are not added yet; there may be `whole` of these less what is `left`.
     steps: Row,
+    whole: u32,
+    left: u32,
     plastic: Row,
     hardening: Row,
     /// Of the branch: its direction and the share of d_0 that a displacement is.
@@ -70,9 +80,13 @@ pub struct Lanes {
     share: Row,
     braking: Row,
     greatest: Row,
+    /// The same, or less, so that creep under less than that takes its short way.
+    limit: Row,
     /// Of the slide.
     coulomb: Row,
     excess: Row,
+    /// Speed, times the number below, beyond which the level is `coulomb` to the last bit.
+    beyond: Row,
     per_velocity: Row,
     viscous: Row,
     per_distance: Row,
@@ -86,8 +100,13 @@ pub struct Lanes {
     undamped_braking: Row,
     sticks: bool,
     slides: bool,
-    /// No lane has been given a hardening below 0, where a contact that cannot creep would.
+    /// No lane has a hardening below 0, where a contact that cannot creep would, or its force at the
+    /// limit.
     tame: bool,
+    /// Friction is still to be made of force and velocity.
+    untold: bool,
+    /// The last step was one of slides beyond all fall.
+    coasts: bool,
     /// No level of a slide rises with speed.
     falls: bool,
 }
@@ -133,19 +152,8 @@ pub fn fits<S: Scalar>(law: &HsiehPan<S>) -> bool {
     bell && law.plastic.is_square() && !law.damper_on_spring && !law.rated
 }
 
-/// Of a force, what is more than round-off.
-const ROUNDING: f64 = 1e-13;
-
-/// Just under the slope of the spring at the level of break-away, or that far from a reverse point
-/// where it never breaks away.
-fn softest<S: Scalar>(law: &HsiehPan<S>) -> f64 {
-    let p = &law.parameters;
-    if !p.breakaway.re().is_finite() {
-        return p.final_stiffness.re();
-    }
-    let slope = law.curve.virgin(law.curve.virgin_inverse(p.breakaway)).slope.re();
-    (slope * (1.0 - 1e-9)).max(p.final_stiffness.re())
-}
+/// What is more than round-off of a bound that may be kept by as much.
+const SLACK: f64 = 1.0 - 1e-9;
 
 impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
     fn fit(&mut self, lane: usize, law: &HsiehPan<S>, bodies: &Bodies) {
@@ -159,8 +167,11 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         self.initial_stiffness.0[lane] = law.curve.initial_stiffness().re();
         self.final_stiffness.0[lane] = p.final_stiffness.re();
         self.rate.0[lane] = law.plastic.rate.re();
-        self.coefficient.0[lane] = law.plastic.coefficient.re();
-        self.twice_coefficient.0[lane] = law.plastic.coefficient.re() * 2.0;
+        // Nothing creeps without a rate either.
+        let creeps = law.plastic.rate.re() > 0.0;
+        let coefficient = if creeps { law.plastic.coefficient.re() } else { 0.0 };
+        self.coefficient.0[lane] = coefficient;
+        self.twice_coefficient.0[lane] = coefficient * 2.0;
         self.progress.0[lane] = law.plastic.rate.re() * bodies.span.0[lane];
         self.pace.0[lane] = self.progress.0[lane] * self.twice_coefficient.0[lane];
         self.damping.0[lane] = damping;
@@ -169,6 +180,10 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         self.share.0[lane] = dragged.share;
         self.braking.0[lane] = dragged.braking;
         self.greatest.0[lane] = p.breakaway.re();
+        let room = SHORTER * SLACK - self.progress.0[lane];
+        let steepest = self.pace.0[lane] * self.initial_stiffness.0[lane];
+        let longest = if room > 0.0 { room / steepest } else { 0.0 };
+        self.limit.0[lane] = longest.min(p.breakaway.re());
         self.coulomb.0[lane] = p.coulomb.re();
         self.per_velocity.0[lane] = 1.0 / p.stribeck_velocity.re();
         self.viscous.0[lane] = p.viscous.re();
@@ -176,7 +191,7 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         self.reach.0[lane] = p.slip_distance.re();
         self.distance.0[lane] = distance;
         self.twice.0[lane] = if law.curve.closes_at_mirror() { 2.0 } else { 1.0 };
-        self.softest.0[lane] = softest(law);
+        self.softest.0[lane] = law.softest;
         self.least.0[lane] = p.slip_distance.re() * self.softest.0[lane];
         let undamped = bodies.dragged(lane, 0.0);
         self.undamped_share.0[lane] = undamped.share;
@@ -200,7 +215,8 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         self.slides = self.mode.0.iter().any(|mode| *mode != 0.0);
         self.falls = self.viscous.0.iter().all(|viscous| *viscous == 0.0)
             && self.excess.0.iter().all(|excess| *excess >= 0.0);
-        self.tame = self.hardening.0.iter().all(|hardening| *hardening >= 0.0);
+        self.beyond.0[lane] = self.beyond(lane);
+        self.renew();
     }
 
     #[inline]
@@ -211,7 +227,7 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         if state.mode == 0.0 {
             state.spring.position = number(&self.position);
             state.spring.slope = number(&self.slope);
-            state.spring.steps = self.steps.0[lane] as u32;
+            state.spring.steps = self.steps.0[lane] as u32 + (self.whole - self.left);
             state.plastic = number(&self.plastic);
             state.hardening = number(&self.hardening);
         }
@@ -235,70 +251,211 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
     }
 
     #[inline(always)]
-    fn step<const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
-        let onwards = |block: &Block<Self>| !block.contacts.slides && block.contacts.tame;
+    fn settle(&mut self, bodies: &mut Bodies) {
+        self.tell(bodies);
+    }
+
+    #[inline(always)]
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
+        let onwards = |Block { contacts, .. }: &Block<Self>| {
+            !contacts.slides && contacts.tame && contacts.left > 0
+        };
         let forwards = |block: &Block<Self>| !block.contacts.sticks && block.contacts.falls;
-        let open = if blocks.iter().all(onwards) {
-            onward::<false, N>(blocks)
+        let odds = if blocks.iter().all(onwards) {
+            onward::<V, false, N>(blocks)
         } else if blocks.iter().all(forwards) {
-            forward::<false, N>(blocks)
+            if blocks.iter().all(|block| block.contacts.coasts) && coast::<V, false, N>(blocks) {
+                return [false; N];
+            }
+            forward::<V, false, N>(blocks)
         } else {
-            let mut open = [true; N];
-            for (block, open) in blocks.iter_mut().zip(&mut open) {
+            let mut odds = [0; N];
+            for (block, odds) in blocks.iter_mut().zip(&mut odds) {
                 let row = from_mut(block);
-                [*open] = if onwards(&row[0]) {
-                    onward::<false, 1>(row)
+                [*odds] = if onwards(&row[0]) {
+                    onward::<V, false, 1>(row)
                 } else if forwards(&row[0]) {
-                    forward::<false, 1>(row)
+                    if row[0].contacts.coasts && coast::<V, false, 1>(row) {
+                        continue;
+                    }
+                    forward::<V, false, 1>(row)
                 } else {
-                    mixed(row)
+                    row[0].contacts.tell(&mut row[0].bodies);
+                    row[0].contacts.flush();
+                    mixed::<V>(row)
                 };
             }
-            open
+            odds
         };
-        for (block, open) in blocks.iter_mut().zip(&open) {
-            if *open {
-                any(block);
+        let mut open = [false; N];
+        for k in 0..N {
+            if odds[k] != 0 {
+                open[k] = any::<V>(&mut blocks[k], odds[k]);
             }
         }
         open
     }
 }
 
+/// Of each row, a bit for each lane that has missed its step.
+type Odds<const N: usize> = [u8; N];
+
 /// Steps of a row of which some stick and some slide.
 #[inline(always)]
-fn mixed(row: &mut [Block<Lanes>; 1]) -> [bool; 1] {
+fn mixed<V: Vector>(row: &mut [Block<Lanes>; 1]) -> Odds<1> {
     let (tame, falls) = (row[0].contacts.tame, row[0].contacts.falls);
-    row[0].bodies.missed = row[0].bodies.alive;
+    let mut odds = row[0].bodies.present;
     if tame && row[0].contacts.sticks {
-        onward::<true, 1>(row);
+        odds &= onward::<V, true, 1>(row)[0];
     }
     if falls && row[0].contacts.slides {
-        forward::<true, 1>(row);
+        let (mut slides, mut slows) = (0, 0);
+        for chunk in 0..V::CHUNKS {
+            let Block { bodies, contacts } = &row[0];
+            let sliding = contacts.sliding::<V>(chunk);
+            let coasting = contacts.coasting::<V>(chunk, bodies.velocity.at(chunk));
+            slides |= bodies.without::<V>(sliding.not(), chunk);
+            slows |= bodies.without::<V>(coasting.or(sliding.not()), chunk);
+        }
+        if slows == 0 && coast::<V, true, 1>(row) {
+            odds &= !slides;
+        } else {
+            odds &= forward::<V, true, 1>(row)[0];
+        }
     }
-    [true]
+    [odds]
 }
 
-/// Steps of those of a row that have missed theirs.
+/// Where steps of some lanes of a row end.
+trait Ends<V: Vector>: Copy {
+    /// Goes there.
+    fn take_over(&self, chunk: usize, block: &mut Block<Lanes>);
+    /// Notes that a whole row went.
+    fn went(block: &mut Block<Lanes>);
+    /// Goes there where something holds.
+    fn take_some(&self, chunk: usize, here: V::Mask, block: &mut Block<Lanes>);
+}
+
+/// Accepts the steps of rows without anything odd, and says which the others are: all of their lanes
+/// have missed. With `MIXED` those of lanes that are not odd. All rows at once first, or the compiler
+/// puts off what a row needs until the one before is through.
 #[inline(always)]
-fn any(block: &mut Block<Lanes>) {
+#[allow(clippy::needless_range_loop)] // a vector of all rows at a time
+fn accept<V: Vector, E: Ends<V>, const MIXED: bool, const N: usize>(
+    blocks: &mut [Block<Lanes>; N],
+    odds: Odds<N>,
+    ends: &[[E; N]; CHUNKS],
+) -> Odds<N> {
+    if MIXED {
+        for chunk in 0..V::CHUNKS {
+            for k in 0..N {
+                let here = V::Mask::of(!odds[k] >> (chunk * V::LANES));
+                ends[chunk][k].take_some(chunk, here, &mut blocks[k]);
+            }
+        }
+        return odds;
+    }
+    let mut left = odds;
+    if odds.iter().fold(0, |any, odd| any | odd) == 0 {
+        for chunk in 0..V::CHUNKS {
+            for k in 0..N {
+                ends[chunk][k].take_over(chunk, &mut blocks[k]);
+            }
+        }
+        for block in blocks {
+            E::went(block);
+        }
+        return left;
+    }
+    for k in 0..N {
+        if odds[k] == 0 {
+            for (chunk, ends) in ends.iter().enumerate().take(V::CHUNKS) {
+                ends[k].take_over(chunk, &mut blocks[k]);
+            }
+            E::went(&mut blocks[k]);
+        } else {
+            left[k] = blocks[k].bodies.present;
+        }
+    }
+    left
+}
+
+/// Steps of these lanes of a row. Returns whether they left anything to be done in `missed` or `changed`.
+#[inline(always)]
+fn any<V: Vector>(block: &mut Block<Lanes>, lanes: u8) -> bool {
+    block.contacts.tell(&mut block.bodies);
+    block.contacts.flush();
     block.bodies.changed = [0; WIDTH];
-    let (mut sticks, mut slides) = (0, 0);
-    for lane in 0..WIDTH {
-        let missed = block.bodies.missed[lane] & block.bodies.alive[lane];
-        let stuck = u64::from(block.contacts.mode.0[lane] == 0.0).wrapping_neg();
-        sticks |= missed & stuck;
-        slides |= missed & !stuck;
+    let mut stuck = 0;
+    for chunk in 0..V::CHUNKS {
+        let mode = block.contacts.mode.at::<V>(chunk).abs();
+        stuck |= mode.within(V::all(0.0)).bits() << (chunk * V::LANES);
     }
-    if sticks != 0 {
-        stick(block);
+    let slides = lanes & !stuck;
+    let mut missed = slides;
+    if lanes & stuck != 0 {
+        missed |= stick::<V>(block, lanes & stuck);
     }
+    block.bodies.miss(missed);
     if slides != 0 {
         slide(block);
     }
+    block.contacts.renew();
+    missed != 0 || block.bodies.changed != [0; WIDTH]
 }
 
 impl Lanes {
+    /// Friction, where steps of the row have left it out.
+    #[inline(always)]
+    fn tell(&mut self, bodies: &mut Bodies) {
+        if self.untold {
+            for lane in 0..WIDTH {
+                let damped = self.damping.0[lane] * bodies.velocity.0[lane];
+                bodies.friction.0[lane] = self.force.0[lane] + damped;
+            }
+            self.untold = false;
+        }
+    }
+
+    /// Adds steps of the row to those of each spring.
+    #[inline(always)]
+    fn flush(&mut self) {
+        let more = f64::from(self.whole - self.left);
+        for steps in &mut self.steps.0 {
+            *steps += more;
+        }
+        self.whole = self.left;
+    }
+
+    /// Looks how long all springs may go on, and whether creep of all takes its short way.
+    #[inline(always)]
+    fn renew(&mut self) {
+        self.flush();
+        let (mut most, mut tame) = (0.0_f64, true);
+        for lane in 0..WIDTH {
+            let steepest = self.initial_stiffness.0[lane];
+            // Nobody is where there is no stiffness.
+            let sticks = (self.mode.0[lane] == 0.0) & (steepest > 0.0);
+            most = most.max(pick(sticks, self.steps.0[lane], 0.0));
+            let short = (self.force.0[lane].abs() <= self.limit.0[lane])
+                & (self.slope.0[lane] * SLACK <= steepest);
+            tame &= (self.hardening.0[lane] >= 0.0) & (short | !sticks);
+        }
+        self.tame = tame;
+        self.left = SYNCHRONISED.saturating_sub(most as u32);
+        self.whole = self.left;
+    }
+
+    /// [`Self::beyond`] of a lane: what is left of the fall there is less than half of the last bit.
+    fn beyond(&self, lane: usize) -> f64 {
+        let (coulomb, excess) = (self.coulomb.0[lane], self.excess.0[lane]);
+        if self.mode.0[lane] == 0.0 || !(coulomb > 0.0 && excess >= 0.0) {
+            return f64::INFINITY;
+        }
+        let power = (excess / (coulomb * 2.0_f64.powi(-56))).ln();
+        power.max(0.0).sqrt()
+    }
+
     /// Takes the branch of a spring and the one that follows it.
     fn follow<S: Scalar>(&mut self, lane: usize, law: &HsiehPan<S>, spring: &SpringState<S>) {
         let (direction, mirrors) = (spring.direction, law.curve.closes_at_mirror());

@@ -1,193 +1,181 @@
 //! Steps of rows in which every hook sticks and every spring goes on along its branch: most of all
 //! steps, and nothing in them is chosen. Whatever leaves a doubt is left to `stick`.
 
-use super::Lanes;
-use crate::friction::elements::branch::{SYNCHRONISED, short_way};
-use crate::lanes::{Block, Bodies, Row, WIDTH, pick};
-use crate::scalar::{SHORT, SHORTER, second_share};
+use stiction_dispatch::{CHUNKS, Mask, Vector};
 
-/// Of the margin, what creep is sure to keep through a step of z < [`SHORTER`]: it goes on where this
-/// and what the limit rises by are above 0. By far: 1 − z·φ₁ > 0.99·φ₁ there.
+use super::stick::shortly;
+use super::{Lanes, Odds, accept};
+use crate::friction::elements::branch::SYNCHRONISED;
+use crate::lanes::{Block, Bodies};
+use crate::scalar::{SECOND_BELOW, SHORT};
+
+/// Of the margin, what creep is sure to keep through a step of z < [`SHORTER`](crate::scalar::SHORTER): it goes on where this
+/// and what the limit rises by are above 0. By far: 1 − z·φ₁ > 0.99·φ₁ there. Where the limit is below
+/// the hardening and does not make up for this much of it, none begins.
 const SURE: f64 = 0.99;
+/// A way that nobody misses, and no product of which with anything here is lost.
+const FAINT: f64 = 1e-140;
 
 /// Steps of rows of hooks of which all stick, two of them stage by stage, or with `MIXED` of those
-/// lanes in `missed` that do. Says which rows have lanes left that have not gone on, in `missed`.
+/// lanes that do. Says of each row which lanes have not gone on.
 #[inline(always)]
-pub(super) fn onward<const MIXED: bool, const N: usize>(
+#[allow(clippy::needless_range_loop)] // a vector of all rows at a time
+pub(super) fn onward<V: Vector, const MIXED: bool, const N: usize>(
     blocks: &mut [Block<Lanes>; N],
-) -> [bool; N] {
+) -> Odds<N> {
     const { assert!(N == 1 || N == 2) };
-    let mut ends = [Ends::default(); N];
-    let mut odds = [false; N];
-    for lane in 0..WIDTH {
+    let mut ends = [[Ends::<V>::default(); N]; CHUNKS];
+    let mut odds = [0; N];
+    for chunk in 0..V::CHUNKS {
         let (p, q) = (&blocks[0], &blocks[N - 1]);
-        let crept = [p.contacts.set_out(lane, &p.bodies), q.contacts.set_out(lane, &q.bodies)];
+        let crept = [p.contacts.set_out(chunk, &p.bodies), q.contacts.set_out(chunk, &q.bodies)];
         for k in 0..N {
-            let Block { bodies, contacts } = &blocks[k];
-            let goes_on = contacts.go_on(lane, &crept[k], &mut ends[k]);
-            let here = !MIXED | (contacts.mode.0[lane] == 0.0);
-            let odd = !(goes_on & here) & (bodies.alive[lane] != 0);
-            // The compiler makes no vectors of a loop over two rows that notes this as well.
-            if MIXED {
-                ends[k].odd[lane] = u64::from(odd);
-            }
-            odds[k] |= odd;
+            let contacts = &blocks[k].contacts;
+            let goes_on = contacts.go_on(chunk, &crept[k], &mut ends[chunk][k]);
+            let here = if MIXED {
+                // Of rows as a whole this is counted.
+                let fresh = contacts
+                    .steps
+                    .at::<V>(chunk)
+                    .below_in(goes_on, V::all(f64::from(SYNCHRONISED)));
+                let mode = contacts.mode.at::<V>(chunk).abs();
+                fresh.and(mode.within(V::all(0.0)))
+            } else {
+                goes_on
+            };
+            odds[k] |= blocks[k].bodies.without::<V>(here, chunk);
         }
     }
-    if MIXED {
-        for (Block { bodies, contacts }, ends) in blocks.iter_mut().zip(&ends) {
-            contacts.take_some(ends, bodies);
-        }
-        return [true; N];
-    }
-    accept(blocks, odds, |k, Block { bodies, contacts }| contacts.take_over(&ends[k], bodies))
+    accept::<V, _, MIXED, N>(blocks, odds, &ends)
 }
 
-/// Accepts the steps of rows without anything odd, and says which the others are: all of their lanes
-/// have missed. All rows at once first, or the compiler puts off what a row needs until the one before
-/// is through.
-#[inline(always)]
-pub(super) fn accept<const N: usize>(
-    blocks: &mut [Block<Lanes>; N],
-    odds: [bool; N],
-    take_over: impl Fn(usize, &mut Block<Lanes>),
-) -> [bool; N] {
-    if !odds.iter().fold(false, |any, odd| any | odd) {
-        for (k, block) in blocks.iter_mut().enumerate() {
-            take_over(k, block);
-        }
-        return [false; N];
-    }
-    for (k, block) in blocks.iter_mut().enumerate() {
-        if !odds[k] {
-            take_over(k, block);
-        } else {
-            block.bodies.missed = block.bodies.alive;
-        }
-    }
-    odds
-}
-
-/// Where a step of a row ends.
+/// Where a step of some lanes ends.
 #[derive(Clone, Copy, Default)]
-struct Ends {
-    displacement: Row,
-    arrived: Row,
-    hardening: Row,
-    position: Row,
-    force: Row,
-    slope: Row,
-    /// Not 0 where something else happens.
-    odd: [u64; WIDTH],
+struct Ends<V> {
+    displacement: V,
+    arrived: V,
+    hardening: V,
+    position: V,
+    force: V,
+    slope: V,
 }
 
 /// A step as far as the spring.
 #[derive(Clone, Copy)]
-struct Crept {
-    displacement: f64,
+struct Crept<V: Vector> {
+    displacement: V,
     /// The velocity at the end but for the spring.
-    unbraked: f64,
-    hardening: f64,
-    left: f64,
-    steady: bool,
+    unbraked: V,
+    hardening: V,
+    left: V,
+    steady: V::Mask,
 }
 
-/// A number times the sign of another, which costs no product.
+/// a + b·z.
 #[inline(always)]
-pub(super) fn flipped(number: f64, by: f64) -> f64 {
-    f64::from_bits(number.to_bits() ^ (by.to_bits() & (-0.0_f64).to_bits()))
+pub(super) fn line<V: Vector>(a: f64, b: f64, z: V) -> V {
+    V::all(a) + V::all(b) * z
+}
+
+/// `second_share`.
+#[inline(always)]
+pub(super) fn second<V: Vector>(z: V) -> V {
+    let [a, b, c, d] = SECOND_BELOW;
+    line(a, b, z) + z * z * line(c, d, z)
 }
 
 impl Lanes {
     /// Departure and creep, where creep goes on through the whole step or has none.
     #[inline(always)]
-    fn set_out(&self, lane: usize, bodies: &Bodies) -> Crept {
-        let (effort, velocity) = (bodies.effort.0[lane], bodies.velocity.0[lane]);
-        let (force, slope) = (self.force.0[lane], self.slope.0[lane]);
+    fn set_out<V: Vector>(&self, chunk: usize, bodies: &Bodies) -> Crept<V> {
+        let (effort, velocity) = (bodies.effort.at::<V>(chunk), bodies.velocity.at::<V>(chunk));
+        let (force, slope) = (self.force.at::<V>(chunk), self.slope.at::<V>(chunk));
         let push = effort - force;
-        let displacement = self.stride.0[lane] * velocity + bodies.lever.0[lane] * push;
-        let unbraked = (self.kept.0[lane] * velocity + bodies.half.0[lane] * (push + effort))
-            * self.share.0[lane];
-        let margin = self.coefficient.0[lane] * (force * force) - self.hardening.0[lane];
-        let starts = margin > 0.0;
-        let progress = self.progress.0[lane];
-        let held = pick(starts, progress * margin, 0.0);
-        let back = flipped(held, force);
+        let displacement =
+            self.stride.at::<V>(chunk) * velocity + bodies.lever.at::<V>(chunk) * push;
+        let unbraked = (self.kept.at::<V>(chunk) * velocity
+            + bodies.half.at::<V>(chunk) * (push + effort))
+            * self.share.at::<V>(chunk);
+        let margin =
+            self.coefficient.at::<V>(chunk) * (force * force) - self.hardening.at::<V>(chunk);
+        let starts = V::all(0.0).below(margin);
+        let progress = self.progress.at::<V>(chunk);
+        let gained = progress * margin;
+        let held = gained.kept(starts);
+        let back = held.flipped(force);
         let towards = displacement - back;
-        let size = force.abs();
-        let pace = self.pace.0[lane] * size * slope;
+        let pace = self.pace.at::<V>(chunk) * force.abs() * slope;
         let z = progress + pace;
-        let lagged = pick(starts, second_share(z) * (back * z - pace * displacement), 0.0);
-        let gain = self.twice_coefficient.0[lane] * size * slope;
-        let risen = gain * flipped(displacement, force);
-        let creeps = margin * pick(starts, SURE, 1.0) + risen > 0.0;
-        let forward = towards * self.direction.0[lane] > 0.0;
+        let second = second(z);
+        let paced = pace * displacement;
+        let lagged = (second * (back * z - paced)).kept(starts);
+        // Margin and what the limit rises by, both times what a unit of margin gains.
+        let creeps = V::all(0.0).below(gained * V::all(SURE) + paced.flipped(force));
+        let forward = towards * self.direction.at::<V>(chunk);
         Crept {
             displacement,
             unbraked,
-            hardening: held - flipped(lagged, force),
+            hardening: held - lagged.flipped(force),
             left: towards + lagged,
-            steady: (creeps == starts) & !(starts & (z >= SHORTER)) & forward,
+            steady: V::all(FAINT).below_in(creeps.same(starts), forward),
         }
     }
 
-    /// Spring and arrival. Returns whether all of the step goes on as it went.
+    /// Spring and arrival. Returns where all of the step goes on as it went.
     #[inline(always)]
-    fn go_on(&self, lane: usize, crept: &Crept, ends: &mut Ends) -> bool {
+    fn go_on<V: Vector>(&self, chunk: usize, crept: &Crept<V>, ends: &mut Ends<V>) -> V::Mask {
         let left = crept.left;
-        let (before, slope) = (self.force.0[lane], self.slope.0[lane]);
-        let position = self.position.0[lane] + left;
-        let along = left * self.per_displacement.0[lane];
-        let excess = slope - self.final_stiffness.0[lane];
-        let [force, slope] = short_way(before, slope, excess, left, along, |x| x);
-        let inside = position * self.direction.0[lane] < self.closing.0[lane];
-        let near = (along > 0.0) & (along < SHORT);
-        let fresh = self.steps.0[lane] < f64::from(SYNCHRONISED);
-        ends.displacement.0[lane] = crept.displacement;
-        ends.arrived.0[lane] = crept.unbraked - self.braking.0[lane] * force;
-        ends.hardening.0[lane] = crept.hardening;
-        ends.position.0[lane] = position;
-        ends.force.0[lane] = force;
-        ends.slope.0[lane] = slope;
-        crept.steady & inside & near & fresh & (force.abs() < self.greatest.0[lane])
+        let (before, slope) = (self.force.at::<V>(chunk), self.slope.at::<V>(chunk));
+        let position = self.position.at::<V>(chunk) + left;
+        let along = left * self.per_displacement.at::<V>(chunk);
+        let excess = slope - self.final_stiffness.at::<V>(chunk);
+        let [force, slope] = shortly(before, slope, excess, left, along);
+        let inside = position * self.direction.at::<V>(chunk);
+        let goes_on = V::all(0.0).below_in(crept.steady, along);
+        let goes_on = along.below_in(goes_on, V::all(SHORT));
+        let goes_on = inside.below_in(goes_on, self.closing.at::<V>(chunk));
+        let goes_on = force.abs().below_in(goes_on, self.limit.at::<V>(chunk));
+        *ends = Ends {
+            displacement: crept.displacement,
+            arrived: crept.unbraked - self.braking.at::<V>(chunk) * force,
+            hardening: crept.hardening,
+            position,
+            force,
+            slope,
+        };
+        goes_on
+    }
+}
+
+impl<V: Vector> super::Ends<V> for Ends<V> {
+    #[inline(always)]
+    fn take_over(&self, chunk: usize, Block { bodies, contacts }: &mut Block<Lanes>) {
+        let before = contacts.force.at::<V>(chunk);
+        contacts.plastic.more(chunk, self.hardening.flipped(before));
+        contacts.hardening.more(chunk, self.hardening);
+        contacts.position.put(chunk, self.position);
+        contacts.force.put(chunk, self.force);
+        contacts.slope.put(chunk, self.slope);
+        bodies.go(chunk, self.displacement, self.arrived);
     }
 
-    /// Accepts the step of a row.
     #[inline(always)]
-    fn take_over(&mut self, ends: &Ends, bodies: &mut Bodies) {
-        for lane in 0..WIDTH {
-            let (displacement, hardening) = (ends.displacement.0[lane], ends.hardening.0[lane]);
-            let (force, arrived) = (ends.force.0[lane], ends.arrived.0[lane]);
-            self.plastic.0[lane] += flipped(hardening, self.force.0[lane]);
-            self.hardening.0[lane] += hardening;
-            self.steps.0[lane] += 1.0;
-            bodies.position.0[lane] += displacement;
-            bodies.path.0[lane] += displacement.abs();
-            bodies.time.0[lane] += bodies.span.0[lane];
-            bodies.friction.0[lane] = force + self.damping.0[lane] * arrived;
-        }
-        self.position = ends.position;
-        self.force = ends.force;
-        self.slope = ends.slope;
-        bodies.velocity = ends.arrived;
+    fn went(block: &mut Block<Lanes>) {
+        block.contacts.left -= 1;
+        block.contacts.untold = true;
     }
 
-    /// Accepts the steps of those that are not `odd`.
     #[inline(always)]
-    fn take_some(&mut self, ends: &Ends, bodies: &mut Bodies) {
-        for lane in 0..WIDTH {
-            let here = ends.odd[lane] == 0;
-            bodies.missed[lane] &= ends.odd[lane];
-            let (displacement, hardening) = (ends.displacement.0[lane], ends.hardening.0[lane]);
-            let (force, arrived) = (ends.force.0[lane], ends.arrived.0[lane]);
-            self.plastic.add(lane, here, flipped(hardening, self.force.0[lane]));
-            self.hardening.add(lane, here, hardening);
-            self.steps.add(lane, here, 1.0);
-            self.position.take(lane, here, ends.position.0[lane]);
-            self.force.take(lane, here, force);
-            self.slope.take(lane, here, ends.slope.0[lane]);
-            let friction = force + self.damping.0[lane] * arrived;
-            bodies.accept(lane, here, displacement, arrived, friction);
-        }
+    fn take_some(&self, chunk: usize, here: V::Mask, block: &mut Block<Lanes>) {
+        let Block { bodies, contacts } = block;
+        let before = contacts.force.at::<V>(chunk);
+        contacts.plastic.more_where(chunk, here, self.hardening.flipped(before));
+        contacts.hardening.more_where(chunk, here, self.hardening);
+        contacts.steps.more_where(chunk, here, V::all(1.0));
+        contacts.position.put_where(chunk, here, self.position);
+        contacts.force.put_where(chunk, here, self.force);
+        contacts.slope.put_where(chunk, here, self.slope);
+        let friction = self.force + contacts.damping.at::<V>(chunk) * self.arrived;
+        bodies.go_where(chunk, here, self.displacement, self.arrived, friction);
     }
 }

@@ -1,287 +1,236 @@
 //! Steps of sticking hooks that do not all go on as they went: creep begins or ends, a spring turns
 //! round, closes a loop or is evaluated from its reverse point.
 
+use stiction_dispatch::{Mask, Vector};
+
+use super::onward::{line, second};
 use super::{CLOSED, Lanes, TURNED};
 use crate::exponential::faded;
-use crate::friction::elements::branch::{SYNCHRONISED, short_way};
-use crate::lanes::{Block, Bodies, Row, WIDTH, pick};
-use crate::scalar::{SHORT, SHORTER, second_share};
+use crate::friction::elements::branch::SYNCHRONISED;
+use crate::lanes::{Block, Bodies};
+use crate::scalar::{SECOND, SHORT, SHORTER};
 
-/// Steps of those sticking hooks of a row that have missed theirs. What few of them need is left out
-/// where none does.
+/// Steps of these sticking hooks of a row. What few of them need is left out where none does. Returns
+/// which of them have missed theirs.
 #[inline(always)]
-#[allow(clippy::needless_range_loop)] // a lane of all rows at a time
-pub(super) fn stick(block: &mut Block<Lanes>) {
+pub(super) fn stick<V: Vector>(block: &mut Block<Lanes>, lanes: u8) -> u8 {
     let Block { bodies, contacts } = block;
-    let mut here = [0; WIDTH];
-    let (mut crept, mut pulled) = (Creeps::default(), Pulls::default());
-    let mut odd = 0;
-    for lane in 0..WIDTH {
-        here[lane] = u64::from((bodies.missed[lane] != 0) & (contacts.mode.0[lane] == 0.0))
-            & bodies.alive[lane];
-        let begun = contacts.depart(lane, bodies);
-        odd |= here[lane] & !crept.take(lane, contacts.creep(lane, &begun));
+    let (mut accepted, mut turned, mut closed) = (0, 0, 0);
+    for chunk in 0..V::CHUNKS {
+        let first = chunk * V::LANES;
+        let bits = (lanes >> first) & ((1_u32 << V::LANES) - 1) as u8;
+        if bits == 0 {
+            continue;
+        }
+        let begun = contacts.depart::<V>(chunk, bodies);
+        let mut crept = contacts.creep(chunk, &begun);
+        if bits & !crept.found.bits() != 0 {
+            crept = contacts.any_creep(chunk, &begun, bodies).unless(&crept);
+        }
+        let mut pulled = contacts.stretch(chunk, crept.left);
+        if bits & !pulled.found.bits() != 0 {
+            pulled = contacts.walk(chunk, pulled);
+        }
+        let [all, back, closes] =
+            contacts.arrive(chunk, V::Mask::of(bits), &begun, &crept, &pulled, bodies);
+        accepted |= (all.bits() & bits) << first;
+        turned |= (back.bits() & bits) << first;
+        closed |= (closes.bits() & bits) << first;
     }
-    if odd != 0 {
-        for lane in 0..WIDTH {
-            let begun = contacts.depart(lane, bodies);
-            let any = contacts.any_creep(lane, &begun, bodies);
-            let found = crept.found[lane] != 0;
-            crept.take(lane, any.unless(found, crept.of(lane)));
+    if turned | closed != 0 {
+        for (lane, changed) in bodies.changed.iter_mut().enumerate() {
+            let one = |bits: u8| u64::from(bits >> lane & 1);
+            *changed = TURNED * one(turned) + CLOSED * one(closed);
         }
     }
-    odd = 0;
-    for lane in 0..WIDTH {
-        let onward = contacts.stretch(lane, crept.left.0[lane]);
-        odd |= here[lane] & !pulled.take(lane, onward);
-    }
-    if odd != 0 {
-        for lane in 0..WIDTH {
-            let found = pulled.found[lane] != 0;
-            let walked = contacts.walk(lane, found, pulled.of(lane));
-            pulled.take(lane, walked);
-        }
-    }
-    for lane in 0..WIDTH {
-        let (crept, pulled) = (crept.of(lane), pulled.of(lane));
-        contacts.arrive(lane, here[lane] != 0, &crept, &pulled, bodies);
-    }
+    lanes & !accepted
 }
 
 /// How a sticking hook begins a step, and what drives its creep.
 #[derive(Clone, Copy)]
-struct Departure {
-    displacement: f64,
+struct Departure<V: Vector> {
+    /// Effort less force at the start.
+    push: V,
+    displacement: V,
     /// Sign of the force, limit less hardening, and what a held force would gain.
-    side: f64,
-    margin: f64,
-    held: f64,
+    side: V,
+    margin: V,
+    starts: V::Mask,
+    held: V,
     /// What a displacement adds to the limit, α·h times that, and this one.
-    gain: f64,
-    pace: f64,
-    risen: f64,
+    gain: V,
+    pace: V,
+    risen: V,
 }
 
 /// Creep of a step.
 #[derive(Clone, Copy)]
-struct Crept {
-    hardening: f64,
-    displacement: f64,
-    left: f64,
-    found: bool,
+struct Crept<V: Vector> {
+    hardening: V,
+    displacement: V,
+    left: V,
+    found: V::Mask,
 }
 
-impl Crept {
-    /// This, or another one where that was `found`.
+impl<V: Vector> Crept<V> {
+    /// This, or another one where that was found.
     #[inline(always)]
-    fn unless(self, found: bool, other: Self) -> Self {
+    fn unless(self, other: &Self) -> Self {
+        let found = other.found;
         Self {
-            hardening: pick(found, other.hardening, self.hardening),
-            displacement: pick(found, other.displacement, self.displacement),
-            left: pick(found, other.left, self.left),
-            found: found | self.found,
-        }
-    }
-}
-
-/// The same, one in each lane.
-#[derive(Clone, Copy, Default)]
-struct Creeps {
-    hardening: Row,
-    displacement: Row,
-    left: Row,
-    found: [u64; WIDTH],
-}
-
-impl Creeps {
-    /// Takes one in. Returns 1 where it was found.
-    #[inline(always)]
-    fn take(&mut self, lane: usize, crept: Crept) -> u64 {
-        self.hardening.0[lane] = crept.hardening;
-        self.displacement.0[lane] = crept.displacement;
-        self.left.0[lane] = crept.left;
-        self.found[lane] = u64::from(crept.found);
-        self.found[lane]
-    }
-
-    #[inline(always)]
-    fn of(&self, lane: usize) -> Crept {
-        Crept {
-            hardening: self.hardening.0[lane],
-            displacement: self.displacement.0[lane],
-            left: self.left.0[lane],
-            found: self.found[lane] != 0,
+            hardening: self.hardening.or(found, other.hardening),
+            displacement: self.displacement.or(found, other.displacement),
+            left: self.left.or(found, other.left),
+            found: self.found.or(found),
         }
     }
 }
 
 /// On which branch a spring goes on.
 #[derive(Clone, Copy)]
-struct Here {
-    back: bool,
-    closes: bool,
+struct Here<V: Vector> {
+    back: V::Mask,
+    closes: V::Mask,
 }
 
-impl Here {
+impl<V: Vector> Here<V> {
     #[inline(always)]
-    fn pick(self, turned: f64, present: f64, older: f64) -> f64 {
-        pick(self.back, turned, pick(self.closes, older, present))
+    fn pick(self, turned: V, present: V, older: V) -> V {
+        present.or(self.closes, older).or(self.back, turned)
     }
 }
 
 /// What a step does to the spring.
 #[derive(Clone, Copy)]
-struct Pulled {
-    position: f64,
-    force: f64,
-    slope: f64,
-    steps: f64,
-    found: bool,
-    back: bool,
-    closes: bool,
+struct Pulled<V: Vector> {
+    position: V,
+    force: V,
+    slope: V,
+    steps: V,
+    found: V::Mask,
+    back: V::Mask,
+    closes: V::Mask,
 }
 
-/// The same, one in each lane.
-#[derive(Clone, Copy, Default)]
-struct Pulls {
-    position: Row,
-    force: Row,
-    slope: Row,
-    steps: Row,
-    found: [u64; WIDTH],
-    back: [u64; WIDTH],
-    closes: [u64; WIDTH],
-}
-
-impl Pulls {
-    /// Takes one in. Returns 1 where it was found.
-    #[inline(always)]
-    fn take(&mut self, lane: usize, pulled: Pulled) -> u64 {
-        self.position.0[lane] = pulled.position;
-        self.force.0[lane] = pulled.force;
-        self.slope.0[lane] = pulled.slope;
-        self.steps.0[lane] = pulled.steps;
-        self.back[lane] = u64::from(pulled.back);
-        self.closes[lane] = u64::from(pulled.closes);
-        self.found[lane] = u64::from(pulled.found);
-        self.found[lane]
-    }
-
-    #[inline(always)]
-    fn of(&self, lane: usize) -> Pulled {
-        Pulled {
-            position: self.position.0[lane],
-            force: self.force.0[lane],
-            slope: self.slope.0[lane],
-            steps: self.steps.0[lane],
-            found: self.found[lane] != 0,
-            back: self.back[lane] != 0,
-            closes: self.closes[lane] != 0,
-        }
-    }
+/// Where a number is another.
+#[inline(always)]
+fn equal<V: Vector>(one: V, other: V) -> V::Mask {
+    one.within(other).and(other.within(one))
 }
 
 impl Lanes {
-    /// Effort less force at the start, and the displacement of a sticking hook.
-    #[inline(always)]
-    fn pushed(&self, lane: usize, bodies: &Bodies) -> (f64, f64) {
-        let push = bodies.effort.0[lane] - self.force.0[lane];
-        let velocity = bodies.velocity.0[lane];
-        (push, self.stride.0[lane] * velocity + bodies.lever.0[lane] * push)
-    }
-
     /// Where a step of a sticking hook goes to before its contact is asked.
     #[inline(always)]
-    fn depart(&self, lane: usize, bodies: &Bodies) -> Departure {
-        let (force, slope) = (self.force.0[lane], self.slope.0[lane]);
-        let (_, displacement) = self.pushed(lane, bodies);
-        let side = 1.0_f64.copysign(force);
-        let margin = self.coefficient.0[lane] * (force * force) - self.hardening.0[lane];
-        let held = pick(margin > 0.0, self.progress.0[lane] * margin, 0.0);
+    fn depart<V: Vector>(&self, chunk: usize, bodies: &Bodies) -> Departure<V> {
+        let (force, slope) = (self.force.at::<V>(chunk), self.slope.at::<V>(chunk));
+        let push = bodies.effort.at::<V>(chunk) - force;
+        let velocity = bodies.velocity.at::<V>(chunk);
+        let displacement =
+            self.stride.at::<V>(chunk) * velocity + bodies.lever.at::<V>(chunk) * push;
+        let (zero, one) = (V::all(0.0), V::all(1.0));
+        let side = one.flipped(force);
+        let margin =
+            self.coefficient.at::<V>(chunk) * (force * force) - self.hardening.at::<V>(chunk);
+        let starts = zero.below(margin);
+        let held = (self.progress.at::<V>(chunk) * margin).kept(starts);
         let towards = displacement - side * held;
-        let moving = pick(towards == 0.0, -side, 1.0_f64.copysign(towards));
-        let onward = moving == self.direction.0[lane];
-        let stiffness = pick(onward, slope, self.initial_stiffness.0[lane]);
-        let gain = self.twice_coefficient.0[lane] * force.abs() * stiffness;
-        let pace = self.pace.0[lane] * force.abs() * stiffness;
+        let moving = one.flipped(towards).or(equal(towards, zero), side.minus());
+        let onward = equal(moving, self.direction.at::<V>(chunk));
+        let stiffness = self.initial_stiffness.at::<V>(chunk).or(onward, slope);
+        let gain = self.twice_coefficient.at::<V>(chunk) * force.abs() * stiffness;
+        let pace = self.pace.at::<V>(chunk) * force.abs() * stiffness;
         let risen = gain * (displacement * side);
-        Departure { displacement, side, margin, held, gain, pace, risen }
+        Departure { push, displacement, side, margin, starts, held, gain, pace, risen }
     }
 
     /// `Plastic::plain_creep`.
     #[inline(always)]
-    fn creep(&self, lane: usize, begun: &Departure) -> Crept {
-        let Departure { displacement, side, margin, held, pace, risen, .. } = *begun;
-        let starts = margin > 0.0;
-        let z = self.progress.0[lane] + pace;
-        let second = second_share(z);
-        let mean = 1.0 - z * second;
-        let outrun = (risen < 0.0) & (margin * (1.0 - z * mean) + risen * mean < 0.0);
-        let overtakes = (risen > 0.0) & (margin + risen > 0.0);
-        let long = z >= SHORTER;
+    fn creep<V: Vector>(&self, chunk: usize, begun: &Departure<V>) -> Crept<V> {
+        let Departure { displacement, side, margin, starts, held, pace, risen, .. } = *begun;
+        let (zero, one) = (V::all(0.0), V::all(1.0));
+        let z = self.progress.at::<V>(chunk) + pace;
+        let second = second(z);
+        let mean = one - z * second;
+        let outrun = (margin * (one - z * mean) + risen * mean).below_in(risen.below(zero), zero);
+        let overtakes = zero.below_in(zero.below(risen), margin + risen);
+        let long = V::all(SHORTER).within(z);
         let lagged = second * (held * side * z - pace * displacement);
         let gained = held - lagged * side;
         let rest = (displacement - held * side) + lagged;
-        let idle = (self.force.0[lane] == 0.0) | (self.coefficient.0[lane] == 0.0);
-        let creeps = starts & !idle;
+        let idle =
+            equal(self.force.at::<V>(chunk), zero).or(equal(self.coefficient.at::<V>(chunk), zero));
+        let creeps = starts.but(idle);
+        let goes_on = starts.but(long).but(outrun);
+        let found = idle.or(goes_on).or(overtakes.or(starts).not());
         Crept {
-            hardening: pick(creeps, gained, 0.0),
-            displacement: pick(creeps, gained * side, 0.0),
-            left: pick(creeps, rest, displacement),
-            found: idle | (starts & !long & !outrun) | (!starts & !overtakes),
+            hardening: gained.kept(creeps),
+            displacement: (gained * side).kept(creeps),
+            left: displacement.or(creeps, rest),
+            found,
         }
     }
 
     /// Creep that begins or ends inside the step, by `Plastic::any_creep`, whose sums have another
     /// order, `Plastic::overtaken` and `Plastic::outrun`.
     #[inline(always)]
-    fn any_creep(&self, lane: usize, begun: &Departure, bodies: &Bodies) -> Crept {
-        let Departure { displacement, side, margin, gain, pace, risen, .. } = *begun;
-        let progress = self.progress.0[lane];
-        let starts = margin > 0.0;
-        let long = progress + pace >= SHORTER;
+    fn any_creep<V: Vector>(
+        &self,
+        chunk: usize,
+        begun: &Departure<V>,
+        bodies: &Bodies,
+    ) -> Crept<V> {
+        let Departure { displacement, side, margin, starts, gain, pace, risen, .. } = *begun;
+        let (zero, one) = (V::all(0.0), V::all(1.0));
+        let progress = self.progress.at::<V>(chunk);
+        let long = V::all(SHORTER).within(progress + pace);
         let z = progress + progress * gain;
-        let mean = 1.0 - z * second_share(z);
-        let outrun = margin * (1.0 - z * mean) + risen * mean < 0.0;
-        let (span, rate) = (bodies.span.0[lane], self.rate.0[lane]);
+        let mean = one - z * second(z);
+        let outrun = (margin * (one - z * mean) + risen * mean).below(zero);
+        let (span, rate) = (bodies.span.at::<V>(chunk), self.rate.at::<V>(chunk));
         let rise = gain * displacement * side / span;
         let (pace, since) = (z / span, margin / rise);
         let x = pace * margin / rise;
         // `logarithmic_mean`.
-        let mean = 1.0 + x * (0.5 + x * (1.0 / 3.0 + x * (0.25 + x * (0.2 + x / 6.0))));
-        let time = pick(starts, -since * mean, span + since);
+        let c = V::all;
+        let mean = c(0.2) + x / c(6.0);
+        let mean = one + x * (c(0.5) + x * (c(1.0 / 3.0) + x * (c(0.25) + x * mean)));
+        let time = (span + since).or(starts, since.minus() * mean);
         let z = pace * time;
-        let second = second_share(z);
+        let second = second(z);
         let later = rise * (time * time * second);
-        let sooner = margin * time * -(z * second - 1.0) + later;
-        let gained = pick(starts, sooner, later) * rate;
+        let sooner = margin * time * (z * second - one).minus() + later;
+        let gained = later.or(starts, sooner) * rate;
         let taken = gained * side;
+        let ends = outrun.but(long).and(x.abs().below(c(1e-3)));
         Crept {
             hardening: gained,
             displacement: taken,
             left: displacement - taken,
-            found: (z < SHORTER) & (!starts | (!long & outrun & (x.abs() < 1e-3))),
+            found: z.below(c(SHORTER)).and(ends.or(starts.not())),
         }
     }
 
     /// `Here::onward`.
     #[inline(always)]
-    fn stretch(&self, lane: usize, left: f64) -> Pulled {
-        let (force, slope) = (self.force.0[lane], self.slope.0[lane]);
-        let direction = self.direction.0[lane];
-        let position = self.position.0[lane] + left;
-        let along = left * self.per_displacement.0[lane];
-        let far = (self.steps.0[lane] >= f64::from(SYNCHRONISED)) | (along >= SHORT);
-        let excess = slope - self.final_stiffness.0[lane];
-        let [there, steepness] = short_way(force, slope, excess, left, along, |x| x);
-        let back = direction * left < 0.0;
-        let closes = direction * (position - self.present.target.0[lane]) >= 0.0;
+    fn stretch<V: Vector>(&self, chunk: usize, left: V) -> Pulled<V> {
+        let zero = V::all(0.0);
+        let (force, slope) = (self.force.at::<V>(chunk), self.slope.at::<V>(chunk));
+        let direction = self.direction.at::<V>(chunk);
+        let steps = self.steps.at::<V>(chunk);
+        let position = self.position.at::<V>(chunk) + left;
+        let along = left * self.per_displacement.at::<V>(chunk);
+        let far = V::all(f64::from(SYNCHRONISED)).within(steps).or(V::all(SHORT).within(along));
+        let excess = slope - self.final_stiffness.at::<V>(chunk);
+        let [there, steepness] = shortly(force, slope, excess, left, along);
+        let back = (direction * left).below(zero);
+        let closes = zero.within(direction * (position - self.present.target.at::<V>(chunk)));
+        let still = equal(direction, zero);
         Pulled {
             position,
             force: there,
             slope: steepness,
-            steps: self.steps.0[lane] + pick(left != 0.0, 1.0, 0.0),
-            found: !far & !back & !closes & (direction != 0.0),
+            steps: steps + V::all(1.0).or(equal(left, zero), zero),
+            found: far.or(back).or(closes.or(still)).not(),
             back,
             closes,
         }
@@ -289,70 +238,92 @@ impl Lanes {
 
     /// `SpringState::walk_to`, where it closes at most one loop: the spring turns round, closes that or
     /// is evaluated from its reverse point, which is due now and then and after a long way. What was
-    /// `found` stays.
+    /// found stays.
     #[inline(always)]
-    fn walk(&self, lane: usize, found: bool, onward: Pulled) -> Pulled {
-        let Pulled { position, back, closes, .. } = onward;
-        let (direction, from) = (self.direction.0[lane], self.position.0[lane]);
+    fn walk<V: Vector>(&self, chunk: usize, onward: Pulled<V>) -> Pulled<V> {
+        let Pulled { position, back, closes, found, .. } = onward;
+        let zero = V::all(0.0);
+        let (direction, from) = (self.direction.at::<V>(chunk), self.position.at::<V>(chunk));
         let (new, old) = (&self.present, &self.older);
-        let towards = pick(back, -direction, direction);
-        let mirror = pick(self.mirrors.0[lane] != 0.0, -from, f64::INFINITY * towards);
-        let begin = new.origin.0[lane];
-        let turned = pick(self.first.0[lane] != 0.0, mirror, begin);
-        let here = Here { back, closes };
-        let target = here.pick(turned, new.target.0[lane], old.target.0[lane]);
-        let origin = here.pick(from, new.origin.0[lane], old.origin.0[lane]);
-        let anchor = here.pick(self.force.0[lane], new.force.0[lane], old.force.0[lane]);
-        let stretch = here.pick(towards, new.stretch.0[lane], old.stretch.0[lane]);
-        let scale = here.pick(towards, new.scale.0[lane], old.scale.0[lane]);
+        let towards = direction.or(back, direction.minus());
+        let mirrors = equal(self.mirrors.at::<V>(chunk), zero);
+        let mirror = from.minus().or(mirrors, V::all(f64::INFINITY) * towards);
+        let begin = new.origin.at::<V>(chunk);
+        let turned = mirror.or(equal(self.first.at::<V>(chunk), zero), begin);
+        let here = Here::<V> { back, closes };
+        let target = here.pick(turned, new.target.at(chunk), old.target.at(chunk));
+        let origin = here.pick(from, begin, old.origin.at(chunk));
+        let force = self.force.at::<V>(chunk);
+        let anchor = here.pick(force, new.force.at(chunk), old.force.at(chunk));
+        let stretch = here.pick(towards, new.stretch.at(chunk), old.stretch.at(chunk));
+        let scale = here.pick(towards, new.scale.at(chunk), old.scale.at(chunk));
         let way = (position - origin) * stretch;
-        let gone = faded(-(way * self.inverse_distance.0[lane]));
-        let gained = self.final_stiffness.0[lane] * way + self.faded_force.0[lane] * gone;
-        let stiffness = self.initial_stiffness.0[lane] - self.fading.0[lane] * gone;
-        let open = (way >= 0.0) & (towards * (position - target) < 0.0);
+        let gone = faded((way * self.inverse_distance.at::<V>(chunk)).minus());
+        let gained =
+            self.final_stiffness.at::<V>(chunk) * way + self.faded_force.at::<V>(chunk) * gone;
+        let stiffness = self.initial_stiffness.at::<V>(chunk) - self.fading.at::<V>(chunk) * gone;
+        let open = zero.within(way).and((towards * (position - target)).below(zero));
         Pulled {
-            force: pick(found, onward.force, anchor + gained * scale),
-            slope: pick(found, onward.slope, stiffness),
-            steps: pick(found, onward.steps, 0.0),
-            found: found | (open & (direction != 0.0)),
+            force: (anchor + gained * scale).or(found, onward.force),
+            slope: stiffness.or(found, onward.slope),
+            steps: zero.or(found, onward.steps),
+            found: found.or(open.but(equal(direction, zero))),
             ..onward
         }
     }
 
     /// The end of a step of a sticking hook, accepted where one is `here`, its parts were found and it
-    /// holds.
+    /// holds. Returns where it was, and where its spring turned round and closed a loop.
     #[inline(always)]
-    fn arrive(
+    fn arrive<V: Vector>(
         &mut self,
-        lane: usize,
-        here: bool,
-        crept: &Crept,
-        pulled: &Pulled,
+        chunk: usize,
+        here: V::Mask,
+        begun: &Departure<V>,
+        crept: &Crept<V>,
+        pulled: &Pulled<V>,
         bodies: &mut Bodies,
-    ) {
-        let (push, displacement) = self.pushed(lane, bodies);
-        let (effort, velocity) = (bodies.effort.0[lane], bodies.velocity.0[lane]);
-        let (force, damping) = (pulled.force, self.damping.0[lane]);
-        let unbraked = (self.kept.0[lane] * velocity + bodies.half.0[lane] * (push + effort))
-            * self.share.0[lane];
-        let arrived = unbraked - self.braking.0[lane] * force;
-        let breaks = (force.abs() >= self.greatest.0[lane]) & (arrived * force > 0.0);
+    ) -> [V::Mask; 3] {
+        let zero = V::all(0.0);
+        let (effort, velocity) = (bodies.effort.at::<V>(chunk), bodies.velocity.at::<V>(chunk));
+        let (force, damping) = (pulled.force, self.damping.at::<V>(chunk));
+        let unbraked = (self.kept.at::<V>(chunk) * velocity
+            + bodies.half.at::<V>(chunk) * (begun.push + effort))
+            * self.share.at::<V>(chunk);
+        let arrived = unbraked - self.braking.at::<V>(chunk) * force;
+        let reached = self.greatest.at::<V>(chunk).within(force.abs());
+        let breaks = zero.below_in(reached, arrived * force);
 
-        let accepted = here & crept.found & pulled.found & !breaks;
-        bodies.missed[lane] &= u64::from(!accepted);
-        let turned = accepted & pulled.back;
-        let closed = accepted & pulled.closes & !pulled.back;
-        self.present.origin.take(lane, turned, self.position.0[lane]);
-        self.present.force.take(lane, turned, self.force.0[lane]);
-        self.direction.take(lane, turned, -self.direction.0[lane]);
-        bodies.changed[lane] = TURNED * u64::from(turned) + CLOSED * u64::from(closed);
-        self.force.take(lane, accepted, force);
-        self.slope.take(lane, accepted, pulled.slope);
-        self.position.take(lane, accepted, pulled.position);
-        self.steps.take(lane, accepted, pulled.steps);
-        self.plastic.add(lane, accepted, crept.displacement);
-        self.hardening.add(lane, accepted, crept.hardening);
+        let accepted = here.and(crept.found).and(pulled.found).but(breaks);
+        let turned = accepted.and(pulled.back);
+        let closed = accepted.and(pulled.closes).but(pulled.back);
+        let (from, before) = (self.position.at::<V>(chunk), self.force.at::<V>(chunk));
+        self.present.origin.put_where(chunk, turned, from);
+        self.present.force.put_where(chunk, turned, before);
+        let back = self.direction.at::<V>(chunk).minus();
+        self.direction.put_where(chunk, turned, back);
+        self.force.put_where(chunk, accepted, force);
+        self.slope.put_where(chunk, accepted, pulled.slope);
+        self.position.put_where(chunk, accepted, pulled.position);
+        self.steps.put_where(chunk, accepted, pulled.steps);
+        self.plastic.more_where(chunk, accepted, crept.displacement);
+        self.hardening.more_where(chunk, accepted, crept.hardening);
         let friction = force + damping * arrived;
-        bodies.accept(lane, accepted, displacement, arrived, friction);
+        bodies.go_where(chunk, accepted, begun.displacement, arrived, friction);
+        [accepted, turned, closed]
     }
+}
+
+/// `short_way`.
+#[inline(always)]
+pub(super) fn shortly<V: Vector>(force: V, slope: V, excess: V, left: V, along: V) -> [V; 2] {
+    let (near, far) = (line(SECOND[0], SECOND[1], along), line(SECOND[2], SECOND[3], along));
+    let square = along * along;
+    let bent = (excess * left) * along;
+    let fallen = excess * along;
+    let eased = fallen * along;
+    [
+        ((force + left * slope) - bent * near) - (bent * square) * far,
+        ((slope - fallen) + eased * near) + (eased * square) * far,
+    ]
 }
