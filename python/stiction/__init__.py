@@ -10,20 +10,20 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from ._native import FrictionModel, Motion, __version__
 from .errors import InputError
-from .motor import Motor
-from .trajectory import Trajectory
 
 if TYPE_CHECKING:
+    from ._native import FrictionModel, Motion, __version__
     from .catalogue import effects, laws
     from .diagnosis import Diagnosis, diagnose
     from .ensemble import Ensemble, EnsembleRun, simulate_ensemble
     from .fitting import FitResult, fit
+    from .motor import Motor
     from .plant import Plant
     from .recording import Recording
     from .session import Session, load
     from .streaming import stream
+    from .trajectory import Trajectory
 
 __all__ = [
     "Diagnosis",
@@ -48,15 +48,20 @@ __all__ = [
     "stream",
 ]
 
-# Imported on first use, so that `import stiction` costs little more than numpy.
+# Imported on first use: the command line hears Ctrl-C before numpy is there.
 _LAZY = {
     "Diagnosis": "diagnosis",
     "Ensemble": "ensemble",
     "EnsembleRun": "ensemble",
     "FitResult": "fitting",
+    "FrictionModel": "_native",
+    "Motion": "_native",
+    "Motor": "motor",
     "Plant": "plant",
     "Recording": "recording",
     "Session": "session",
+    "Trajectory": "trajectory",
+    "__version__": "_native",
     "diagnose": "diagnosis",
     "effects": "catalogue",
     "fit": "fitting",

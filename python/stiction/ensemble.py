@@ -17,6 +17,7 @@ from ._native import Ensemble as _Ensemble
 from .errors import InputError
 from .motor import Motor
 from .trajectory import FloatArray
+from .whole import whole
 from .wording import did_you_mean, listed
 
 __all__ = ["Ensemble", "EnsembleRun", "Reduce", "simulate_ensemble"]
@@ -186,8 +187,7 @@ class Ensemble(_Ensemble):
             raise InputError(f"reduce = '{reduce}' is unknown{near}; known: {listed(_REDUCTIONS)}")
         if isinstance(outputs, str):
             raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
-        if isinstance(every, bool) or not isinstance(every, int) or every < 1:
-            raise InputError(f"every = {every!r} is out of bounds: give a whole number from 1")
+        every = whole("every", every, 1)
         if reduce is not None and every != 1:
             raise InputError("every goes with rows, and reduce keeps none; give one of them")
         if target is not None and reduce != "rms":

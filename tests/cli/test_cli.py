@@ -113,7 +113,7 @@ def test_the_catalogue_is_listed_and_shown(verb: str, capsys: pytest.CaptureFixt
 REFUSED = {
     "unknown verb": (["simulat"], "simulat"),
     "unknown option": (["laws", "--nosuch"], "--nosuch"),
-    "missing argument": (["simulate"], "--plant requires an argument"),
+    "missing argument": (["simulate"], "PLANT is missing; write stiction simulate PLANT"),
     "unknown law": (["laws", "colomb"], "did you mean 'coulomb'"),
     "unknown effect": (["effects", "coging"], "did you mean 'cogging'"),
     "missing plant": (["simulate", "none.toml", "none.csv"], "none.toml: there is no such file"),

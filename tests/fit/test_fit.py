@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from tests.reference.coulomb_reference import simulate_coulomb
 import stiction as st
 from stiction import InputError, Plant, Recording, fit
 from stiction.cli import run
-from stiction.fitting import minimise
+from stiction.fitting import minimise, solve
 from stiction.fitting.minimise import HARDENING, Solution
 from stiction.fitting.rows import Nuisances, Rows
 from stiction.fitting.variables import Variables
@@ -383,3 +384,25 @@ def test_two_parameters_that_do_the_same_end_at_numbers() -> None:
     assert all(np.isfinite(p.value) for p in found.parameters.values())
     assert found.parameters["friction.coulomb"].value == pytest.approx(TRUE["coulomb"], rel=0.1)
     assert found.r2 > 0.9
+
+
+@pytest.mark.parametrize("place", ["reweighted", "evaluate"])
+def test_a_fit_that_is_interrupted_near_its_end_keeps_what_it_has(
+    place: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    strikes = [True]
+
+    def struck(work: Any) -> Any:
+        def once(*given: Any, **named: Any) -> Any:
+            if strikes:
+                strikes.pop()
+                raise KeyboardInterrupt
+            return work(*given, **named)
+
+        return once
+
+    monkeypatch.setattr(solve, place, struck(getattr(solve, place)))
+    found = fit(plant(), recorded())
+    assert not found.success
+    assert "interrupted" in found.message
+    assert np.isfinite(found.train_rms)

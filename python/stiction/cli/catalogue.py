@@ -13,7 +13,7 @@ from ..catalogue import EffectRecord, LawRecord, ParameterRecord
 from ..errors import InputError
 from ..json_text import worded
 from ..wording import did_you_mean, listed
-from .answer import answer, folder, json_of
+from .answer import answer, folder, json_of, written
 
 __all__ = ["effects", "laws"]
 
@@ -100,7 +100,8 @@ def effects(
 def _write(out: Path | None, name: str, records: Iterable[LawRecord | EffectRecord]) -> None:
     if out is not None:
         text = json_of(_data(records))
-        (folder(out) / f"{name}.json").write_text(text + "\n", encoding="utf-8")
+        with written(folder(out)):
+            (out / f"{name}.json").write_text(text + "\n", encoding="utf-8")
 
 
 def _data(records: Iterable[LawRecord | EffectRecord]) -> list[Any]:

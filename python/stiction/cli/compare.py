@@ -11,15 +11,16 @@ from cyclopts import Parameter
 from ..compare import compare as run
 from ..compare.draws import DRAWS
 from ..compare.properties.passivity import PASSIVE_STEPS
-from .answer import answer, folder, json_of
+from .answer import answer, folder, json_of, written
+from .given import Whole
 
 __all__ = ["compare"]
 
 
 def compare(
     *laws: str,
-    steps: int = PASSIVE_STEPS,
-    draws: int = DRAWS,
+    steps: Whole = PASSIVE_STEPS,
+    draws: Whole = DRAWS,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
@@ -38,17 +39,20 @@ def compare(
     json
         Print JSON.
     """
+    if out is not None:
+        folder(out)
     made = run(laws, steps=steps, draws=draws, progress=_told if sys.stderr.isatty() else None)
     text = repr(made)
     if out is not None:
         from ..compare.page import page
         from ..compare.text import as_markdown
 
-        where = folder(out)
-        (where / "compare.html").write_text(page(made), encoding="utf-8")
-        (where / "compare.md").write_text(as_markdown(made) + "\n", encoding="utf-8")
-        (where / "compare.json").write_text(json_of(made.to_dict()) + "\n", encoding="utf-8")
-        text += f"\n\nWith figures and all numbers: {where / 'compare.html'}"
+        drawn = page(made)
+        with written(out):
+            (out / "compare.html").write_text(drawn, encoding="utf-8")
+            (out / "compare.md").write_text(as_markdown(made) + "\n", encoding="utf-8")
+            (out / "compare.json").write_text(json_of(made.to_dict()) + "\n", encoding="utf-8")
+        text += f"\n\nWith figures and all numbers: {out / 'compare.html'}"
     answer(text, made.to_dict(), as_json=json)
 
 

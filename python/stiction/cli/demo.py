@@ -10,9 +10,12 @@ from cyclopts import Parameter
 
 from .. import demo_session
 from ..diagnosis import diagnose as run
+from ..diagnosis.result import Diagnosis
+from ..session import Session
 from ..wording import counted
-from .answer import answer, folder
+from .answer import answer, folder, written
 from .diagnose import progress, told
+from .interrupt import finished
 
 __all__ = ["demo"]
 
@@ -45,7 +48,16 @@ def demo(
     where = folder(out)
     with progress():
         found = run(None, session)
-    report = found.save(where)
+    with finished():
+        _told(session, found, where, as_json=json)
+    if not found.success:
+        raise KeyboardInterrupt
+
+
+def _told(session: Session, found: Diagnosis, where: Path, *, as_json: bool) -> None:
+    """Write the report and say what was found, and what was hidden."""
+    with written(where):
+        report = found.save(where)
     seconds = sum(recording.duration for recording in session)
     text = (
         f"{counted(len(session), 'recording')} ({seconds:.0f} s) of a simulated motor. Its plant "
@@ -54,14 +66,13 @@ def demo(
         f"{told(found, report)}\n"
         "next: stiction demo --copy my-motor lays the recordings out as files, for you to change"
     )
-    answer(text, found.to_dict(), as_json=json)
-    if not found.success:
-        raise KeyboardInterrupt
+    answer(text, found.to_dict(), as_json=as_json)
 
 
 def _copied(where: Path, *, as_json: bool) -> None:
     """Lay the session out and say what comes next."""
-    files = demo_session.copy(where)
+    with written(where):
+        files = demo_session.copy(where)
     recordings = [file for file in files if file.suffix == ".csv"]
     texts = [file for file in files if file.suffix != ".csv"]
     command = f"stiction diagnose {quote(str(files[0]))}"

@@ -14,7 +14,9 @@ from cyclopts import Parameter
 from ..diagnosis import SURROGATES
 from ..diagnosis import diagnose as run
 from ..diagnosis.result import Diagnosis
-from .answer import answer, folder
+from .answer import answer, folder, written
+from .given import Whole
+from .interrupt import finished
 from .sessions import loaded, mended, spoken_of
 
 __all__ = ["diagnose", "progress", "told"]
@@ -25,9 +27,9 @@ def diagnose(
     *,
     without: tuple[str, ...] = (),
     laws: str = "",
-    surrogates: int = SURROGATES,
-    seed: int = 0,
-    threads: int | None = None,
+    surrogates: Whole = SURROGATES,
+    seed: Whole = 0,
+    threads: Whole | None = None,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
@@ -67,9 +69,11 @@ def diagnose(
             seed=seed,
             threads=threads,
         )
-    report = found.save(where)
-    text = "\n".join([*mended(recordings), f"{found}\n\n{told(found, report)}"])
-    answer(text, found.to_dict(), as_json=json)
+    with finished():
+        with written(where):
+            report = found.save(where)
+        text = "\n".join([*mended(recordings), f"{found}\n\n{told(found, report)}"])
+        answer(text, found.to_dict(), as_json=json)
     if not found.success:
         raise KeyboardInterrupt
 

@@ -9,8 +9,11 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from ..errors import InputError
+from ..fitting import FitResult
 from ..fitting import fit as run
-from .answer import answer, folder
+from ..session import Session
+from .answer import answer, folder, written
+from .interrupt import finished
 from .sessions import loaded, mended, spoken_of
 
 __all__ = ["fit"]
@@ -37,8 +40,7 @@ def fit(
         Print JSON.
     """
     recordings, plant = loaded(session)
-    from ..report.fit_page import fit_page
-
+    where = folder(Path(f"{session.stem}-fit") if out is None else out)
     with spoken_of(session, recordings, plant):
         result = run(plant, recordings)
         if not math.isfinite(result.train_rms):
@@ -46,13 +48,23 @@ def fit(
                 "the effort residual is not a finite number; check units, and values far beyond "
                 "what the machine can do"
             )
-    where = folder(Path(f"{session.stem}-fit") if out is None else out)
+    with finished():
+        _told(recordings, result, where, session.name, as_json=json)
+    if result.message.startswith("interrupted"):
+        raise KeyboardInterrupt
+
+
+def _told(recordings: Session, result: FitResult, where: Path, name: str, *, as_json: bool) -> None:
+    """Write plant, numbers and page, and say what was fitted."""
+    from ..report.fit_page import fit_page
+
     files = [where / "plant.toml", where / "fit.json", where / "fit.html"]
-    result.plant.save(files[0])
-    files[1].write_text(result.to_json() + "\n", encoding="utf-8")
-    page = fit_page(result, list(recordings), f"Fit of {session.name}")
-    files[2].write_text(page, encoding="utf-8")
+    page = fit_page(result, list(recordings), f"Fit of {name}")
+    with written(where):
+        result.plant.save(files[0])
+        files[1].write_text(result.to_json() + "\n", encoding="utf-8")
+        files[2].write_text(page, encoding="utf-8")
     wrote = "\n".join(f"wrote {file}" for file in files)
     repairs = mended(recordings)
     told = "\n".join([*repairs, str(result)])
-    answer(f"{told}\n\n{wrote}", {**result.to_dict(), "repairs": repairs}, as_json=json)
+    answer(f"{told}\n\n{wrote}", {**result.to_dict(), "repairs": repairs}, as_json=as_json)

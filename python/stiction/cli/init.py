@@ -16,7 +16,7 @@ from ..recording.formats import FORMATS
 from ..recording.guess import Guess, guess
 from ..recording.repair import FEWEST_ROWS
 from ..wording import counted, listed
-from .answer import answer, folder
+from .answer import answer, folder, written
 from .draft import plant_text, session_text
 
 __all__ = ["init"]
@@ -57,8 +57,10 @@ def init(
     where = folder(out)
     files = [where / name for name in _FILES]
     texts = (plant_text(found), session_text(found, [t.path for t in tables], left_out, where))
-    for file, text in zip(files, texts, strict=True):
-        _write(file, text)
+    with written(where):
+        for file, text in zip(files, texts, strict=True):
+            with file.open("x", encoding="utf-8", newline="\n") as opened:
+                opened.write(text)
     todo = list(found.missing.values())
     if found.counts_needed and not found.counts_per_rev:
         todo.append("state the size of a sensor count under [sensor] of plant.toml")
@@ -149,16 +151,6 @@ def _same_columns(
             )
         left_out.append((table.path, why))
     return same, left_out
-
-
-def _write(file: Path, text: str) -> None:
-    try:
-        with file.open("x", encoding="utf-8", newline="\n") as opened:
-            opened.write(text)
-    except OSError as error:
-        raise InputError(
-            f"{file}: cannot be written ({error.strerror}); give another folder with --out"
-        ) from None
 
 
 def _text(

@@ -29,7 +29,7 @@ from ..paper import (
     static_test,
     stick_slip,
 )
-from .answer import answer, folder
+from .answer import answer, folder, written
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -150,10 +150,9 @@ def paper_command(out: Path) -> list[Section]:
 
 
 def _write_numbers(out: Path, sections: Sequence[Section]) -> None:
-    (out / "numbers.json").write_text(
-        json_text.dumps(render_json(sections), indent=2, ensure_ascii=False) + "\n",
-        encoding="utf-8",
-    )
+    text = json_text.dumps(render_json(sections), indent=2, ensure_ascii=False) + "\n"
+    with written(out):
+        (out / "numbers.json").write_text(text, encoding="utf-8")
 
 
 def render_text(sections: Iterable[Section]) -> str:
@@ -185,4 +184,5 @@ def write_figure(out: Path, name: str, figure: Figure) -> tuple[Path, ...]:
     """Write a figure as SVG and PNG; returns both paths."""
     from ..plot import save
 
-    return tuple(save(figure, out / f"{name}{ending}") for ending in (".svg", ".png"))
+    with written(out):
+        return tuple(save(figure, out / f"{name}{ending}") for ending in (".svg", ".png"))

@@ -9,7 +9,8 @@ from cyclopts import Parameter
 
 from ..plan import plan as run
 from ..plant import Plant
-from .answer import answer, folder
+from .answer import answer, folder, written
+from .given import Whole
 
 __all__ = ["plan"]
 
@@ -22,7 +23,7 @@ def plan(
     effort: float | None = None,
     rate: float = 1000.0,
     only: tuple[str, ...] = (),
-    seed: int = 0,
+    seed: Whole = 0,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
@@ -58,6 +59,8 @@ def plan(
         only=only,
         seed=seed,
     )
-    where = made.save(folder(Path(f"{plant.stem}-plan") if out is None else out))
+    where = folder(Path(f"{plant.stem}-plan") if out is None else out)
+    with written(where):
+        made.save(where)
     text = f"{made!r}\n\nsignals: {where / 'signals'}\nfill in: {where / 'session.toml'}"
     answer(text, made.to_dict(), as_json=json)

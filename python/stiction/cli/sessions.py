@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 from .. import session as sessions
 from ..errors import InputError
 from ..plant import Plant
+from ..recording.formats import FORMATS
 from ..recording.split import name_of
 from ..session import Session
 
@@ -23,12 +25,31 @@ def loaded(path: Path, *, keep_faulty: bool = False) -> tuple[Session, Plant]:
     Raises
     ------
     InputError
-        As for ``stiction.load``; a session without a plant.
+        As for ``stiction.load``; a session without a plant, or another file in place of one.
     """
+    if kind := _kind_of(path):
+        raise InputError(
+            f"{path}: is a {kind}, and a session file is wanted, which names plant and "
+            "recordings; stiction init writes one"
+        )
     session = sessions.load(path, keep_faulty=keep_faulty)
     if session.plant is None:
         raise InputError(f'{path}: plant is missing; write plant = "plant.toml"')
     return session, session.plant
+
+
+def _kind_of(path: Path) -> str:
+    """What a file is that is taken for a session by mistake, "" where it may be one."""
+    endings = [suffix for known in FORMATS for suffix in known.suffixes]
+    if path.suffix.casefold() in endings and path.is_file():
+        return "recording"
+    try:
+        keys = tomllib.loads(path.read_text("utf-8")).keys()
+    except (OSError, ValueError):
+        # What is wrong with it is told where it is read.
+        return ""
+    plant = {"drive", "friction"} & keys and not {"plant", "columns", "recordings"} & keys
+    return "plant file" if plant else ""
 
 
 @contextmanager

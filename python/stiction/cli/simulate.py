@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.checks import check
-from .answer import answer, folder
+from .answer import answer, folder, written
 
 __all__ = ["simulate"]
 
@@ -59,7 +59,8 @@ def simulate(
         mapped = None if columns is None else read_columns(columns)
         recordings = [session.load_recording(recording, machine, mapped, where="--columns")]
     where = folder(out)
-    results = [_named(machine, each, where, support) for each in recordings]
+    with written(where):
+        results = [_named(machine, each, where, support) for each in recordings]
     text = "\n\n".join(result.pop("text") for result in results)
     answer(text, results[0] if len(results) == 1 else results, as_json=json)
 

@@ -38,6 +38,7 @@ def based(
     Evidence
         Seen through the residual that was chosen.
     Model
+        After Ctrl-C the best so far, and its solution is interrupted.
 
     Raises
     ------
@@ -57,7 +58,8 @@ def based(
     solution = settled(first.solution, evidence.train, most=MOST_EVALUATIONS)
     evidence.weigh()
     base = Model(evidence, solution)
-    _refuse_what_does_not_move(evidence, first.start, base)
+    if not solution.interrupted:
+        _refuse_what_does_not_move(evidence, first.start, base)
     return evidence, base
 
 

@@ -212,11 +212,17 @@ class Evidence:
         """
         if not self._sealed:
             raise SealedError("the test rows were opened already")
+        known = self.pushes
+        try:
+            self.pushes = [*known, *self.watch.look(self.split.test)]
+            rows = self._rows(self.plant, self.split.test)
+            for each in rows:
+                each.weight = self._weights[each.index]
+        except KeyboardInterrupt:
+            # Nobody has seen them: they may be opened when what is known is concluded.
+            self.pushes = known
+            raise
         self._sealed = False
-        self.pushes += self.watch.look(self.split.test)
-        rows = self._rows(self.plant, self.split.test)
-        for each in rows:
-            each.weight = self._weights[each.index]
         return rows
 
     def cells_of(self, rows: Sequence[Rows]) -> Cells:

@@ -13,7 +13,7 @@ from ..plant import Plant
 from ..trajectory import FloatArray
 from .evidence import Cells, Evidence
 
-__all__ = ["Gain", "HeldOut", "gain_of", "open_residuals"]
+__all__ = ["Gain", "HeldOut", "gain_of", "open_residuals", "residuals_of"]
 
 RESAMPLES: Final = 2000
 
@@ -71,7 +71,13 @@ class HeldOut:
 
 def open_residuals(evidence: Evidence, models: Sequence[tuple[Plant, Nuisances]]) -> HeldOut | None:
     """Opens the rows that test for all plants at once; None where there are none."""
-    rows = evidence.open_test()
+    return residuals_of(evidence, evidence.open_test(), models)
+
+
+def residuals_of(
+    evidence: Evidence, rows: Sequence[Rows], models: Sequence[tuple[Plant, Nuisances]]
+) -> HeldOut | None:
+    """What several plants leave in the rows that test; None where there are none."""
     if not rows:
         return None
 

@@ -163,6 +163,8 @@ def _fitted(base: Model, law: str) -> Model | None:
     full = _launched(base, Friction(law, {**plain.plant.friction.parameters, **more}))
     if full is None:
         return plain
+    if full.solution.interrupted:
+        return full
     return full if _fitted_power(full) < WORTH_A_TERM * _fitted_power(plain) else plain
 
 

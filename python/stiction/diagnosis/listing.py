@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
+from .candidates import Candidate
 from .decide import Choice, Trial
 from .result import CandidateRow
 from .screen import Score
 
-__all__ = ["in_order", "screened", "tried"]
+__all__ = ["in_order", "screened", "stopped", "tried", "unscreened"]
 
 IMITATED: Final = 0.1
 """Share of a signature beside the base below which the base is what hides it."""
+
+
+STOPPED: Final = "the diagnosis was interrupted"
 
 
 def screened(score: Score) -> CandidateRow:
@@ -44,6 +49,20 @@ def tried(trial: Trial, choice: Choice | None) -> CandidateRow:
     else:
         reason = f"{choice.winner.name} explains more"
     return CandidateRow(trial.name, score.score, score.threshold, trial.gain, reason)
+
+
+def unscreened(candidate: Candidate) -> CandidateRow:
+    """One that nobody got to look at."""
+    return CandidateRow(candidate.name, None, None, None, f"not screened: {STOPPED}")
+
+
+def stopped(score: Score, trials: Sequence[Trial]) -> CandidateRow:
+    """One that passed the screening, where Ctrl-C ended the round before its decision."""
+    trial = next((each for each in trials if each.name == score.candidate.name), None)
+    if trial is None:
+        return replace(screened(score), reason=f"not refitted: {STOPPED}")
+    row = tried(trial, None)
+    return row if trial.reason else replace(row, reason=f"passes, and not decided: {STOPPED}")
 
 
 def in_order(rows: Iterable[CandidateRow], choices: Sequence[Choice]) -> tuple[CandidateRow, ...]:

@@ -77,9 +77,10 @@ def search(
         Effects that are not tried.
     """
     found = Search([base])
-    bias, centred = centre(null)
-    bias = shared(bias, base.residual, evidence.cells.recording)
+    tried: list[Candidate] = []
     try:
+        bias, centred = centre(null)
+        bias = shared(bias, base.residual, evidence.cells.recording)
         tried = _candidates(evidence, base, without, found)
         if not tried:
             return found
@@ -100,13 +101,16 @@ def search(
             found.models.append(choice.winner.model)
             _logger.info("found %s", choice.winner.name)
             found.choices[-1] = sharpened(screening, found.choices[-1])
-            found.models[-1] = unstuck(found.choices[-1].winner.model)
+            found.models[-1] = found.choices[-1].winner.model
+            found.models[-1] = unstuck(found.models[-1])
             dropped |= _drop(evidence, found)
             rests |= _take_back(screening, found)
         for place in range(len(found.choices) - 1):
             _swap(screening, found, place)
     except KeyboardInterrupt:
         found.interrupted = True
+        for candidate in tried:
+            found.rows.setdefault(candidate.name, listing.unscreened(candidate))
     return found
 
 
@@ -171,9 +175,26 @@ def _round(
     outstanding = _outstanding(scores)
     passing = [score for score in scores if promises(score) or score is outstanding]
     trials: list[Trial] = []
-    refitted = passing[:REFITTED]
-    asked = [s for s in scores if _is_asked(screening, s) and s not in refitted]
-    for score in [*refitted, *asked]:
+    asked = [s for s in scores if _is_asked(screening, s) and s not in passing[:REFITTED]]
+    try:
+        return _refitted(screening, found, passing, asked, trials)
+    except KeyboardInterrupt:
+        if not found.choices:
+            # Nothing was decided among these; what the screening says of others holds.
+            rows = [listing.stopped(score, trials) for score in (*passing, *asked)]
+            found.rows |= {row.name: row for row in rows}
+        raise
+
+
+def _refitted(
+    screening: Screening,
+    found: Search,
+    passing: Sequence[Score],
+    asked: Sequence[Score],
+    trials: list[Trial],
+) -> tuple[Choice | None, list[Trial]]:
+    """What is accepted of what passed the screening; ``trials`` is filled on the way."""
+    for score in [*passing[:REFITTED], *asked]:
         if not _hopeless(score, trials):
             trial = screening.trial(found.models[-1], score)
             trials.append(beside_a_second(screening, found.models[-1], trial))

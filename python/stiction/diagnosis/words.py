@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from .result import Cause, Diagnosis, Unexplained, Verdict
 
 __all__ = [
+    "INTERRUPTED",
+    "MORE_MAY_BE",
     "NO_COORDINATE",
     "WORSE",
     "gain_words",
@@ -38,6 +40,10 @@ __all__ = [
 
 NO_COORDINATE = "nothing that was looked at"
 """Where more is left than noise and it shows in no coordinate."""
+INTERRUPTED = "Interrupted: this is the best so far"
+"""How the sentence of a diagnosis begins that Ctrl-C ended."""
+MORE_MAY_BE = ", and more may be missing"
+"""And goes on where something was named by then."""
 MOST_TOLD = 3
 """Pushes that a sentence names."""
 MOST_ROWS = 5
@@ -269,8 +275,6 @@ def _percent(share: float | None) -> str:
 def summary(diagnosis: Diagnosis) -> str:
     """What the command line prints: sentence, findings, candidates, next experiment."""
     lines = [diagnosis.sentence]
-    if not diagnosis.success:
-        lines.append(diagnosis.message)
     for cause in diagnosis.effects:
         lines += ["", f"{cause.name}: {cause.what}"]
         lines += [f"  means: {cause.means}", f"  try: {cause.try_}"]

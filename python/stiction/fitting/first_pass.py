@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..plant import Plant
 from ..weak_form import WeakForm
 from .forms import followable, horizon_of, shows_its_ring, stiffen
-from .minimise import Solution, launch
+from .minimise import Solution, launch, stopped
 from .pushes import Watch
 from .rows import Rows
 from .start import complete, free_paths
@@ -93,15 +93,33 @@ def first_pass(
     starts = complete(plant, [each.form for each in seen.train])
     paths = free_paths(starts[0])
     found = launch(starts, paths, seen.train, most=most)
+    known = FirstPass(seen, found, starts[0])
     if found.interrupted:
-        return FirstPass(seen, found, starts[0])
+        return known
+    try:
+        return _simulated(plant, known, paths, simulated, most=most)
+    except KeyboardInterrupt:
+        # Before what is simulated had anything to keep.
+        return replace(known, solution=stopped(found))
+
+
+def _simulated(
+    plant: Plant,
+    known: FirstPass[S],
+    paths: Sequence[str],
+    simulated: Callable[[Plant, float | None, bool, Watch], S],
+    *,
+    most: int,
+) -> FirstPass[S]:
+    """What is known, fitted on by what is simulated where the weak form does not do."""
+    seen, found, start = known.seen, known.solution, known.start
     horizon = horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
     servo = plant.servo
     if horizon is not None or servo:
         _logger.info("fitting it again, simulated")
         other = simulated(found.plant, horizon, servo, seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
-        begun = [found.plant, starts[0]] if servo else [found.plant]
+        begun = [found.plant, start] if servo else [found.plant]
         begun = [followable(each, other.forms) for each in begun]
         again = launch(begun, paths, other.train, most=most)
         again = replace(again, begin=found.begin, evaluations=found.evaluations + again.evaluations)
@@ -113,7 +131,7 @@ def first_pass(
         else:
             found = replace(found, evaluations=again.evaluations)
             if again.interrupted:
-                found = replace(found, success=False, interrupted=True, message=again.message)
+                found = stopped(found)
     lost = None if found.interrupted else _lost(found, seen.train)
     if lost is not None:
         raise InputError(
@@ -121,7 +139,7 @@ def first_pass(
             f"that the data give, in recording {lost + 1}; state starting values in [friction] "
             "nearer to the machine, or bounds for them"
         )
-    return FirstPass(seen, found, starts[0])
+    return FirstPass(seen, found, start)
 
 
 def _lost(solution: Solution, rows: Sequence[Rows]) -> int | None:

@@ -17,7 +17,7 @@ from .rows import Nuisances, Rows, Start, numbers, primed, start_quantities, tim
 from .slopes import places_of, slopes
 from .variables import Variables, records
 
-__all__ = ["MOST_EVALUATIONS", "Solution", "from_elsewhere", "launch", "minimise"]
+__all__ = ["MOST_EVALUATIONS", "Solution", "from_elsewhere", "launch", "minimise", "stopped"]
 
 MOST_EVALUATIONS: Final = 60
 CONVERGED: Final = 1e-8
@@ -127,7 +127,13 @@ def launch(
     first = []
     for plant in plants:
         most_at_first = FIRST_EVALUATIONS if len(plants) > LEFT else FEW_EVALUATIONS
-        first.append(minimise(plant, paths, rows, most=min(most_at_first, most)))
+        try:
+            first.append(minimise(plant, paths, rows, most=min(most_at_first, most)))
+        except KeyboardInterrupt:
+            # Before that start had anything to keep.
+            if not first:
+                raise
+            first[-1] = stopped(first[-1])
         if first[-1].interrupted:
             break
     spent = sum(solution.evaluations for solution in first)
@@ -140,18 +146,17 @@ def launch(
             if first[k].interrupted:
                 break
     best = min(first, key=lambda solution: solution.power)
-    stopped = next((solution for solution in first if solution.interrupted), None)
-    if stopped is not None:
-        return _stopped(best, stopped)
+    if any(solution.interrupted for solution in first):
+        return stopped(best)
     if best.success:
         return best
     whole = _further(best, rows, most, nuisances=primed(best.plant, rows, best.nuisances))
     return replace(whole, evaluations=whole.evaluations + spent)
 
 
-def _stopped(best: Solution, stopped: Solution) -> Solution:
+def stopped(best: Solution) -> Solution:
     """The best so far of a fit that was interrupted in another part."""
-    return replace(best, success=False, interrupted=True, message=stopped.message)
+    return replace(best, success=False, interrupted=True, message=INTERRUPTED)
 
 
 def _further(
@@ -160,7 +165,11 @@ def _further(
     """The same fit, gone on with."""
     paths = solution.variables.paths
     known = solution.nuisances if nuisances is None else nuisances
-    further = minimise(solution.plant, paths, rows, most=most, nuisances=known)
+    try:
+        further = minimise(solution.plant, paths, rows, most=most, nuisances=known)
+    except KeyboardInterrupt:
+        # Before it had anything to keep.
+        return replace(stopped(solution), evaluations=0)
     return replace(further, begin=solution.begin)
 
 
@@ -187,12 +196,12 @@ def from_elsewhere(
                 spent += again.evaluations
         except KeyboardInterrupt:
             # Before that start had anything to keep.
-            better = replace(better, success=False, interrupted=True, message=INTERRUPTED)
+            better = stopped(better)
             break
         if again.power < better.power:
             better = again
         if again.interrupted:
-            better = _stopped(better, again)
+            better = stopped(better)
             break
     return replace(better, evaluations=spent, begin=solution.begin)
 

@@ -17,8 +17,9 @@ from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from .first_pass import first_pass
 from .forms import as_stated, forms_of, set_clocks
-from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise
-from .pushes import Watch, told
+from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stopped
+from .pushes import Watch
+from .pushes import told as pushes_told
 from .result import FitParameter, FitResult
 from .rows import Nuisances, Rows, primed, rows_of
 from .slopes import slopes
@@ -119,13 +120,16 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     Returns
     -------
     FitResult
-        With ``success`` False and the best values so far after Ctrl-C or too many evaluations.
+        With ``success`` False and the best values so far after Ctrl-C or too many evaluations; a
+        second Ctrl-C ends at once.
 
     Raises
     ------
     InputError
         Nothing to fit: no recordings, no motion, no free parameter, too few rows; a plant that
         runs away from every start.
+    KeyboardInterrupt
+        Ctrl-C before there is anything, or for the second time.
     """
     recordings = [session] if isinstance(session, Recording) else list(session)
     if not recordings:
@@ -148,17 +152,26 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     if solution is not first.solution:
         evaluations += solution.evaluations
     names = [name_of(recording, k) for k, recording in enumerate(recordings)]
-    pushed = [f"{name}: {c.what}; {c.means}." for name, c in told(seen.pushes, names)]
-    return evaluate(
-        solution,
-        train,
-        seen.held,
-        given=plant,
-        begin=begin,
-        described="\n".join([*faults, *pushed, seen.parts.described]),
-        evaluations=evaluations,
-        names=names,
-    )
+    pushed = [f"{name}: {c.what}; {c.means}." for name, c in pushes_told(seen.pushes, names)]
+
+    def told(found: Solution) -> FitResult:
+        return evaluate(
+            found,
+            train,
+            seen.held,
+            given=plant,
+            begin=begin,
+            described="\n".join([*faults, *pushed, seen.parts.described]),
+            evaluations=evaluations,
+            names=names,
+        )
+
+    try:
+        return told(solution)
+    except KeyboardInterrupt:
+        if solution.interrupted:
+            raise
+        return told(stopped(solution))
 
 
 def _without_faults(recordings: list[Recording]) -> tuple[list[Recording], list[str]]:
@@ -180,14 +193,18 @@ def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
     """
     if first.interrupted:
         return first
-    reweighted(rows, first.plant, first.nuisances)
-    second = minimise(
-        first.plant,
-        first.variables.paths,
-        rows,
-        most=most,
-        nuisances=primed(first.plant, rows, first.nuisances),
-    )
+    try:
+        reweighted(rows, first.plant, first.nuisances)
+        second = minimise(
+            first.plant,
+            first.variables.paths,
+            rows,
+            most=most,
+            nuisances=primed(first.plant, rows, first.nuisances),
+        )
+    except KeyboardInterrupt:
+        # Before the second pass had anything to keep.
+        return stopped(first)
     return from_elsewhere(second, rows, most=most)
 
 

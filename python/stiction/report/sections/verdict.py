@@ -23,6 +23,7 @@ TITLES: Final = {
     "missing_effect": "The simulation lacks an effect that is known by name",
     "nothing_missing": "Nothing is missing from the simulation",
 }
+INTERRUPTED: Final = "Interrupted before anything was named"
 NAMED_IN_PART: Final = "The simulation lacks {}, and something that has no name"
 SEVERAL: Final = "The simulation lacks effects that are known by name"
 
@@ -48,6 +49,8 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section:
 
 
 def _title(diagnosis: Diagnosis) -> str:
+    if not diagnosis.success and not diagnosis.effects:
+        return INTERRUPTED
     if diagnosis.verdict == "unexplained" and diagnosis.effects:
         several = len(diagnosis.effects) > 1
         return NAMED_IN_PART.format("known effects" if several else "a known effect")

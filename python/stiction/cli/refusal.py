@@ -1,0 +1,60 @@
+"""What the parser of the command line refuses, in a sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import cyclopts
+from cyclopts import exceptions
+
+from ..wording import did_you_mean, listed
+
+__all__ = ["refusal"]
+
+KINDS = {int: "a whole number", float: "a number", bool: "true or false"}
+
+
+def refusal(error: cyclopts.CycloptsError, app: cyclopts.App) -> str:
+    """The parser's complaint: what was given, what is allowed, where to read on."""
+    chain = list(error.command_chain or ())
+    command = " ".join(["stiction", *chain])
+    verb = f"{chain[-1]}: " if chain else ""
+    return f"{verb}{_what(error, app, command)} (see: {command} --help)"
+
+
+def _what(error: cyclopts.CycloptsError, app: cyclopts.App, command: str) -> str:
+    if isinstance(error, exceptions.UnknownCommandError):
+        return _no_verb(str((error.unused_tokens or [""])[0]), app)
+    if isinstance(error, exceptions.UnknownOptionError):
+        given = (error.token.keyword or error.token.value).partition("=")[0]
+        known = [name for each in error.argument_collection if each.parse for name in each.names]
+        return _no_option(given, [name for name in known if name.startswith("--")])
+    if isinstance(error, exceptions.UnusedCliTokensError):
+        return f"{listed(error.unused_tokens or ())} is more than it takes; leave it out"
+    argument = error.argument
+    name = argument.name if argument is not None else ""
+    if isinstance(error, exceptions.MissingArgumentError) and argument is not None:
+        if error.keyword:
+            return f"{error.keyword} is there without a value; write one behind it"
+        word = name.lstrip("-").upper()
+        return f"{word} is missing; write {command} {word}"
+    if isinstance(error, exceptions.CoercionError) and error.token is not None:
+        kind = KINDS.get(error.target_type or object)
+        kind = "a whole number" if kind is None and error.msg is not None else kind
+        if kind is not None:
+            return f"{error.token.keyword or name} = {error.token.value} is not {kind}"
+    if isinstance(error, exceptions.RepeatArgumentError):
+        return f"{error.token.keyword} is there twice; drop one"
+    return " ".join(str(error).split()).rstrip(".")
+
+
+def _no_verb(given: str, app: cyclopts.App) -> str:
+    verbs = [verb for verb in app if not verb.startswith("-")]
+    if given.startswith("-"):
+        return _no_option(given, ["--help", "--version"])
+    return f"there is no verb '{given}'{did_you_mean(given, verbs)}; there are {listed(verbs)}"
+
+
+def _no_option(given: str, known: Iterable[str]) -> str:
+    names = list(known)
+    return f"there is no option {given}{did_you_mean(given, names)}; there are {listed(names)}"

@@ -1,0 +1,456 @@
+"""The end of a diagnosis: what is measured once every decision is taken, and all of it in words."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from ..fitting.pushes import told as pushes_told
+from ..fitting.result import FitResult
+from ..fitting.rows import Rows
+from ..plant import Effect, Plant
+from ..recording import Check
+from ..session import Session
+from ..trajectory import FloatArray
+from .advice import advise
+from .candidates import Scales, scales_of
+from .ceiling import Ceiling, ceiling_of
+from .confirm import confirmed, described, lost, lost_on_test
+from .coordinates import Look, looks
+from .evidence import Evidence
+from .gain import HeldOut, gain_of, residuals_of
+from .laws import THE_LAW, Rival, better_law, event_words, law_rows, rivals_of
+from .listing import in_order
+from .lone import lone_event
+from .loop import borne_out, replayed
+from .model import Model
+from .noise import Noise
+from .omnibus import Rest, rest
+from .orders import open_orders
+from .own import own_view
+from .pictures import Pictures, Stretch
+from .regression import refitted
+from .remedies import meant
+from .replay import centre, shared, surrogate_residuals
+from .result import Cause, Diagnosis, ModelSummary, Unexplained, Verdict
+from .rounds import friction_of
+from .selection import Search
+from .verdict import relatives, unnamed, verdict_of
+from .view import View
+from .words import INTERRUPTED, MORE_MAY_BE, NO_COORDINATE, no_machine, push_words, sentence, what
+
+__all__ = ["Conclusion", "base_alone", "surrogates_of"]
+
+MESSAGE: Final = "interrupted: this is the best so far"
+UNFITTED: Final = "The fit of the plant was not finished, and no effect was looked for yet."
+UNSEARCHED: Final = "The plant was fitted, and no effect was looked for yet."
+NOTHING_YET: Final = (
+    "Until then no effect was named, which does not say that nothing is missing: run it again."
+)
+
+_logger = logging.getLogger(__name__)
+
+
+@dataclass
+class Conclusion:
+    """What is measured once every decision is taken.
+
+    Everything is measured on demand and once: where Ctrl-C stops it, ``diagnosis`` goes on from
+    what is there.
+
+    Attributes
+    ----------
+    found : Diagnosis
+        With its data, as far as they are known.
+    session : Session
+    evidence : Evidence
+    base : Model
+    selection : Search
+        As the search left it.
+    null : numpy.ndarray, shape (n, surrogates)
+        Residuals of the surrogates.
+    others : sequence of str
+        Laws that were asked for.
+    checks : sequence of (str, Check)
+    interrupted : bool
+        Then no further laws are fitted.
+    brief : bool
+        Nothing is said of what is left: not everything was looked for.
+    """
+
+    found: Diagnosis
+    session: Session
+    evidence: Evidence
+    base: Model
+    selection: Search
+    null: FloatArray
+    others: Sequence[str]
+    checks: Sequence[tuple[str, Check]]
+    interrupted: bool = False
+    brief: bool = False
+
+    def diagnosis(self) -> Diagnosis:
+        """Verdict and words; after a first Ctrl-C in here those that need nothing more."""
+        try:
+            return self._whole()
+        except KeyboardInterrupt:
+            if self.interrupted:
+                raise
+            self.interrupted = self.brief = True
+            return self._whole()
+
+    def _whole(self) -> Diagnosis:
+        final = self.confirmed.models[-1]
+        ceiling = self.ceiling
+        data = {
+            **self.found.data,
+            "replicates": None if ceiling is None else ceiling.to_dict(),
+        }
+        found = self._told(replace(self.found, data=data))
+        found = _with_pushes(found, self.evidence)
+        return replayed(replace(found, ceiling=ceiling), self.evidence, self.base, final)
+
+    @cached_property
+    def decided(self) -> Search:
+        """The selection, as far as the plant describes the machine with it."""
+        selection = described(self.selection, self.evidence, self.null)
+        return borne_out(selection, self.evidence)
+
+    @cached_property
+    def rivals(self) -> Sequence[Rival]:
+        """Other laws, fitted."""
+        rivals = [] if self.interrupted else rivals_of(self.decided, self.others)
+        self.interrupted = self.interrupted or self.decided.interrupted
+        return rivals
+
+    @cached_property
+    def opened(self) -> list[Rows]:
+        """The rows that test."""
+        _logger.info("opening the test rows")
+        return self.evidence.open_test()
+
+    @cached_property
+    def test(self) -> HeldOut | None:
+        """What all models leave there; those of other laws come last."""
+        models = [*self.decided.models, *(r.model for r in self.rivals if r.model is not None)]
+        return residuals_of(self.evidence, self.opened, [(m.plant, m.nuisances) for m in models])
+
+    @cached_property
+    def confirmed(self) -> Search:
+        """The selection that the rows that test bear out."""
+        return confirmed(self.decided, self.test, self.found.seed)
+
+    @cached_property
+    def _centred(self) -> tuple[FloatArray, FloatArray]:
+        bias, centred = centre(self.null)
+        return shared(bias, self.base.residual, self.evidence.cells.recording), centred
+
+    @cached_property
+    def _seen(self) -> list[Look]:
+        scales = scales_of(self.evidence, self.base.plant)
+        starts = self.session.starts
+        return looks(self.evidence, self.base.plant, starts, scales.units["presliding"])
+
+    @cached_property
+    def rests(self) -> tuple[Rest, Rest]:
+        """What base and last model leave, in every coordinate."""
+        base, final = self.base, self.confirmed.models[-1]
+        orders = scales_of(self.evidence, base.plant).orders
+        (bias, centred), friction = self._centred, friction_of(self.evidence, base)
+
+        def left_by(model: Model) -> Rest:
+            left = model.residual - bias
+            return rest(self.evidence, self._seen, orders, left, centred, friction)
+
+        left = left_by(final)
+        return left_by(base) if final is not base else left, left
+
+    @cached_property
+    def own(self) -> tuple[tuple[View, View], ...]:
+        """Each cause in its own coordinate, before it is added and after."""
+        selection, final = self.confirmed, self.confirmed.models[-1]
+        (bias, centred), friction = self._centred, friction_of(self.evidence, self.base)
+        return tuple(
+            _own_views(
+                self.evidence,
+                self._seen,
+                _effect(final.plant, choice.winner.name),
+                [model.residual - bias for model in selection.models[k : k + 2]],
+                centred,
+                friction,
+            )
+            for k, choice in enumerate(selection.choices)
+        )
+
+    @cached_property
+    def ceiling(self) -> Ceiling | None:
+        """How much could be explained."""
+        base, final = self.base, self.confirmed.models[-1]
+        ends = (base.plant, base.nuisances), (final.plant, final.nuisances)
+        return ceiling_of(self.evidence, self.session.replicates, ends)
+
+    @cached_property
+    def unexplained(self) -> tuple[Unexplained, ...]:
+        """What is left and has no name."""
+        final = self.confirmed.models[-1]
+
+        def null_of_last() -> FloatArray:
+            number = self.null.shape[1]
+            return surrogates_of(self.evidence, final, number, self.found.seed)[0]
+
+        return unnamed(self.evidence, self.confirmed, *self.rests, self.null, null_of_last)
+
+    def _told(self, found: Diagnosis) -> Diagnosis:
+        """Verdict and words, from everything that was measured."""
+        evidence, selection, test, null = self.evidence, self.confirmed, self.test, self.null
+        base, final = selection.models[0], selection.models[-1]
+        floor = _floor(evidence, null)
+        scales = scales_of(evidence, base.plant)
+        results = {id(m): _evaluated(m, scales) for m in (base, final)}
+        baseline = _summary(evidence, base, results[id(base)], test, 0, floor)
+        number = len(selection.choices)
+        extended = _summary(evidence, final, results[id(final)], test, number, floor)
+        better, own_law = better_law(self.rivals), base.plant.friction.law
+        causes = _causes(selection, results[id(final)], test, found.seed, sole=better is None)
+        gain = None
+        if causes and test is not None:
+            gain = gain_of(test, 0, len(causes), found.seed)
+        left = lost(evidence, final, null)
+        event = None
+        verdict: Verdict
+        unexplained: tuple[Unexplained, ...] = ()
+        if self.brief:
+            # What was not looked for any more is not claimed, and neither is that nothing is left.
+            decided = all(cause.decided for cause in causes)
+            verdict = ("missing_effect" if decided else "ambiguous") if causes else "not_testable"
+            reason = NOTHING_YET
+        else:
+            unexplained = self.unexplained
+            if better is not None and not causes and not unexplained:
+                unexplained = (Unexplained(THE_LAW, better.beside),)
+            if left and not unexplained:
+                unexplained = (Unexplained(NO_COORDINATE, left),)
+            verdict = verdict_of(selection, unexplained, all(cause.decided for cause in causes))
+            reason = (
+                "These data cannot be tested: the base imitates every effect, so none could be "
+                "seen."
+            )
+            event = None if causes else lone_event(evidence, final, test, 0)
+        if event is not None and better is None:
+            followed = event_words(self.rivals, base, event) if event.fitted else ""
+            verdict, reason, unexplained = "not_testable", event.words() + followed, ()
+        return replace(
+            found,
+            verdict=verdict,
+            sentence=_opening(self.interrupted, bool(causes))
+            + ("" if better is None else f"{better.words(own_law, bool(causes))} ")
+            + sentence(verdict, causes, gain, unexplained, reason)
+            + no_machine(max(left, lost_on_test(test, len(causes), null)), bool(causes), verdict),
+            plant=extended.plant,
+            effects=tuple(causes),
+            gain=gain,
+            candidates=in_order(selection.rows.values(), selection.choices),
+            laws=law_rows(
+                self.rivals,
+                len(self.decided.models),
+                test,
+                found.seed,
+                beside=(base, event) if event is not None and event.fitted else None,
+            ),
+            baseline=baseline,
+            extended=extended,
+            unexplained=unexplained,
+            advice=(
+                *([] if better is None else [better.advice()]),
+                *([] if event is None else [event.advice()]),
+                *advise(causes, unexplained, selection.blind, self.checks, final.plant),
+            ),
+            success=not self.interrupted,
+            message=MESSAGE if self.interrupted else found.message,
+            pictures=Pictures(
+                stretches=_stretches(evidence, test, base, final),
+                before=self.rests[0],
+                after=self.rests[1],
+                effort_unit=final.plant.effort_unit,
+                position_unit=final.plant.position_unit,
+                floor=floor,
+                causes=self.own,
+            ),
+        )
+
+
+def base_alone(found: Diagnosis, evidence: Evidence, base: Model) -> Diagnosis:
+    """What is known where Ctrl-C came before anything was looked for: the plant, as far as fitted.
+
+    Parameters
+    ----------
+    found : Diagnosis
+        With its data, as far as they are known.
+    evidence : Evidence
+    base : Model
+    """
+    result = _evaluated(base, scales_of(evidence, base.plant))
+    # What noise would leave is told by replays, of which there are none.
+    known = _summary(evidence, base, result, None, 0, float("nan"))
+    told = UNFITTED if base.solution.interrupted else UNSEARCHED
+    found = replace(
+        found,
+        verdict="not_testable",
+        sentence=f"{INTERRUPTED}. {told}",
+        plant=known.plant,
+        baseline=known,
+        extended=known,
+        success=False,
+        message=MESSAGE,
+    )
+    return _with_pushes(found, evidence)
+
+
+def surrogates_of(
+    evidence: Evidence, model: Model, number: int, seed: int
+) -> tuple[FloatArray, dict[int, Noise]]:
+    """Residuals of a model that is right, shape (n, number), and the noise of each recording."""
+    null, noises = surrogate_residuals(evidence, model.plant, model.nuisances, number, seed)
+    # What a fit would have taken up is no sign of anything.
+    return refitted(model.columns, null, evidence.fitted), noises
+
+
+def _opening(interrupted: bool, named: bool) -> str:
+    """How the sentence begins: that there may be more, where Ctrl-C ended it."""
+    return f"{INTERRUPTED}{MORE_MAY_BE if named else ''}. " if interrupted else ""
+
+
+def _with_pushes(found: Diagnosis, evidence: Evidence) -> Diagnosis:
+    """What was left out because something pushed the machine, in the sentence and the checks."""
+    checks = pushes_told(evidence.pushes, evidence.names)
+    if not checks:
+        return found
+    words = push_words(evidence.pushes, evidence.names)
+    data = {
+        **found.data,
+        "checks": [
+            *found.data["checks"],
+            *({"recording": name, **c.to_dict()} for name, c in checks),
+        ],
+    }
+    return replace(found, sentence=f"{found.sentence} {words}", data=data)
+
+
+def _causes(
+    selection: Search, result: FitResult, test: HeldOut | None, seed: int, *, sole: bool
+) -> list[Cause]:
+    """What was accepted.
+
+    ``result`` is that of the last model. ``sole``: no other law explains more; beside one that does
+    nothing is decided.
+    """
+    final = selection.models[-1]
+    causes = []
+    taken = {choice.winner.name for choice in selection.choices}
+    for k, choice in enumerate(selection.choices):
+        record = choice.winner.candidate.record
+        # A rival that became a cause of its own is told there.
+        rivals_left = [each.name for each in choice.rivals if each.name not in taken]
+        close = {each.name for each in choice.rivals}
+        others = [name for name in relatives(selection, k) if name not in close]
+        fitted_values = {
+            path: p
+            for path, p in result.parameters.items()
+            if path.startswith(f"effects.{record.name}.")
+        }
+        means, remedy = meant(record, final.plant)
+        causes.append(
+            Cause(
+                name=record.name,
+                family=record.family,
+                decided=choice.decided and not others and sole,
+                look_alikes=(*rivals_left, *others),
+                parameters=fitted_values,
+                gain=None if test is None else gain_of(test, k, k + 1, seed),
+                what=what(record, fitted_values, _effect(final.plant, record.name)),
+                means=means,
+                try_=remedy,
+                coordinate=record.coordinate,
+            )
+        )
+    return causes
+
+
+def _own_views(
+    evidence: Evidence,
+    seen: Sequence[Look],
+    effect: Effect,
+    residuals: Sequence[FloatArray],
+    null: FloatArray,
+    friction: float,
+) -> tuple[View, View]:
+    """A cause in its own coordinate, before it is added and after."""
+    before, after = (
+        own_view(evidence, seen, effect, residual, null, friction) for residual in residuals
+    )
+    return before, after
+
+
+def _effect(plant: Plant, name: str) -> Effect:
+    """The effect of a plant by its name."""
+    return next(effect for effect in plant.effects if effect.name == name)
+
+
+def _evaluated(model: Model, scales: Scales) -> FitResult:
+    return replace(model.told, parameters=open_orders(model.told.parameters, scales))
+
+
+def _summary(
+    evidence: Evidence,
+    model: Model,
+    result: FitResult,
+    test: HeldOut | None,
+    index: int,
+    floor: float,
+) -> ModelSummary:
+    select = None
+    if evidence.split.select:
+        (plan,) = evidence.plans
+        select = float(np.sqrt(np.mean((model.residual / evidence.weights)[plan.held] ** 2)))
+    return ModelSummary(
+        plant=result.plant,
+        parameters=result.parameters,
+        unit=result.unit,
+        train_rms=result.train_rms,
+        select_rms=select,
+        heldout_rms=None if test is None else test.rms(index),
+        train_relative=result.train_relative,
+        heldout_relative=None if test is None else test.relative(index),
+        noise_floor_rms=floor,
+        remarks=(*result.bounds_hit, *result.undetermined),
+    )
+
+
+def _floor(evidence: Evidence, null: FloatArray) -> float:
+    """rms of what noise and rounding leave over the rows fitted."""
+    physical = (null / evidence.weights[:, None])[evidence.fitted]
+    return float(np.sqrt(np.mean(physical**2)))
+
+
+def _stretches(
+    evidence: Evidence, test: HeldOut | None, base: Model, final: Model
+) -> tuple[Stretch, ...]:
+    """Held-out recordings with what both models leave; those of train where none tests."""
+    rows = evidence.shown if test is None else test.rows
+    stretches = []
+    for each in rows:
+        form, mask = each.form, each.mask
+        both = [np.where(mask, each.residual(m.plant, m.nuisances), np.nan) for m in (base, final)]
+        measured = np.where(mask, form.measured(base.plant), np.nan)
+        started = evidence.recordings[each.index].time[0]
+        stretches.append(
+            Stretch(evidence.names[each.index], form.time - started, measured, both[0], both[1])
+        )
+    return tuple(
+        sorted(stretches, key=lambda s: float(np.nansum(s.after**2) - np.nansum(s.before**2)))
+    )
