@@ -6,15 +6,16 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from html import escape
 from itertools import pairwise
-from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from ._native import Ensemble as _Ensemble
-from .errors import InputError
+from .errors import InputError, UnknownName
+from .frozen import Frozen, freeze, path_of
 from .motor import Motor
 from .trajectory import FloatArray
 from .wording import did_you_mean, listed
@@ -27,7 +28,7 @@ target, or the least and the greatest value."""
 _REDUCTIONS = ("last", "rms", "extremes")
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EnsembleRun:
     """What a run of many machines kept; read the outputs as attributes or by name.
 
@@ -43,6 +44,9 @@ class EnsembleRun:
     columns: Mapping[str, FloatArray]
     time: FloatArray
     reduce: str | None = None
+
+    def __post_init__(self) -> None:
+        freeze(self, Frozen, "columns")
 
     @property
     def success(self) -> bool:
@@ -67,6 +71,18 @@ class EnsembleRun:
         kept = f", reduced to {self.reduce}" if self.reduce else ""
         return f"<{len(self)} machines: {shown}{kept}>"
 
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><th>{escape(name)}</th><td>{values.shape}</td><td>{values.min():.6g}</td>"
+            f"<td>{values.max():.6g}</td></tr>"
+            for name, values in self.columns.items()
+            if values.size
+        )
+        head = "<tr><th>output</th><th>shape</th><th>least</th><th>greatest</th></tr>"
+        return (
+            f"<p>{escape(repr(self))}</p><p>{escape(self.message)}</p><table>{head}{rows}</table>"
+        )
+
     def __len__(self) -> int:
         return len(next(iter(self.columns.values()))) if self.columns else 0
 
@@ -78,7 +94,7 @@ class EnsembleRun:
             return self.columns[name]
         except KeyError:
             have = ", ".join(self.columns)
-            raise KeyError(f"the run kept no '{name}'; it has {have}") from None
+            raise UnknownName(f"the run kept no '{name}'; it has {have}") from None
 
     def __getattr__(self, name: str) -> FloatArray:
         columns = self.__dict__.get("columns", {})
@@ -125,7 +141,8 @@ class Ensemble(_Ensemble):
     ) -> Ensemble:
         """See the class."""
         rows = {
-            _path(motor, name): _row(name, v, members) for name, v in (parameters or {}).items()
+            path_of(name, motor.parameters, "parameters: "): _row(name, v, members)
+            for name, v in (parameters or {}).items()
         }
         sizes = {len(row) for row in rows.values()}
         if members is None and len(sizes) != 1:
@@ -213,7 +230,7 @@ class Ensemble(_Ensemble):
             time = np.cumsum(steps)[every - 1 :: every]
             if np.ndim(dt) == 0:
                 time = np.arange(1.0, len(time) + 1.0) * (float(np.asarray(dt)) * every)
-        return EnsembleRun(MappingProxyType(columns), time, reduce)
+        return EnsembleRun(columns, time, reduce)
 
 
 def simulate_ensemble(
@@ -308,7 +325,7 @@ def simulate_ensemble(
     columns = {
         name: np.concatenate([run.columns[name] for run in found]) for name in found[0].columns
     }
-    return EnsembleRun(MappingProxyType(columns), found[0].time, reduce)
+    return EnsembleRun(columns, found[0].time, reduce)
 
 
 @dataclass(frozen=True)
@@ -339,23 +356,6 @@ def _rows(given: npt.ArrayLike | None, low: int, high: int) -> Any:
     if given is None or np.ndim(given) < 2:
         return given
     return np.asarray(given)[low:high]
-
-
-def _path(motor: Motor, name: str) -> str:
-    """The whole path of a parameter."""
-    known = list(motor.parameters)
-    if name in known:
-        return name
-    fits = [path for path in known if path.rsplit(".", 1)[-1] == name]
-    if len(fits) == 1:
-        return fits[0]
-    if fits:
-        raise InputError(f"parameters: '{name}' may be {listed(fits)}; give the whole path")
-    words = [path.rsplit(".", 1)[-1] for path in known]
-    raise InputError(
-        f"parameters: '{name}' is unknown{did_you_mean(name, [*known, *words])}; known: "
-        f"{listed(known)}"
-    )
 
 
 def _row(name: str, values: npt.ArrayLike, members: int | None) -> FloatArray:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
@@ -16,11 +15,12 @@ from ._native import FrictionModel
 from .catalogue import LawRecord, laws
 from .drive import gain_name, servo_numbers
 from .errors import InputError
+from .frozen import ByPath, Frozen, freeze, path_of
 from .motor import Motor
 from .parameter import Parameter
 from .recording.units import Motion
 from .trajectory import Trajectory
-from .wording import did_you_mean, listed
+from .wording import listed
 
 __all__ = ["Effect", "Friction", "Plant"]
 
@@ -35,6 +35,9 @@ class Friction:
     law: str
     parameters: Mapping[str, Parameter] = field(default_factory=dict)
     options: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        freeze(self, Frozen, "parameters", "options")
 
     def model(self) -> FrictionModel:
         """The friction model; what is not stated takes the catalogue's default."""
@@ -58,6 +61,9 @@ class Effect:
 
     name: str
     parameters: Mapping[str, Parameter] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        freeze(self, Frozen, "parameters")
 
 
 @dataclass(frozen=True)
@@ -94,6 +100,9 @@ class Plant:
     controller: Mapping[str, Any] = field(default_factory=dict)
     source: str = field(default="plant", compare=False)
 
+    def __post_init__(self) -> None:
+        freeze(self, Frozen, "drive", "body", "sensor", "controller")
+
     @classmethod
     def load(cls, path: str | Path) -> Plant:
         """Read a plant file.
@@ -119,15 +128,15 @@ class Plant:
         plant = cls(
             friction=Friction(
                 parts.law,
-                MappingProxyType(parts.friction),
-                MappingProxyType(parts.options),
+                parts.friction,
+                parts.options,
             ),
             motion=parts.motion,
-            drive=MappingProxyType(parts.drive),
-            body=MappingProxyType(parts.body),
-            effects=tuple(Effect(name, MappingProxyType(p)) for name, p in parts.effects),
-            sensor=MappingProxyType(parts.sensor),
-            controller=MappingProxyType(parts.controller),
+            drive=parts.drive,
+            body=parts.body,
+            effects=tuple(Effect(name, p) for name, p in parts.effects),
+            sensor=parts.sensor,
+            controller=parts.controller,
             source=source,
         )
         plant._check()
@@ -270,7 +279,7 @@ class Plant:
         paths |= {f"friction.{name}": p for name, p in self.friction.parameters.items()}
         for effect in self.effects:
             paths |= {f"effects.{effect.name}.{n}": p for n, p in effect.parameters.items()}
-        return MappingProxyType(paths)
+        return ByPath(paths)
 
     def following(self, paths: Sequence[str]) -> list[tuple[str, int, float]]:
         """What moves along with parameters of these paths because the plant leaves it open.
@@ -306,22 +315,15 @@ class Plant:
         stated = self.parameters
         changed = dict(stated)
         for name, value in values.items():
-            hits = [p for p in stated if p == name or p.rsplit(".", 1)[-1] == name]
-            if len(hits) != 1:
-                what = "is ambiguous" if hits else "is not stated"
-                raise InputError(
-                    f"{self.source}: parameter '{name}' {what}{did_you_mean(name, stated)}; "
-                    f"there are {listed(hits or stated)}"
-                )
-            changed[hits[0]] = replace(stated[hits[0]], value=float(value))
+            path = path_of(name, stated, f"{self.source}: ")
+            changed[path] = replace(stated[path], value=float(value))
 
         def part(prefix: str) -> Mapping[str, Parameter]:
-            own = {p.removeprefix(prefix): v for p, v in changed.items() if p.startswith(prefix)}
-            return MappingProxyType(own)
+            return {p.removeprefix(prefix): v for p, v in changed.items() if p.startswith(prefix)}
 
         plant = replace(
             self,
-            drive=MappingProxyType({**self.drive, **part("drive.")}),
+            drive={**self.drive, **part("drive.")},
             body=part("body."),
             friction=replace(self.friction, parameters=part("friction.")),
             effects=tuple(replace(e, parameters=part(f"effects.{e.name}.")) for e in self.effects),

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from .errors import InputError
+from .frozen import Frozen, freeze
 from .keys import choice, known
 from .parameter import number
 from .plant import Plant
@@ -60,7 +61,7 @@ class Session:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "recordings", tuple(self.recordings))
-        object.__setattr__(self, "replicates", dict(self.replicates))
+        freeze(self, Frozen, "replicates")
         for index, of in self.replicates.items():
             if index == of or not {index, of} <= set(range(len(self.recordings))):
                 raise InputError(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from .errors import InputError
+from .frozen import Frozen
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -71,12 +71,12 @@ class Trajectory:
     @property
     def statistics(self) -> Mapping[str, int]:
         """How often each branch was taken since the last reset."""
-        return MappingProxyType(self._statistics)
+        return Frozen(self._statistics)
 
     @property
     def columns(self) -> Mapping[str, FloatArray]:
         """The columns by name."""
-        return MappingProxyType(self._columns)
+        return Frozen(self._columns)
 
     @property
     def dt(self) -> float | FloatArray:

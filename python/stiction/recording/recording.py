@@ -8,13 +8,13 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
+from ..frozen import Frozen
 from ..wording import did_you_mean
 from .columns import ROLES, Columns
 from .formats import read_table
@@ -233,12 +233,12 @@ class Recording:
     @property
     def channels(self) -> Mapping[str, FloatArray]:
         """Every channel besides time, input and position, by name."""
-        return MappingProxyType(self.__dict__["_channels"])
+        return Frozen(self.__dict__["_channels"])
 
     @property
     def units(self) -> Mapping[str, str]:
         """SI unit of every channel, "" where nothing tells it."""
-        return MappingProxyType(self.__dict__["_units"])
+        return Frozen(self.__dict__["_units"])
 
     @property
     def effort(self) -> FloatArray | None:
@@ -276,14 +276,9 @@ class Recording:
     def _repr_html_(self) -> str:
         return as_html(self)
 
-    def __getstate__(self) -> dict[str, Any]:
-        # A read-only view of a dict cannot be pickled.
-        return {**self.__dict__, "settings": dict(self.settings)}
-
     def __setstate__(self, state: dict[str, Any]) -> None:
         # Copies and pickles come back with writeable arrays.
         self.__dict__.update(state)
-        self.__dict__["settings"] = MappingProxyType(state["settings"])
         for array in (self.time, self.input, self.position, *self.channels.values()):
             if array is not None:
                 array.flags.writeable = False
@@ -336,7 +331,7 @@ def _labels(
             raise InputError(f"Recording: the setting {name} is {value!r}; give a finite number")
     own = {name: float(value) for name, value in (settings or {}).items()}
     settled = {"role": role, "kind": kind, "start_s": float(start_s)}
-    return {**settled, "settings": MappingProxyType(own)}
+    return {**settled, "settings": Frozen(own)}
 
 
 def _check_channels(source: str, values: Mapping[str, FloatArray]) -> None:
