@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import plant_file
 from ._native import FrictionModel
 from .catalogue import LawRecord, laws
-from .drive import gain_name, servo_numbers
+from .drive import check_servo, gain_name, servo_numbers
 from .errors import InputError
 from .frozen import ByPath, Frozen, freeze, path_of
 from .motor import Motor
@@ -269,7 +269,11 @@ class Plant:
                 f"{self.source}: {listed(servo)} is set for a recording, and only a servo has it; "
                 "write [drive] kind = 'servo', or leave it out"
             )
-        return replace(self, drive={**self.drive, **servo}, body={**self.body, **payload})
+        changed = replace(self, drive={**self.drive, **servo}, body={**self.body, **payload})
+        if servo:
+            check_servo(changed.drive, f"{self.source}: [drive] as set for a recording:")
+        plant_file.check_payload(changed.body, self.motion, f"{self.source}: [body]")
+        return changed
 
     @property
     def parameters(self) -> Mapping[str, Parameter]:

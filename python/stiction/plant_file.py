@@ -16,7 +16,7 @@ from .parameter import Parameter, number
 from .recording.units import Motion
 from .wording import listed
 
-__all__ = ["Parts", "parse", "read", "read_toml", "render"]
+__all__ = ["Parts", "check_payload", "parse", "read", "read_toml", "render"]
 
 MOTIONS: Final = ("rotary", "linear")
 _TABLES: Final = ("motion", "drive", "body", "friction", "effects", "sensor", "controller")
@@ -151,6 +151,7 @@ def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Param
                     "from 0"
                 )
             body[name] = Parameter(body[name].value, fixed=True)
+    check_payload(body, motion, where)
     if "payload_m" in body and motion == "linear":
         raise InputError(f"{where} payload_m is for rotary plants; a linear one carries payload_kg")
     if "weight_n" in body and motion == "rotary":
@@ -158,6 +159,20 @@ def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Param
             f"{where} weight_n is for linear plants; use gravity_amplitude for a rotary one"
         )
     return body
+
+
+def check_payload(body: Mapping[str, Parameter], motion: str, where: str) -> None:
+    """Refuse a payload of which nobody knows how far from the axis it hangs.
+
+    Raises
+    ------
+    InputError
+    """
+    if motion == "rotary" and "payload_kg" in body and "payload_m" not in body:
+        raise InputError(
+            f"{where} payload_kg is stated without payload_m; state how far from the axis it "
+            "hangs, in m"
+        )
 
 
 def _check_scale(
