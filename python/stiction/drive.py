@@ -10,10 +10,20 @@ from .keys import choice, known
 from .parameter import Parameter, number
 from .wording import listed
 
-__all__ = ["GOALS", "SERVO_NUMBERS", "check_servo", "gain_name", "read_drive", "servo_numbers"]
+__all__ = [
+    "GOALS",
+    "SERVO_NUMBERS",
+    "assumed_gain",
+    "check_servo",
+    "gain_name",
+    "read_drive",
+    "servo_numbers",
+]
 
 INPUTS: Final = ("current_a", "voltage_v", "torque_nm", "force_n")
 """What a drive may be commanded in."""
+_NO_EFFORT: Final = {"current_a": "A", "voltage_v": "V"}
+"""Inputs that are no effort, and their units."""
 GOALS: Final = {"rotary": "goal_rad", "linear": "goal_m"}
 """What a servo is commanded in."""
 KINDS: Final = ("direct", "prescribed_motion", "servo")
@@ -44,6 +54,27 @@ _OTHER_MOTION: Final = {"rotary": "force_n", "linear": "torque_nm"}
 def gain_name(drive: Mapping[str, Any]) -> str:
     """What a drive calls its effort per unit: of input, or of a servo's current."""
     return "torque_constant" if drive.get("kind") == "servo" else "gain"
+
+
+def assumed_gain(drive: Mapping[str, Any], input_unit: str, effort_unit: str) -> str:
+    """That the gain of an input which is no effort is stated nowhere, "" where nothing is assumed.
+
+    Parameters
+    ----------
+    drive : Mapping
+    input_unit : str
+        Of the recorded input, "" where nothing tells.
+    effort_unit : str
+    """
+    if gain_name(drive) in drive or drive.get("kind", "direct") != "direct":
+        return ""
+    unit = _NO_EFFORT.get(drive.get("input", ""), input_unit)
+    if unit not in _NO_EFFORT.values():
+        return ""
+    return (
+        f"[drive] gain is not stated and taken as 1 {effort_unit}/{unit}: inertia and friction are "
+        "in units of the input"
+    )
 
 
 def servo_numbers(drive: Mapping[str, Any]) -> dict[str, float] | None:

@@ -181,9 +181,12 @@ class ModelSummary:
     noise_floor_rms : float
         Residual that noise and rounding alone would leave.
     remarks : tuple of str
-        Bounds that were hit, parameters that the data do not determine, loops that ran away.
+        Bounds that were hit, parameters that the data do not determine, loops that ran away, and
+        what is assumed.
     replay : Replay or None
         Position error in closed loop; None where controller or reference are not known.
+    assumed : tuple of str
+        What the plant leaves open and every value hangs on, in sentences.
     """
 
     plant: Plant
@@ -197,6 +200,7 @@ class ModelSummary:
     noise_floor_rms: float
     remarks: tuple[str, ...]
     replay: Replay | None = None
+    assumed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")

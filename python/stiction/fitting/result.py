@@ -73,6 +73,8 @@ class FitResult:
         By how much the input was taken to be stamped early, s; bounded by half a sample.
     starts : Mapping of str to Mapping
         Friction state at the first row of each recording that tells of it.
+    assumed : tuple of str
+        What the plant leaves open and every value hangs on, in sentences.
     """
 
     plant: Plant
@@ -93,6 +95,7 @@ class FitResult:
     evaluations: int
     timing_offset: float = 0.0
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    assumed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")
@@ -103,6 +106,11 @@ class FitResult:
     def stderr(self) -> Mapping[str, float]:
         """Standard error of each parameter in its SI unit, by path or bare last word."""
         return ByPath({path: p.stderr for path, p in self.parameters.items()})
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """All that is to be known beside the numbers, in sentences."""
+        return (*self.bounds_hit, *self.undetermined, *self.assumed)
 
     def __getitem__(self, name: str) -> FitParameter:
         """The parameter at a path, or of a bare name where that is unique.
@@ -142,7 +150,7 @@ class FitResult:
         return [*lines, self.split]
 
     def _remarks(self) -> list[str]:
-        return [f"  {sentence}" for sentence in (*self.bounds_hit, *self.undetermined)]
+        return [f"  {sentence}" for sentence in self.remarks]
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -175,6 +183,7 @@ class FitResult:
             "correlations": self.correlations.tolist(),
             "bounds_hit": list(self.bounds_hit),
             "undetermined": list(self.undetermined),
+            "assumed": list(self.assumed),
             "r2": self.r2,
             "train_rms": self.train_rms,
             "train_relative": self.train_relative,

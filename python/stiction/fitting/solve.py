@@ -8,6 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..drive import assumed_gain
 from ..errors import InputError, NotEnoughData
 from ..plant import Plant
 from ..recording import Recording
@@ -284,6 +285,7 @@ def evaluate(
     fitted = _errors(plant, train, nuisances)
     heldout = _errors(plant, held, nuisances) if held else None
     stated = as_stated(plant, given)
+    told = assumed_gain(given.drive, train[0].form.input_unit, given.effort_unit)
     return FitResult(
         plant=stated,
         parameters=parameters,
@@ -291,6 +293,7 @@ def evaluate(
         correlations=correlations(matrix),
         bounds_hit=_bound_sentences(parameters, stated),
         undetermined=_undetermined_sentences(parameters, flat, train),
+        assumed=(told,) if told else (),
         r2=fitted[2],
         train_rms=fitted[0],
         train_relative=fitted[1],
