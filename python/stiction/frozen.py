@@ -76,7 +76,7 @@ def freeze(owner: object, kind: type[Frozen[Any, Any]], *names: str) -> None:
         object.__setattr__(owner, name, kind(getattr(owner, name)))
 
 
-def path_of(name: str, paths: Iterable[str], where: str = "") -> str:
+def path_of(name: str, paths: Iterable[str], where: str = "", lacking: str = "is unknown") -> str:
     """The whole path of a parameter that is named by it or by its bare last word.
 
     Parameters
@@ -86,6 +86,8 @@ def path_of(name: str, paths: Iterable[str], where: str = "") -> str:
         There are these.
     where : str
         What the error sentence begins with, such as ``"plant.toml: "``.
+    lacking : str
+        What is the matter with a name that is none of them.
 
     Raises
     ------
@@ -102,4 +104,4 @@ def path_of(name: str, paths: Iterable[str], where: str = "") -> str:
     if hits:
         raise UnknownName(f"{where}parameter '{name}' may be {listed(hits)}; give the whole path")
     near = did_you_mean(name, [*known, *words]) if isinstance(name, str) else ""
-    raise UnknownName(f"{where}parameter {name!r} is unknown{near}; known: {listed(known)}")
+    raise UnknownName(f"{where}parameter {name!r} {lacking}{near}; known: {listed(known)}")

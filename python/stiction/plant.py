@@ -10,14 +10,14 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from . import plant_file
+from . import given, plant_file
 from ._native import FrictionModel
 from .catalogue import LawRecord, laws
 from .drive import check_servo, gain_name, servo_numbers
 from .errors import InputError
 from .frozen import ByPath, Frozen, freeze, path_of
 from .motor import Motor
-from .parameter import Parameter
+from .parameter import Parameter, number
 from .recording.units import Motion
 from .trajectory import Trajectory
 from .wording import listed
@@ -112,7 +112,7 @@ class Plant:
         InputError
             Missing file, not TOML, unknown or missing keys, wrong types, values out of bounds.
         """
-        table, source = plant_file.read(Path(path))
+        table, source = plant_file.read(given.path(path, "Plant.load"))
         return cls.from_dict(table, source=source)
 
     @classmethod
@@ -124,6 +124,7 @@ class Plant:
         InputError
             As for ``load``.
         """
+        table = given.mapping(table, source, "the tables of a plant file")
         parts = plant_file.parse(table, source)
         plant = cls(
             friction=Friction(
@@ -143,9 +144,16 @@ class Plant:
         return plant
 
     def save(self, path: str | Path) -> Path:
-        """Write a plant file; returns the path."""
-        path = Path(path)
-        path.write_text(plant_file.render(self.to_dict()), encoding="utf-8")
+        """Write a plant file; returns the path.
+
+        Raises
+        ------
+        InputError
+            The file cannot be written.
+        """
+        path = given.path(path, "Plant.save")
+        with given.written(path):
+            path.write_text(plant_file.render(self.to_dict()), encoding="utf-8")
         return path
 
     def to_dict(self) -> dict[str, Any]:
@@ -314,13 +322,15 @@ class Plant:
         Raises
         ------
         InputError
-            A path that the plant does not state.
+            A path that the plant does not state, a value that is not a number.
         """
         stated = self.parameters
         changed = dict(stated)
         for name, value in values.items():
-            path = path_of(name, stated, f"{self.source}: ")
-            changed[path] = replace(stated[path], value=float(value))
+            path = path_of(name, stated, f"{self.source}: ", "is not stated")
+            changed[path] = replace(
+                stated[path], value=number(_plain(value), f"{self.source}: {path}")
+            )
 
         def part(prefix: str) -> Mapping[str, Parameter]:
             return {p.removeprefix(prefix): v for p, v in changed.items() if p.startswith(prefix)}
@@ -420,6 +430,11 @@ class Plant:
             f"<tr><td>{path}</td><td>{p.value:.6g}</td></tr>" for path, p in self.parameters.items()
         )
         return f"<p>{self!r}</p><table><tr><th>parameter</th><th>value</th></tr>{rows}</table>"
+
+
+def _plain(value: Any) -> Any:
+    """A number of numpy as Python's."""
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def _table(parameter: Parameter) -> dict[str, float | bool]:

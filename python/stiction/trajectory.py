@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from . import given
 from .errors import InputError
 from .frozen import Frozen
 
@@ -169,24 +170,31 @@ class Trajectory:
         return pd.DataFrame(dict(self._columns), index=pd.Index(self.time, name="time_s"))
 
     def save(self, path: str | Path) -> Path:
-        """Write time and columns as NPZ (or CSV, by the name's ending); returns the path."""
-        path = Path(path)
+        """Write time and columns as NPZ (or CSV, by the name's ending); returns the path.
+
+        Raises
+        ------
+        InputError
+            An unknown ending, a folder that is not there, a file that cannot be written.
+        """
+        path = given.path(path, "Trajectory.save")
         if not path.parent.is_dir():
             raise InputError(f"{path}: there is no folder {path.parent}; make it first")
         table = {"time_s": self.time, **self._columns}
-        if path.suffix == ".npz":
-            np.savez_compressed(path, **table)  # type: ignore[arg-type]
-        elif path.suffix == ".csv":
-            np.savetxt(
-                path,
-                np.column_stack(list(table.values())),
-                delimiter=",",
-                header=",".join(table),
-                comments="",
-                fmt="%.17g",
-            )
-        else:
+        if path.suffix not in (".npz", ".csv"):
             raise InputError(f"{path}: ending '{path.suffix}' is not known; use .npz or .csv")
+        with given.written(path):
+            if path.suffix == ".npz":
+                np.savez_compressed(path, **table)  # type: ignore[arg-type]
+            else:
+                np.savetxt(
+                    path,
+                    np.column_stack(list(table.values())),
+                    delimiter=",",
+                    header=",".join(table),
+                    comments="",
+                    fmt="%.17g",
+                )
         return path
 
     def plot(self) -> Figure:

@@ -11,7 +11,8 @@ from tests.reference.coulomb_reference import simulate_coulomb
 import stiction as st
 from stiction.report.fit_page import fit_page
 
-SENTENCE = "[drive] gain is not stated and taken as 1 N·m/A: inertia and friction are in units of the input"
+TAKEN = "[drive] gain is not stated and taken as 1 N·m/A"
+SENTENCE = f"{TAKEN}: inertia and friction are in units of the input"
 
 
 @cache

@@ -15,8 +15,10 @@ from ..errors import InputError, NotEnoughData
 from ..fitting.forms import told as residual_told
 from ..fitting.pushes import told as pushes_told
 from ..fitting.result import FitResult
+from ..given import instance
 from ..plant import Effect, Plant
 from ..recording import Check, Recording
+from ..recording.recording import recordings_of
 from ..recording.split import name_of
 from ..recording.usable import checks_of, usable
 from ..session import Session
@@ -111,6 +113,7 @@ def diagnose(
     machine = plant if plant is not None else whole.plant
     if machine is None:
         raise InputError('session: plant is missing; write plant = "plant.toml", or give one')
+    instance(machine, Plant, "diagnose: plant", "a Plant, as Plant.load returns it")
     _check_numbers(surrogates, seed, threads)
     unwanted = left_out(without)
     others = law_names(laws, machine.friction.law)
@@ -152,7 +155,7 @@ def diagnose(
 def _session(session: Session | Sequence[Recording] | Recording) -> Session:
     if isinstance(session, Session):
         return session
-    recordings = [session] if isinstance(session, Recording) else list(session)
+    recordings = recordings_of(session, "diagnose")
     if not recordings:
         raise InputError("session: there are no recordings to diagnose; give at least one")
     return Session(recordings)

@@ -10,9 +10,11 @@ import numpy as np
 
 from ..drive import assumed_gain
 from ..errors import InputError, NotEnoughData
+from ..given import instance, whole
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
+from ..recording.recording import recordings_of
 from ..recording.split import BLOCK_S, name_of, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
@@ -128,9 +130,11 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         Nothing to fit: no recordings, no motion, no free parameter, too few rows; a plant that
         runs away from every start.
     """
-    recordings = [session] if isinstance(session, Recording) else list(session)
+    instance(plant, Plant, "fit: plant", "a Plant, as Plant.load returns it")
+    recordings = list(recordings_of(session, "fit"))
     if not recordings:
         raise InputError("there are no recordings to fit; give at least one")
+    max_evaluations = whole(max_evaluations, "max_evaluations", least=0)
     recordings, faults = _without_faults(recordings)
     seen = _Seen(plant, recordings)
     if not free_paths(plant) and not free_paths(complete(plant, [r.form for r in seen.train])[0]):
