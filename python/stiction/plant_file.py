@@ -112,6 +112,12 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
     drive = read_drive(section(table, "drive", source), motion, f"{source}: [drive]")
     body = _body(section(table, "body", source), motion, source)
     _check_scale(drive, body, friction, source)
+    controller = _controller(section(table, "controller", source), source)
+    if drive.get("kind") == "prescribed_motion" and "gain" in drive:
+        raise InputError(
+            f"{source}: [drive] gain goes with an input, and a machine whose motion is prescribed "
+            "has none; leave it out"
+        )
     return Parts(
         motion=motion,
         drive=drive,
@@ -121,7 +127,7 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
         options=options,
         effects=_effects(table.get("effects", []), motion, drive.get("kind") == "servo", source),
         sensor=_sensor(section(table, "sensor", source), motion, source),
-        controller=_controller(section(table, "controller", source), source),
+        controller=controller,
     )
 
 
@@ -158,6 +164,9 @@ def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Param
         raise InputError(
             f"{where} weight_n is for linear plants; use gravity_amplitude for a rotary one"
         )
+    for name in ("gravity_amplitude", "gravity_zero_rad"):
+        if name in body and motion == "linear":
+            raise InputError(f"{where} {name} is for rotary plants; use weight_n for a linear one")
     return body
 
 

@@ -6,6 +6,7 @@ import copy
 import multiprocessing
 import pickle
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -150,3 +151,8 @@ def test_a_run_of_many_machines_shows_itself() -> None:
     shown = ensemble_run()._repr_html_()
     assert "2 machines ran to the end" in shown
     assert "<th>position</th><td>(2, 5)</td>" in shown
+
+
+def test_a_share_that_is_not_known_is_not_shown() -> None:
+    assert ", r² " in str(fitted())
+    assert "r²" not in str(replace(fitted(), r2=float("nan")))

@@ -140,7 +140,9 @@ class FitResult:
         lines = [
             self.message,
             f"effort error where fitted: {100 * self.train_relative:.3f} % (relative 2-norm), "
-            f"{self.train_rms:.4g} {self.unit} rms, r² {self.r2:.5f}",
+            f"{self.train_rms:.4g} {self.unit} rms"
+            # An effort that is constant has no spread to explain.
+            + (f", r² {self.r2:.5f}" if math.isfinite(self.r2) else ""),
         ]
         if self.heldout_rms is not None and self.heldout_relative is not None:
             lines.append(
