@@ -10,10 +10,20 @@ from .keys import choice, known
 from .parameter import Parameter, number
 from .wording import listed
 
-__all__ = ["GOALS", "SERVO_NUMBERS", "gain_name", "read_drive", "servo_numbers"]
+__all__ = [
+    "GOALS",
+    "SERVO_NUMBERS",
+    "assumed_gain",
+    "check_servo",
+    "gain_name",
+    "read_drive",
+    "servo_numbers",
+]
 
 INPUTS: Final = ("current_a", "voltage_v", "torque_nm", "force_n")
 """What a drive may be commanded in."""
+_NO_EFFORT: Final = {"current_a": "A", "voltage_v": "V"}
+"""Inputs that are no effort, and their units."""
 GOALS: Final = {"rotary": "goal_rad", "linear": "goal_m"}
 """What a servo is commanded in."""
 KINDS: Final = ("direct", "prescribed_motion", "servo")
@@ -31,6 +41,13 @@ SERVO_NUMBERS: Final = {
 """Keys of a servo beside its torque constant, and what ``Motor`` calls them."""
 
 _NEEDED: Final = ("proportional", "supply_v", "resistance_ohm", "torque_constant")
+_ABOVE_ZERO: Final = {
+    "supply_v": (1e12, "a number of V above 0, up to 1e12"),
+    "resistance_ohm": (1e12, "a number of Ω above 0, up to 1e12"),
+    "current_limit_a": (float("inf"), "a number of A above 0"),
+    "duty_limit": (1.0, "a number above 0, up to 1"),
+}
+"""What a servo cannot move without: the greatest value that is allowed, and that in words."""
 _OTHER_MOTION: Final = {"rotary": "force_n", "linear": "torque_nm"}
 
 
@@ -39,11 +56,55 @@ def gain_name(drive: Mapping[str, Any]) -> str:
     return "torque_constant" if drive.get("kind") == "servo" else "gain"
 
 
+def assumed_gain(drive: Mapping[str, Any], input_unit: str, effort_unit: str) -> str:
+    """That the gain of an input which is no effort is stated nowhere, "" where nothing is assumed.
+
+    Parameters
+    ----------
+    drive : Mapping
+    input_unit : str
+        Of the recorded input, "" where nothing tells.
+    effort_unit : str
+    """
+    if gain_name(drive) in drive or drive.get("kind", "direct") != "direct":
+        return ""
+    unit = _NO_EFFORT.get(drive.get("input", ""), input_unit)
+    if unit not in _NO_EFFORT.values():
+        return ""
+    return (
+        f"[drive] gain is not stated and taken as 1 {effort_unit}/{unit}: inertia and friction are "
+        "in units of the input"
+    )
+
+
 def servo_numbers(drive: Mapping[str, Any]) -> dict[str, float] | None:
     """The numbers of a servo as ``Motor`` takes them, None where the drive is none."""
     if drive.get("kind") != "servo":
         return None
     return {SERVO_NUMBERS[key]: float(drive[key]) for key in SERVO_NUMBERS if key in drive}
+
+
+def check_servo(drive: Mapping[str, Any], where: str) -> None:
+    """Refuse the numbers of a servo that can move nothing.
+
+    What moves nothing leaves nothing, and would seem to fit perfectly.
+
+    Raises
+    ------
+    InputError
+        Neither a proportional nor an integral gain; a supply, resistance or limit that is not above
+        0 or that no servo has.
+    """
+    if drive["proportional"] == 0.0 == drive.get("integral", 0.0):
+        raise InputError(
+            f"{where} proportional = 0 without an integral moves nothing; give the duty per "
+            "distance from the goal"
+        )
+    for name, (most, wanted) in _ABOVE_ZERO.items():
+        if name in drive and not 0.0 < drive[name] <= most:
+            raise InputError(
+                f"{where} {name} = {drive[name]:g} is out of bounds: allowed is {wanted}; change it"
+            )
 
 
 def read_drive(given: Mapping[str, Any], motion: str, where: str) -> dict[str, Any]:
@@ -67,6 +128,7 @@ def read_drive(given: Mapping[str, Any], motion: str, where: str) -> dict[str, A
         drive |= {
             key: number(given[key], f"{where} {key}") for key in SERVO_NUMBERS if key in given
         }
+        check_servo(drive, where)
     else:
         known(given, ("kind", "input", "gain", "limit"), where)
         if "input" in given:

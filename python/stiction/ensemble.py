@@ -6,18 +6,19 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from html import escape
 from itertools import pairwise
-from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from . import given
 from ._native import Ensemble as _Ensemble
-from .errors import InputError
+from .errors import InputError, UnknownName
+from .frozen import Frozen, freeze, path_of
 from .motor import Motor
 from .trajectory import FloatArray
-from .whole import whole
 from .wording import did_you_mean, listed
 
 __all__ = ["Ensemble", "EnsembleRun", "Reduce", "simulate_ensemble"]
@@ -25,10 +26,12 @@ __all__ = ["Ensemble", "EnsembleRun", "Reduce", "simulate_ensemble"]
 Reduce = Literal["last", "rms", "extremes"]
 """What is kept instead of rows: the value at the end, the root mean square of the distance from a
 target, or the least and the greatest value."""
+EACH: Final = 6144.0
+"""Bytes that a machine with a large state takes while it is set up; measured."""
 _REDUCTIONS = ("last", "rms", "extremes")
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EnsembleRun:
     """What a run of many machines kept; read the outputs as attributes or by name.
 
@@ -44,6 +47,9 @@ class EnsembleRun:
     columns: Mapping[str, FloatArray]
     time: FloatArray
     reduce: str | None = None
+
+    def __post_init__(self) -> None:
+        freeze(self, Frozen, "columns")
 
     @property
     def success(self) -> bool:
@@ -68,6 +74,18 @@ class EnsembleRun:
         kept = f", reduced to {self.reduce}" if self.reduce else ""
         return f"<{len(self)} machines: {shown}{kept}>"
 
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><th>{escape(name)}</th><td>{values.shape}</td><td>{values.min():.6g}</td>"
+            f"<td>{values.max():.6g}</td></tr>"
+            for name, values in self.columns.items()
+            if values.size
+        )
+        head = "<tr><th>output</th><th>shape</th><th>least</th><th>greatest</th></tr>"
+        return (
+            f"<p>{escape(repr(self))}</p><p>{escape(self.message)}</p><table>{head}{rows}</table>"
+        )
+
     def __len__(self) -> int:
         return len(next(iter(self.columns.values()))) if self.columns else 0
 
@@ -79,7 +97,7 @@ class EnsembleRun:
             return self.columns[name]
         except KeyError:
             have = ", ".join(self.columns)
-            raise KeyError(f"the run kept no '{name}'; it has {have}") from None
+            raise UnknownName(f"the run kept no '{name}'; it has {have}") from None
 
     def __getattr__(self, name: str) -> FloatArray:
         columns = self.__dict__.get("columns", {})
@@ -125,9 +143,10 @@ class Ensemble(_Ensemble):
         parameters: Mapping[str, npt.ArrayLike] | None = None,
     ) -> Ensemble:
         """See the class."""
-        rows = {
-            _path(motor, name): _row(name, v, members) for name, v in (parameters or {}).items()
-        }
+        given.instance(motor, Motor, "ensemble: motor", "a Motor")
+        if members is not None:
+            members = given.whole(members, "members", least=1)
+        rows = _rows_by_path(motor, parameters, members)
         sizes = {len(row) for row in rows.values()}
         if members is None and len(sizes) != 1:
             raise InputError(
@@ -136,7 +155,8 @@ class Ensemble(_Ensemble):
                 else f"parameters have {listed([str(n) for n in sorted(sizes)])} values; give all "
                 "of them one value a member"
             )
-        count = int(members if members is not None else sizes.pop())
+        count = members if members is not None else sizes.pop()
+        given.memory_for(float(count) * EACH, f"{count} machines; give fewer at a time")
         table = np.concatenate(list(rows.values())) if rows else None
         return super().__new__(cls, motor, count, list(rows), table)
 
@@ -187,11 +207,22 @@ class Ensemble(_Ensemble):
             raise InputError(f"reduce = '{reduce}' is unknown{near}; known: {listed(_REDUCTIONS)}")
         if isinstance(outputs, str):
             raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
-        every = whole("every", every, 1)
+        every = given.whole(every, "every", least=1)
+        if threads is None:
+            threads = os.cpu_count() or 1
+        threads = given.whole(threads, "threads", least=1)
         if reduce is not None and every != 1:
             raise InputError("every goes with rows, and reduce keeps none; give one of them")
         if target is not None and reduce != "rms":
             raise InputError('target goes with reduce="rms"; leave it out')
+        given.unmasked(current, "current")
+        samples = np.shape(current)[-1:] or (0,)
+        if reduce is None:
+            kept = (2.0 * len(outputs) + 1.0) * len(self) * (samples[0] // every)
+            given.memory_for(
+                8.0 * kept,
+                f"the rows of {len(self)} machines; keep fewer by every, reduce or outputs",
+            )
         flat = self.run(
             current,
             dt,
@@ -200,7 +231,7 @@ class Ensemble(_Ensemble):
             keep=reduce or "every",
             every=every,
             target=target,
-            threads=threads or os.cpu_count() or 1,
+            threads=threads,
         )
         members = len(self)
         columns = {}
@@ -209,11 +240,11 @@ class Ensemble(_Ensemble):
             columns[name] = rows[:, 0] if reduce in ("last", "rms") else rows
         time: FloatArray = np.empty(0)
         if reduce is None:
-            steps = np.broadcast_to(np.asarray(dt, dtype=np.float64), np.shape(current)[-1:])
+            steps = np.broadcast_to(np.asarray(dt, dtype=np.float64), samples)
             time = np.cumsum(steps)[every - 1 :: every]
             if np.ndim(dt) == 0:
                 time = np.arange(1.0, len(time) + 1.0) * (float(np.asarray(dt)) * every)
-        return EnsembleRun(MappingProxyType(columns), time, reduce)
+        return EnsembleRun(columns, time, reduce)
 
 
 def simulate_ensemble(
@@ -272,12 +303,14 @@ def simulate_ensemble(
     >>> run.position.shape
     (8,)
     """
-    inputs = np.asarray(currents, dtype=np.float64)
-    given = {
-        name: _row(name, values, len(inputs) if inputs.ndim == 2 else None)
-        for name, values in (parameters or {}).items()
-    }
-    sizes = {len(row) for row in given.values()} | ({len(inputs)} if inputs.ndim == 2 else set())
+    given.instance(motor, Motor, "simulate_ensemble: motor", "a Motor")
+    if executor is not None and not callable(getattr(executor, "submit", None)):
+        given.instance(executor, Executor, "executor", "one of concurrent.futures, or none")
+    if parts is not None:
+        parts = given.whole(parts, "parts", least=1)
+    inputs = given.numbers(currents, "currents")
+    values = _rows_by_path(motor, parameters, len(inputs) if inputs.ndim == 2 else None)
+    sizes = {len(row) for row in values.values()} | ({len(inputs)} if inputs.ndim == 2 else set())
     if len(sizes) > 1:
         raise InputError(
             f"parameters and currents are for {listed([str(n) for n in sorted(sizes)])} machines; "
@@ -288,7 +321,7 @@ def simulate_ensemble(
     if isinstance(outputs, str):
         keywords["outputs"] = outputs
     if executor is None:
-        ensemble = Ensemble(motor, members, parameters=given)
+        ensemble = Ensemble(motor, members, parameters=values)
         return ensemble.simulate(inputs, dt, load=load, target=target, threads=threads, **keywords)
     cuts = np.linspace(0, members, min(members, parts or 4 * (os.cpu_count() or 1)) + 1)
     edges = [round(cut) for cut in cuts]
@@ -297,7 +330,7 @@ def simulate_ensemble(
             _part,
             motor,
             high - low,
-            {name: row[low:high] for name, row in given.items()},
+            {name: row[low:high] for name, row in values.items()},
             _rows(inputs, low, high),
             dt,
             {**keywords, "load": _rows(load, low, high), "target": _rows(target, low, high)},
@@ -308,7 +341,7 @@ def simulate_ensemble(
     columns = {
         name: np.concatenate([run.columns[name] for run in found]) for name in found[0].columns
     }
-    return EnsembleRun(MappingProxyType(columns), found[0].time, reduce)
+    return EnsembleRun(columns, found[0].time, reduce)
 
 
 @dataclass(frozen=True)
@@ -341,31 +374,25 @@ def _rows(given: npt.ArrayLike | None, low: int, high: int) -> Any:
     return np.asarray(given)[low:high]
 
 
-def _path(motor: Motor, name: str) -> str:
-    """The whole path of a parameter."""
-    known = list(motor.parameters)
-    if name in known:
-        return name
-    fits = [path for path in known if path.rsplit(".", 1)[-1] == name]
-    if len(fits) == 1:
-        return fits[0]
-    if fits:
-        raise InputError(f"parameters: '{name}' may be {listed(fits)}; give the whole path")
-    words = [path.rsplit(".", 1)[-1] for path in known]
-    raise InputError(
-        f"parameters: '{name}' is unknown{did_you_mean(name, [*known, *words])}; known: "
-        f"{listed(known)}"
+def _rows_by_path(
+    motor: Motor, parameters: Mapping[str, npt.ArrayLike] | None, members: int | None
+) -> dict[str, FloatArray]:
+    """Values of each parameter by its whole path."""
+    stated = given.mapping(
+        parameters, "parameters", 'values by name, as in {"coulomb": [1.0, 2.0]}'
     )
+    rows: dict[str, FloatArray] = {}
+    for name, values in stated.items():
+        path = path_of(name, motor.parameters, "parameters: ")
+        if path in rows:
+            raise InputError(f"parameters: '{path}' is named twice; drop one of its names")
+        rows[path] = _row(name, values, members)
+    return rows
 
 
 def _row(name: str, values: npt.ArrayLike, members: int | None) -> FloatArray:
     """Values of one parameter, one a machine."""
-    try:
-        row = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError(
-            f"parameters['{name}'] is not an array of numbers; give one a member"
-        ) from None
+    row = given.numbers(values, f"parameters['{name}']")
     if row.ndim == 0 and members is not None:
         row = np.full(members, float(row))
     if row.ndim != 1 or (members is not None and len(row) != members):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["InputError", "NotEnoughData"]
+__all__ = ["InputError", "NotEnoughData", "UnknownName"]
 
 
 class InputError(ValueError):
@@ -18,3 +18,10 @@ class NotEnoughData(InputError):  # noqa: N818 (it is raised and named as what i
 
     A diagnosis answers it with the verdict ``not_testable``.
     """
+
+
+class UnknownName(InputError, KeyError):  # noqa: N818 (it is raised and named as what is the matter)
+    """A name that is looked up and is not there; a mapping's ``in`` and ``get`` take it as that."""
+
+    # A KeyError shows its argument quoted, and this is a sentence.
+    __str__ = Exception.__str__

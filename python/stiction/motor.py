@@ -8,7 +8,7 @@ from typing import Any, Final, Self
 import numpy as np
 import numpy.typing as npt
 
-from . import _native
+from . import _native, given
 from ._native import FrictionModel
 from .errors import InputError
 from .trajectory import FloatArray, Trajectory
@@ -17,6 +17,10 @@ __all__ = ["Motor"]
 
 TENTH_OF_AN_ARC_SECOND: Final = 0.1 * np.pi / 648000
 """rad."""
+
+
+MANY: Final = 1 << 20
+"""Samples from which on memory is asked for beforehand."""
 
 
 class Motor(_native.Motor):
@@ -93,6 +97,11 @@ class Motor(_native.Motor):
             Wrong shapes, values that are not finite, unknown outputs.
         """
         names = None if outputs is None else _names(outputs)
+        given.unmasked(current, "current")
+        size = getattr(current, "size", 0)
+        if out is None and size > MANY:
+            kept = len(self.output_names if names is None else names)
+            given.memory_for(8.0 * size * kept, f"{size} rows of {kept} outputs; give fewer")
         columns, length, start, statistics = self.run(
             current, dt, load=load, temperature=temperature, enabled=enabled, outputs=names, out=out
         )

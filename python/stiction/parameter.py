@@ -75,7 +75,8 @@ class Parameter:
             raise InputError(
                 f"{where}: value = {value} is out of its own bounds {bounds}; change one of them"
             )
-        return cls(value, low, high, fixed)
+        # Bounds that leave nothing to fit fix it as well.
+        return cls(value, low, high, fixed or low == high == value)
 
 
 def number(given: Any, where: str) -> float:

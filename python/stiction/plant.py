@@ -5,22 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from . import plant_file
+from . import given, plant_file
 from ._native import FrictionModel
 from .catalogue import LawRecord, laws
-from .drive import gain_name, servo_numbers
+from .drive import check_servo, gain_name, servo_numbers
 from .errors import InputError
+from .frozen import ByPath, Frozen, freeze, path_of
 from .motor import Motor
-from .parameter import Parameter
+from .parameter import Parameter, number
 from .recording.units import Motion
 from .trajectory import Trajectory
-from .wording import did_you_mean, listed
+from .wording import listed
 
 __all__ = ["Effect", "Friction", "Plant"]
 
@@ -35,6 +35,9 @@ class Friction:
     law: str
     parameters: Mapping[str, Parameter] = field(default_factory=dict)
     options: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        freeze(self, Frozen, "parameters", "options")
 
     def model(self) -> FrictionModel:
         """The friction model; what is not stated takes the catalogue's default."""
@@ -58,6 +61,9 @@ class Effect:
 
     name: str
     parameters: Mapping[str, Parameter] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        freeze(self, Frozen, "parameters")
 
 
 @dataclass(frozen=True)
@@ -94,6 +100,9 @@ class Plant:
     controller: Mapping[str, Any] = field(default_factory=dict)
     source: str = field(default="plant", compare=False)
 
+    def __post_init__(self) -> None:
+        freeze(self, Frozen, "drive", "body", "sensor", "controller")
+
     @classmethod
     def load(cls, path: str | Path) -> Plant:
         """Read a plant file.
@@ -103,7 +112,7 @@ class Plant:
         InputError
             Missing file, not TOML, unknown or missing keys, wrong types, values out of bounds.
         """
-        table, source = plant_file.read(Path(path))
+        table, source = plant_file.read(given.path(path, "Plant.load"))
         return cls.from_dict(table, source=source)
 
     @classmethod
@@ -115,28 +124,36 @@ class Plant:
         InputError
             As for ``load``.
         """
+        table = given.mapping(table, source, "the tables of a plant file")
         parts = plant_file.parse(table, source)
         plant = cls(
             friction=Friction(
                 parts.law,
-                MappingProxyType(parts.friction),
-                MappingProxyType(parts.options),
+                parts.friction,
+                parts.options,
             ),
             motion=parts.motion,
-            drive=MappingProxyType(parts.drive),
-            body=MappingProxyType(parts.body),
-            effects=tuple(Effect(name, MappingProxyType(p)) for name, p in parts.effects),
-            sensor=MappingProxyType(parts.sensor),
-            controller=MappingProxyType(parts.controller),
+            drive=parts.drive,
+            body=parts.body,
+            effects=tuple(Effect(name, p) for name, p in parts.effects),
+            sensor=parts.sensor,
+            controller=parts.controller,
             source=source,
         )
         plant._check()
         return plant
 
     def save(self, path: str | Path) -> Path:
-        """Write a plant file; returns the path."""
-        path = Path(path)
-        path.write_text(plant_file.render(self.to_dict()), encoding="utf-8")
+        """Write a plant file; returns the path.
+
+        Raises
+        ------
+        InputError
+            The file cannot be written.
+        """
+        path = given.path(path, "Plant.save")
+        with given.written(path):
+            path.write_text(plant_file.render(self.to_dict()), encoding="utf-8")
         return path
 
     def to_dict(self) -> dict[str, Any]:
@@ -260,7 +277,11 @@ class Plant:
                 f"{self.source}: {listed(servo)} is set for a recording, and only a servo has it; "
                 "write [drive] kind = 'servo', or leave it out"
             )
-        return replace(self, drive={**self.drive, **servo}, body={**self.body, **payload})
+        changed = replace(self, drive={**self.drive, **servo}, body={**self.body, **payload})
+        if servo:
+            check_servo(changed.drive, f"{self.source}: [drive] as set for a recording:")
+        plant_file.check_payload(changed.body, self.motion, f"{self.source}: [body]")
+        return changed
 
     @property
     def parameters(self) -> Mapping[str, Parameter]:
@@ -270,7 +291,7 @@ class Plant:
         paths |= {f"friction.{name}": p for name, p in self.friction.parameters.items()}
         for effect in self.effects:
             paths |= {f"effects.{effect.name}.{n}": p for n, p in effect.parameters.items()}
-        return MappingProxyType(paths)
+        return ByPath(paths)
 
     def following(self, paths: Sequence[str]) -> list[tuple[str, int, float]]:
         """What moves along with parameters of these paths because the plant leaves it open.
@@ -301,27 +322,22 @@ class Plant:
         Raises
         ------
         InputError
-            A path that the plant does not state.
+            A path that the plant does not state, a value that is not a number.
         """
         stated = self.parameters
         changed = dict(stated)
         for name, value in values.items():
-            hits = [p for p in stated if p == name or p.rsplit(".", 1)[-1] == name]
-            if len(hits) != 1:
-                what = "is ambiguous" if hits else "is not stated"
-                raise InputError(
-                    f"{self.source}: parameter '{name}' {what}{did_you_mean(name, stated)}; "
-                    f"there are {listed(hits or stated)}"
-                )
-            changed[hits[0]] = replace(stated[hits[0]], value=float(value))
+            path = path_of(name, stated, f"{self.source}: ", "is not stated")
+            changed[path] = replace(
+                stated[path], value=number(_plain(value), f"{self.source}: {path}")
+            )
 
         def part(prefix: str) -> Mapping[str, Parameter]:
-            own = {p.removeprefix(prefix): v for p, v in changed.items() if p.startswith(prefix)}
-            return MappingProxyType(own)
+            return {p.removeprefix(prefix): v for p, v in changed.items() if p.startswith(prefix)}
 
         plant = replace(
             self,
-            drive=MappingProxyType({**self.drive, **part("drive.")}),
+            drive={**self.drive, **part("drive.")},
             body=part("body."),
             friction=replace(self.friction, parameters=part("friction.")),
             effects=tuple(replace(e, parameters=part(f"effects.{e.name}.")) for e in self.effects),
@@ -414,6 +430,11 @@ class Plant:
             f"<tr><td>{path}</td><td>{p.value:.6g}</td></tr>" for path, p in self.parameters.items()
         )
         return f"<p>{self!r}</p><table><tr><th>parameter</th><th>value</th></tr>{rows}</table>"
+
+
+def _plain(value: Any) -> Any:
+    """A number of numpy as Python's."""
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def _table(parameter: Parameter) -> dict[str, float | bool]:

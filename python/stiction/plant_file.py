@@ -16,7 +16,7 @@ from .parameter import Parameter, number
 from .recording.units import Motion
 from .wording import listed
 
-__all__ = ["Parts", "parse", "read", "read_toml", "render"]
+__all__ = ["Parts", "check_payload", "parse", "read", "read_toml", "render"]
 
 MOTIONS: Final = ("rotary", "linear")
 _TABLES: Final = ("motion", "drive", "body", "friction", "effects", "sensor", "controller")
@@ -112,6 +112,12 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
     drive = read_drive(section(table, "drive", source), motion, f"{source}: [drive]")
     body = _body(section(table, "body", source), motion, source)
     _check_scale(drive, body, friction, source)
+    controller = _controller(section(table, "controller", source), source)
+    if drive.get("kind") == "prescribed_motion" and "gain" in drive:
+        raise InputError(
+            f"{source}: [drive] gain goes with an input, and a machine whose motion is prescribed "
+            "has none; leave it out"
+        )
     return Parts(
         motion=motion,
         drive=drive,
@@ -121,7 +127,7 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
         options=options,
         effects=_effects(table.get("effects", []), motion, drive.get("kind") == "servo", source),
         sensor=_sensor(section(table, "sensor", source), motion, source),
-        controller=_controller(section(table, "controller", source), source),
+        controller=controller,
     )
 
 
@@ -151,13 +157,31 @@ def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Param
                     "from 0"
                 )
             body[name] = Parameter(body[name].value, fixed=True)
+    check_payload(body, motion, where)
     if "payload_m" in body and motion == "linear":
         raise InputError(f"{where} payload_m is for rotary plants; a linear one carries payload_kg")
     if "weight_n" in body and motion == "rotary":
         raise InputError(
             f"{where} weight_n is for linear plants; use gravity_amplitude for a rotary one"
         )
+    for name in ("gravity_amplitude", "gravity_zero_rad"):
+        if name in body and motion == "linear":
+            raise InputError(f"{where} {name} is for rotary plants; use weight_n for a linear one")
     return body
+
+
+def check_payload(body: Mapping[str, Parameter], motion: str, where: str) -> None:
+    """Refuse a payload of which nobody knows how far from the axis it hangs.
+
+    Raises
+    ------
+    InputError
+    """
+    if motion == "rotary" and "payload_kg" in body and "payload_m" not in body:
+        raise InputError(
+            f"{where} payload_kg is stated without payload_m; state how far from the axis it "
+            "hangs, in m"
+        )
 
 
 def _check_scale(

@@ -9,12 +9,15 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from . import given
 from .errors import InputError
+from .frozen import Frozen, freeze
 from .keys import choice, known
 from .parameter import number
 from .plant import Plant
 from .plant_file import read_toml, section
 from .recording import SETTINGS, Columns, Recording
+from .recording.recording import recordings_of
 from .recording.session_clock import starts_of
 from .recording.split import BLOCK_S, EDGE_S, Split, name_of, split
 from .recording.units import FloatArray, Motion
@@ -50,7 +53,8 @@ class Session:
     Raises
     ------
     InputError
-        Recordings that overlap on the session clock, or a replicate of nothing or of itself.
+        Something else than recordings or a plant, recordings that overlap on the session clock, or
+        a replicate of nothing or of itself.
     """
 
     recordings: Sequence[Recording]
@@ -59,8 +63,11 @@ class Session:
     starts: tuple[float, ...] = field(init=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "recordings", tuple(self.recordings))
-        object.__setattr__(self, "replicates", dict(self.replicates))
+        object.__setattr__(self, "recordings", recordings_of(self.recordings, "session"))
+        if self.plant is not None:
+            given.instance(self.plant, Plant, "session: plant", "a Plant, as Plant.load returns it")
+        given.mapping(self.replicates, "session: replicates", "indices, as in { 1: 0 }")
+        freeze(self, Frozen, "replicates")
         for index, of in self.replicates.items():
             if index == of or not {index, of} <= set(range(len(self.recordings))):
                 raise InputError(
@@ -170,7 +177,7 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         file that is not listed, recordings that overlap on the session clock, and all that
         ``Plant.load`` and ``Recording.load`` refuse.
     """
-    path = Path(path)
+    path = given.path(path, "load")
     table = read_toml(path, least='plant = "…" and one [[recordings]]')
     source = str(path)
     known(table, _TABLES, source)

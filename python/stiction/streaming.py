@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from . import given
 from .errors import InputError
 from .motor import Motor
 from .trajectory import FloatArray, Trajectory
@@ -64,7 +65,8 @@ def stream(
     Raises
     ------
     InputError
-        A checkpoint of another motor, ``dt`` or ``every``; what ``Motor.simulate`` refuses.
+        A checkpoint of another motor, ``dt`` or ``every``, or one that cannot be written; what
+        ``Motor.simulate`` refuses.
 
     Examples
     --------
@@ -75,11 +77,27 @@ def stream(
     >>> len(np.concatenate(rows))
     50
     """
-    if isinstance(every, bool) or not isinstance(every, int) or every < 1:
-        raise InputError(f"every = {every!r} is out of bounds: give a whole number from 1")
+    given.instance(motor, Motor, "stream: motor", "a Motor")
+    if not isinstance(currents, Iterable):
+        raise InputError(f"stream: currents = {currents!r} is no sequence; give chunks of inputs")
+    every = given.whole(every, "every", least=1)
+    dt, load = (_number(each, name) for each, name in ((dt, "dt"), (load, "load")))
+    if checkpoint is not None:
+        checkpoint = given.path(checkpoint, "checkpoint")
+        if checkpoint.is_dir() or not checkpoint.parent.is_dir():
+            raise InputError(
+                f"{checkpoint}: is no place for a checkpoint; name a file in a folder that is there"
+            )
     if isinstance(outputs, str):
         raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
     return _streamed(motor, currents, dt, tuple(outputs), every, checkpoint, load)
+
+
+def _number(value: object, name: str) -> float:
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise InputError(f"stream: {name} = {value!r} is not a number") from None
 
 
 def _streamed(
@@ -99,7 +117,7 @@ def _streamed(
         passed, start = _resume(motor, path, identity)
     done = 0
     for chunk in currents:
-        inputs = np.ascontiguousarray(chunk, dtype=np.float64)
+        inputs = np.ascontiguousarray(given.numbers(chunk, "stream: a chunk"))
         length = inputs.size
         if done + length <= passed:
             done += length
@@ -140,11 +158,12 @@ def _keep(motor: Motor, path: Path, identity: str, done: int, start: float) -> N
     """Writes the state beside the file and moves it there: a kill leaves the old one or the new."""
     state = {f"state.{name}": np.asarray(value) for name, value in motor.state.items()}
     beside = path.with_name(f"{path.name}.part")
-    with beside.open("wb") as file:
-        np.savez(file, identity=identity, done=done, start=start, **state)  # type: ignore[arg-type]
-        file.flush()
-        os.fsync(file.fileno())
-    beside.replace(path)
+    with given.written(path):
+        with beside.open("wb") as file:
+            np.savez(file, identity=identity, done=done, start=start, **state)  # type: ignore[arg-type]
+            file.flush()
+            os.fsync(file.fileno())
+        beside.replace(path)
 
 
 def _resume(motor: Motor, path: Path, identity: str) -> tuple[int, float]:

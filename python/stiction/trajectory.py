@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from . import given
 from .errors import InputError
+from .frozen import Frozen
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -71,12 +72,12 @@ class Trajectory:
     @property
     def statistics(self) -> Mapping[str, int]:
         """How often each branch was taken since the last reset."""
-        return MappingProxyType(self._statistics)
+        return Frozen(self._statistics)
 
     @property
     def columns(self) -> Mapping[str, FloatArray]:
         """The columns by name."""
-        return MappingProxyType(self._columns)
+        return Frozen(self._columns)
 
     @property
     def dt(self) -> float | FloatArray:
@@ -169,24 +170,31 @@ class Trajectory:
         return pd.DataFrame(dict(self._columns), index=pd.Index(self.time, name="time_s"))
 
     def save(self, path: str | Path) -> Path:
-        """Write time and columns as NPZ (or CSV, by the name's ending); returns the path."""
-        path = Path(path)
+        """Write time and columns as NPZ (or CSV, by the name's ending); returns the path.
+
+        Raises
+        ------
+        InputError
+            An unknown ending, a folder that is not there, a file that cannot be written.
+        """
+        path = given.path(path, "Trajectory.save")
         if not path.parent.is_dir():
             raise InputError(f"{path}: there is no folder {path.parent}; make it first")
         table = {"time_s": self.time, **self._columns}
-        if path.suffix == ".npz":
-            np.savez_compressed(path, **table)  # type: ignore[arg-type]
-        elif path.suffix == ".csv":
-            np.savetxt(
-                path,
-                np.column_stack(list(table.values())),
-                delimiter=",",
-                header=",".join(table),
-                comments="",
-                fmt="%.17g",
-            )
-        else:
+        if path.suffix not in (".npz", ".csv"):
             raise InputError(f"{path}: ending '{path.suffix}' is not known; use .npz or .csv")
+        with given.written(path):
+            if path.suffix == ".npz":
+                np.savez_compressed(path, **table)  # type: ignore[arg-type]
+            else:
+                np.savetxt(
+                    path,
+                    np.column_stack(list(table.values())),
+                    delimiter=",",
+                    header=",".join(table),
+                    comments="",
+                    fmt="%.17g",
+                )
         return path
 
     def plot(self) -> Figure:

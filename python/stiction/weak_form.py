@@ -137,6 +137,7 @@ class WeakForm:
     ) -> None:
         source = str(recording.path) if recording.path is not None else "recording"
         self.settings = recording.settings
+        self.input_unit = recording.units.get("input", "")
         plant = self.own(plant)
         if recording.position is None:
             raise InputError(f"{source}: {NO_POSITION}")

@@ -9,7 +9,7 @@ import pytest
 
 import stiction as st
 from stiction.cli import run
-from stiction.whole import whole
+from stiction.given import whole
 
 
 @pytest.mark.parametrize(
@@ -66,11 +66,11 @@ def test_seeds_below_0_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 def test_whole_numbers_may_be_those_of_numpy() -> None:
-    assert whole("seed", np.int64(3), 0) == 3
-    assert type(whole("seed", np.uint8(3), 0)) is int
+    assert whole(np.int64(3), "seed", least=0) == 3
+    assert type(whole(np.uint8(3), "seed", least=0)) is int
     for given in (1.9, np.float64(2.0), True, "3", -1, 6):
         with pytest.raises(st.InputError, match="give a whole number from 0 to 5"):
-            whole("seed", given, 0, 5)
+            whole(given, "seed", least=0, most=5)
     motor = st.Motor(inertia=0.01, friction=st.FrictionModel("coulomb"))
     runs = st.simulate_ensemble(motor, np.ones((2, 8)), 1e-3, every=np.int64(2))
     assert runs.position.shape == (2, 4)

@@ -202,3 +202,23 @@ def test_prescribed_motion_has_nothing_to_simulate(tmp_path: Path) -> None:
     assert plant.inertia == 0.0
     with pytest.raises(InputError, match="prescribed_motion"):
         plant.simulate(np.zeros(10), 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        ({"motion": {"kind": "linear"}, "body": {"gravity_amplitude": 1.0}}, "for rotary plants"),
+        ({"motion": {"kind": "linear"}, "body": {"gravity_zero_rad": 1.0}}, "for rotary plants"),
+        ({"drive": {"kind": "prescribed_motion", "gain": 2.0}}, r"\[drive\] gain goes with an"),
+    ],
+)
+def test_what_a_plant_of_its_kind_has_no_use_for_is_refused(table, told):
+    with pytest.raises(InputError, match=told):
+        Plant.from_dict({"friction": {"law": "coulomb"}, **table})
+
+
+def test_bounds_that_leave_nothing_to_fit_fix_a_parameter():
+    stated = {"value": 0.3, "min": 0.3, "max": 0.3}
+    plant = Plant.from_dict({"friction": {"law": "coulomb", "coulomb": stated}})
+    assert plant.parameters["coulomb"].fixed
+    assert Plant.from_dict(plant.to_dict()) == plant

@@ -285,11 +285,39 @@ def test_only_a_servo_has_a_goal():
             "scale with it",
         ),
         ({"body": {"inertia": 0.01, "payload_kg": -1.0}}, "payload_kg"),
+        ({"body": {"inertia": 0.01, "payload_kg": 1.0}}, "payload_kg is stated without payload_m"),
+        *(
+            ({"drive": {**PLANT["drive"], name: 0.0}}, f"{name} = 0 ")
+            for name in (
+                "proportional",
+                "supply_v",
+                "resistance_ohm",
+                "current_limit_a",
+                "duty_limit",
+            )
+        ),
+        # A derivative acts on the velocity alone: without the others the goal does nothing.
+        ({"drive": {**PLANT["drive"], "proportional": 0.0, "derivative": 1.0}}, "moves nothing"),
+        ({"drive": {**PLANT["drive"], "resistance_ohm": 1e300}}, r"resistance_ohm = 1e\+300 is"),
     ],
 )
 def test_a_servo_that_cannot_be_is_refused(table, told):
     with pytest.raises(st.InputError, match=told):
         st.Plant.from_dict({**PLANT, **table})
+
+
+def test_an_integral_alone_moves_a_servo():
+    assert plant(proportional=0.0, integral=1.0).simulate(np.ones(200), DT).position[-1] > 0.0
+
+
+def test_settings_of_a_recording_under_which_nothing_moves_are_refused():
+    for name in ("proportional", "supply_v"):
+        with pytest.raises(st.InputError, match=f"set for a recording: {name} = 0 "):
+            plant().under({name: 0.0})
+    bare = st.Plant.from_dict({**PLANT, "body": {"inertia": 0.002}})
+    with pytest.raises(st.InputError, match="payload_kg is stated without payload_m"):
+        bare.under({"payload_kg": 0.3})
+    assert bare.under({"payload_kg": 0.3, "payload_m": 0.1}).payload == plant().payload
 
 
 def test_settings_that_are_none_are_refused():

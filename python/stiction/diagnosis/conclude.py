@@ -427,7 +427,8 @@ def _summary(
         train_relative=result.train_relative,
         heldout_relative=None if test is None else test.relative(index),
         noise_floor_rms=floor,
-        remarks=(*result.bounds_hit, *result.undetermined),
+        remarks=result.remarks,
+        assumed=result.assumed,
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -113,6 +113,15 @@ class Coordinate:
     refines: str = ""
     rows: str = ""
     fine: bool = False
+
+    def __getstate__(self) -> dict[str, Any]:
+        # A finding that is copied or sent elsewhere keeps what its figures say of the coordinate;
+        # functions without a name do not travel, and nothing is looked at anew there.
+        return {**self.__dict__, "values": _left_behind, "factor": None}
+
+
+def _left_behind(look: Look) -> FloatArray:
+    raise TypeError("a coordinate of a copied finding only names what was seen")
 
 
 COORDINATES: Final = (

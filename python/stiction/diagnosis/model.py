@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -325,4 +324,4 @@ def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> P
             parameters = {**effect.parameters, **parameters}
         else:
             kept.append(effect)
-    return replace(plant, effects=(*kept, Effect(candidate.name, MappingProxyType(parameters))))
+    return replace(plant, effects=(*kept, Effect(candidate.name, parameters)))

@@ -11,12 +11,13 @@ from typing import Any, Final
 from .. import __version__
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import told as residual_told
+from ..given import instance, whole
 from ..plant import Plant
 from ..recording import Check, Recording
+from ..recording.recording import recordings_of
 from ..recording.split import name_of
 from ..recording.usable import checks_of, usable
 from ..session import Session
-from ..whole import whole
 from .advice import advise
 from .base import based
 from .candidates import left_out
@@ -94,9 +95,10 @@ def diagnose(
     machine = plant if plant is not None else entire.plant
     if machine is None:
         raise InputError('session: plant is missing; write plant = "plant.toml", or give one')
-    surrogates = whole("surrogates", surrogates, 4, MOST_SURROGATES)
-    seed = whole("seed", seed, 0)
-    threads = None if threads is None else whole("threads", threads, 1)
+    instance(machine, Plant, "diagnose: plant", "a Plant, as Plant.load returns it")
+    surrogates = whole(surrogates, "surrogates", least=4, most=MOST_SURROGATES)
+    seed = whole(seed, "seed", least=0)
+    threads = None if threads is None else whole(threads, "threads", least=1)
     unwanted = left_out(_names("without", without))
     others = law_names(_names("laws", laws), machine.friction.law)
     checks = checks_of(entire.recordings)
@@ -143,7 +145,7 @@ def _names(argument: str, given: Sequence[str]) -> Sequence[str]:
 def _session(session: Session | Sequence[Recording] | Recording) -> Session:
     if isinstance(session, Session):
         return session
-    recordings = [session] if isinstance(session, Recording) else list(session)
+    recordings = recordings_of(session, "diagnose")
     if not recordings:
         raise InputError("session: there are no recordings to diagnose; give at least one")
     return Session(recordings)

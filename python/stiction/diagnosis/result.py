@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..fitting.result import FitParameter
+from ..frozen import ByPath, Frozen, freeze
 from ..plant import Plant
 from .gain import Gain
 from .loop import Replay
@@ -49,7 +50,7 @@ class Cause:
     Attributes
     ----------
     name, family : str
-        Effect, and the class that it belongs to.
+        Effect, and the class that it belongs to (``class`` in findings.json).
     decided : bool
         Whether the data tell it from its look-alikes.
     look_alikes : tuple of str
@@ -75,6 +76,19 @@ class Cause:
     try_: str
     coordinate: str
 
+    def __post_init__(self) -> None:
+        freeze(self, ByPath, "parameters")
+
+    @property
+    def heldout_gain(self) -> float | None:
+        """Share of the residual's power that it removes, over test rows; None where unknown."""
+        return None if self.gain is None else self.gain.value
+
+    @property
+    def heldout_gain_ci95(self) -> tuple[float, float] | None:
+        """95 % interval of ``heldout_gain``."""
+        return None if self.gain is None else self.gain.ci95
+
     def to_dict(self) -> dict[str, Any]:
         """As an entry of ``effects``."""
         return {
@@ -86,7 +100,7 @@ class Cause:
                 path: {"value": p.value, "ci95": list(p.ci95), "unit": p.unit}
                 for path, p in self.parameters.items()
             },
-            "heldout_gain": None if self.gain is None else self.gain.value,
+            "heldout_gain": self.heldout_gain,
             "heldout_gain_ci95": None if self.gain is None else list(self.gain.ci95),
         }
 
@@ -131,11 +145,21 @@ class LawRow:
     gain: Gain | None
     reason: str
 
+    @property
+    def heldout_gain(self) -> float | None:
+        """Share of the residual's power that it removes, over test rows; None where unknown."""
+        return None if self.gain is None else self.gain.value
+
+    @property
+    def heldout_gain_ci95(self) -> tuple[float, float] | None:
+        """95 % interval of ``heldout_gain``."""
+        return None if self.gain is None else self.gain.ci95
+
     def to_dict(self) -> dict[str, Any]:
         """As an entry of ``laws``."""
         return {
             "law": self.law,
-            "heldout_gain": None if self.gain is None else self.gain.value,
+            "heldout_gain": self.heldout_gain,
             "heldout_gain_ci95": None if self.gain is None else list(self.gain.ci95),
             "reason": self.reason,
         }
@@ -157,9 +181,12 @@ class ModelSummary:
     noise_floor_rms : float
         Residual that noise and rounding alone would leave.
     remarks : tuple of str
-        Bounds that were hit, parameters that the data do not determine, loops that ran away.
+        Bounds that were hit, parameters that the data do not determine, loops that ran away, and
+        what is assumed.
     replay : Replay or None
         Position error in closed loop; None where controller or reference are not known.
+    assumed : tuple of str
+        What the plant leaves open and every value hangs on, in sentences.
     """
 
     plant: Plant
@@ -173,12 +200,26 @@ class ModelSummary:
     noise_floor_rms: float
     remarks: tuple[str, ...]
     replay: Replay | None = None
+    assumed: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        freeze(self, ByPath, "parameters")
+
+    @property
+    def law(self) -> str:
+        """The friction law."""
+        return self.plant.friction.law
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """The names of its effects."""
+        return tuple(effect.name for effect in self.plant.effects)
 
     def to_dict(self) -> dict[str, Any]:
         """As ``baseline`` and ``extended``."""
         return {
-            "law": self.plant.friction.law,
-            "effects": [effect.name for effect in self.plant.effects],
+            "law": self.law,
+            "effects": list(self.effects),
             "parameters": {
                 path: {
                     "value": p.value,
@@ -246,7 +287,7 @@ class Diagnosis:
         None where nothing could be fitted.
     unexplained : tuple of Unexplained
     advice : tuple of Advice
-    data : dict
+    data : Mapping
         ``checks``, ``split``, ``hashes``, ``noise``, ``replicates``, and in a sentence which
         ``residual`` was used and why.
     plant : Plant
@@ -287,10 +328,18 @@ class Diagnosis:
     ceiling: Ceiling | None = None
     pictures: Pictures | None = field(default=None, repr=False, compare=False)
 
+    def __post_init__(self) -> None:
+        freeze(self, Frozen, "data")
+
+    @property
+    def schema(self) -> int:
+        """Version of the form of findings.json."""
+        return SCHEMA
+
     def to_dict(self) -> dict[str, Any]:
         """The content of findings.json."""
         return {
-            "schema": SCHEMA,
+            "schema": self.schema,
             "verdict": self.verdict,
             "sentence": self.sentence,
             "effects": [cause.to_dict() for cause in self.effects],

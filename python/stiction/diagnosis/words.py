@@ -285,6 +285,8 @@ def summary(diagnosis: Diagnosis) -> str:
         if diagnosis.effects and after.heldout_relative is not None:
             told += f" before, {100 * after.heldout_relative:.2f} % after"
         lines += ["", told]
+    if before is not None:
+        lines += before.assumed
     if diagnosis.ceiling is not None:
         lines.append(diagnosis.ceiling.words(bool(diagnosis.effects)))
     if looped := loop_words(diagnosis):

@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
-from ..errors import InputError
+from ..frozen import ByPath, Frozen, freeze
 from ..json_text import json_of
 from ..plant import Plant
 from ..trajectory import FloatArray
-from ..wording import did_you_mean
 
 __all__ = ["FitParameter", "FitResult"]
 
@@ -41,7 +40,7 @@ class FitParameter:
     start: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class FitResult:
     """A fitted plant and how well it is known.
 
@@ -50,7 +49,9 @@ class FitResult:
     plant : Plant
         With the fitted values.
     parameters : Mapping of str to FitParameter
-        By path, such as ``friction.coulomb``.
+        By path, such as ``friction.coulomb``; the bare last word does where it is unique.
+    stderr : Mapping of str to float
+        Standard errors alone, by the same names.
     covariance, correlations : numpy.ndarray, shape (p, p)
         In the order of ``parameters``.
     bounds_hit, undetermined : tuple of str
@@ -70,8 +71,10 @@ class FitResult:
     evaluations : int
     timing_offset : float
         By how much the input was taken to be stamped early, s; bounded by half a sample.
-    starts : Mapping of str to dict
+    starts : Mapping of str to Mapping
         Friction state at the first row of each recording that tells of it.
+    assumed : tuple of str
+        What the plant leaves open and every value hangs on, in sentences.
     """
 
     plant: Plant
@@ -92,21 +95,32 @@ class FitResult:
     evaluations: int
     timing_offset: float = 0.0
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    assumed: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        freeze(self, ByPath, "parameters")
+        starts = {name: Frozen(start) for name, start in self.starts.items()}
+        object.__setattr__(self, "starts", Frozen(starts))
+
+    @property
+    def stderr(self) -> Mapping[str, float]:
+        """Standard error of each parameter in its SI unit, by path or bare last word."""
+        return ByPath({path: p.stderr for path, p in self.parameters.items()})
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """All that is to be known beside the numbers, in sentences."""
+        return (*self.bounds_hit, *self.undetermined, *self.assumed)
 
     def __getitem__(self, name: str) -> FitParameter:
         """The parameter at a path, or of a bare name where that is unique.
 
         Raises
         ------
-        InputError
-            No such parameter, or several.
+        UnknownName
+            An ``InputError`` and a ``KeyError``: no such parameter, or several.
         """
-        hits = [p for p in self.parameters if p == name or p.rsplit(".", 1)[-1] == name]
-        if len(hits) != 1:
-            words = [*self.parameters, *(p.rsplit(".", 1)[-1] for p in self.parameters)]
-            what = "is ambiguous" if hits else f"was not fitted{did_you_mean(name, words)}"
-            raise InputError(f"parameter '{name}' {what}; there are {', '.join(self.parameters)}")
-        return self.parameters[hits[0]]
+        return self.parameters[name]
 
     def __str__(self) -> str:
         rows = [("parameter", "value", "± (1 s.e.)", "unit", "")]
@@ -126,7 +140,9 @@ class FitResult:
         lines = [
             self.message,
             f"effort error where fitted: {100 * self.train_relative:.3f} % (relative 2-norm), "
-            f"{self.train_rms:.4g} {self.unit} rms, r² {self.r2:.5f}",
+            f"{self.train_rms:.4g} {self.unit} rms"
+            # An effort that is constant has no spread to explain.
+            + (f", r² {self.r2:.5f}" if math.isfinite(self.r2) else ""),
         ]
         if self.heldout_rms is not None and self.heldout_relative is not None:
             lines.append(
@@ -136,7 +152,7 @@ class FitResult:
         return [*lines, self.split]
 
     def _remarks(self) -> list[str]:
-        return [f"  {sentence}" for sentence in (*self.bounds_hit, *self.undetermined)]
+        return [f"  {sentence}" for sentence in self.remarks]
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -169,6 +185,7 @@ class FitResult:
             "correlations": self.correlations.tolist(),
             "bounds_hit": list(self.bounds_hit),
             "undetermined": list(self.undetermined),
+            "assumed": list(self.assumed),
             "r2": self.r2,
             "train_rms": self.train_rms,
             "train_relative": self.train_relative,

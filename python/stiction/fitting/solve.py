@@ -8,10 +8,13 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..drive import assumed_gain
 from ..errors import InputError, NotEnoughData
+from ..given import instance, whole
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
+from ..recording.recording import recordings_of
 from ..recording.split import BLOCK_S, name_of, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
@@ -131,9 +134,11 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     KeyboardInterrupt
         Ctrl-C before there is anything, or for the second time.
     """
-    recordings = [session] if isinstance(session, Recording) else list(session)
+    instance(plant, Plant, "fit: plant", "a Plant, as Plant.load returns it")
+    recordings = list(recordings_of(session, "fit"))
     if not recordings:
         raise InputError("there are no recordings to fit; give at least one")
+    max_evaluations = whole(max_evaluations, "max_evaluations", least=0)
     recordings, faults = _without_faults(recordings)
     seen = _Seen(plant, recordings)
     if not free_paths(plant) and not free_paths(complete(plant, [r.form for r in seen.train])[0]):
@@ -301,6 +306,7 @@ def evaluate(
     fitted = _errors(plant, train, nuisances)
     heldout = _errors(plant, held, nuisances) if held else None
     stated = as_stated(plant, given)
+    told = assumed_gain(given.drive, train[0].form.input_unit, given.effort_unit)
     return FitResult(
         plant=stated,
         parameters=parameters,
@@ -308,6 +314,7 @@ def evaluate(
         correlations=correlations(matrix),
         bounds_hit=_bound_sentences(parameters, stated),
         undetermined=_undetermined_sentences(parameters, flat, train),
+        assumed=(told,) if told else (),
         r2=fitted[2],
         train_rms=fitted[0],
         train_relative=fitted[1],

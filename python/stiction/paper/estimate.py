@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import Final
 
 import numpy as np
 
 from .._native import FrictionModel
 from ..errors import InputError
+from ..frozen import Frozen, freeze
 from ..motor import Motor
 from ..trajectory import FloatArray
 from .cautions import assumed, stairs
@@ -39,7 +39,7 @@ NAMES: Final = (
 )
 UNITS: Final = ("N·m/rad", "N·m/rad", "rad", "rad/(N·m)^n", "1", "1/s", "N·m·s/rad", "kg·m²")
 _PATHS: Final = tuple("body.inertia" if name == "inertia" else f"friction.{name}" for name in NAMES)
-EXPERIMENTS: Final[Mapping[str, str]] = MappingProxyType(
+EXPERIMENTS: Final[Mapping[str, str]] = Frozen(
     {
         "initial_stiffness": "loops of torque below a level that was held before",
         "final_stiffness": "loops of torque over a long way, below a level that was held before",
@@ -128,6 +128,10 @@ class Estimate(Result):
     message: str
     correlations: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        freeze(self, Frozen, "parameters")
+
     def motor(self) -> Motor:
         """The machine with the estimated parameters."""
         return _motor({name: p.value for name, p in self.parameters.items()})
@@ -135,9 +139,6 @@ class Estimate(Result):
     def __repr__(self) -> str:
         said = (*self.undetermined, *self.cautions)
         return "\n".join([super().__repr__(), *(f"  {text}" for text in said)])
-
-    def __getstate__(self) -> dict[str, object]:
-        return {**super().__getstate__(), "parameters": dict(self.parameters)}
 
 
 def estimate(
@@ -418,7 +419,7 @@ class _Fit:
                 for name, each in parameters.items()
                 if each.determined
             },
-            parameters=MappingProxyType(parameters),
+            parameters=parameters,
             steps=steps,
             distance=_CURVE,
             branch=branch,

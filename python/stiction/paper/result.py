@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
+from ..frozen import Frozen, freeze
 from ..trajectory import FloatArray
 from .rig import ARC_SECOND
 
@@ -57,7 +57,7 @@ class Result:
     numbers: Mapping[str, Number] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "numbers", MappingProxyType(dict(self.numbers)))
+        freeze(self, Frozen, "numbers")
 
     def plot(self) -> Figure:
         """The figure of this experiment."""
@@ -84,14 +84,6 @@ class Result:
                 for name, number in self.numbers.items()
             },
         }
-
-    def __getstate__(self) -> dict[str, Any]:
-        # A mapping proxy cannot be pickled.
-        return {**self.__dict__, "numbers": dict(self.numbers)}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self.__dict__["numbers"] = MappingProxyType(state["numbers"])
 
     def __repr__(self) -> str:
         rows = [_HEADINGS, *self._rows()] if self.numbers else []

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any, TypeAlias
 
 from .._native import FrictionModel
 from ..errors import InputError
+from ..frozen import Frozen
 from ..motor import Motor
 
 __all__ = [
@@ -35,7 +35,7 @@ FINE_COUNT = 0.8 * ARC_SECOND
 COARSE_COUNT = 15.0 * ARC_SECOND
 """Count of the coarse encoder (86 400 counts a revolution), rad; stated in the paper."""
 
-ILLUSTRATIVE_RIG: Mapping[str, float] = MappingProxyType(
+ILLUSTRATIVE_RIG: Mapping[str, float] = Frozen(
     {
         "inertia": 0.0076,
         "initial_stiffness": 3000.0,

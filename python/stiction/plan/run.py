@@ -11,9 +11,9 @@ import numpy as np
 from .._native import Motion
 from ..drive import GOALS
 from ..errors import InputError
+from ..given import whole
 from ..plant import Plant
 from ..trajectory import FloatArray
-from ..whole import whole
 from ..wording import did_you_mean, listed
 from .experiments import EXPERIMENTS, Experiment
 from .limits import Limits, Sizes, sizes_of
@@ -69,7 +69,7 @@ def plan(
         raise InputError(
             f"rate = {rate:g} is out of bounds: allowed is {RATES[0]:g} to {RATES[1]:g} samples/s"
         )
-    seed = whole("seed", seed, 0)
+    seed = whole(seed, "seed", least=0)
     known = [experiment.name for experiment in EXPERIMENTS]
     for name in only:
         if name not in known:

@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any, Final
 
 from ..errors import InputError
+from ..frozen import Frozen
 from ..wording import did_you_mean, listed
 from .units import find_unit
 
@@ -140,7 +140,7 @@ class Columns(Mapping[str, Column]):
     """
 
     def __init__(self, by_role: Mapping[str, Column] | None = None, *, where: str = "columns"):
-        self._by_role = MappingProxyType(dict(by_role or {}))
+        self._by_role = Frozen(by_role or {})
         self.where = where
 
     @classmethod

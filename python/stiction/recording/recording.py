@@ -5,16 +5,19 @@ from __future__ import annotations
 import hashlib
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
+from ..frozen import Frozen
+from ..given import instance, mapping
+from ..given import path as file_path
+from ..parameter import number
 from ..wording import did_you_mean
 from .columns import ROLES, Columns
 from .formats import read_table
@@ -182,7 +185,9 @@ class Recording:
         """
         labels = _labels(role, kind, start_s, settings)
         mapped = Columns.parse(columns)
-        table = read_table(path)
+        if count_size is not None and not 0.0 < number(count_size, "count_size") < math.inf:
+            raise InputError(f"count_size = {count_size!r} is not a finite number above 0")
+        table = read_table(file_path(path, "Recording.load"))
         channels = read_channels(table, mapped, drive=drive, motion=motion, count_size=count_size)
         recording = cls.__new__(cls)
         recording._fill(
@@ -233,12 +238,12 @@ class Recording:
     @property
     def channels(self) -> Mapping[str, FloatArray]:
         """Every channel besides time, input and position, by name."""
-        return MappingProxyType(self.__dict__["_channels"])
+        return Frozen(self.__dict__["_channels"])
 
     @property
     def units(self) -> Mapping[str, str]:
         """SI unit of every channel, "" where nothing tells it."""
-        return MappingProxyType(self.__dict__["_units"])
+        return Frozen(self.__dict__["_units"])
 
     @property
     def effort(self) -> FloatArray | None:
@@ -276,21 +281,40 @@ class Recording:
     def _repr_html_(self) -> str:
         return as_html(self)
 
-    def __getstate__(self) -> dict[str, Any]:
-        # A read-only view of a dict cannot be pickled.
-        return {**self.__dict__, "settings": dict(self.settings)}
-
     def __setstate__(self, state: dict[str, Any]) -> None:
         # Copies and pickles come back with writeable arrays.
         self.__dict__.update(state)
-        self.__dict__["settings"] = MappingProxyType(state["settings"])
         for array in (self.time, self.input, self.position, *self.channels.values()):
             if array is not None:
                 array.flags.writeable = False
 
 
+def recordings_of(given: Any, where: str) -> tuple[Recording, ...]:
+    """Recordings of a session, a sequence of them, or one.
+
+    Parameters
+    ----------
+    given : Session, sequence of Recording, or Recording
+    where : str
+        What the error sentence begins with.
+
+    Raises
+    ------
+    InputError
+        Anything else.
+    """
+    if isinstance(given, Recording):
+        return (given,)
+    found = tuple(given) if isinstance(given, Iterable) and not isinstance(given, str) else (given,)
+    wanted = "a Session, as stiction.load returns it, or Recordings"
+    return tuple(instance(each, Recording, f"{where}: a recording", wanted) for each in found)
+
+
 def _flat(name: str, given: npt.ArrayLike) -> FloatArray:
     """A new flat array of doubles."""
+    if isinstance(given, np.ma.MaskedArray):
+        # What is masked is missing, as NaN is.
+        given = np.ma.filled(given.astype(np.float64), np.nan)
     try:
         array = np.asarray(given)
         if array.dtype.kind not in "biuf":
@@ -324,7 +348,8 @@ def _labels(
         or not math.isfinite(start_s)
     ):
         raise InputError(f"Recording: start_s is {start_s!r}; give a finite number of seconds")
-    for name, value in (settings or {}).items():
+    settings = mapping(settings, "Recording: settings", "names and numbers")
+    for name, value in settings.items():
         if name not in SETTINGS:
             raise InputError(
                 f"Recording: there is no setting '{name}'{did_you_mean(name, SETTINGS)}; the "
@@ -334,9 +359,9 @@ def _labels(
             raise InputError(f"Recording: the setting {name} is {value!r}; give a number")
         if not math.isfinite(value):
             raise InputError(f"Recording: the setting {name} is {value!r}; give a finite number")
-    own = {name: float(value) for name, value in (settings or {}).items()}
+    own = {name: float(value) for name, value in settings.items()}
     settled = {"role": role, "kind": kind, "start_s": float(start_s)}
-    return {**settled, "settings": MappingProxyType(own)}
+    return {**settled, "settings": Frozen(own)}
 
 
 def _check_channels(source: str, values: Mapping[str, FloatArray]) -> None:

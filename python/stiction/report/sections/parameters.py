@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from ...catalogue import effects, laws
+from ...frozen import Frozen
 from ..numbers import between, digits
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["meanings_of", "row", "rows_of_effect"]
 
-NOTHING: Final[Mapping[str, FitParameter]] = MappingProxyType({})
+NOTHING: Final[Mapping[str, FitParameter]] = Frozen()
 
 BODY: Final = {
     "inertia": "moving inertia or mass",

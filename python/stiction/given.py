@@ -1,0 +1,166 @@
+"""What callers hand over: of the right kind, or refused in a sentence."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import InputError
+
+__all__ = ["instance", "mapping", "memory_for", "numbers", "path", "unmasked", "whole", "written"]
+
+T = TypeVar("T")
+_WORTH_ASKING: Final = 2.0**26
+"""Bytes."""
+
+
+def instance(given: object, kind: type[T], where: str, remedy: str) -> T:
+    """Take an object of a class.
+
+    Parameters
+    ----------
+    given : object
+    kind : type
+    where : str
+        What it is called, such as ``"fit: plant"``.
+    remedy : str
+        What to give instead.
+
+    Raises
+    ------
+    InputError
+        Anything else.
+    """
+    if not isinstance(given, kind):
+        raise InputError(f"{where} is {_shown(given)}; give {remedy}")
+    return given
+
+
+def mapping(given: Any, where: str, remedy: str) -> Mapping[str, Any]:
+    """Take a mapping, an empty one for None.
+
+    Raises
+    ------
+    InputError
+        Anything else.
+    """
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        raise InputError(f"{where} is {_shown(given)}; give {remedy}")
+    return given
+
+
+def memory_for(size: float, what: str) -> None:
+    """Ask for memory before the core does, which could only abort.
+
+    Parameters
+    ----------
+    size : float
+        Bytes; small requests are not looked at.
+    what : str
+        What they are for, with what makes it less: ``"10 machines; give fewer"``.
+
+    Raises
+    ------
+    InputError
+        There is not that much.
+    """
+    if size < _WORTH_ASKING:
+        return
+    try:
+        # Handed out by the system and given back, never touched.
+        np.empty(int(size), dtype=np.uint8)
+    except (MemoryError, OverflowError, ValueError):
+        raise InputError(f"there is no memory ({size / 2**30:.3g} GiB) for {what}") from None
+
+
+def path(given: str | os.PathLike[str], where: str) -> Path:
+    """Take a path.
+
+    Raises
+    ------
+    InputError
+        Anything that names no file: None, a number, bytes.
+    """
+    if not isinstance(given, str | os.PathLike) or isinstance(os.fspath(given), bytes):
+        raise InputError(f"{where}: {_shown(given)} is not a path; give the name of a file")
+    return Path(given)
+
+
+def whole(given: Any, name: str, *, least: int, most: int | None = None) -> int:
+    """Take a whole number, numpy's too.
+
+    Raises
+    ------
+    InputError
+        Anything else, such as 1.9 or True, or one out of bounds.
+    """
+    try:
+        number = None if isinstance(given, bool) else int(given.__index__())
+    except (AttributeError, TypeError):
+        number = None
+    if number is None or number < least or (most is not None and number > most):
+        upto = "" if most is None else f" to {most}"
+        raise InputError(
+            f"{name} = {_shown(given)} is out of bounds: give a whole number from {least}{upto}"
+        )
+    return number
+
+
+def unmasked(given: object, where: str) -> None:
+    """Refuse an array that is masked somewhere: an input has no gaps.
+
+    Raises
+    ------
+    InputError
+    """
+    if isinstance(given, np.ma.MaskedArray) and np.ma.is_masked(given):
+        raise InputError(f"{where} is masked in places; fill these, or leave them out")
+
+
+def numbers(given: Any, where: str) -> npt.NDArray[np.float64]:
+    """Take an array of numbers, none of them masked.
+
+    Raises
+    ------
+    InputError
+        Anything else.
+    """
+    unmasked(given, where)
+    try:
+        array: npt.NDArray[np.float64] = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{where} is not an array of numbers: {error}") from None
+    return array
+
+
+@contextmanager
+def written(file: Path) -> Iterator[None]:
+    """Says in a sentence that a file cannot be written.
+
+    Raises
+    ------
+    InputError
+        In place of an OSError from inside.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise InputError(
+            f"{file}: cannot be written ({error.strerror or error}); name another file"
+        ) from None
+
+
+def _shown(given: object) -> str:
+    """An object in a sentence: short, on one line."""
+    shown = " ".join(repr(given).split())
+    if len(shown) > 60 or type(given).__repr__ is object.__repr__:
+        return f"a {type(given).__name__}"
+    return shown
