@@ -350,16 +350,18 @@ impl<'a> Work<'a> {
                 None => work.push(Self::Alone(motor)),
             }
         }
-        for (parts, mut motors) in teams {
+        for (parts, motors) in teams {
             let size = Job::members(motors.len(), plan.threads);
-            while !motors.is_empty() {
-                let rest = motors.split_off(motors.len().min(size));
-                if motors.len() < lanes::LEAST {
-                    work.extend(motors.into_iter().map(Self::Alone));
-                } else {
-                    work.push(Self::Team(Job::new(plan, kinds, parts, halted), motors));
+            let mut motors = motors.into_iter();
+            loop {
+                // Into room of its own size: what is split off keeps the room of all that were left.
+                let mut team = Vec::with_capacity(size.min(motors.len()));
+                team.extend(motors.by_ref().take(size));
+                match team.len() {
+                    0 => break,
+                    some if some < lanes::LEAST => work.extend(team.into_iter().map(Self::Alone)),
+                    _ => work.push(Self::Team(Job::new(plan, kinds, parts, halted), team)),
                 }
-                motors = rest;
             }
         }
         work
