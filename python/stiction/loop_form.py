@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
@@ -65,10 +66,10 @@ class LoopForm(WeakForm):
             plant.gain * drive["proportional"] * drive["supply_v"] / drive["resistance_ohm"]
         )
 
-    @property
-    def followed_late(self) -> bool:
-        """Never: friction is driven by the simulated motion, which has no noise."""
-        return False
+    @cached_property
+    def followed_late(self) -> float:
+        """0: friction is driven by the simulated motion, which has no noise."""
+        return 0.0
 
     @property
     def velocity(self) -> FloatArray:
@@ -76,10 +77,10 @@ class LoopForm(WeakForm):
         slope: FloatArray = np.gradient(self.position, self.dt)[1:]
         return slope
 
-    def accelerations(self, position: FloatArray) -> FloatArray:
+    def accelerations(self, readings: FloatArray, driving: FloatArray | None = None) -> FloatArray:
         """Acceleration of a position at the sample ends, through the kernel, shape (n,)."""
         half = self.kernel.half
-        padded = np.pad(position[1:], half, "reflect", reflect_type="odd")
+        padded = np.pad(readings[1:], half, "reflect", reflect_type="odd")
         return self.kernel.second_derivative(padded)
 
     def measured(self, plant: Plant) -> FloatArray:

@@ -154,17 +154,23 @@ def play(values: FloatArray, width: float) -> FloatArray:
     return followed
 
 
-def rested(values: FloatArray, readings: FloatArray, window: int, width: float) -> FloatArray:
+def rested(
+    values: FloatArray, readings: FloatArray, window: int, width: float, *, to_and_fro: bool = False
+) -> FloatArray:
     """Values that stay as they are as long as readings rest; same shape.
 
-    Readings rest where they keep within ``width`` over ``window`` samples. Noise at a stop exceeds
-    what it reached before, ever more seldom: each time a follower with a backlash moves a little,
-    and dry friction would take that for a machine that still slides.
+    Readings rest where they keep within ``width`` over ``window`` samples, with ``to_and_fro``
+    where they go both ways in it. Noise at a stop exceeds what it reached before, ever more seldom:
+    each time a follower with a backlash moves a little, and dry friction would take that for a
+    machine that still slides.
     """
     if len(readings) <= window:
         return values
     windows = np.lib.stride_tricks.sliding_window_view(readings, window + 1)
     still = np.max(windows, axis=1) - np.min(windows, axis=1) < width
+    if to_and_fro:
+        steps = np.lib.stride_tricks.sliding_window_view(np.diff(readings), window)
+        still &= (np.max(steps, axis=1) > 0.0) & (np.min(steps, axis=1) < 0.0)
     # A sample rests if any window in which it lies does.
     resting = np.convolve(still, np.ones(window)) > 0.5
     since = np.where(np.concatenate([[True], ~resting]), np.arange(len(values)), 0)

@@ -80,6 +80,12 @@ RESTS: Final = (4, 16)
 RESTING: Final = 6.0
 """... within so many standard deviations. A slow motion that is taken for a rest does no harm: the
 contact then holds what acts on it, as slow sliding does."""
+HELD: Final = 0.01
+"""Share of the samples that must be held for friction to be late by it."""
+LATE_WINDOWS: Final = 2.0
+"""Windows of a rest by which it may be: one on either side."""
+FLICKER: Final = 1.5
+"""Counts within which readings that go to and fro flicker."""
 BACKLASH_TIMES: Final = 4.0
 """Width of that backlash in standard deviations of the noise, a count at least: noise turns a slow
 motion round for a sample, and dry friction would turn with it."""
@@ -195,7 +201,7 @@ class WeakForm:
         self.input = np.zeros(len(x) - 1) if self.prescribed else u[:-1]
         self.clock = self.path = 0.0
         self.time = self._thin(time[1:][self.kernel.half : -self.kernel.half])
-        self.acceleration = self.accelerations(x)
+        self.acceleration = self.accelerations(x, self.position)
 
     def __len__(self) -> int:
         return len(self.time)
@@ -209,9 +215,16 @@ class WeakForm:
         """Velocity of a position at the stamps of the recording, through the kernel."""
         return self._mean(np.gradient(position, self.dt)[1:])
 
-    def accelerations(self, position: FloatArray) -> FloatArray:
-        """Acceleration of a position at the stamps of the recording, through the kernel."""
-        return self._thin(self.kernel.second_derivative(position[1:]))
+    def accelerations(self, readings: FloatArray, driving: FloatArray | None = None) -> FloatArray:
+        """Acceleration behind readings at the stamps of the recording, through the kernel.
+
+        ``driving`` is the motion that drives friction: where it rests under the whole kernel, a
+        machine that noise seems to move has none.
+        """
+        found = self._thin(self.kernel.second_derivative(readings[1:]))
+        if driving is not None and not (self.springy or self.prescribed):
+            found[self._mean(_moves(driving)) == 0.0] = 0.0
+        return found
 
     @property
     def around(self) -> Around:
@@ -265,17 +278,28 @@ class WeakForm:
         """Share of an effort to which the motion answers about each stamp; as ``position[1:]``."""
         if self.springy or self.prescribed:
             return np.ones(len(self.position) - 1)
-        return _centred(1.0 * (np.diff(self.position) != 0.0))
+        return _moves(self.position)
 
     @property
     def adapts(self) -> bool:
         """Whether readings are smoothed as far as their motion allows, and not all alike."""
         return self.springy
 
+    @cached_property
+    def followed_late(self) -> float:
+        """Time, s, by which friction may turn round late because noise had to be kept from it.
+
+        0 where it need not be: readings that repeat as they are, and contacts that yield.
+        """
+        if self.springy or self.prescribed:
+            return 0.0
+        held = self._backlash > 0.0 or np.mean(self.position != self.readings) > HELD
+        return LATE_WINDOWS * self.dt * self._window if held else 0.0
+
     @property
-    def followed_late(self) -> bool:
-        """Whether noise had to be kept from friction by a backlash, which turns round late."""
-        return self._backlash > 0.0
+    def _window(self) -> int:
+        """Samples over which readings must rest."""
+        return int(np.clip(round(RESTS_S / self.dt), *RESTS))
 
     def mean(self, values: FloatArray) -> FloatArray:
         """Values at the ends of the samples (shape of ``position[1:]``) through the kernel."""
@@ -315,10 +339,13 @@ class WeakForm:
         if self._steadied > 0.0:
             return smooth(readings, self.dt, self._steadied, drifts=True)
         followed = smooth(play(readings, self._backlash), self.dt, self._smoothing)
-        if self._backlash == 0.0:
+        if self.springy or self.prescribed:
             return followed
-        window = int(np.clip(round(RESTS_S / self.dt), *RESTS))
-        return rested(followed, readings, window, RESTING * self._noise)
+        if self._backlash > 0.0:
+            return rested(followed, readings, self._window, RESTING * self._noise)
+        # Little noise turns readings round where a machine rests between counts, and there alone.
+        width = FLICKER * self.count
+        return rested(followed, readings, self._window, width, to_and_fro=True)
 
     def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
         """Measured effort, and what the plant needs for the measured motion; shape (n,) each.
@@ -503,6 +530,11 @@ def _too_few(source: str, samples: int, support: float) -> str:
         f"{source}: {samples} samples are too few for a kernel of {support:.3g} s; give a longer "
         "recording or a smaller support"
     )
+
+
+def _moves(position: FloatArray) -> FloatArray:
+    """Share of the samples about each stamp in which something moves; as ``position[1:]``."""
+    return _centred(1.0 * (np.diff(position) != 0.0))
 
 
 def _centred(values: FloatArray) -> FloatArray:

@@ -192,6 +192,20 @@ def test_noise_moves_nothing_that_rests() -> None:
     assert np.max(np.abs(kept - true)) < 2e-5
 
 
+def test_readings_that_flicker_between_two_counts_rest() -> None:
+    rng = np.random.default_rng(2)
+    time = np.arange(3000) * 1e-3
+    true = 0.5 + np.where(time < 1.0, 0.0, np.where(time < 2.0, 0.3 * (time - 1.0), 0.3))
+    readings = np.round(true * 1e4 + 0.1 * rng.standard_normal(3000)) / 1e4
+    readings[2500:] += 1e-4 * (rng.uniform(size=500) > 0.5)
+    kept = rested(readings, readings, 8, 1.5e-4, to_and_fro=True)
+    assert np.any(np.diff(readings)[2500:] != 0.0)
+    assert np.mean(np.diff(kept)[2510:] != 0.0) < 0.02
+    # What goes one way moves, however slowly.
+    slow = np.floor(np.arange(3000) / 50.0) * 1e-4
+    assert np.array_equal(rested(slow, slow, 8, 1.5e-4, to_and_fro=True), slow)
+
+
 def test_readings_that_rest_to_the_last_digit_have_no_noise():
     time = np.arange(2000) * 1e-3
     stops = np.cumsum(np.maximum(np.sin(9.0 * time), 0.0)) * 1e-3

@@ -143,7 +143,7 @@ def _followed(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _
 
     def needed(position: FloatArray, readings: FloatArray) -> FloatArray:
         short = form.short(plant, start, position=position, driven=False)
-        return inertia * form.accelerations(readings) - short
+        return inertia * form.accelerations(readings, position) - short
 
     motion = true_motion(form)
     acted = needed(motion, motion)
@@ -177,9 +177,10 @@ def _slid(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Resi
     inertia = form.own(plant).inertia
 
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
-        short = form.short(plant, start, position=form.driving(readings), load=load)
+        driving = form.driving(readings)
+        short = form.short(plant, start, position=driving, load=load)
         acted = form.given(np.zeros_like(load), load + added[1:] * moves)
-        return short + acted - inertia * form.accelerations(readings)
+        return short + acted - inertia * form.accelerations(readings, driving)
 
     return motion, residual
 

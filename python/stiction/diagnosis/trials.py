@@ -20,6 +20,8 @@ from .screen import Problem, Score, Signatures, screen
 
 __all__ = ["Screening", "promises", "unstuck", "whole_fit"]
 
+LAG: Final = "frictional_lag"
+"""What noise of the position may look like beside what is late."""
 LATE_SHARE: Final = 0.5
 """Of the kernel's support: a follower that keeps noise from friction is late by less."""
 SHARES: Final = (0.1, 0.3, 0.6, 1.0, 1.7, 3.0)
@@ -189,14 +191,18 @@ def _too_good(evidence: Evidence, model: Model) -> str:
 def _friction_is_late(evidence: Evidence, model: Model) -> str:
     """Why a delay may be no delay of the input, "" where it is none or no reason stands against it.
 
-    Where noise is kept from friction by a follower with a backlash, friction turns round late
-    itself, and an input that seems late is what is left of that.
+    Where noise is kept from friction, friction turns round late itself, and an input that seems
+    late, or a friction that follows speed late, is what is left of that.
     """
     effect = model.plant.effects[-1]
     record = next(each for each in effects() if each.name == effect.name)
-    if not record.late or not any(f.followed_late for f in evidence.forms):
+    late = max((form.followed_late for form in evidence.forms), default=0.0)
+    if late == 0.0:
         return ""
-    (gain,) = record.gains
-    if effect.parameters[gain].value > LATE_SHARE * evidence.support:
+    if record.late:
+        (gain,) = record.gains
+        if effect.parameters[gain].value > LATE_SHARE * evidence.support:
+            return ""
+    elif record.name != LAG or effect.parameters["time"].value > late:
         return ""
     return "lies within what noise of the position makes friction late by"
