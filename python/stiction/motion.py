@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
@@ -10,10 +11,24 @@ import numpy as np
 from .errors import InputError
 from .trajectory import FloatArray
 
-__all__ = ["Kernel", "count_of", "evenly", "held", "noise_of", "play", "rested", "smooth"]
+__all__ = [
+    "Kernel",
+    "count_of",
+    "evenly",
+    "held",
+    "narrowest",
+    "noise_of",
+    "play",
+    "rested",
+    "smooth",
+]
 
 WIDEST: Final = 1e6
 """Samples; a wider kernel is a slip of the units."""
+SUPPORTS_S: Final = (0.030, 0.300)
+"""Narrowest and widest kernel that is chosen; 28 to 50 ms suit machines sampled at 1 kHz."""
+FEWEST_SAMPLES: Final = 8
+"""Fewer samples than this do not average anything."""
 ALIKE: Final = 1e-3
 """Share of a step within which stamps of a timer are even, but for the digits of a number."""
 STILL: Final = 20
@@ -92,6 +107,16 @@ class Kernel:
     def second_derivative(self, values: FloatArray) -> FloatArray:
         """Second difference of the weighted mean over dt²; aligned with ``mean``."""
         return np.convolve(values, self._second, "valid")
+
+
+def narrowest(dt: float, quiet: Callable[[Kernel], bool]) -> Kernel:
+    """The narrowest kernel that is quiet enough, or the widest allowed."""
+    support, widest = max(SUPPORTS_S[0], FEWEST_SAMPLES * dt), SUPPORTS_S[1]
+    while True:
+        kernel = Kernel(support, dt)
+        if support >= widest or quiet(kernel):
+            return kernel
+        support = min(1.25 * support, widest)
 
 
 def smooth(values: FloatArray, dt: float, support: float, *, drifts: bool = False) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Final, TypedDict
@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, TypedDict
 import numpy as np
 
 from ._native import Motion, RowKernel
-from .adaptive import adaptively_smoothed
+from .driving import Driving
 from .errors import InputError, NotEnoughData
 from .motion import (
+    FEWEST_SAMPLES,
+    SUPPORTS_S,
     WIDEST,
     Kernel,
     count_of,
     evenly,
     held,
+    narrowest,
     noise_of,
-    play,
-    rested,
-    smooth,
 )
 from .recording.checks.signal import without_spikes
 from .trajectory import FloatArray
@@ -48,47 +48,15 @@ class Around(TypedDict):
     enabled: FloatArray | None
 
 
-SUPPORTS_S: Final = (0.030, 0.300)
-"""Narrowest and widest kernel that is chosen; 28 to 50 ms suit machines sampled at 1 kHz."""
-FEWEST_SAMPLES: Final = 8
-"""Fewer samples than this do not average anything."""
 NOISE_SHARE: Final = 0.02
 """The kernel is widened until the inertia term holds less position noise than this share of the
 effort: a coarse encoder needs more than 30 ms."""
-NOISY_STEP: Final = 0.01
-"""Noise of the position over the rms step from row to row above which the motion that drives a
-rigid contact is smoothed; below it smoothing would only smear stops into slow motion."""
-SMOOTHING_SHARE: Final = 0.1
-"""Support over which it then is, as a share of the kernel's: 3 ms where that has 30 ms."""
 ACCELERATION_SHARE: Final = 0.1
 """Where no inertia is stated: share of the acceleration that may be noise."""
 
-
-FLICKER_SHARE: Final = 0.2
-"""White noise beyond this share of a count makes readings flicker, and a follower with a backlash
-keeps that out. Where they do not flicker it would only be late by half a count."""
-TURNING_SHARE: Final = 0.1
-"""Noise of the velocity over its rms above which a machine that is moved seems to turn round: its
-motion is then smoothed over up to the widest kernel."""
 MOSTLY: Final = 0.9
 """Share of the kernel through which a machine with a rigid contact moves in rows that tell of
 noise."""
-RESTS_S: Final = 0.008
-"""A machine without a spring rests where readings keep within noise for so long..."""
-RESTS: Final = (4, 16)
-"""... for so many samples at least and at most..."""
-RESTING: Final = 6.0
-"""... within so many standard deviations. A slow motion that is taken for a rest does no harm: the
-contact then holds what acts on it, as slow sliding does."""
-HELD: Final = 0.01
-"""Share of the samples that must be held for friction to be late by it."""
-LATE_WINDOWS: Final = 2.0
-"""Windows of a rest by which it may be: one on either side."""
-FLICKER: Final = 1.5
-"""Counts within which readings that go to and fro flicker."""
-BACKLASH_TIMES: Final = 4.0
-"""Width of that backlash in standard deviations of the noise, a count at least: noise turns a slow
-motion round for a sample, and dry friction would turn with it."""
 
 
 class WeakForm:
@@ -175,10 +143,10 @@ class WeakForm:
         elif "inertia" in plant.body or self.prescribed:
             level = NOISE_SHARE * float(np.sqrt(np.mean(driven**2)))
             inertia = plant.inertia
-            self.kernel = _narrowest(self.dt, lambda k: inertia * noise * k.roughness <= level)
+            self.kernel = narrowest(self.dt, lambda k: inertia * noise * k.roughness <= level)
         else:
             # Without an inertia the accelerations themselves have to stand above their noise.
-            self.kernel = _narrowest(
+            self.kernel = narrowest(
                 self.dt, lambda k: noise * k.roughness <= ACCELERATION_SHARE * _rms(k, x)
             )
         if len(time) < 4 * self.kernel.half:
@@ -187,15 +155,15 @@ class WeakForm:
         load = recording.channels.get("load")
         self.load = np.zeros_like(x) if load is None else held(time, stamps, load)
         self.effort = driven / plant.gain
-        white = float(np.sqrt(max(noise**2 - self.count**2 / 12.0, 0.0)))
         self.springy = plant.friction.springy
-        # Of a contact that yields the smoothing keeps it out, which is not late.
-        flickers = white > FLICKER_SHARE * self.count and not self.springy
-        self._backlash = max(self.count, BACKLASH_TIMES * white) if flickers else 0.0
-        self._noise = max(noise, self.count / np.sqrt(12.0))
-        noisy = noise > NOISY_STEP * float(np.sqrt(np.mean(np.diff(x) ** 2)))
-        self._smoothing = max(self.dt, SMOOTHING_SHARE * self.kernel.support) if noisy else self.dt
-        self._steadied = self._turned(x)
+        self._driving = Driving(
+            x,
+            self.kernel,
+            noise=noise,
+            count=self.count,
+            springy=self.springy,
+            prescribed=self.prescribed,
+        )
         self.readings = x
         self.position = self.driving(x)
         self.input = np.zeros(len(x) - 1) if self.prescribed else u[:-1]
@@ -287,19 +255,8 @@ class WeakForm:
 
     @cached_property
     def followed_late(self) -> float:
-        """Time, s, by which friction may turn round late because noise had to be kept from it.
-
-        0 where it need not be: readings that repeat as they are, and contacts that yield.
-        """
-        if self.springy or self.prescribed:
-            return 0.0
-        held = self._backlash > 0.0 or np.mean(self.position != self.readings) > HELD
-        return LATE_WINDOWS * self.dt * self._window if held else 0.0
-
-    @property
-    def _window(self) -> int:
-        """Samples over which readings must rest."""
-        return int(np.clip(round(RESTS_S / self.dt), *RESTS))
+        """Time, s, by which friction may turn round late because noise had to be kept from it."""
+        return self._driving.late(self.position, self.readings)
 
     def mean(self, values: FloatArray) -> FloatArray:
         """Values at the ends of the samples (shape of ``position[1:]``) through the kernel."""
@@ -334,18 +291,7 @@ class WeakForm:
 
     def driving(self, readings: FloatArray) -> FloatArray:
         """The motion that drives friction, from readings of a position; same shape."""
-        if self.adapts:
-            return adaptively_smoothed(readings, self.dt, self._noise)
-        if self._steadied > 0.0:
-            return smooth(readings, self.dt, self._steadied, drifts=True)
-        followed = smooth(play(readings, self._backlash), self.dt, self._smoothing)
-        if self.springy or self.prescribed:
-            return followed
-        if self._backlash > 0.0:
-            return rested(followed, readings, self._window, RESTING * self._noise)
-        # Little noise turns readings round where a machine rests between counts, and there alone.
-        width = FLICKER * self.count
-        return rested(followed, readings, self._window, width, to_and_fro=True)
+        return self._driving.motion(readings)
 
     def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
         """Measured effort, and what the plant needs for the measured motion; shape (n,) each.
@@ -408,25 +354,6 @@ class WeakForm:
         motor = self.begun(plant, self.position if position is None else position)
         drive, ambient, friction, ahead = motor.follow(motion, start=start)
         return drive, friction - ambient, ahead
-
-    def _turned(self, readings: FloatArray) -> float:
-        """Support, s, over which noise of a machine that is moved no longer turns its motion round.
-
-        0 where it does not anyway. A machine that is moved does not stop by itself: nothing is
-        smeared by it but what the effort is averaged over, too.
-        """
-        if self.springy or not self.prescribed or len(readings) < 3:
-            return 0.0
-
-        def steady(kernel: Kernel) -> bool:
-            slopes = np.diff(kernel.weights, prepend=0.0, append=0.0) / self.dt
-            speed = np.convolve(readings, slopes, "valid")
-            noise = self._noise * float(np.linalg.norm(slopes))
-            return bool(noise <= TURNING_SHARE * np.sqrt(np.mean(speed**2)))
-
-        if steady(Kernel(self._smoothing, self.dt)):
-            return 0.0
-        return _narrowest(self.dt, steady).support
 
     def begun(self, plant: Plant, motion: FloatArray) -> Motor:
         """The plant as it is for this recording, where a motion starts."""
@@ -543,16 +470,6 @@ def _centred(values: FloatArray) -> FloatArray:
     centred[..., :-1] += values[..., 1:]
     centred[..., -1] += values[..., -1]
     return 0.5 * centred
-
-
-def _narrowest(dt: float, quiet: Callable[[Kernel], bool]) -> Kernel:
-    """The narrowest kernel that is quiet enough, or the widest allowed."""
-    support, widest = max(SUPPORTS_S[0], FEWEST_SAMPLES * dt), SUPPORTS_S[1]
-    while True:
-        kernel = Kernel(support, dt)
-        if support >= widest or quiet(kernel):
-            return kernel
-        support = min(1.25 * support, widest)
 
 
 def _rms(kernel: Kernel, position: FloatArray) -> float:
