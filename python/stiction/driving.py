@@ -100,14 +100,19 @@ class Driving:
         width = FLICKER * self._count
         return rested(followed, readings, self._window, width, to_and_fro=True)
 
-    def late(self, motion: FloatArray, readings: FloatArray) -> float:
-        """Time, s, by which friction may turn round late because noise had to be kept from it.
+    @property
+    def late(self) -> bool:
+        """Whether friction is driven through a backlash, which turns round late."""
+        return self._backlash > 0.0
+
+    def lateness(self, motion: FloatArray, readings: FloatArray) -> float:
+        """Time, s, by which friction may follow late because noise had to be kept from it.
 
         0 where it need not be: readings that repeat as they are, and contacts that yield.
         """
         if self._springy or self._prescribed:
             return 0.0
-        held = self._backlash > 0.0 or np.mean(motion != readings) > HELD
+        held = self.late or np.mean(motion != readings) > HELD
         return LATE_WINDOWS * self._dt * self._window if held else 0.0
 
     def _turned(self, readings: FloatArray) -> float:

@@ -66,9 +66,14 @@ class LoopForm(WeakForm):
             plant.gain * drive["proportional"] * drive["supply_v"] / drive["resistance_ohm"]
         )
 
+    @property
+    def followed_late(self) -> bool:
+        """Never: friction is driven by the simulated motion, which has no noise."""
+        return False
+
     @cached_property
-    def followed_late(self) -> float:
-        """0: friction is driven by the simulated motion, which has no noise."""
+    def lateness(self) -> float:
+        """0, for the same reason."""
         return 0.0
 
     @property

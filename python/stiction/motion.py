@@ -225,11 +225,11 @@ def evenly(time: FloatArray) -> tuple[FloatArray, FloatArray, float]:
     known = np.unique(np.round(steps[taken == 1.0] / (ALIKE * usual)))
     rounding = float(np.min(np.diff(known))) * ALIKE * usual if len(known) > 1 else 0.0
     if beside <= rounding + ALIKE * usual:
-        stamps, count = time[0] + timer, int(place[-1])
-    else:
-        stamps, count = time, max(1, round(span / float(np.median(steps))))
-    even = np.linspace(stamps[0], stamps[-1], count + 1)
-    return stamps, even, float(stamps[-1] - stamps[0]) / count
+        even = np.linspace(time[0] + timer[0], time[0] + timer[-1], int(place[-1]) + 1)
+        # To the last digit: a reading between two that differ by its count is no reading.
+        return even[place.astype(np.int64)], even, float(timer[-1] - timer[0]) / place[-1]
+    count = max(1, round(span / float(np.median(steps))))
+    return time, np.linspace(time[0], time[-1], count + 1), span / count
 
 
 def held(stamps: FloatArray, time: FloatArray, values: FloatArray) -> FloatArray:

@@ -253,10 +253,15 @@ class WeakForm:
         """Whether readings are smoothed as far as their motion allows, and not all alike."""
         return self.springy
 
+    @property
+    def followed_late(self) -> bool:
+        """Whether noise had to be kept from friction by a backlash, which turns round late."""
+        return self._driving.late
+
     @cached_property
-    def followed_late(self) -> float:
-        """Time, s, by which friction may turn round late because noise had to be kept from it."""
-        return self._driving.late(self.position, self.readings)
+    def lateness(self) -> float:
+        """Time, s, by which friction may follow late because noise had to be kept from it."""
+        return self._driving.lateness(self.position, self.readings)
 
     def mean(self, values: FloatArray) -> FloatArray:
         """Values at the ends of the samples (shape of ``position[1:]``) through the kernel."""

@@ -196,13 +196,13 @@ def _friction_is_late(evidence: Evidence, model: Model) -> str:
     """
     effect = model.plant.effects[-1]
     record = next(each for each in effects() if each.name == effect.name)
-    late = max((form.followed_late for form in evidence.forms), default=0.0)
-    if late == 0.0:
-        return ""
-    if record.late:
+    if record.late and any(form.followed_late for form in evidence.forms):
         (gain,) = record.gains
-        if effect.parameters[gain].value > LATE_SHARE * evidence.support:
-            return ""
-    elif record.name != LAG or effect.parameters["time"].value > late:
+        within = effect.parameters[gain].value <= LATE_SHARE * evidence.support
+    elif record.name == LAG:
+        within = effect.parameters["time"].value <= max(f.lateness for f in evidence.forms)
+    else:
+        within = False
+    if not within:
         return ""
     return "lies within what noise of the position makes friction late by"
