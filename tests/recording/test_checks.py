@@ -200,19 +200,22 @@ def test_a_sensor_that_freezes_under_efforts_that_move_the_machine_is_stuck() ->
     data["input"] = -swings
     assert verdict(data, "stuck channel") == "fine"
     # Back where it froze there is no jump by which to tell.
-    turn = round(2.0 * np.pi / 9.0 / np.median(np.diff(data["time"])))
+    turn = round(4.0 * np.pi / 9.0 / np.median(np.diff(data["time"])))
     frozen = {**data, "position": data["position"].copy()}
     frozen["position"][1000 : 1000 + turn] = frozen["position"][1000]
     frozen["position"][1000 + turn :] += data["position"][1000] - data["position"][1000 + turn]
     assert verdict(frozen, "stuck channel") == "fault"
-    # Steady efforts hold a machine, and so do those under which it sticks elsewhere, too.
+    # Steady efforts hold a machine, and so do those under which it rests elsewhere, too.
     held = {**frozen, "input": frozen["input"].copy()}
     held["input"][1000 : 1000 + turn] = 0.9
     assert verdict(held, "stuck channel") == "fine"
     sticks = {**frozen, "position": frozen["position"].copy()}
-    for first in range(3000, 6000, 1000):
-        sticks["position"][first : first + 700] = sticks["position"][first]
+    sticks["position"][3000 : 3000 + turn // 2] = sticks["position"][3000]
     assert verdict(sticks, "stuck channel") == "fine"
+    # One that sticks while the effort turns round once leaves then.
+    turns = {**data, "position": data["position"].copy()}
+    turns["position"][1000 : 1000 + turn // 6] = turns["position"][1000]
+    assert verdict(turns, "stuck channel") == "fine"
 
 
 def test_a_sensor_that_freezes_from_full_speed_to_the_end_is_stuck() -> None:

@@ -16,6 +16,8 @@ from .signal import SPIKE_COUNTS, SPIKE_TIMES, channels_of, runs, spike_rows, wi
 _MEASURED: Final = ("position", "velocity", "effort")
 _BOUNDED: Final = ("position", "effort")
 _NEEDED: Final = ("input", "position", "effort")
+_REST: Final = 5
+"""Rows; shorter ones are repeated readings."""
 _OF_GOALS: Final = ("rad", "m")
 """Units of an input that is a place to go to, and no effort."""
 
@@ -216,12 +218,14 @@ def _held_against_efforts(
     swing: float = 0.5,
     pushed: float = 0.1,
     moves: float = 0.98,
+    stronger: float = 1.3,
 ) -> list[Check]:
     """A position that stays to the last digit under efforts that move the machine elsewhere.
 
-    Efforts within a freeze swing over a good part of their whole range, and as strong ones are
-    hardly ever without motion outside of it. What holds a machine, and what it sticks under, is
-    either steady or weaker than what moves it.
+    Efforts within a freeze go there, back and there again over a good part of their whole range,
+    are stronger than any under which the position rests elsewhere, and as strong ones are hardly
+    ever without motion. What holds a machine is steady; one that sticks while the effort turns
+    round leaves when that has gone over once.
 
     Parameters
     ----------
@@ -236,6 +240,8 @@ def _held_against_efforts(
         Share of a freeze's rows under the efforts that are compared: the strongest ones.
     moves : float
         Share of such rows elsewhere that must move.
+    stronger : float
+        By how much efforts within a freeze exceed those under which the position rests elsewhere.
     """
     position = recording.position
     effort = recording.input if recording.effort is None else recording.effort
@@ -245,12 +251,18 @@ def _held_against_efforts(
     if not (np.all(np.isfinite(position)) and np.all(np.isfinite(effort))):
         return []
     moving = np.diff(position) != 0.0
+    rests = [(first, last) for first, last in runs(~moving) if last - first >= _REST]
+    strongest = [float(np.max(np.abs(effort[first:last]))) for first, last in rests]
     frozen: list[tuple[int, int]] = []
-    for first, last in runs(~moving):
+    for k, (first, last) in enumerate(rests):
         own = effort[first:last]
         if last - first < fewest or np.ptp(own) < swing * np.ptp(effort):
             continue
         strong = float(np.quantile(np.abs(own), 1.0 - pushed))
+        signs = np.sign(own[np.abs(own) >= swing * strong])
+        beside = max((each for j, each in enumerate(strongest) if j != k), default=0.0)
+        if np.count_nonzero(np.diff(signs)) < 2 or strong < stronger * beside:
+            continue
         alike = np.abs(effort[:-1]) >= strong
         alike[first:last] = False
         if alike.sum() >= fewest and float(np.mean(moving[alike])) >= moves:
