@@ -214,7 +214,9 @@ def test_a_sensor_that_freezes_under_efforts_that_move_the_machine_is_stuck() ->
     assert verdict(sticks, "stuck channel") == "fine"
     # One that sticks while the effort turns round once leaves then.
     turns = {**data, "position": data["position"].copy()}
-    turns["position"][1000 : 1000 + turn // 6] = turns["position"][1000]
+    left = 1000 + turn // 6
+    turns["position"][left:] += data["position"][1000] - data["position"][left]
+    turns["position"][1000:left] = turns["position"][1000]
     assert verdict(turns, "stuck channel") == "fine"
 
 
