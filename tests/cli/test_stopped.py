@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -46,6 +47,14 @@ def session(tmp_path: Path) -> Path:
     header = "time_s,torque_nm,position_rad"
     np.savetxt(tmp_path / "run.csv", table, "%.12g", ",", header=header, comments="")
     return path
+
+
+@pytest.fixture(autouse=True)
+def heard() -> Iterator[None]:
+    """Ctrl-C as it is heard in a terminal: what runs in the background may be told to ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def struck() -> None:

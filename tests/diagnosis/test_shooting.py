@@ -78,10 +78,10 @@ def test_a_coarse_encoder_is_looked_at_by_short_simulations() -> None:
     horizon, base = chosen(COARSE)
     assert horizon is not None
     assert HORIZONS_S[0] <= horizon <= HORIZONS_S[1]
-    assert "weak form" in told(base.evidence.forms)
+    assert "weak form" in told(base.evidence.forms, base.plant)
     evidence = Evidence(plant(COARSE), session(COARSE), threads=1, horizon=horizon)
     assert all(isinstance(form, ShootingForm) for form in evidence.forms)
-    assert "shooting" in told(evidence.forms)
+    assert "shooting" in told(evidence.forms, base.plant)
 
 
 def test_a_fine_encoder_keeps_the_weak_form() -> None:
