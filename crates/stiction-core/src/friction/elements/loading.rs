@@ -102,14 +102,6 @@ impl<S: Scalar> Curve<S> {
         self.inverse_distance * (direction * twice)
     }
 
-    /// The size of the force at which the virgin curve has this slope, above k_inf.
-    pub fn force_at_slope(&self, slope: S) -> S {
-        let twice = if self.virgin == VirginCurve::Masing { 2.0 } else { 1.0 };
-        let left = (slope - self.final_stiffness) / self.fading;
-        let force = self.fading * -(left - 1.0) - self.final_stiffness * left.ln();
-        force * self.decay_distance / S::constant(twice)
-    }
-
     /// The elongation at which the virgin curve has this force.
     ///
     /// By Halley's iteration, which triples the digits of each pass, from the root of a fraction
@@ -215,11 +207,6 @@ mod tests {
             let c = Curve::new(3000.0, 800.0, 2.909e-4, virgin);
             for x in [-2e-3, -1e-5, 0.0, 3e-7, 4e-4, 0.1] {
                 assert!((c.virgin_inverse(c.virgin(x).force) - x).abs() <= 1e-14 * x.abs());
-                let r = c.virgin(x.clamp(-4e-4, 4e-4));
-                assert!(
-                    (c.force_at_slope(r.slope) - r.force.abs()).abs()
-                        <= 1e-13 * c.virgin(4e-4).force
-                );
             }
         }
     }

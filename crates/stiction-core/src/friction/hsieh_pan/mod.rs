@@ -432,12 +432,15 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         match (event, trial.mode) {
             (Event::Reversal, _) => motion.velocity * state.mode,
             (Event::HookReturn, Mode::Slip { pull }) => {
-                let least = self.parameters.slip_distance * self.parameters.final_stiffness - pull;
                 if self.drags(trial, pull) {
+                    let least =
+                        self.parameters.slip_distance * self.parameters.final_stiffness - pull;
                     return S::constant(least.re().abs().max(f64::MIN_POSITIVE));
                 }
-                // In forces, for which no inverse of the curve is needed: a step is attempted often.
-                self.curve.force_at_slope(pull / self.parameters.slip_distance) - trial.series.abs()
+                // In slopes: the force at a slope needs no inverse of the curve, but has a pole at the
+                // least slope, which a hook that catches at a large force comes within 1e-7 of a step of.
+                let at = self.curve.virgin_inverse(trial.series);
+                self.parameters.slip_distance * self.curve.virgin(at).slope - pull
             }
             _ => trial.breakaway - trial.series.abs(),
         }
