@@ -191,16 +191,26 @@ def rested(
     """
     if len(readings) <= window:
         return values
-    windows = np.lib.stride_tricks.sliding_window_view(readings, window + 1)
-    still = np.max(windows, axis=1) - np.min(windows, axis=1) < width
+    highest, lowest = (_over(readings, window + 1, pick) for pick in (np.maximum, np.minimum))
+    still = highest - lowest < width
     if to_and_fro:
-        steps = np.lib.stride_tricks.sliding_window_view(np.diff(readings), window)
-        still &= (np.max(steps, axis=1) > 0.0) & (np.min(steps, axis=1) < 0.0)
+        steps = np.diff(readings)
+        still &= (_over(steps, window, np.maximum) > 0.0) & (_over(steps, window, np.minimum) < 0.0)
     # A sample rests if any window in which it lies does.
     resting = np.convolve(still, np.ones(window)) > 0.5
     since = np.where(np.concatenate([[True], ~resting]), np.arange(len(values)), 0)
     kept: FloatArray = values[np.maximum.accumulate(since)]
     return kept
+
+
+def _over(values: FloatArray, size: int, pick: np.ufunc) -> FloatArray:
+    """The greatest or least of each ``size`` neighbours, by halves; shape (n − size + 1,)."""
+    found, done = values, 1
+    while 2 * done <= size:
+        found, done = pick(found[:-done], found[done:]), 2 * done
+    if rest := size - done:
+        found = pick(found[:-rest], found[rest:])
+    return found
 
 
 def evenly(time: FloatArray) -> tuple[FloatArray, FloatArray, float]:
