@@ -180,7 +180,7 @@ def own_logs() -> tuple[Run, int]:
     motor = st.Motor(0.0076, friction=st.FrictionModel("hsieh_pan", breakaway=0.5))
     rows = many_efforts(LOGS)[:, :FEW]
     shown = ("position", "velocity")
-    work = lambda: st.simulate_ensemble(motor, rows, DT, outputs=shown, threads=1)  # noqa: E731
+    work = partial(st.simulate_ensemble, motor, rows, DT, outputs=shown, threads=1)
     return lambda: _drop(work()), FEW * LOGS
 
 

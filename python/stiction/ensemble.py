@@ -26,7 +26,7 @@ __all__ = ["Ensemble", "EnsembleRun", "Reduce", "simulate_ensemble"]
 Reduce = Literal["last", "rms", "extremes"]
 """What is kept instead of rows: the value at the end, the root mean square of the distance from a
 target, or the least and the greatest value."""
-EACH: Final = 6144.0
+MEMBER_SIZE: Final = 6144.0
 """Bytes that a machine with a large state takes while it is set up; measured."""
 _REDUCTIONS = ("last", "rms", "extremes")
 
@@ -156,7 +156,7 @@ class Ensemble(_Ensemble):
                 "of them one value a member"
             )
         count = members if members is not None else sizes.pop()
-        given.memory_for(float(count) * EACH, f"{count} machines; give fewer at a time")
+        given.memory_for(float(count) * MEMBER_SIZE, f"{count} machines; give fewer at a time")
         table = np.concatenate(list(rows.values())) if rows else None
         return super().__new__(cls, motor, count, list(rows), table)
 

@@ -39,10 +39,8 @@ def swept(n: int, seed: int = 0) -> np.ndarray:
     return np.where(time % 5.0 > 4.5, 0.0, waves)
 
 
-def recorded(n: int = 10_000, seed: int = 0, noise: float = NOISE) -> Recording:
-    """What a recorder keeps of the independent Coulomb machine: counts, and noisy effort."""
-    rng = np.random.default_rng(seed + 100)
-    effort = swept(n, seed)
+def moved(effort: np.ndarray) -> np.ndarray:
+    """Where the independent Coulomb machine is at each stamp, rad."""
     run = simulate_coulomb(
         effort[:-1],
         DT,
@@ -51,9 +49,15 @@ def recorded(n: int = 10_000, seed: int = 0, noise: float = NOISE) -> Recording:
         breakaway=TRUE["coulomb"],
         viscous=TRUE["viscous"],
     )
-    position = np.concatenate([[0.0], run["position"]])
+    return np.concatenate([[0.0], run["position"]])
+
+
+def recorded(n: int = 10_000, seed: int = 0, noise: float = NOISE) -> Recording:
+    """What a recorder keeps of the independent Coulomb machine: counts, and noisy effort."""
+    rng = np.random.default_rng(seed + 100)
+    effort = swept(n, seed)
     measured = effort + noise * rng.standard_normal(n)
-    return Recording(np.arange(n) * DT, measured, np.round(position / COUNT) * COUNT)
+    return Recording(np.arange(n) * DT, measured, np.round(moved(effort) / COUNT) * COUNT)
 
 
 def plant(law: str = "coulomb", **more: object) -> Plant:

@@ -4,29 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.fit.test_fit import DT, TRUE, plant, swept
-from tests.reference.coulomb_reference import simulate_coulomb
+from tests.fit.test_fit import DT, NOISE, TRUE, moved, plant, swept
 
 from stiction import Recording, fit
 
 SEEDS = range(8)
 
 
-def noisy(seed: int, noise: float, rate: int = 1) -> Recording:
+def noisy(seed: int, noise: float) -> Recording:
     """The independent Coulomb machine, whose rests are a seventh of the time."""
     rng = np.random.default_rng(seed + 100)
     n = 12_000
     effort = swept(n, seed)
-    run = simulate_coulomb(
-        effort[:-1],
-        DT,
-        inertia=TRUE["inertia"],
-        coulomb=TRUE["coulomb"],
-        breakaway=TRUE["coulomb"],
-        viscous=TRUE["viscous"],
-    )
-    position = np.concatenate([[0.0], run["position"]]) + noise * rng.standard_normal(n)
-    return Recording(np.arange(n) * DT, effort + 2e-3 * rng.standard_normal(n), position)
+    position = moved(effort) + noise * rng.standard_normal(n)
+    return Recording(np.arange(n) * DT, effort + NOISE * rng.standard_normal(n), position)
 
 
 @pytest.mark.parametrize("noise", [1e-9, 1e-7, 2e-6, 2e-5])

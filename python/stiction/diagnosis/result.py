@@ -43,8 +43,24 @@ Verdict = Literal[
 ]
 
 
+class _Gained:
+    """What was measured on test rows, in the words of findings.json."""
+
+    gain: Gain | None
+
+    @property
+    def heldout_gain(self) -> float | None:
+        """Share of the residual's power that it removes, over test rows; None where unknown."""
+        return None if self.gain is None else self.gain.value
+
+    @property
+    def heldout_gain_ci95(self) -> tuple[float, float] | None:
+        """95 % interval of ``heldout_gain``."""
+        return None if self.gain is None else self.gain.ci95
+
+
 @dataclass(frozen=True)
-class Cause:
+class Cause(_Gained):
     """One effect that the plant lacks.
 
     Attributes
@@ -78,16 +94,6 @@ class Cause:
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")
-
-    @property
-    def heldout_gain(self) -> float | None:
-        """Share of the residual's power that it removes, over test rows; None where unknown."""
-        return None if self.gain is None else self.gain.value
-
-    @property
-    def heldout_gain_ci95(self) -> tuple[float, float] | None:
-        """95 % interval of ``heldout_gain``."""
-        return None if self.gain is None else self.gain.ci95
 
     def to_dict(self) -> dict[str, Any]:
         """As an entry of ``effects``."""
@@ -138,22 +144,12 @@ class CandidateRow:
 
 
 @dataclass(frozen=True)
-class LawRow:
+class LawRow(_Gained):
     """Another law in place of the plant's."""
 
     law: str
     gain: Gain | None
     reason: str
-
-    @property
-    def heldout_gain(self) -> float | None:
-        """Share of the residual's power that it removes, over test rows; None where unknown."""
-        return None if self.gain is None else self.gain.value
-
-    @property
-    def heldout_gain_ci95(self) -> tuple[float, float] | None:
-        """95 % interval of ``heldout_gain``."""
-        return None if self.gain is None else self.gain.ci95
 
     def to_dict(self) -> dict[str, Any]:
         """As an entry of ``laws``."""
