@@ -63,8 +63,8 @@ def main() -> None:
 
         run = motor().simulate_segments(*rests)
         ratios = [
-            seconds(lambda: fixed(motor(), *work, STEP))  # noqa: B023
-            / seconds(lambda: motor().simulate_segments(*work))  # noqa: B023
+            seconds(lambda work=work, motor=motor: fixed(motor(), *work, STEP))
+            / seconds(lambda work=work, motor=motor: motor().simulate_segments(*work))
             for work in (rests, trains)
         ]
         truth = fixed(motor("reference"), *trains, 2e-5)

@@ -10,7 +10,7 @@ import numpy as np
 
 import stiction as st
 from stiction.diagnosis.evidence import Evidence
-from stiction.diagnosis.gain import open_residuals
+from stiction.diagnosis.gain import residuals_of
 from stiction.diagnosis.model import fitted
 from stiction.fitting.solve import reweighted
 from stiction.session import Session
@@ -149,7 +149,7 @@ def oracle(plant, session, made, baseline):
             rows.weight = own.weight
         evidence.weigh()
         best = fitted(evidence, base.plant, base.nuisances)
-        opened = open_residuals(evidence, [(best.plant, best.nuisances)])
+        opened = residuals_of(evidence, evidence.open_test(), [(best.plant, best.nuisances)])
         return float(np.sum(opened.residuals[0] ** 2))
 
     least = power(clean)

@@ -13,7 +13,7 @@ from ..plant import Plant
 from ..trajectory import FloatArray
 from .evidence import Cells, Evidence
 
-__all__ = ["Gain", "HeldOut", "gain_of", "open_residuals", "residuals_of"]
+__all__ = ["Gain", "HeldOut", "gain_of", "residuals_of"]
 
 RESAMPLES: Final = 2000
 
@@ -67,11 +67,6 @@ class HeldOut:
     def rms(self, index: int) -> float:
         """Root mean square of the residual of one plant, in effort."""
         return float(np.sqrt(np.mean((self.residuals[index] / self.weights) ** 2)))
-
-
-def open_residuals(evidence: Evidence, models: Sequence[tuple[Plant, Nuisances]]) -> HeldOut | None:
-    """Opens the rows that test for all plants at once; None where there are none."""
-    return residuals_of(evidence, evidence.open_test(), models)
 
 
 def residuals_of(
