@@ -89,6 +89,13 @@ def test_the_stiffest_contact_that_windows_follow_is_no_bound_to_widen(
     assert "widen" not in said
 
 
+def test_a_bound_that_was_stated_is_one_to_widen() -> None:
+    found = fit(bristles({"value": 100.0, "max": 150.0}), recorded(4000))
+    assert found["friction.initial_stiffness"].at_bound == "upper"
+    (said,) = (each for each in found.bounds_hit if "initial_stiffness" in each)
+    assert "widen" in said
+
+
 def test_a_plant_that_runs_away_from_every_start_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     gone = np.full_like
     whole = Rows.residual

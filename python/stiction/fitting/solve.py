@@ -312,7 +312,7 @@ def evaluate(
         parameters=parameters,
         covariance=matrix,
         correlations=correlations(matrix),
-        bounds_hit=_bound_sentences(parameters, stated),
+        bounds_hit=_bound_sentences(parameters, followed=stated != plant),
         undetermined=_undetermined_sentences(parameters, flat, train),
         assumed=(told,) if told else (),
         r2=fitted[2],
@@ -368,11 +368,11 @@ def _errors(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> tuple[f
     )
 
 
-def _bound_sentences(parameters: dict[str, FitParameter], stated: Plant) -> tuple[str, ...]:
+def _bound_sentences(parameters: dict[str, FitParameter], *, followed: bool) -> tuple[str, ...]:
+    """What ended at a bound; ``followed``: the stiffness ends where windows stop following it."""
     sentences = []
     for path, p in parameters.items():
-        most = stated.parameters[path].max
-        if path == STIFFNESS and p.at_bound == "upper" and (most is None or p.value < most):
+        if path == STIFFNESS and p.at_bound == "upper" and followed:
             sentences.append(
                 f"{path} ended at {p.value:.6g} {p.unit}, the stiffest contact that can be "
                 "simulated between these samples: record more often to tell it"
