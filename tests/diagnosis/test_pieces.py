@@ -19,14 +19,14 @@ from stiction.diagnosis import listing
 from stiction.diagnosis.candidates import Scales, candidates, left_out, present, scales_of
 from stiction.diagnosis.decide import Choice, Trial, choose, strangers
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
-from stiction.diagnosis.gain import Gain, HeldOut, gain_of
+from stiction.diagnosis.gain import HeldOut, gain_of
 from stiction.diagnosis.model import LEAST_GIVEN, Model, fitted, with_effect
 from stiction.diagnosis.periodic import waves_of
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.replay import centre, noise_of, surrogate_residuals
 from stiction.diagnosis.result import Cause, Diagnosis
 from stiction.diagnosis.verdict import relatives
-from stiction.diagnosis.words import joined, sentence, value_words
+from stiction.diagnosis.words import value_words
 from stiction.finite import finite
 from stiction.fitting.levenberg import escaped, levenberg_marquardt
 from stiction.fitting.result import FitParameter
@@ -400,30 +400,6 @@ def test_relatives_named_beside_each_other_are_not_decided() -> None:
     trials = [tried(1.0, 1, family=family) for family in ("angle", "slow", "angle")]
     selection = SimpleNamespace(choices=[Choice(trial, ()) for trial in trials])
     assert [len(relatives(selection, k)) for k in range(3)] == [1, 0, 1]
-
-
-def test_words_join_and_say_what_was_not_confirmed() -> None:
-    assert joined(["a"]) == "a"
-    assert joined(["a", "b", "c"], "or") == "a, b or c"
-    assert "Nothing is missing" in sentence("nothing_missing", (), None, (), "")
-    assert sentence("not_testable", (), None, (), "too short") == "too short"
-    sure = SimpleNamespace(
-        name="cogging", decided=True, look_alikes=(), what="a pull: cosine 1", gain=None
-    )
-    alike = ("stribeck", "torque_bias")
-    unsure = SimpleNamespace(
-        name="warm_up", decided=False, look_alikes=alike[:1], what="a fall", gain=None
-    )
-    fall = "friction falls from a level at rest to a lower one as speed rises"
-    assert sentence("ambiguous", (sure, unsure), None, (), "").startswith(
-        f"The simulation lacks cogging (a pull) and either warm_up (a fall) or stribeck ({fall}), "
-        "which these data cannot tell apart. Adding them removes"
-    )
-    unsure.look_alikes = alike
-    assert "lacks one of warm_up (a fall), stribeck (" in sentence(
-        "ambiguous", (unsure,), None, (), ""
-    )
-    assert Gain(0.5, (0.4, 0.6)).to_dict() == {"value": 0.5, "ci95": [0.4, 0.6]}
 
 
 def test_an_interrupted_refit_ends_the_search(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -25,8 +25,9 @@ def trial(
     family: str = "",
     by_blocks: bool = False,
     contributed: Any = (1.0, 0.0),
+    second: tuple[str, ...] = (),
 ) -> Trial:
-    record = SimpleNamespace(family=family or name, name=name, shapes=(), late=False, second=())
+    record = SimpleNamespace(family=family or name, name=name, shapes=(), late=False, second=second)
     candidate: Any = SimpleNamespace(name=name, parameters=1, record=record)
     score: Any = SimpleNamespace(
         signature=np.asarray(contributed, dtype=float),
@@ -87,7 +88,7 @@ def test_a_refit_that_freed_the_base_leads_to_a_better_one_before_any_name() -> 
     freed = replace(trial("a", 2.0, "the base was freed"), freed=True)
     bench: Any = Bench({"base": [freed, trial("b", 1.0)]})
     base: Any = SimpleNamespace(name="base")
-    choice, leads = rounds._round(bench, Search([base]), set())
+    choice, leads, _ = rounds._round(bench, Search([base]), set())
     assert choice is not None
     assert choice.winner.name == "b"
     assert [lead.name for lead in leads] == ["a", "b"]
@@ -123,6 +124,47 @@ def test_a_small_relative_of_a_named_cause_may_be_its_rest(
     assert rounds._take_back(bench, found) == (set() if kept else {"b"})
     assert len(found.choices) == len(found.models) - 1 == (2 if kept else 1)
     assert found.rows["b"].reason.startswith("accepted" if kept else "small beside a,")
+
+
+@pytest.mark.parametrize(
+    ("named", "second", "along", "reason", "doubted"),
+    [
+        ((), ("order_2",), (1.0, 0.5), "", True),
+        ((), ("order_2",), (1.0, 0.5), SPREAD, True),
+        # Refused for more than its spread, another kind of effect, or a wave of another order.
+        ((), ("order_2",), (1.0, 0.5), "does not help on rows held out", False),
+        (("order_2",), ("order_2",), (1.0, 0.5), "", False),
+        ((), (), (1.0, 0.5), "", False),
+        ((), ("order_2",), (0.1, 1.0), SPREAD, False),
+    ],
+)
+def test_a_single_wave_that_leaves_a_rest_may_be_the_first_of_several(
+    named: tuple[str, ...],
+    second: tuple[str, ...],
+    along: tuple[float, float],
+    reason: str,
+    doubted: bool,
+) -> None:
+    wave = trial("a", 1.0, family="waves", second=named)
+    rest = trial(
+        "b",
+        0.15,
+        reason,
+        family="waves",
+        by_blocks=reason == SPREAD,
+        contributed=along,
+        second=second,
+    )
+    bench: Any = Bench({})
+    models: list[Any] = ["base", "with a"]
+    found = Search(models, [Choice(wave, ())])
+    if reason:
+        rounds._doubt_single_waves(bench, found, [rest])
+    else:
+        found = Search([*models, "with both"], [Choice(wave, ()), Choice(rest, ())])
+        found.rows["b"] = CandidateRow("b", 0.3, 0.05, 0.2, "accepted")
+        rounds._take_back(bench, found)
+    assert [rival.name for rival in found.choices[0].rivals] == (["b"] if doubted else [])
 
 
 @pytest.mark.parametrize(

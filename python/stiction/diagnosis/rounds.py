@@ -91,11 +91,12 @@ def search(
         rests: set[str] = set()
         renewed = 0
         while len(found.choices) < MOST_EFFECTS:
-            choice, leads = _round(screening, found, rests)
+            choice, leads, trials = _round(screening, found, rests)
             if renewed < MOST_RENEWALS and any(_renew(evidence, found, lead) for lead in leads):
                 renewed += 1
                 continue
             if choice is None or choice.winner.name in dropped:
+                _doubt_single_waves(screening, found, trials)
                 break
             found.choices.append(choice)
             found.models.append(choice.winner.model)
@@ -161,8 +162,8 @@ def _where(plant: Plant, record: EffectRecord) -> str:
 
 def _round(
     screening: Screening, found: Search, refused: Set[str]
-) -> tuple[Choice | None, list[Trial]]:
-    """What is accepted of what a model lacks, and trials that may have freed the base."""
+) -> tuple[Choice | None, list[Trial], list[Trial]]:
+    """What is accepted of what a model lacks, trials that may have freed the base, and all."""
     taken = refused | {choice.winner.name for choice in found.choices}
     scores = screening.scores(found.models[-1])
     scores = [score for score in scores if score.candidate.name not in taken]
@@ -177,7 +178,7 @@ def _round(
     trials: list[Trial] = []
     asked = [s for s in scores if _is_asked(screening, s) and s not in passing[:REFITTED]]
     try:
-        return _refitted(screening, found, passing, asked, trials)
+        return *_refitted(screening, found, passing, asked, trials), trials
     except KeyboardInterrupt:
         if not found.choices:
             # Nothing was decided among these; what the screening says of others holds.
@@ -310,20 +311,49 @@ def _take_back(screening: Screening, found: Search) -> set[str]:
     looks like another of its kind, and is small beside it.
     """
     latest = found.choices[-1].winner
-    explained = screening.contributed(latest.score, latest.model)
-    for choice in found.choices[:-1]:
-        other = choice.winner
-        if other.candidate.record.family != latest.candidate.record.family:
-            continue
-        before = screening.contributed(other.score, other.model)
-        if latest.worth < other.worth / MIMIC and parallel(explained, before) > RELATED:
-            _logger.info("%s may be the rest of %s", latest.name, other.name)
-            reason = f"small beside {other.name}, and may be what its form leaves unexplained"
-            found.rows[latest.name] = replace(found.rows[latest.name], reason=reason)
+    for place, choice in enumerate(found.choices[:-1]):
+        if _may_be_the_rest(screening, latest, choice.winner):
+            _logger.info("%s may be the rest of %s", latest.name, choice.winner.name)
+            found.rows[latest.name] = replace(
+                found.rows[latest.name],
+                reason=f"small beside {choice.winner.name}, and may be what its form leaves "
+                "unexplained",
+            )
             found.choices.pop()
             found.models.pop()
+            _doubt_a_single_wave(found, place, latest)
             return {latest.name}
     return set()
+
+
+def _may_be_the_rest(screening: Screening, latest: Trial, other: Trial) -> bool:
+    """Whether one looks like a relative that was found before it, and is small beside that."""
+    if other.candidate.record.family != latest.candidate.record.family:
+        return False
+    explained = screening.contributed(latest.score, latest.model)
+    before = screening.contributed(other.score, other.model)
+    return latest.worth < other.worth / MIMIC and parallel(explained, before) > RELATED
+
+
+def _doubt_single_waves(screening: Screening, found: Search, trials: Sequence[Trial]) -> None:
+    """Doubts each single wave of which a rest was refused for its spread over blocks alone."""
+    for trial in (each for each in trials if each.by_blocks):
+        for place, choice in enumerate(found.choices):
+            if _may_be_the_rest(screening, trial, choice.winner):
+                _doubt_a_single_wave(found, place, trial)
+
+
+def _doubt_a_single_wave(found: Search, place: int, rest: Trial) -> None:
+    """Leaves a single wave undecided beside a relative of several, of which it may be the first.
+
+    The form of an effect is its author's, and a machine's own leaves a rest of it. That a weight
+    off the axis makes one wave is no matter of form: what leaves a rest of one is another thing.
+    """
+    choice = found.choices[place]
+    single = not choice.winner.candidate.record.second and rest.candidate.record.second
+    if single and rest.name not in {rival.name for rival in choice.rivals}:
+        _logger.info("%s may be the first wave of %s", choice.winner.name, rest.name)
+        found.choices[place] = replace(choice, rivals=(*choice.rivals, rest))
 
 
 def _renew(evidence: Evidence, found: Search, lead: Trial) -> bool:

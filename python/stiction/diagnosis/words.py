@@ -107,7 +107,7 @@ def sentence(
     """The verdict in words."""
     if verdict in ("data_fault", "not_testable"):
         return reason
-    named = joined([_cause(cause) for cause in effects])
+    named = _causes(effects)
     adding = f"Adding {'it' if len(effects) == 1 else 'them'}"
     gained = f" {adding} removes {gain_words(gain)}."
     if gain is not None and gain.value < 0.0:
@@ -180,9 +180,24 @@ def _unconfirmed(effects: Sequence[Cause]) -> str:
     return told + (f" The held-out rows speak against {joined(worse)}." if worse else "")
 
 
+def _causes(effects: Sequence[Cause]) -> str:
+    """All causes; those that are told from nothing but each other stand together."""
+    names = {cause.name for cause in effects}
+    mutual = [c for c in effects if c.look_alikes and names.issuperset(c.look_alikes)]
+    told = [_cause(cause) for cause in effects if cause not in mutual]
+    if mutual:
+        each = joined([_with_meaning(cause) for cause in mutual])
+        told.append(f"{each}, which together may be another cause that resembles them")
+    return joined(told)
+
+
+def _with_meaning(cause: Cause) -> str:
+    return f"{cause.name} ({cause.what.partition(':')[0]})"
+
+
 def _cause(cause: Cause) -> str:
     """A cause with its meaning, or the effects that it may be with theirs."""
-    own = f"{cause.name} ({cause.what.partition(':')[0]})"
+    own = _with_meaning(cause)
     if cause.decided:
         return own
     if not cause.look_alikes:

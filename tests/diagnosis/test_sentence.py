@@ -1,0 +1,39 @@
+"""The verdict in one sentence."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+from stiction.diagnosis.gain import Gain
+from stiction.diagnosis.words import joined, sentence
+
+
+def test_words_join_and_say_what_was_not_confirmed() -> None:
+    assert joined(["a"]) == "a"
+    assert joined(["a", "b", "c"], "or") == "a, b or c"
+    assert "Nothing is missing" in sentence("nothing_missing", (), None, (), "")
+    assert sentence("not_testable", (), None, (), "too short") == "too short"
+    sure = SimpleNamespace(
+        name="cogging", decided=True, look_alikes=(), what="a pull: cosine 1", gain=None
+    )
+    alike = ("stribeck", "torque_bias")
+    unsure = SimpleNamespace(
+        name="warm_up", decided=False, look_alikes=alike[:1], what="a fall", gain=None
+    )
+    fall = "friction falls from a level at rest to a lower one as speed rises"
+    assert sentence("ambiguous", (sure, unsure), None, (), "").startswith(
+        f"The simulation lacks cogging (a pull) and either warm_up (a fall) or stribeck ({fall}), "
+        "which these data cannot tell apart. Adding them removes"
+    )
+    other = SimpleNamespace(
+        name="stribeck", decided=False, look_alikes=("warm_up",), what="a bump", gain=None
+    )
+    assert sentence("ambiguous", (unsure, sure, other), None, (), "").startswith(
+        "The simulation lacks cogging (a pull) and warm_up (a fall) and stribeck (a bump), which "
+        "together may be another cause that resembles them. Adding them removes"
+    )
+    unsure.look_alikes = alike
+    assert "lacks one of warm_up (a fall), stribeck (" in sentence(
+        "ambiguous", (unsure,), None, (), ""
+    )
+    assert Gain(0.5, (0.4, 0.6)).to_dict() == {"value": 0.5, "ci95": [0.4, 0.6]}
