@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from stiction.catalogue import effects
 from stiction.diagnosis import decide, rounds
 from stiction.diagnosis.decide import Choice, Trial
-from stiction.diagnosis.result import CandidateRow
+from stiction.diagnosis.result import CandidateRow, Cause, Unexplained
 from stiction.diagnosis.selection import Search
+from stiction.diagnosis.single_wave import doubted
 
 BLOCKS = np.ones(30), np.ones(30)
 
@@ -25,9 +27,8 @@ def trial(
     family: str = "",
     by_blocks: bool = False,
     contributed: Any = (1.0, 0.0),
-    second: tuple[str, ...] = (),
 ) -> Trial:
-    record = SimpleNamespace(family=family or name, name=name, shapes=(), late=False, second=second)
+    record = SimpleNamespace(family=family or name, name=name, shapes=(), late=False, second=())
     candidate: Any = SimpleNamespace(name=name, parameters=1, record=record)
     score: Any = SimpleNamespace(
         signature=np.asarray(contributed, dtype=float),
@@ -127,44 +128,61 @@ def test_a_small_relative_of_a_named_cause_may_be_its_rest(
 
 
 @pytest.mark.parametrize(
-    ("named", "second", "along", "reason", "doubted"),
+    ("named", "rest", "along", "reason", "open_"),
     [
-        ((), ("order_2",), (1.0, 0.5), "", True),
-        ((), ("order_2",), (1.0, 0.5), SPREAD, True),
-        # Refused for more than its spread, another kind of effect, or a wave of another order.
-        ((), ("order_2",), (1.0, 0.5), "does not help on rows held out", False),
-        (("order_2",), ("order_2",), (1.0, 0.5), "", False),
-        ((), (), (1.0, 0.5), "", False),
-        ((), ("order_2",), (0.1, 1.0), SPREAD, False),
+        ("gravity_unbalance", "cogging", (1.0, 0.5), "", True),
+        ("gravity_unbalance", "cogging", (1.0, 0.5), SPREAD, True),
+        # Refused for more than its spread, a wave of another order, or one that is no single wave.
+        ("gravity_unbalance", "cogging", (1.0, 0.5), "does not help on rows held out", False),
+        ("gravity_unbalance", "cogging", (0.1, 1.0), SPREAD, False),
+        ("cogging", "gravity_unbalance", (1.0, 0.5), "", False),
+        ("torque_bias", "direction_asymmetry", (1.0, 0.5), "", False),
     ],
 )
 def test_a_single_wave_that_leaves_a_rest_may_be_the_first_of_several(
-    named: tuple[str, ...],
-    second: tuple[str, ...],
-    along: tuple[float, float],
-    reason: str,
-    doubted: bool,
+    named: str, rest: str, along: tuple[float, float], reason: str, open_: bool
 ) -> None:
-    wave = trial("a", 1.0, family="waves", second=named)
-    rest = trial(
-        "b",
-        0.15,
-        reason,
-        family="waves",
-        by_blocks=reason == SPREAD,
-        contributed=along,
-        second=second,
+    records = {record.name: record for record in effects()}
+    wave, later = (
+        replace(
+            made,
+            score=SimpleNamespace(
+                signature=made.score.signature,
+                candidate=SimpleNamespace(name=made.name, record=records[made.name]),
+            ),
+        )
+        for made in (
+            trial(named, 1.0),
+            trial(rest, 0.15, reason, by_blocks=reason == SPREAD, contributed=along),
+        )
     )
     bench: Any = Bench({})
-    models: list[Any] = ["base", "with a"]
+    models: list[Any] = ["base", "with one"]
     found = Search(models, [Choice(wave, ())])
     if reason:
-        rounds._doubt_single_waves(bench, found, [rest])
+        rounds._doubt_single_waves(bench, found, [later])
     else:
-        found = Search([*models, "with both"], [Choice(wave, ()), Choice(rest, ())])
-        found.rows["b"] = CandidateRow("b", 0.3, 0.05, 0.2, "accepted")
+        found = Search([*models, "with both"], [Choice(wave, ()), Choice(later, ())])
+        found.rows[rest] = CandidateRow(rest, 0.3, 0.05, 0.2, "accepted")
         rounds._take_back(bench, found)
-    assert [rival.name for rival in found.choices[0].rivals] == (["b"] if doubted else [])
+    assert [rival.name for rival in found.choices[0].rivals] == ([rest] if open_ else [])
+
+
+@pytest.mark.parametrize(
+    ("name", "coordinate", "decided"),
+    [
+        ("gravity_unbalance", "angle", False),
+        ("gravity_unbalance", "velocity", True),
+        ("cogging", "angle", True),
+    ],
+)
+def test_what_a_single_wave_leaves_along_the_turn_speaks_against_it(
+    name: str, coordinate: str, decided: bool
+) -> None:
+    cause = Cause(name, "cogging", True, (), {}, None, "", "", "", "")
+    after = doubted(cause, [Unexplained(coordinate, 0.1)])
+    assert after.decided is decided
+    assert after.look_alikes == (() if decided else ("cogging",))
 
 
 @pytest.mark.parametrize(

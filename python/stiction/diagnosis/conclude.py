@@ -40,6 +40,7 @@ from .replay import centre, shared, surrogate_residuals
 from .result import Cause, Diagnosis, ModelSummary, Unexplained, Verdict
 from .rounds import friction_of
 from .selection import Search
+from .single_wave import doubted
 from .verdict import relatives, unnamed, verdict_of
 from .view import View
 from .words import INTERRUPTED, MORE_MAY_BE, NO_COORDINATE, no_machine, push_words, sentence, what
@@ -231,6 +232,7 @@ class Conclusion:
             reason = NOTHING_YET
         else:
             unexplained = self.unexplained
+            causes = [doubted(cause, unexplained) for cause in causes]
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
             if left and not unexplained:

@@ -17,6 +17,7 @@ from .contact import Slides, slides_of
 from .evidence import Evidence
 
 __all__ = [
+    "ANGLE",
     "COORDINATES",
     "UNJUDGED",
     "Coordinate",
@@ -124,6 +125,10 @@ def _left_behind(look: Look) -> FloatArray:
     raise TypeError("a coordinate of a copied finding only names what was seen")
 
 
+ANGLE: Final = Coordinate(
+    "angle", "angle in the turn, rad", False, lambda look: look.angle, fine=True
+)
+"""Residual that goes with the angle in the turn, whatever the direction."""
 COORDINATES: Final = (
     Coordinate("velocity", "velocity, {x}/s", False, lambda look: look.velocity),
     Coordinate("speed", "speed, {x}/s", True, lambda look: np.abs(look.velocity), logarithmic=True),
@@ -131,7 +136,7 @@ COORDINATES: Final = (
     Coordinate(
         "position along the motion", "position, {x}", True, lambda look: look.position, fine=True
     ),
-    Coordinate("angle", "angle in the turn, rad", False, lambda look: look.angle, fine=True),
+    ANGLE,
     Coordinate(
         "angle along the motion", "angle in the turn, rad", True, lambda look: look.angle, fine=True
     ),

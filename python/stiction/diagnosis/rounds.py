@@ -31,6 +31,7 @@ from .result import CandidateRow
 from .screen import Score, Signatures
 from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
+from .single_wave import several
 from .trials import Screening, promises, unstuck, whole_fit
 
 __all__ = ["MOST_EFFECTS", "friction_of", "search"]
@@ -346,11 +347,10 @@ def _doubt_single_waves(screening: Screening, found: Search, trials: Sequence[Tr
 def _doubt_a_single_wave(found: Search, place: int, rest: Trial) -> None:
     """Leaves a single wave undecided beside a relative of several, of which it may be the first.
 
-    The form of an effect is its author's, and a machine's own leaves a rest of it. That a weight
-    off the axis makes one wave is no matter of form: what leaves a rest of one is another thing.
+    What the form of an effect leaves speaks not against its name; what one wave leaves does.
     """
     choice = found.choices[place]
-    single = not choice.winner.candidate.record.second and rest.candidate.record.second
+    single = rest.name in several(choice.winner.candidate.record)
     if single and rest.name not in {rival.name for rival in choice.rivals}:
         _logger.info("%s may be the first wave of %s", choice.winner.name, rest.name)
         found.choices[place] = replace(choice, rivals=(*choice.rivals, rest))
