@@ -105,7 +105,7 @@ impl Add<f64> for Dual {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: f64) -> Self {
-        Self { re: self.re + other, ..self }
+        self.with_value(self.re + other)
     }
 }
 
@@ -113,7 +113,7 @@ impl Sub<f64> for Dual {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: f64) -> Self {
-        Self { re: self.re - other, ..self }
+        self.with_value(self.re - other)
     }
 }
 

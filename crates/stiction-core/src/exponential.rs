@@ -141,13 +141,9 @@ pub fn faded_within<S: Scalar>(x: S) -> S {
     x.chain(value, value - 1.0)
 }
 
-/// [`fading_of`] the first two and [`faded_of`] the third, as part of the loop that asks for them where
-/// it is one of plain numbers.
+/// [`fading_of`] the first two and [`faded_of`] the third, as part of the loop that asks for them.
 #[inline(always)]
 pub fn fading_twice_and_faded_of<S: Scalar>(one: S, other: S, third: S) -> [S; 3] {
-    if S::CARRIES {
-        return [fading_of(one), fading_of(other), faded_of(third)];
-    }
     let (other_left, gone) = fading_and_faded(other.re(), third.re());
     let left = fading_one(one.re());
     [one.chain(left, left), other.chain(other_left, other_left), third.chain(gone, gone - 1.0)]

@@ -20,6 +20,7 @@ pub mod follow;
 pub mod integrate;
 pub mod kernel;
 pub mod lanes;
+mod logarithm;
 pub mod model;
 pub mod motor;
 pub mod parameter;

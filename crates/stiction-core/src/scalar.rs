@@ -7,6 +7,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use stiction_dispatch::{Task, alone};
 
 pub use crate::dual::{COLUMNS, Dual};
+use crate::logarithm::logarithm;
 use crate::trig::sin_cos;
 
 /// A real number or a dual number; branches are decided on the real part alone.
@@ -123,7 +124,7 @@ pub trait Scalar:
         };
         let in_base = self.chain(value, slope);
         if exponent.derivative_is_nonzero() {
-            in_base + (exponent - a) * (value * m.ln())
+            in_base + (exponent - a) * (value * logarithm(m))
         } else {
             // A logarithm costs more than all the rest, and most exponents are not seeded.
             in_base

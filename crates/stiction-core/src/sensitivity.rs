@@ -6,7 +6,7 @@ use crate::integrate::{Machine, Run};
 use crate::kernel::RowKernel;
 use crate::motor::{MotorSpec, PerSample, Rows, Running, Surroundings};
 use crate::scalar::{COLUMNS, Dual, Scalar};
-use crate::traces::{Filling, Stretch, Traces, put_all};
+use crate::traces::{Filling, ONCE, Stretch, Traces, put_all};
 
 /// Derivatives of position and velocity at the end of every sample.
 #[derive(Debug, Clone)]
@@ -17,15 +17,24 @@ pub struct Sensitivity {
     pub velocity: Vec<f64>,
 }
 
-/// Samples whose derivatives are put into the rows at once: rows lie apart, and a processor keeps
-/// few pages at hand to write to.
-const ONCE: usize = 8;
-
 /// Where the derivatives of a pass go.
 struct Slopes<'a> {
-    /// Rows of position and velocity, and what is not in them yet.
-    rows: [(&'a mut [f64], [[f64; COLUMNS]; ONCE]); 2],
+    /// Rows of position and velocity.
+    rows: [Vec<&'a mut [f64]>; 2],
+    /// What is not in them yet.
+    held: [[[f64; COLUMNS]; ONCE]; 2],
     samples: usize,
+}
+
+impl Slopes<'_> {
+    /// Puts what stands for so many samples up to this one into the rows: a function of its own, for
+    /// which the loop puts off what it has in registers once in [`ONCE`] samples.
+    #[inline(never)]
+    fn put(&mut self, k: usize, number: usize) {
+        for (rows, held) in self.rows.iter_mut().zip(&self.held) {
+            put_all(rows, k + 1 - number, &held[..number]);
+        }
+    }
 }
 
 impl Rows<Dual> for Slopes<'_> {
@@ -37,11 +46,10 @@ impl Rows<Dual> for Slopes<'_> {
     #[inline(always)] // where it is called, the motion is in registers
     fn see(&mut self, k: usize, run: &Run<Dual>, _: &Machine<Dual>, _: impl Fn(usize) -> Dual) {
         let place = k % ONCE;
-        for ((rows, held), of) in self.rows.iter_mut().zip([&run.position, &run.velocity]) {
-            held[place] = *of.slopes();
-            if place + 1 == ONCE || k + 1 == self.samples {
-                put_all(rows, self.samples, k - place, &held[..=place]);
-            }
+        self.held[0][place] = *run.position.slopes();
+        self.held[1][place] = *run.velocity.slopes();
+        if place + 1 == ONCE || k + 1 == self.samples {
+            self.put(k, place + 1);
         }
     }
 }
@@ -149,8 +157,8 @@ pub fn sensitivity_into(
     passes(spec, start.into(), paths, |running, first, number| {
         let own = first * samples..(first + number) * samples;
         let (position, velocity) = (&mut position[own.clone()], &mut velocity[own]);
-        let rows = [position, velocity].map(|rows| (rows, [[0.0; COLUMNS]; ONCE]));
-        let slopes = Slopes { rows, samples };
+        let rows = [position, velocity].map(|rows| rows.chunks_mut(samples.max(1)).collect());
+        let slopes = Slopes { rows, held: [[[0.0; COLUMNS]; ONCE]; 2], samples };
         running.simulate_rows(inputs, around, |_| Dual::constant(0.0), dt, slopes)
     })
 }

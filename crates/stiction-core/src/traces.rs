@@ -1,6 +1,8 @@
 //! Derivatives of efforts along a motion, handed over stretch by stretch: what is read soon after it is
 //! written stays in the cache, and a long motion asks for no more memory than a short one.
 
+use stiction_dispatch::{ROW, Vector, Wide, Width};
+
 use crate::dual::{COLUMNS, Dual};
 use crate::kernel::RowKernel;
 use crate::scalar::Scalar;
@@ -133,13 +135,43 @@ pub fn put(rows: &mut [f64], samples: usize, k: usize, slopes: &[f64; COLUMNS]) 
     }
 }
 
-/// Writes what stands for some samples from `first` on into one row after the other, for as many as
-/// there are.
-#[inline(always)]
-pub fn put_all(rows: &mut [f64], samples: usize, first: usize, slopes: &[[f64; COLUMNS]]) {
-    for (column, row) in rows.chunks_exact_mut(samples).take(COLUMNS).enumerate() {
-        for (place, slopes) in row[first..first + slopes.len()].iter_mut().zip(slopes) {
-            *place = slopes[column];
+/// Samples whose derivatives are put into the rows at once: rows lie apart, and a processor keeps
+/// few pages at hand to write to.
+pub const ONCE: usize = ROW;
+
+/// Writes what stands for some samples from `first` on, [`ONCE`] at most, into one row after the other.
+pub fn put_all(rows: &mut [&mut [f64]], first: usize, slopes: &[[f64; COLUMNS]]) {
+    if let Some(slopes) = slopes.first_chunk() {
+        return Width::widest().run_wide(Across { rows, first, slopes });
+    }
+    for (k, slopes) in (first..).zip(slopes) {
+        for (row, slope) in rows.iter_mut().zip(slopes) {
+            row[k] = *slope;
+        }
+    }
+}
+
+/// Writing as many samples as a vector has numbers, as a loop to run.
+struct Across<'a, 'b> {
+    rows: &'a mut [&'b mut [f64]],
+    first: usize,
+    slopes: &'a [[f64; COLUMNS]; ONCE],
+}
+
+impl Wide for Across<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        for (half, rows) in self.rows.chunks_mut(ROW).enumerate() {
+            let across = V::across(self.slopes.each_ref().map(|of| &of.as_chunks().0[half]));
+            for (row, across) in rows.iter_mut().zip(across) {
+                if let Some(places) = row[self.first..].first_chunk_mut() {
+                    for (chunk, vector) in across.iter().enumerate().take(V::CHUNKS) {
+                        vector.store(places, chunk);
+                    }
+                }
+            }
         }
     }
 }

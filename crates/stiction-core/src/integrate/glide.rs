@@ -324,8 +324,8 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         let run = &mut self.run;
         run.position += displacement;
         // Nobody asks a bare body for derivatives of these, nor how far it has moved for its effects.
-        run.path = run.path + displacement.re().abs();
-        run.time = run.time + self.verlet.span.re();
+        run.path.put(run.path.re() + displacement.re().abs());
+        run.time.put(run.time.re() + self.verlet.span.re());
         run.velocity = velocity;
         run.friction = friction;
         self.part += 1;

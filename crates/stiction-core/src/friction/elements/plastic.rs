@@ -4,6 +4,7 @@
 //! (Hsieh & Pan, Wear 242 (2000), §2.2.3 and §3.1: the behaviour is stated, the form of f is a
 //! reconstruction.)
 
+use crate::logarithm::logarithm;
 use crate::scalar::{COLUMNS, SHORTER, Scalar, logarithmic_mean, second_share, sign};
 
 /// Parameters of the plastic module.
@@ -64,15 +65,15 @@ impl<S: Scalar> Plastic<S> {
             if self.is_square() {
                 return slope;
             }
-            return slope + self.beyond_square(size);
+            return slope + self.beyond_square(size.re());
         }
         self.exponent * self.limit(force) / size
     }
 
-    /// What a seeded exponent of 2 adds to that slope: a derivative.
+    /// What a seeded exponent of 2 adds to that slope: a derivative, and the value is 0.
     #[inline(always)] // rows that a function of its own leaves in short vectors are waited for
-    fn beyond_square(&self, size: S) -> S {
-        (self.exponent - 2.0) * (self.coefficient * size * (size.re().ln() * 2.0 + 1.0))
+    fn beyond_square(&self, size: f64) -> S {
+        (self.exponent - 2.0) * (self.coefficient.re() * size * (logarithm(size) * 2.0 + 1.0))
     }
 
     /// Whether f is a plain square, which costs no power.
@@ -147,7 +148,7 @@ impl<S: Scalar> Plastic<S> {
             let size = force.abs();
             let mut pace = pacing.pace * size * stiffness;
             if !SQUARE && !pacing.square {
-                pace += progress * self.beyond_square(size) * stiffness;
+                pace += self.beyond_square(size.re()) * (progress.re() * stiffness.re());
             }
             (pacing.doubled * size.re() * stiffness.re(), pace)
         } else {

@@ -18,7 +18,13 @@ pub fn fall<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> (S, S)
 /// |v/v_s|^δ.
 #[inline(always)]
 pub fn fall_power<S: Scalar>(velocity: S, stribeck_velocity: S, exponent: S) -> S {
-    (velocity * (S::constant(1.0) / stribeck_velocity)).power_of_magnitude(exponent)
+    fall_power_by(velocity, S::constant(1.0) / stribeck_velocity, exponent)
+}
+
+/// The same with 1/v_s known.
+#[inline(always)]
+pub fn fall_power_by<S: Scalar>(velocity: S, per_velocity: S, exponent: S) -> S {
+    (velocity * per_velocity).power_of_magnitude(exponent)
 }
 
 /// The slope of [`fall`], of which `left` is what is left at this power.

@@ -54,6 +54,9 @@ pub struct HsiehPan<S> {
     /// Just under what the slope of the spring is at the level of break-away, below which it is steeper;
     /// k_inf where it never breaks away.
     softest: f64,
+    /// 1/v_s and 1/ℓ.
+    per_velocity: S,
+    per_distance: S,
 }
 
 fn softest<S: Scalar>(curve: &Curve<S>, p: &HsiehPanParameters<S>) -> f64 {
@@ -149,6 +152,8 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
             },
             damper_on_spring: choice(1) == 1,
             keeps_hardening: choice(2) == 1,
+            per_velocity: S::constant(1.0) / p.stribeck_velocity,
+            per_distance: S::constant(1.0) / p.slip_distance,
             rated: p.loading_rate.re().is_finite() && p.breakaway.re().is_finite(),
             parameters: p,
         }

@@ -2,7 +2,7 @@
 
 use super::super::elements::lag::follow_by;
 use super::super::elements::loading::Loading;
-use super::super::elements::stribeck::{fall_power, fall_slope};
+use super::super::elements::stribeck::{fall_power_by, fall_slope};
 use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;
 use super::state::{HsiehPanState, HsiehPanTrial, Mode};
@@ -108,11 +108,11 @@ impl<S: Scalar> HsiehPan<S> {
     ) -> Slide<S> {
         let p = &self.parameters;
         // Not through a closure, which would not be part of the loop.
-        let (scale, exponent) = (p.stribeck_velocity, p.stribeck_exponent);
-        let before = fall_power(motion.start_velocity, scale, exponent);
-        let after = fall_power(motion.velocity, scale, exponent);
+        let (per_velocity, exponent) = (self.per_velocity, p.stribeck_exponent);
+        let before = fall_power_by(motion.start_velocity, per_velocity, exponent);
+        let after = fall_power_by(motion.velocity, per_velocity, exponent);
         let distance = motion.displacement.abs();
-        let per_distance = S::constant(1.0) / p.slip_distance;
+        let per_distance = self.per_distance;
         let z = distance * per_distance;
         let [left, left_before, gone] = fading_twice_and_faded_of(-after, -before, -z);
         let (to, steepness) = self.sliding_level(latched, motion.velocity, (after, left), channels);
