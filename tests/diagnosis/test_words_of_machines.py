@@ -77,12 +77,13 @@ def test_a_servo_is_advised_nothing_that_its_plan_leaves_out() -> None:
 
 
 def test_a_dry_contact_is_turned_round_where_others_make_loops_below_break_away() -> None:
-    def said(law: str) -> str:
+    def said(law: str, *separates: str) -> str:
         table = {"drive": {"input": "torque_nm", "gain": 1.0}, "friction": {"law": law}}
-        return recorded("loops", "nested loops", st.Plant.from_dict(table))
+        return recorded("loops", "nested loops", st.Plant.from_dict(table), separates)
 
-    assert said("coulomb").startswith("mount it the other way round")
-    assert said("hsieh_pan") == "loops: nested loops"
+    assert said("coulomb", "torque_bias").startswith("mount it the other way round")
+    assert said("coulomb", "creep_hardening") == said("coulomb") == ""
+    assert said("hsieh_pan", "creep_hardening") == "loops: nested loops"
 
 
 def test_what_comes_late_is_told_by_its_sign() -> None:

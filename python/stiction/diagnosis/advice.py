@@ -108,7 +108,8 @@ def advise(
 
     def add(plan: str, what: str, reason: str, separates: tuple[str, ...] = ()) -> None:
         # The first reason to record an experiment is the best one.
-        advice.setdefault(plan, Advice(recorded(plan, what, plant), reason, separates))
+        if words := recorded(plan, what, plant, separates):
+            advice.setdefault(plan, Advice(words, reason, separates))
 
     for cause in causes:
         names = (cause.name, *cause.look_alikes)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Final
 
-from ..catalogue import EffectRecord
+from ..catalogue import EffectRecord, effects
 from ..plant import Plant
 
 __all__ = ["meant", "recorded"]
@@ -86,6 +86,8 @@ GOALS: Final = {
 """What the goals of a servo do in place of the experiments of ``stiction plan`` that it cannot
 make: it is told where to go, not what to push with."""
 
+OFFSETS: Final = "offset"
+"""Family of effects that a machine which is turned round tells apart."""
 REVERSED: Final = (
     "mount it the other way round and record the same again: an effort from outside turns over "
     "with the mount, friction does not"
@@ -106,14 +108,15 @@ def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
     return LINEAR.get(record.name, usual) if plant.motion == "linear" else usual
 
 
-def recorded(plan: str, what: str, plant: Plant) -> str:
+def recorded(plan: str, what: str, plant: Plant, separates: Sequence[str] = ()) -> str:
     """An experiment in words: one of ``stiction plan``, or a motion where a rig prescribes it.
 
-    A servo that cannot make it is sent goals of another kind; where there is no pre-sliding, no
-    loop tells of it.
+    A servo that cannot make it is sent goals of another kind. Where there is no pre-sliding no loop
+    tells of it: what is of the machine is told from what is not by its mount, and "" of all else.
     """
     if plan == "loops" and not plant.friction.springy and not plant.prescribed_motion:
-        return REVERSED
+        families = {record.name: record.family for record in effects()}
+        return REVERSED if any(families[name] == OFFSETS for name in separates) else ""
     if plant.servo and plan in GOALS:
         return f"send it goals: {GOALS[plan]}"
     return f"move it by {MOTIONS[plan]}" if plant.prescribed_motion else f"{plan}: {what}"
