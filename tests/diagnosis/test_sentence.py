@@ -32,6 +32,15 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
         "The simulation lacks cogging (a pull) and warm_up (a fall) and stribeck (a bump), which "
         "together may be another cause that resembles them. Adding them removes"
     )
+    # Two such groups are two causes, and one that may be a third as well stands by itself.
+    pair = [
+        SimpleNamespace(name=name, decided=False, look_alikes=alike, what=name, gain=None)
+        for name, alike in (("run_in", ("backlash",)), ("backlash", ("run_in",)))
+    ]
+    both = sentence("ambiguous", (unsure, other, *pair), None, (), "")
+    assert both.count("which together may be") == 2
+    pair[1].look_alikes = ("run_in", "cogging")
+    assert "together" not in sentence("ambiguous", pair, None, (), "")
     unsure.look_alikes = alike
     assert "lacks one of warm_up (a fall), stribeck (" in sentence(
         "ambiguous", (unsure,), None, (), ""

@@ -181,14 +181,20 @@ def _unconfirmed(effects: Sequence[Cause]) -> str:
 
 
 def _causes(effects: Sequence[Cause]) -> str:
-    """All causes; those that are told from nothing but each other stand together."""
-    names = {cause.name for cause in effects}
-    mutual = [c for c in effects if c.look_alikes and names.issuperset(c.look_alikes)]
-    told = [_cause(cause) for cause in effects if cause not in mutual]
-    if mutual:
-        each = joined([_with_meaning(cause) for cause in mutual])
-        told.append(f"{each}, which together may be another cause that resembles them")
-    return joined(told)
+    """All causes; relatives that are told from nothing but each other stand together."""
+    told: list[str] = []
+    groups: list[str] = []
+    together: set[str] = set()
+    for cause in effects:
+        group = {cause.name, *cause.look_alikes}
+        kin = [c for c in effects if {c.name, *c.look_alikes} == group]
+        if len(kin) < 2 or len(kin) < len(group):
+            told.append(_cause(cause))
+        elif cause.name not in together:
+            together |= group
+            each = joined([_with_meaning(one) for one in kin])
+            groups.append(f"{each}, which together may be another cause that resembles them")
+    return joined([*told, *groups])
 
 
 def _with_meaning(cause: Cause) -> str:
