@@ -17,7 +17,7 @@ const TERMS: [f64; 10] = {
     terms
 };
 
-/// ln x, to 2e-16 of it or of 1.
+/// ln x, to 4e-16 of it, or of a half where it is less than that.
 #[inline(always)]
 pub fn logarithm(x: f64) -> f64 {
     if !(f64::MIN_POSITIVE..=f64::MAX).contains(&x) {
