@@ -18,7 +18,7 @@ from .plant import Plant
 from .plant_file import read_toml, section
 from .recording import SETTINGS, Columns, Recording
 from .recording.recording import recordings_of
-from .recording.session_clock import starts_of
+from .recording.session_clock import ages_of, starts_of
 from .recording.split import BLOCK_S, EDGE_S, Split, name_of, split
 from .recording.units import FloatArray, Motion
 from .wording import counted, did_you_mean, listed
@@ -26,7 +26,7 @@ from .wording import counted, did_you_mean, listed
 __all__ = ["Session", "load", "load_recording"]
 
 _TABLES = ("plant", "columns", "recordings")
-_RECORDING = ("file", "role", "kind", "start_s", "replicate_of", "columns", *SETTINGS)
+_RECORDING = ("file", "role", "kind", "start_s", "cold", "replicate_of", "columns", *SETTINGS)
 _ROLES = ("train", "select", "test")
 
 
@@ -49,6 +49,9 @@ class Session:
     starts : tuple of float
         When each recording starts on the session clock, s: its ``start_s``, or, where none is
         stated, the end of the one before it.
+    ages : tuple of float
+        How long the machine has been on by then, s: the same, but that it begins at 0 with each
+        recording that is ``cold``.
 
     Raises
     ------
@@ -61,6 +64,7 @@ class Session:
     plant: Plant | None = None
     replicates: Mapping[int, int] = field(default_factory=dict)
     starts: tuple[float, ...] = field(init=False)
+    ages: tuple[float, ...] = field(init=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "recordings", recordings_of(self.recordings, "session"))
@@ -75,6 +79,7 @@ class Session:
                     f"give two different indices from 0 to {len(self.recordings) - 1}"
                 )
         object.__setattr__(self, "starts", starts_of(self.recordings))
+        object.__setattr__(self, "ages", ages_of(self.recordings))
 
     @property
     def clock_stated(self) -> bool:
@@ -144,7 +149,7 @@ class Session:
             name_of(recording, index),
             recording.role or "",
             recording.kind,
-            f"{self.starts[index]:.6g}",
+            f"{self.starts[index]:.6g}{', cold' if recording.cold else ''}",
             f"{recording.duration:.6g}",
             str(len(recording)),
             "" if of is None else name_of(self.recordings[of], of),
@@ -223,6 +228,9 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         start = number(entry.get("start_s", 0.0), f"{where} start_s")
         if not math.isfinite(start):
             raise InputError(f"{where} start_s = {start} is not a finite number of seconds")
+        cold = entry.get("cold", False)
+        if not isinstance(cold, bool):
+            raise InputError(f"{where} cold = {cold!r} is not true or false")
         own = {**columns, **section(entry, "columns", where)}
         settings = {
             name: number(entry[name], f"{where} {name}") for name in SETTINGS if name in entry
@@ -235,6 +243,7 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
                 role=role,
                 kind=kind,
                 start_s=start,
+                cold=cold,
                 settings=settings,
                 keep_faulty=keep_faulty,
                 where=source,

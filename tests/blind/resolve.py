@@ -41,6 +41,8 @@ PLANNED = {experiment.name for experiment in EXPERIMENTS}
 """What can be recorded without the owner's hands: nobody turns this machine round."""
 COLD = ("cycle", "rest", "cycle", "fast", "cycle", "rest", "fast", "cycle")
 """What tells time from path: a machine that is cold, rests, and then travels."""
+NIGHT_S = 50_000.0
+"""Until a machine is cold again."""
 
 
 def advised(found):
@@ -50,13 +52,14 @@ def advised(found):
 
 
 def recorded(made, found, name):
-    """The session with the advised experiment recorded after it; of a cycle a session from cold."""
+    """The session with the advised experiment recorded after it, a cycle once it is cold again."""
     gain = float(found.plant.drive.get("gain", 1.0))
     cold = name == "cycle"
     names = ("cycle", "fast") if cold else (name,)
     signals = plan(found.plant, position=REACH, only=names).signals
     order = COLD if cold else (name,)
-    at = 0.0 if cold else max(r.start_s + r.time_s[-1] for r in made.recordings) + PAUSE_S
+    end = max(r.start_s + r.time_s[-1] for r in made.recordings) + PAUSE_S
+    at = 0.0 if cold else end
     wanted = []
     for each in order:
         if each == "rest":
@@ -68,7 +71,10 @@ def recorded(made, found, name):
             wanted.append(Wanted(signal.experiment, signal.role, at, **{kind: values}))
             at += signal.duration + PAUSE_S
     more = record_more(made, wanted, cold=cold)
-    return replace(made, recordings=more if cold else [*made.recordings, *more])
+    if cold:
+        more = [replace(r, start_s=r.start_s + end + NIGHT_S) for r in more]
+        more[0] = replace(more[0], cold=True)
+    return replace(made, recordings=[*made.recordings, *more])
 
 
 def resolved(made):

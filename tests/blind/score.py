@@ -71,6 +71,7 @@ def as_session(made, torque=None):
                 role=r.role,
                 kind=r.kind,
                 start_s=r.start_s,
+                cold=r.cold,
                 **known,
             )
         )

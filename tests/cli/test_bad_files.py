@@ -311,6 +311,8 @@ SESSIONS = [
     session("start is text", '"sine"', '"sine"\nstart_s = "noon"', "[[recordings]] 1 start_s",
             "'noon'", "number"),
     session("start is infinite", '"sine"', '"sine"\nstart_s = inf', "start_s", "inf", "finite"),
+    session("cold is text", '"sine"', '"sine"\ncold = "yes"', "[[recordings]] 1 cold", "'yes'",
+            "true or false"),
     session("one file in two roles", '"two.csv"', '"run.csv"', "[[recordings]] 2", "run.csv",
             "recording 1", "drop one", twin=of_two),
     session("one file in two roles by another path", '"two.csv"', '"./x/../run.csv"',

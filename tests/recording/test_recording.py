@@ -89,6 +89,7 @@ def test_lists_and_integers_are_welcome() -> None:
         ({"kind": 3}, "kind is 3; give text"),
         ({"start_s": float("nan")}, "start_s is nan; give a finite number of seconds"),
         ({"start_s": "now"}, "start_s is 'now'"),
+        ({"cold": "yes"}, "cold is 'yes'; give True or False"),
     ],
 )
 def test_what_cannot_be_a_recording_is_refused(change: dict[str, Any], message: str) -> None:

@@ -40,6 +40,7 @@ class Recording:
     truth: dict  # hidden, parts (effect, sample), position, velocity, friction
     load_nm: np.ndarray | None = None  # external effort on the body
     temperature_c: np.ndarray | None = None
+    cold: bool = False  # switched on anew: clock and path of the effects begin at 0
 
     @property
     def name(self):
@@ -67,6 +68,7 @@ class Session:
             lines.append(
                 f'\n[[recordings]]\nfile = "{file}"\nrole = "{r.role}"\n'
                 f'kind = "{r.kind}"\nstart_s = {r.start_s:.3f}\n'
+                + ("cold = true\n" if r.cold else "")
             )
         (folder / "session.toml").write_text("".join(lines), encoding="utf-8")
         sensor = f"\n[sensor]\ncounts_per_rev = {self.spec.counts_per_rev}\n"

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import stiction as st
+from stiction.fitting.forms import set_clocks
 from stiction.recording import Recording
+from stiction.session import load
 
 
 def recorded(seed: int = 0, **labels: object) -> Recording:
@@ -63,6 +66,44 @@ def test_without_a_stated_start_the_recordings_follow_one_another() -> None:
     assert not session.clock_stated
     assert session.starts == pytest.approx((0.0, 3.0))
     assert session.clock(1)[0] == pytest.approx(session.clock(0)[-1] + 0.01)
+
+
+def test_a_recording_from_cold_sets_back_how_long_the_machine_has_been_on() -> None:
+    """In the order of the clock, whatever the order in the list."""
+    session = st.Session(
+        (
+            recorded(0, start_s=90.0),
+            recorded(1, start_s=4.0),
+            recorded(2, start_s=70.0, cold=True),
+            recorded(3, start_s=10.0),
+        )
+    )
+    assert session.starts == (90.0, 4.0, 70.0, 10.0)
+    assert session.ages == (20.0, 4.0, 0.0, 10.0)
+    assert "70, cold" in session._repr_html_()
+
+
+def test_path_and_clock_of_the_effects_begin_anew_from_cold() -> None:
+    labels = ({"start_s": 4.0}, {"start_s": 10.0}, {"start_s": 70.0, "cold": True}, {"start_s": 90})
+    recordings = [recorded(seed, **each) for seed, each in enumerate(labels)]
+    forms = [
+        SimpleNamespace(position=np.array([0.0, 2.0, -1.0]), clock=None, path=None)
+        for _ in recordings
+    ]
+    set_clocks(forms, recordings)  # type: ignore[arg-type]
+    assert [(form.clock, form.path) for form in forms] == [
+        (4.0, 0.0),
+        (10.0, 5.0),
+        (0.0, 0.0),
+        (20.0, 5.0),
+    ]
+
+
+def test_a_session_file_says_which_recordings_began_cold(tmp_path: Path) -> None:
+    path = written(tmp_path, "start_s = 0.0", "start_s = 3600.0\ncold = true", "start_s = 3700.0")
+    session = load(path)
+    assert [recording.cold for recording in session] == [False, True, False]
+    assert session.ages == (0.0, 0.0, 100.0)
 
 
 def test_recordings_that_overlap_on_the_session_clock_are_refused() -> None:

@@ -154,8 +154,8 @@ class Conclusion:
     @cached_property
     def _seen(self) -> list[Look]:
         scales = scales_of(self.evidence, self.base.plant)
-        starts = self.session.starts
-        return looks(self.evidence, self.base.plant, starts, scales.units["presliding"])
+        ages = self.session.ages
+        return looks(self.evidence, self.base.plant, ages, scales.units["presliding"])
 
     @cached_property
     def rests(self) -> tuple[Rest, Rest]:

@@ -12,7 +12,7 @@ from ..loop_form import LoopForm
 from ..motion import noise_of
 from ..plant import Plant
 from ..recording import Recording
-from ..recording.session_clock import starts_of
+from ..recording.session_clock import ages_of, starts_of
 from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
@@ -89,12 +89,12 @@ def forms_of(
 def set_clocks(
     forms: Sequence[WeakForm], recordings: Sequence[Recording], sealed: Collection[int] = ()
 ) -> None:
-    """Lets session clock and path run on from one recording to the next.
+    """Lets session clock and path run on from one recording to the next, and begin anew from cold.
 
     Of ``sealed`` recordings, which nobody may look at yet, only the length in time is taken: their
     path is what others of their kind travel in that time, or any other where there is none.
     """
-    starts = starts_of(recordings)
+    starts, ages = starts_of(recordings), ages_of(recordings)
     travelled = {
         k: float(np.sum(np.abs(np.diff(form.position))))
         for k, form in enumerate(forms)
@@ -110,7 +110,8 @@ def set_clocks(
 
     path = 0.0
     for index in sorted(range(len(forms)), key=lambda k: starts[k]):
-        forms[index].clock, forms[index].path = starts[index], path
+        path = 0.0 if recordings[index].cold else path
+        forms[index].clock, forms[index].path = ages[index], path
         path += travelled[index] if index in travelled else usual(index)
 
 

@@ -207,7 +207,10 @@ class Plan:
             "# Recordings to be made with the signals beside this file, in this order. Input as it",
             "# was commanded, and as it was measured where that differs; position; reference;",
             "# temperature and load where they are known. start_s is the clock of the whole",
-            "# session: write down when each recording began, pauses included.",
+            "# session: write down when each recording began, pauses included. To add them to an",
+            "# earlier session go on with its clock, and where the machine has cooled down in",
+            "# between write cold = true for the first one: what goes with time or with the way",
+            "# travelled then begins anew.",
             'plant = "plant.toml"',
         ]
         for entry in self.schedule():

@@ -63,6 +63,9 @@ class Recording:
         Free words; recordings of one kind are alike.
     start_s : float
         When the recording starts on the clock of the session, in seconds.
+    cold : bool
+        Whether the machine had been switched off until it was as it is in the morning: the time
+        and the path that effects go by begin anew with this recording.
     **channels : array_like, shape (rows,)
         Any of ``effort`` (N·m or N, positive along positive motion), ``velocity``,
         ``reference``, ``load``, ``temperature`` (degC), ``normal_force``,
@@ -103,6 +106,7 @@ class Recording:
     role: str | None
     kind: str
     start_s: float
+    cold: bool
     settings: Mapping[str, float]
     quality: tuple[Repair, ...]
     faults: tuple[str, ...]
@@ -119,6 +123,7 @@ class Recording:
         role: str | None = None,
         kind: str = "",
         start_s: float = 0.0,
+        cold: bool = False,
         settings: Mapping[str, float] | None = None,
         **channels: npt.ArrayLike,
     ) -> None:
@@ -139,7 +144,7 @@ class Recording:
             values,
             source="Recording",
             place=lambda row: f"index {row}",
-            labels=_labels(role, kind, start_s, settings),
+            labels=_labels(role, kind, start_s, cold, settings),
         )
 
     @classmethod
@@ -154,6 +159,7 @@ class Recording:
         role: str | None = None,
         kind: str = "",
         start_s: float = 0.0,
+        cold: bool = False,
         settings: Mapping[str, float] | None = None,
         keep_faulty: bool = False,
     ) -> Recording:
@@ -172,7 +178,7 @@ class Recording:
             ``force_n`` are the measured effort.
         count_size : float, optional
             Size of one sensor count in rad or m, for columns in ``count``.
-        role, kind, start_s, settings
+        role, kind, start_s, cold, settings
             As for `Recording`.
         keep_faulty : bool
             Load a recording with too many missing cells too, and say so in ``faults``.
@@ -183,7 +189,7 @@ class Recording:
             If the file or a column cannot be used; the message is one sentence that says where
             and what to do.
         """
-        labels = _labels(role, kind, start_s, settings)
+        labels = _labels(role, kind, start_s, cold, settings)
         mapped = Columns.parse(columns)
         if count_size is not None and not 0.0 < number(count_size, "count_size") < math.inf:
             raise InputError(f"count_size = {count_size!r} is not a finite number above 0")
@@ -333,7 +339,11 @@ def _flat(name: str, given: npt.ArrayLike) -> FloatArray:
 
 
 def _labels(
-    role: str | None, kind: str, start_s: float, settings: Mapping[str, float] | None
+    role: str | None,
+    kind: str,
+    start_s: float,
+    cold: bool,
+    settings: Mapping[str, float] | None,
 ) -> dict[str, Any]:
     if role is not None and role not in SPLIT_ROLES:
         raise InputError(
@@ -348,6 +358,8 @@ def _labels(
         or not math.isfinite(start_s)
     ):
         raise InputError(f"Recording: start_s is {start_s!r}; give a finite number of seconds")
+    if not isinstance(cold, (bool, np.bool_)):
+        raise InputError(f"Recording: cold is {cold!r}; give True or False")
     settings = mapping(settings, "Recording: settings", "names and numbers")
     for name, value in settings.items():
         if name not in SETTINGS:
@@ -360,7 +372,7 @@ def _labels(
         if not math.isfinite(value):
             raise InputError(f"Recording: the setting {name} is {value!r}; give a finite number")
     own = {name: float(value) for name, value in settings.items()}
-    settled = {"role": role, "kind": kind, "start_s": float(start_s)}
+    settled = {"role": role, "kind": kind, "start_s": float(start_s), "cold": bool(cold)}
     return {**settled, "settings": Frozen(own)}
 
 

@@ -1,4 +1,4 @@
-"""The session clock: when recordings of one machine begin."""
+"""The session clock: when recordings of one machine begin, and what begins anew with a cold one."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..errors import InputError
 from .recording import Recording
 from .split import name_of
 
-__all__ = ["starts_of"]
+__all__ = ["ages_of", "starts_of"]
 
 
 def starts_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
@@ -38,3 +38,20 @@ def starts_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
                 "on one clock, or of none"
             )
     return stated
+
+
+def ages_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
+    """How long the machine has been on when each recording begins, s.
+
+    That is the session clock, which a recording from cold sets back to 0.
+
+    Raises
+    ------
+    InputError
+        As `starts_of`.
+    """
+    starts = starts_of(recordings)
+    switched_on = [start for start, each in zip(starts, recordings, strict=True) if each.cold]
+    return tuple(
+        start - max((on for on in switched_on if on <= start), default=0.0) for start in starts
+    )
