@@ -101,6 +101,8 @@ class Coordinate:
         Which rows have a place in it, "" where all have.
     fine : bool
         What depends on it may do so in a narrow place.
+    tails : bool
+        Few rows lie far out, and what depends on it may do so there.
     """
 
     name: str
@@ -114,6 +116,7 @@ class Coordinate:
     refines: str = ""
     rows: str = ""
     fine: bool = False
+    tails: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
         # A finding that is copied or sent elsewhere keeps what its figures say of the coordinate;
@@ -140,8 +143,10 @@ COORDINATES: Final = (
     Coordinate(
         "angle along the motion", "angle in the turn, rad", True, lambda look: look.angle, fine=True
     ),
-    Coordinate("acceleration", "acceleration, {x}/s²", False, lambda look: look.acceleration),
-    Coordinate("effort", "measured effort, {f}", False, lambda look: look.effort),
+    Coordinate(
+        "acceleration", "acceleration, {x}/s²", False, lambda look: look.acceleration, tails=True
+    ),
+    Coordinate("effort", "measured effort, {f}", False, lambda look: look.effort, tails=True),
     Coordinate("rate of the effort", "rate of the effort, {f}/s", False, lambda look: look.rate),
     Coordinate(
         "distance since the reversal",

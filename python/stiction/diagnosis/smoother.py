@@ -19,6 +19,9 @@ BINS: Final = 24
 """Stretches of a coordinate, each with as many rows."""
 FINE_BINS: Final = 72
 """And of one in which a narrow place may matter: a patch of a turn is some tenths of a radian."""
+TAILS: Final = (0.25, 0.5)
+"""Shares of the first and of the last stretch at which they are parted where what lies far out
+matters: inertia takes up what goes with most accelerations, and the rare ones tell."""
 SLOW_BINS: Final = 6
 """Stretches of the session clock where recordings have roles of their own: each stretch must hold
 some that are fitted and some that are not."""
@@ -64,7 +67,7 @@ def smoother(
     friction : float
         Weighted rms of the friction.
     edges : numpy.ndarray, optional
-        Where stretches end; without it each holds as many rows.
+        Where stretches end; without it each holds as many rows, but for those in long tails.
     within : bool
         The share is that of the power in rows that have a place in the coordinate.
     """
@@ -148,6 +151,9 @@ def _stretches(
         most = FINE_BINS if coordinate.fine else BINS
         number = SLOW_BINS if slow else min(most, max(len(known) // ROWS, FEWEST_BINS))
         inner = np.linspace(0.0, 1.0, number + 1)[1:-1]
+        if coordinate.tails:
+            ends = inner[0] * np.array(TAILS)
+            inner = np.concatenate([ends, inner, 1.0 - ends[::-1]])
         edges = np.unique(np.quantile(known, inner)) if len(known) else np.zeros(0)
     # Stretches that hold nothing, between equal values, are left out.
     full, place = np.unique(np.searchsorted(edges, known), return_inverse=True)
