@@ -335,7 +335,11 @@ def test_no_stranger_is_named_where_what_explains_most_imitates() -> None:
     assert strangers([imitates, stranger, relative], relative) == []
     chosen = choose([imitates, relative])
     assert chosen is not None
-    assert chosen.winner is relative
+    # A member of its family that explains far more keeps it undecided, even if it does so unevenly.
+    assert (chosen.winner, chosen.rivals) == (relative, (imitates,))
+    chosen = choose([replace(imitates, worth=0.55), relative])
+    assert chosen is not None
+    assert chosen.decided
 
 
 def test_rows_that_do_not_excite_an_effect_do_not_tell_it_from_the_winner() -> None:
@@ -394,6 +398,29 @@ def test_a_cause_that_is_not_told_stands_under_the_simplest_of_the_best() -> Non
     assert chosen.winner is lesser
     assert not chosen.decided
     assert choose([spread]) is None
+
+
+@pytest.mark.parametrize(
+    ("worth", "more", "decided"),
+    [
+        # Power that the other leaves more of in each block, against a scatter of 0.3.
+        pytest.param(0.7, 0.20, True, id="far and sure"),
+        pytest.param(0.7, 0.05, False, id="far, but it varies from block to block"),
+        pytest.param(0.9, 0.20, True, id="near, but every block says so"),
+        pytest.param(0.9, 0.135, False, id="near, and sure enough for one that is far"),
+        pytest.param(0.98, 0.9, False, id="the same but for what another form may do"),
+    ],
+)
+def test_blocks_have_to_be_certain_of_what_is_near(
+    worth: float, more: float, decided: bool
+) -> None:
+    scatter = np.tile([-0.3, 0.3], 15)
+    winner, other = tried(1.0, 1), tried(worth, 1)
+    left = tuple(block + more + scatter for block in winner.model.blocks)
+    other = replace(other, model=SimpleNamespace(blocks=(left[0], winner.model.blocks[1])))
+    chosen = choose([winner, other])
+    assert chosen is not None
+    assert (chosen.winner, chosen.decided) == (winner, decided)
 
 
 def test_relatives_named_beside_each_other_are_not_decided() -> None:

@@ -47,9 +47,14 @@ PENALTY: Final = 0.004
 MOST_TIMES: Final = 5.0
 """What a refit explains over what the screening promised: causes that were hidden came to 2.8."""
 NEAR: Final = 0.15
-"""Within this share of the winner's log-gain another candidate is not told apart."""
+"""Within this share of the winner's log-gain blocks have to be certain to tell another candidate
+apart..."""
+TOO_NEAR: Final = 0.04
+"""... and within this one nothing does: it may be the same cause in another form."""
 DECIDED_Z: Final = 2.0
 """Difference to the winner over its standard error that tells two candidates apart."""
+CERTAIN_Z: Final = 3.0
+"""The same for those that are near."""
 ALIKE: Final = 0.5
 """Cosine of two contributions above which they explain the same."""
 THE_SAME: Final = 1e-5
@@ -341,7 +346,7 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
         for other in ranked
         if other is not winner
         and (other.gain > 0.0 or other.by_blocks)
-        and not other.imitates
+        and (not other.imitates or _outdoes(other, winner))
         and ((_alike(winner, other) and not _told(winner, other)) or _kin(winner, other))
     ]
     head = _head(winner, rivals)
@@ -362,8 +367,13 @@ def strangers(trials: Sequence[Trial], winner: Trial) -> list[Trial]:
         if (t.imitates and t.candidate.record.family != family)
         or (t.by_blocks and not _alike(winner, t))
     ]
-    found = [t for t in found if (1.0 - NEAR) * t.worth > winner.worth]
+    found = [t for t in found if _outdoes(t, winner)]
     return sorted(found, key=lambda t: -t.worth)
+
+
+def _outdoes(other: Trial, winner: Trial) -> bool:
+    """Whether what was refused is worth so much more than a winner that it is not told from it."""
+    return (1.0 - NEAR) * other.worth > winner.worth
 
 
 def _head(winner: Trial, rivals: Sequence[Trial]) -> Trial:
@@ -418,13 +428,14 @@ def parallel(a: FloatArray, b: FloatArray) -> float:
 
 def _told(winner: Trial, other: Trial) -> bool:
     """Whether the data tell the winner from another candidate."""
-    if other.worth >= (1.0 - NEAR) * winner.worth:
+    if other.worth >= (1.0 - TOO_NEAR) * winner.worth:
         return False
     difference = np.zeros(len(winner.model.blocks[0]))
     for worse, better in zip(other.model.blocks, winner.model.blocks, strict=True):
         after, before = limited(worse, better)
         difference += after - before
-    return _z(difference[difference != 0.0]) >= DECIDED_Z
+    least = CERTAIN_Z if other.worth >= (1.0 - NEAR) * winner.worth else DECIDED_Z
+    return _z(difference[difference != 0.0]) >= least
 
 
 def _z(values: FloatArray) -> float:
