@@ -55,6 +55,21 @@ def read_only(n):
 CONTACTS = {
     # Construction.
     "unknown law": (law("hseih_pan"), law("hsieh_pan"), ["hseih_pan", "did you mean 'hsieh_pan'"]),
+    "truth for a number": (
+        law("coulomb", coulomb=True),
+        law("coulomb", coulomb=1.0),
+        ["coulomb of coulomb is a bool", "allowed is a number"],
+    ),
+    "a number of three hundred digits": (
+        law("coulomb", coulomb=-1e300),
+        law("coulomb", coulomb=1e3),
+        ["coulomb = -1e300 is out of bounds"],
+    ),
+    "masked samples": (
+        lambda: model().simulate(np.ma.array([0.1, 0.2], mask=[0, 1]), DT),
+        lambda: model().simulate(np.ma.array([0.1, 0.2], mask=[0, 0]), DT),
+        ["velocity is masked in places", "leave them out"],
+    ),
     "unknown parameter": (
         law(break_away=0.5),
         law(breakaway=0.5),

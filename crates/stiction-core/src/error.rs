@@ -1,7 +1,21 @@
 //! Every way in which a request can be wrong, each as one sentence: what was given, what is
 //! allowed, where, what to do.
 
+use std::fmt;
+
 use thiserror::Error;
+
+/// A number in a sentence: as a decimal, or with an exponent where that would fill a line.
+pub struct Shown(pub f64);
+
+impl fmt::Display for Shown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let plain = self.0.to_string();
+        if plain.len() <= LONGEST_DECIMAL { f.write_str(&plain) } else { write!(f, "{:e}", self.0) }
+    }
+}
+
+const LONGEST_DECIMAL: usize = 20;
 
 /// A request that cannot be carried out.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -30,7 +44,8 @@ pub enum Error {
     },
     /// A number outside its bounds.
     #[error(
-        "{name} = {given} is out of bounds: allowed is {lower} to {upper}{unit}; change {name}"
+        "{name} = {} is out of bounds: allowed is {} to {}{unit}; change {name}",
+        Shown(*given), Shown(*lower), Shown(*upper)
     )]
     OutOfBounds {
         /// Path of the parameter, `friction.coulomb`.
@@ -64,7 +79,8 @@ pub enum Error {
     },
     /// Two parameters in the wrong order.
     #[error(
-        "{lesser} = {lesser_value} must {relation} {greater} = {greater_value}; change one of them"
+        "{lesser} = {} must {relation} {greater} = {}; change one of them",
+        Shown(*lesser_value), Shown(*greater_value)
     )]
     Order {
         /// Name of the parameter that must be the lesser.
@@ -80,8 +96,9 @@ pub enum Error {
     },
     /// A step that is far too long for the machine.
     #[error(
-        "dt = {given} s is too long for this machine; give at most {longest:.2e} s, or check the \
-         units of inertia and stiffness"
+        "dt = {} s is too long for this machine; give at most {longest:.2e} s, or check the \
+         units of inertia and stiffness",
+        Shown(*given)
     )]
     TooLong {
         /// The step as given.
@@ -99,8 +116,9 @@ pub enum Error {
     },
     /// A gain stated where every gain is 0.
     #[error(
-        "{gain} = {given} of effect {effect} is a gain, and signatures are taken at the gain 0; \
-         allowed is {shapes}; leave {gain} out"
+        "{gain} = {} of effect {effect} is a gain, and signatures are taken at the gain 0; \
+         allowed is {shapes}; leave {gain} out",
+        Shown(*given)
     )]
     Gain {
         /// The effect.
@@ -188,6 +206,16 @@ fn edit_distance(a: &str, b: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_never_fills_a_line() {
+        for (number, shown) in [(0.25, "0.25"), (-1e300, "-1e300"), (3.5e-200, "3.5e-200")] {
+            assert_eq!(Shown(number).to_string(), shown);
+        }
+        let third = Shown(1.0 / 3.0).to_string();
+        assert_eq!(third.parse::<f64>().unwrap(), 1.0 / 3.0);
+        assert_eq!(Shown(f64::NAN).to_string(), "NaN");
+    }
 
     #[test]
     fn a_near_miss_is_suggested() {

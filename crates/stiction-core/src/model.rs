@@ -1,6 +1,6 @@
 //! A friction law with its parameters and state: what `FrictionModel` is in Python.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Shown};
 use crate::friction::{
     AnyState, AnyTrial, Channels, Entry, Law, LawRecord, LawState, Outcome, Statistics, law_record,
 };
@@ -86,7 +86,7 @@ impl LawSpec {
                 let words: Vec<&str> = option.choices.iter().map(|(word, _)| *word).collect();
                 return Err(Error::WrongKind {
                     name: format!("{number} of {name}"),
-                    given: format!("the number {value}"),
+                    given: format!("the number {}", Shown(*value)),
                     allowed: words.join(" or "),
                 });
             }

@@ -14,6 +14,7 @@ use stiction_core::motor::{PerSample, Surroundings};
 use crate::error::{IntoPython, duration, input_error};
 
 static ASARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+static IS_MASKED: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
 
 /// A C-contiguous float64 array of at least one dimension and one element, all of it finite.
 pub fn samples<'py>(
@@ -31,6 +32,7 @@ pub fn numbers<'py>(
     values: &Bound<'py, PyAny>,
 ) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     let py = values.py();
+    refuse_masked(name, values)?;
     let array = match values.cast::<PyArrayDyn<f64>>() {
         Ok(array) if array.is_c_contiguous() => array.clone(),
         _ => {
@@ -57,6 +59,21 @@ pub fn numbers<'py>(
         return Err(input_error(py, format!("{name} is empty; give at least one sample")));
     }
     Ok(array.readonly())
+}
+
+/// Refuses an array that is masked somewhere: what lies under the mask is no reading.
+fn refuse_masked(name: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
+    let py = values.py();
+    if values.is_exact_instance_of::<PyArrayDyn<f64>>() || !values.hasattr("mask")? {
+        return Ok(());
+    }
+    if IS_MASKED.import(py, "numpy.ma", "is_masked")?.call1((values,))?.extract()? {
+        return Err(input_error(
+            py,
+            format!("{name} is masked in places; fill these, or leave them out"),
+        ));
+    }
+    Ok(())
 }
 
 /// A one-dimensional [`samples`].

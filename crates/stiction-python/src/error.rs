@@ -3,6 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
+use stiction_core::error::Shown;
 
 static INPUT_ERROR: PyOnceLock<Py<PyType>> = PyOnceLock::new();
 
@@ -50,7 +51,10 @@ pub fn velocity(py: Python<'_>, value: f64) -> PyResult<f64> {
     } else {
         Err(input_error(
             py,
-            format!("velocity = {value} is out of bounds: allowed is -1e6 to 1e6 in rad/s or m/s"),
+            format!(
+                "velocity = {} is out of bounds: allowed is -1e6 to 1e6 in rad/s or m/s",
+                Shown(value)
+            ),
         ))
     }
 }
@@ -64,7 +68,8 @@ pub fn duration(py: Python<'_>, name: &str, value: f64) -> PyResult<f64> {
         Err(input_error(
             py,
             format!(
-                "{name} = {value} is not a step: allowed is a positive number of seconds, at most 1e6"
+                "{name} = {} is not a step: allowed is a positive number of seconds, at most 1e6",
+                Shown(value)
             ),
         ))
     }

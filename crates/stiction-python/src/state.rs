@@ -2,7 +2,7 @@
 
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBool, PyDict};
 use stiction_core::friction::Entry;
 
 use crate::arrays::samples;
@@ -79,7 +79,9 @@ pub fn keywords(
             .map_err(|_| input_error(py, format!("keyword {name} of {owner} is not a word")))?;
         if let Ok(word) = value.extract::<String>() {
             words.push((name, word));
-        } else if let Ok(number) = value.extract::<f64>() {
+        } else if !value.is_instance_of::<PyBool>()
+            && let Ok(number) = value.extract::<f64>()
+        {
             numbers.push((name, number));
         } else {
             let kind = value.get_type().name()?;
