@@ -129,6 +129,13 @@ def test_sampling_too_slow_for_the_kernel_is_noted() -> None:
     data = {name: values[::10] for name, values in machine().items()}
     assert "last 80 ms" in found(data, "sampling speed")[0].what
     assert verdict(data, "sampling speed") == "note"
+    assert found(data, "sampling speed")[0].try_ == "sample every 6.2 ms or faster"
+
+
+def test_a_clock_that_seems_to_count_milliseconds_is_asked_for_its_unit() -> None:
+    data = machine()
+    data["time"] = 1000.0 * data["time"]
+    assert found(data, "sampling speed")[0].try_.startswith("state the unit of the time")
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,8 @@ from .finding import Check
 
 EVEN: Final = 1e-6
 """Steps that differ by less than this share of themselves are equal but for rounding."""
+COUNTED_IN_MS: Final = 0.1
+"""A step, s, that is rather one of a clock that counts milliseconds."""
 
 
 def jitter(
@@ -129,13 +131,16 @@ def sampling(recording: Recording, *, kernel_s: float = 0.050, fewest: int = 8) 
     what = f"{fewest} rows, the fewest under a kernel, last {1e3 * needed:.3g} ms"
     if needed <= kernel_s:
         return Check("sampling speed", "fine", what)
+    remedy = f"sample every {1e3 * kernel_s / fewest:.2g} ms or faster"
+    if recording.dt >= COUNTED_IN_MS:
+        remedy = f'state the unit of the time if it is not in s (unit = "ms"); else {remedy}'
     return Check(
         "sampling speed",
         "note",
         what,
         f"the kernel is wider than {1e3 * kernel_s:.3g} ms, so pre-sliding, delays and what "
         "happens at a reversal are smoothed",
-        f"sample every {1e3 * kernel_s / fewest:.2g} ms or faster",
+        remedy,
     )
 
 
