@@ -41,7 +41,9 @@ class EnsembleRun:
         Shape (members, rows); reduced: (members,), and (members, 2) for "extremes".
     time : numpy.ndarray, shape (rows,)
         End of each sample that was kept, s since the run began; empty where rows were reduced.
-    reduce : str or None
+    reduce : {"last", "rms", "extremes"} or None
+        What was kept instead of rows: the value at the end, the root mean square of the distance
+        from a target, or the least and the greatest value.
     """
 
     columns: Mapping[str, FloatArray]
@@ -93,6 +95,13 @@ class EnsembleRun:
         return iter(self.columns)
 
     def __getitem__(self, name: str) -> FloatArray:
+        """The rows of an output, or what they were reduced to.
+
+        Raises
+        ------
+        UnknownName
+            An ``InputError`` and a ``KeyError``: the run kept no such output.
+        """
         try:
             return self.columns[name]
         except KeyError:
@@ -117,13 +126,16 @@ class Ensemble(_Ensemble):
     members : int, optional
         How many; as many as there are values without it.
     parameters : Mapping of str to array_like of shape (members,), optional
-        Values by path (``friction.creep_rate``) or by the bare last word where that is unique.
+        SI values by path (``friction.creep_rate``) or by the bare last word where that is unique.
         Every other parameter is the motor's, also where its default would follow one of these.
 
     Raises
     ------
     InputError
-        An unknown parameter, values that are not as many as the members or out of their bounds.
+        No motor, values that are not as many as the members or out of their bounds, more machines
+        than there is memory for.
+    UnknownName
+        An ``InputError`` and a ``KeyError``: the motor has no such parameter, or several.
 
     Examples
     --------
@@ -177,11 +189,11 @@ class Ensemble(_Ensemble):
         Parameters
         ----------
         current : array_like, shape (n,) or (members, n)
-            Input held over each sample.
+            Input held over each sample, as in ``Motor.simulate``.
         dt : float or array_like of shape (n,)
-            s.
+            Duration of a sample in s, or of each.
         load : float or array_like of shape (n,) or (members, n), optional
-            External effort, positive along +x.
+            External effort, N·m or N, positive along +x; 0 without it.
         outputs : sequence of str
             Columns of a ``Trajectory``.
         every : int
@@ -189,9 +201,9 @@ class Ensemble(_Ensemble):
         reduce : {"last", "rms", "extremes"}, optional
             Keep no rows; see ``EnsembleRun``.
         target : float or array_like of shape (n,) or (members, n), optional
-            What "rms" is the distance from; 0 without it.
+            What "rms" is the distance from, in the unit of the outputs; 0 without it.
         threads : int, optional
-            As many as there are processors without it; results do not depend on it.
+            1 to 256; as many as there are processors without it. Results do not depend on it.
 
         Returns
         -------
@@ -200,7 +212,10 @@ class Ensemble(_Ensemble):
         Raises
         ------
         InputError
-            Shapes that do not fit, an unknown output, a step too long for one of the machines.
+            Shapes that do not fit, values that are not finite or masked, an unknown output,
+            reduction or number of threads, ``every`` or ``target`` where they mean nothing, a
+            ``dt`` that is not above 0 and at most 1e6 s or too long for one of the machines, more
+            rows than there is memory for.
         """
         if reduce is not None and reduce not in _REDUCTIONS:
             near = did_you_mean(str(reduce), _REDUCTIONS)
@@ -270,12 +285,10 @@ def simulate_ensemble(
         Left as it is.
     currents : array_like, shape (members, n) or (n,)
         Inputs of each machine, or the same for all.
-    dt : float or array_like of shape (n,)
-        s.
     parameters : Mapping of str to array_like of shape (members,), optional
-        What the machines differ in; see ``Ensemble``.
-    load, outputs, every, reduce, target, threads
-        See ``Ensemble.simulate``.
+        What the machines differ in, as for ``Ensemble``.
+    dt, load, outputs, every, reduce, target, threads
+        As for ``Ensemble.simulate``.
     executor : concurrent.futures.Executor, optional
         Runs parts of the ensemble: a pool of processes, or a cluster's. The result is the same to
         the bit.
@@ -289,7 +302,7 @@ def simulate_ensemble(
     Raises
     ------
     InputError
-        See ``Ensemble``.
+        As for ``Ensemble`` and ``Ensemble.simulate``; an executor that is none, ``parts`` below 1.
 
     Examples
     --------

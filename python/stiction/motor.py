@@ -31,7 +31,8 @@ class Motor(_native.Motor):
     inertia : float
         kg·m² (rotary) or kg (linear).
     torque_constant : float
-        Effort per unit of input (current, voltage, effort), N·m/A and so on.
+        Effort per unit of input (current, voltage, effort), N·m/A and so on; with a servo per
+        ampere.
     friction : FrictionModel
         Copied with its state; the motor owns the copy.
     effects : dict of str to dict of str to float, optional
@@ -42,9 +43,13 @@ class Motor(_native.Motor):
     weight : float
         Constant force against positive motion, N.
     input_limit : float
-        Greatest magnitude of the input that gets through.
+        Greatest magnitude of the input that gets through, in its unit.
+    servo : dict of str to float, optional
+        Makes the input a goal, rad or m, and the effort that of a position servo: any of
+        ``proportional``, ``integral`` and ``derivative`` (duty per rad, per rad·s and per rad/s, or
+        the same with m), ``duty_limit``, ``supply`` (V), ``resistance`` (Ω), ``current_limit`` (A).
     count : float
-        Size of a sensor count for the output ``measured``; 0 for none.
+        Size of a sensor count for the output ``measured``, rad or m; 0 for none.
     integrator : {"fast", "reference"}
         Velocity Verlet with one evaluation of friction a step, or Runge-Kutta of fourth order.
         Both divide a sample that is too long for the stiffness of the machine.
@@ -52,7 +57,8 @@ class Motor(_native.Motor):
     Raises
     ------
     InputError
-        A value out of bounds, an unknown effect, a missing friction.
+        A value out of bounds, an unknown effect or integrator, an unknown parameter of an effect or
+        of the servo, a missing friction.
     """
 
     def simulate(
@@ -71,11 +77,11 @@ class Motor(_native.Motor):
         Parameters
         ----------
         current : array_like, shape (n,)
-            Input of each sample, held over it.
+            Input of each sample, held over it: A, V, N·m or N, of a servo its goal, rad or m.
         dt : float or array_like, shape (n,)
             Duration of a sample in s, or of each.
         load : float or array_like, shape (n,), optional
-            External effort, positive along +x.
+            External effort, N·m or N, positive along +x; 0 without it.
         temperature : float or array_like, shape (n,), optional
             In degC, for what depends on it; without it nobody knows it.
         enabled : bool or array_like, shape (n,), optional
@@ -94,7 +100,9 @@ class Motor(_native.Motor):
         Raises
         ------
         InputError
-            Wrong shapes, values that are not finite, unknown outputs.
+            Wrong shapes, values that are not finite or masked, unknown outputs or one of them
+            twice, a ``dt`` that is not above 0 and at most 1e6 s or too long for this machine, more
+            rows than there is memory for.
         """
         names = None if outputs is None else _names(outputs)
         given.unmasked(current, "current")
@@ -130,15 +138,16 @@ class Motor(_native.Motor):
         durations : array_like, shape (n,)
             How long each input is held, s.
         current : array_like, shape (n,)
-            Input of each segment.
+            Input of each segment, as in ``simulate``.
         tolerance : float
             Error of the position that is aimed at, rad (m); a tenth of an arc-second without it.
         times : array_like, shape (m,), optional
-            Times from the start at which rows are wanted beside the ends of the segments, rising.
+            Times from the start, s, at which rows are wanted beside the ends of the segments,
+            rising.
         load, temperature, enabled : float or array_like, shape (n,), optional
-            As in ``simulate``, for each segment.
+            As for ``simulate``, for each segment.
         outputs : sequence of str, optional
-            Which columns to compute; all of ``output_names`` without it.
+            As for ``simulate``.
 
         Returns
         -------

@@ -68,27 +68,33 @@ class Effect:
 
 @dataclass(frozen=True)
 class Plant:
-    """A single-axis machine.
+    """A single-axis machine; every parameter here is an attribute of the same name.
 
-    Attributes
+    Parameters
     ----------
+    friction : Friction
+        Law, parameters and options.
     motion : {"rotary", "linear"}
         Whether positions are rad or m and efforts N·m or N.
-    drive : Mapping
+    drive : Mapping, optional
         ``input`` (name of the input column), ``gain`` (effort per unit of input; a ``Parameter``
         where it is fitted), ``limit`` (greatest magnitude of the input); ``kind =
         "prescribed_motion"``; or ``kind = "servo"`` with its numbers.
-    body : Mapping of str to Parameter
-        ``inertia``, ``gravity_amplitude``, ``gravity_zero_rad``, ``weight_n``, ``payload_kg``,
-        ``payload_m``.
-    friction : Friction
+    body : Mapping of str to Parameter, optional
+        ``inertia`` (kg·m² or kg), ``gravity_amplitude`` (N·m), ``gravity_zero_rad``, ``weight_n``,
+        ``payload_kg``, ``payload_m``.
     effects : tuple of Effect
-    sensor : Mapping of str to float
+    sensor : Mapping of str to float, optional
         ``counts_per_rev`` or ``count_m``.
-    controller : Mapping
+    controller : Mapping, optional
         As in the file; empty where the loop is not described.
     source : str
         Where it was read, for messages.
+
+    Notes
+    -----
+    ``load``, ``from_dict`` and ``with_values`` check what they make; of a plant that is put
+    together by hand, ``motor`` refuses what no motor has.
     """
 
     friction: Friction
@@ -107,10 +113,20 @@ class Plant:
     def load(cls, path: str | Path) -> Plant:
         """Read a plant file.
 
+        Parameters
+        ----------
+        path : str or Path
+            TOML, as ``save`` writes it.
+
+        Returns
+        -------
+        Plant
+
         Raises
         ------
         InputError
-            Missing file, not TOML, unknown or missing keys, wrong types, values out of bounds.
+            No path, missing file, not TOML, unknown or missing keys, wrong types, values out of
+            bounds.
         """
         table, source = plant_file.read(given.path(path, "Plant.load"))
         return cls.from_dict(table, source=source)
@@ -119,10 +135,21 @@ class Plant:
     def from_dict(cls, table: Mapping[str, Any], *, source: str = "plant") -> Plant:
         """A plant from the tables of a plant file.
 
+        Parameters
+        ----------
+        table : Mapping
+            As TOML is read, and as ``to_dict`` returns it.
+        source : str
+            What messages call it.
+
+        Returns
+        -------
+        Plant
+
         Raises
         ------
         InputError
-            As for ``load``.
+            No mapping, unknown or missing keys, wrong types, values out of bounds.
         """
         table = given.mapping(table, source, "the tables of a plant file")
         parts = plant_file.parse(table, source)
@@ -144,12 +171,22 @@ class Plant:
         return plant
 
     def save(self, path: str | Path) -> Path:
-        """Write a plant file; returns the path.
+        """Write a plant file.
+
+        Parameters
+        ----------
+        path : str or Path
+            A file that is there is replaced.
+
+        Returns
+        -------
+        Path
+            Of the file.
 
         Raises
         ------
         InputError
-            The file cannot be written.
+            No path, or a file that cannot be written.
         """
         path = given.path(path, "Plant.save")
         with given.written(path):
@@ -267,7 +304,24 @@ class Plant:
         return self.gravity != 0.0 or "gravity_amplitude" in self.body or "weight_n" in self.body
 
     def under(self, settings: Mapping[str, float]) -> Plant:
-        """The plant with what was set for one recording (``Recording.settings``)."""
+        """The plant with what was set for one recording.
+
+        Parameters
+        ----------
+        settings : mapping of str to float
+            ``Recording.settings``; SI.
+
+        Returns
+        -------
+        Plant
+            This one where nothing was set.
+
+        Raises
+        ------
+        InputError
+            Settings of a servo for a plant without one, or that leave it nothing to move with; a
+            rotary payload of which nobody states how far from the axis it hangs.
+        """
         if not settings:
             return self
         payload = {n: Parameter(v, fixed=True) for n, v in settings.items() if n.startswith("pay")}
@@ -299,6 +353,7 @@ class Plant:
         Parameters
         ----------
         paths : sequence of str
+            Whole ones, such as ``friction.coulomb``.
 
         Returns
         -------
@@ -317,12 +372,23 @@ class Plant:
         return found
 
     def with_values(self, values: Mapping[str, float]) -> Plant:
-        """A copy with other values at these paths (or bare names, where unique).
+        """A copy with other values of parameters that the plant states.
+
+        Parameters
+        ----------
+        values : mapping of str to float
+            SI values by path (or bare last word, where unique).
+
+        Returns
+        -------
+        Plant
 
         Raises
         ------
         InputError
-            A path that the plant does not state, a value that is not a number.
+            A value that is not a number or out of its bounds.
+        UnknownName
+            An ``InputError`` and a ``KeyError``: the plant states no such parameter, or several.
         """
         stated = self.parameters
         changed = dict(stated)
@@ -348,10 +414,19 @@ class Plant:
     def motor(self, *, integrator: str = "fast") -> Motor:
         """The plant as a motor at rest.
 
+        Parameters
+        ----------
+        integrator : {"fast", "reference"}
+            As for ``Motor``.
+
+        Returns
+        -------
+        Motor
+
         Raises
         ------
         InputError
-            No inertia is stated, or a value that no motor has.
+            No inertia is stated, a value that no motor has, an unknown integrator.
         """
         inertia = self.inertia
         if inertia == 0.0:
@@ -361,7 +436,13 @@ class Plant:
         return self._motor(inertia, integrator)
 
     def follower(self) -> Motor:
-        """The plant as a motor that is only moved along given positions (``Motor.follow``)."""
+        """The plant as a motor that is only moved along given positions (``Motor.follow``).
+
+        Raises
+        ------
+        InputError
+            As for ``motor``, but that a plant of prescribed motion needs no inertia.
+        """
         return self._motor(self.inertia or 1.0, "fast")
 
     def _motor(self, inertia: float, integrator: str) -> Motor:
@@ -396,12 +477,23 @@ class Plant:
     ) -> Trajectory:
         """Simulate samples of held input from rest, or from this position and velocity.
 
-        Parameters are those of ``Motor.simulate``.
+        Parameters
+        ----------
+        input : array_like, shape (n,)
+            Held over each sample: A, V, N·m or N, of a servo its goal, rad or m.
+        dt, load, temperature, enabled, outputs
+            As for ``Motor.simulate``.
+        position, velocity : float
+            Before the first sample; rad and rad/s, or m and m/s.
+
+        Returns
+        -------
+        Trajectory
 
         Raises
         ------
         InputError
-            As for ``motor`` and ``Motor.simulate``; a plant of prescribed motion.
+            As for ``motor``, ``Motor.reset`` and ``Motor.simulate``; a plant of prescribed motion.
         """
         if self.prescribed_motion:
             raise InputError(

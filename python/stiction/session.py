@@ -97,11 +97,17 @@ class Session:
         Parameters
         ----------
         index : int
+            Of the recording; from the end where it is negative.
 
         Returns
         -------
         ndarray, shape (rows,)
             s.
+
+        Raises
+        ------
+        IndexError
+            There is no such recording.
         """
         time = self.recordings[index].time
         clock: FloatArray = time - time[0] + self.starts[index]

@@ -43,7 +43,7 @@ def stream(
     currents : iterable of array_like of shape (n,)
         Chunks of any length, held over their samples; a generator may go on for ever.
     dt : float
-        s.
+        Duration of a sample in s.
     outputs : tuple of str
         Columns of a ``Trajectory``.
     every : int
@@ -54,7 +54,7 @@ def stream(
         on from it: chunks, given from the beginning again, are passed over until then. What follows
         is the same to the bit as without the interruption.
     load : float
-        External effort, positive along +x.
+        External effort, N·m or N, positive along +x.
 
     Yields
     ------

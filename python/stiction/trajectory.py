@@ -30,12 +30,15 @@ class Trajectory:
 
     Attributes
     ----------
+    columns : Mapping of str to numpy.ndarray, shape (n,)
+        The columns that were asked for, by name.
+    dt : float or numpy.ndarray, shape (n,)
+        Duration of a sample in s, or of each.
     time : numpy.ndarray, shape (n,)
         Seconds since the motor's last reset; computed on access.
     position, velocity, friction, measured, … : numpy.ndarray, shape (n,)
-        The columns that were asked for. rad or m, rad/s or m/s, N·m or N; the law's own states
-        under their names.
-    statistics : Mapping
+        The same: rad or m, rad/s or m/s, N·m or N; the law's own states under their names.
+    statistics : Mapping of str to int
         How often each branch was taken since the last reset.
     success : bool
         Whether no value is NaN, and motion and friction are finite.
@@ -117,6 +120,13 @@ class Trajectory:
             raise AttributeError(f"trajectory has no column '{name}'; it has {have}") from None
 
     def __getitem__(self, name: str) -> FloatArray:
+        """A column by its name, shape (n,).
+
+        Raises
+        ------
+        InputError
+            There is none of this name.
+        """
         try:
             return self._columns[name]
         except KeyError:
@@ -160,7 +170,13 @@ class Trajectory:
         )
 
     def to_frame(self) -> Any:
-        """A pandas DataFrame indexed by time (pandas is an extra: ``stiction[pandas]``)."""
+        """A pandas DataFrame indexed by time (pandas is an extra: ``stiction[pandas]``).
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+        """
         try:
             import pandas as pd
         except ImportError:
@@ -170,12 +186,22 @@ class Trajectory:
         return pd.DataFrame(dict(self._columns), index=pd.Index(self.time, name="time_s"))
 
     def save(self, path: str | Path) -> Path:
-        """Write time and columns as NPZ (or CSV, by the name's ending); returns the path.
+        """Write time, s, and columns to a file.
+
+        Parameters
+        ----------
+        path : str or Path
+            NPZ or CSV, by the name's ending.
+
+        Returns
+        -------
+        Path
+            Of the file.
 
         Raises
         ------
         InputError
-            An unknown ending, a folder that is not there, a file that cannot be written.
+            No path, an unknown ending, a folder that is not there, a file that cannot be written.
         """
         path = given.path(path, "Trajectory.save")
         if not path.parent.is_dir():
@@ -198,7 +224,13 @@ class Trajectory:
         return path
 
     def plot(self) -> Figure:
-        """A figure of position, velocity and friction over time."""
+        """A figure of position, velocity and friction over time.
+
+        Raises
+        ------
+        InputError
+            There are no columns to draw.
+        """
         from . import plot
 
         return plot.trajectory(self)

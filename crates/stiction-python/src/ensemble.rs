@@ -102,8 +102,27 @@ impl Ensemble {
         self.lock().len()
     }
 
-    /// One sample of every machine: position and velocity at its end, shape (members,) each.
-    /// ``current`` and ``load`` are one number, or one for each machine.
+    /// One sample of every machine.
+    ///
+    /// Parameters
+    /// ----------
+    /// current : float or array_like, shape (members,)
+    ///     Input held over the sample, one for all or one for each machine.
+    /// dt : float
+    ///     Duration in s.
+    /// load : float or array_like, shape (members,), optional
+    ///     External effort, N·m or N, positive along +x; 0 without it.
+    ///
+    /// Returns
+    /// -------
+    /// position, velocity : numpy.ndarray, shape (members,)
+    ///     At its end; rad and rad/s, or m and m/s.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     Other shapes, numbers that are not finite, a ``dt`` that is not above 0 and at most
+    ///     1e6 s or too long for one of the machines.
     #[pyo3(signature = (current, dt, *, load=None))]
     fn step_many<'py>(
         &self,
@@ -127,7 +146,28 @@ impl Ensemble {
         Ok((position, velocity))
     }
 
-    /// Runs every machine on; what is kept of each output, flat, one machine after the other.
+    /// Runs every machine on: what ``simulate`` stands on.
+    ///
+    /// Parameters
+    /// ----------
+    /// current, dt, load, outputs, target
+    ///     As for ``simulate``.
+    /// keep : {"every", "last", "rms", "extremes"}
+    ///     "every" for rows, or what ``simulate`` calls ``reduce``.
+    /// every : int
+    ///     Keeps every so many samples one row; unused without rows.
+    /// threads : int
+    ///     1 to 256.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to numpy.ndarray, shape (members · kept,)
+    ///     What is kept of each output, one machine after the other.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``simulate``; ``keep``, ``every`` or ``threads`` that are none of these.
     #[pyo3(signature = (current, dt, *, load, outputs, keep, every, target, threads))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn run<'py>(

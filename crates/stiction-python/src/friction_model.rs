@@ -20,7 +20,7 @@ use crate::state::{from_dict, keywords, to_dict};
 /// ----------
 /// law : str
 ///     A name of the catalogue, see ``stiction.laws()``.
-/// **keywords
+/// **keywords : float or str
 ///     Parameters (numbers, SI) and options (words) of the law; what is not given takes its
 ///     documented default.
 ///
@@ -84,13 +84,19 @@ impl FrictionModel {
     /// dt : float
     ///     Duration in s, positive.
     /// load, effort, temperature : float, optional
-    ///     Load on the contact, all other effort on the body (what a stuck contact holds),
-    ///     temperature in °C.
+    ///     Load on the contact and all other effort on the body (what a stuck contact holds), N·m
+    ///     or N; temperature in °C, without which nobody knows it.
     ///
     /// Returns
     /// -------
     /// float
     ///     Friction at the end, N·m or N, positive when it resists positive motion.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     A velocity beyond ±1e6 rad/s (m/s), a ``dt`` that is not above 0 and at most 1e6 s, a
+    ///     number that is not finite; friction that leaves the range of floats.
     #[pyo3(signature = (velocity, dt, *, load=0.0, effort=0.0, temperature=None))]
     fn step(
         &self,
@@ -114,7 +120,7 @@ impl FrictionModel {
     /// Parameters
     /// ----------
     /// velocity : array_like, shape (n,) or (batch, n)
-    ///     Each value is held over ``dt``.
+    ///     Each value is held over ``dt``, rad/s or m/s.
     /// dt : float
     ///     Duration of a sample in s.
     /// load, effort, temperature : float or array_like shaped like velocity, optional
@@ -123,9 +129,14 @@ impl FrictionModel {
     /// Returns
     /// -------
     /// numpy.ndarray, shaped like velocity
-    ///     Friction at the end of each sample. With shape (n,) the model is left at its end
-    ///     state; with shape (batch, n) every row starts at the present state and the model is
+    ///     Friction at the end of each sample, N·m or N. With shape (n,) the model is left at its
+    ///     end state; with shape (batch, n) every row starts at the present state and the model is
     ///     left as it was.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``step``; other shapes, no samples, a masked one.
     #[pyo3(signature = (velocity, dt, *, load=None, effort=None, temperature=None))]
     fn simulate<'py>(
         &self,
@@ -184,7 +195,24 @@ impl FrictionModel {
         Ok(result)
     }
 
-    /// Friction and its slope ∂friction/∂velocity at fixed dt, changing nothing until ``commit``.
+    /// Friction and its slope at a held velocity, changing nothing until ``commit``.
+    ///
+    /// Parameters
+    /// ----------
+    /// velocity, dt, load, effort, temperature
+    ///     As for ``step``.
+    ///
+    /// Returns
+    /// -------
+    /// friction : float
+    ///     At the end, N·m or N.
+    /// slope : float
+    ///     ∂friction/∂velocity at fixed ``dt``, N·m·s/rad or N·s/m.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``step``.
     #[pyo3(signature = (velocity, dt, *, load=0.0, effort=0.0, temperature=None))]
     fn trial(
         &self,
@@ -208,6 +236,11 @@ impl FrictionModel {
     }
 
     /// Accepts the last trial.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     There is none, or something else came after it.
     fn commit(&self, py: Python<'_>) -> PyResult<()> {
         if self.lock().commit() {
             Ok(())
@@ -269,6 +302,11 @@ impl FrictionModel {
     }
 
     /// The state as a dict of floats and arrays; assign one to continue from it.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     A state that this law did not return.
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let entries = self.lock().entries();

@@ -6,9 +6,25 @@ use stiction_core::kernel::RowKernel as Core;
 use crate::arrays::one_row;
 use crate::error::{IntoPython, finite};
 
-/// Means of efforts about stamps that lie ``every`` samples apart, by weights, and of the second
-/// derivative of a position by the weights ``second``, two more, times ``inertia``; an effort that
-/// is ``held`` from sample to sample counts half a sample later.
+/// What rows of an effort residual are seen through: means about stamps.
+///
+/// Parameters
+/// ----------
+/// weights : array_like, shape (m,)
+///     Of the mean of an effort, in the order of the samples; m is odd.
+/// second : array_like, shape (m + 2,)
+///     Of the mean of the second derivative of a position, 1/s².
+/// every : int
+///     Samples from one stamp to the next.
+/// inertia : float
+///     kg·m² or kg; makes an effort of that derivative.
+/// held : bool
+///     Whether the drive holds its effort from sample to sample: it counts half a sample later.
+///
+/// Raises
+/// ------
+/// InputError
+///     Numbers of weights that do not fit, a spacing below 1, numbers that are not finite.
 #[pyclass(frozen, module = "stiction._native")]
 pub struct RowKernel {
     mean: Vec<f64>,

@@ -291,8 +291,11 @@ class Diagnosis:
     success : bool
         False where it was interrupted: what is here is the best so far.
     message : str
+        How it ended, in words.
     version : str
+        Of the package.
     seed : int
+        It was made with.
     seconds : float
         How long it took.
     split : str
@@ -359,12 +362,22 @@ class Diagnosis:
         return json_of(self.to_dict())
 
     def save(self, folder: str | Path) -> Path:
-        """Write report.html, findings.json, plant.toml and figures; returns the report's path.
+        """Write report.html, findings.json, plant.toml and figures.
+
+        Parameters
+        ----------
+        folder : str or Path
+            Made where it is not there; files of an earlier report in it are replaced.
+
+        Returns
+        -------
+        Path
+            Of report.html.
 
         Raises
         ------
         InputError
-            The folder cannot be made.
+            The folder cannot be made or written to.
         """
         from ..report import write
 

@@ -1,17 +1,16 @@
-//! What a motor does along a measured motion: efforts, signatures, shots, and their derivatives.
+//! What a motor needs along a measured motion: efforts, signatures, and their derivatives.
 
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use stiction_core::sensitivity::{
     EffortSensitivity, follow_columns, follow_sensitivity, sensitivity_into,
 };
-use stiction_core::shoot::{Pull, shoot_response, shoot_sensitivity};
 use stiction_core::signatures::{signature_columns, signatures};
 
 use super::Motor;
-use crate::arguments::{Shots, candidates_of, gains_of, threads_of};
+use crate::arguments::{candidates_of, gains_of, threads_of};
 use crate::arrays::{Around, Each, one_row, target};
-use crate::error::{IntoPython, finite, input_error};
+use crate::error::IntoPython;
 use crate::kernel::RowKernel;
 use crate::motion::Motion;
 
@@ -26,9 +25,6 @@ type Followed<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
-/// Two arrays: readings, efforts of the pull.
-type Accompanied<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
-
 /// Derivatives as arrays of this shape.
 fn arrays(py: Python<'_>, rows: EffortSensitivity, shape: [usize; 2]) -> PyResult<Derivatives<'_>> {
     let array = |values| PyArray1::from_vec(py, values).reshape(shape);
@@ -37,10 +33,30 @@ fn arrays(py: Python<'_>, rows: EffortSensitivity, shape: [usize; 2]) -> PyResul
 
 #[pymethods]
 impl Motor {
-    /// Efforts along a measured motion: of the drive for its inputs, of gravity and added efforts,
-    /// friction, and how far the centre of mass is ahead of the reading (a second mass, a sensor
-    /// that errs); each of shape (n,), at the end of each sample.
-    /// With start values of the law (`laws()`) the contact begins with these, not as it is.
+    /// Efforts along a measured motion; the motor is left at its end.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion : Motion
+    ///     Of n samples.
+    /// start : dict of str to float, optional
+    ///     Start values of the law (``LawRecord.start``, see ``stiction.laws()``), those left out
+    ///     0: the contact begins with these, not as it is.
+    ///
+    /// Returns
+    /// -------
+    /// drive, ambient, friction : numpy.ndarray, shape (n,)
+    ///     Effort of the drive for its inputs, of gravity and added efforts, and friction, N·m or
+    ///     N, at the end of each sample.
+    /// ahead : numpy.ndarray, shape (n,)
+    ///     How far the centre of mass is ahead of the reading (a second mass, a sensor that errs),
+    ///     rad or m.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     A start that is no dict, a start value that the law has not, that is not finite or out of
+    ///     its bounds.
     #[pyo3(signature = (motion, *, start=None))]
     fn follow<'py>(
         &self,
@@ -69,9 +85,29 @@ impl Motor {
         Ok((driven, ambient, friction, ahead))
     }
 
-    /// Measured minus needed effort along a measured motion, seen through a kernel; shape (rows,).
-    /// The load and the inertia term of what the sensor shows are the caller's. Starts as in
-    /// ``follow``.
+    /// Measured minus needed effort along a measured motion, seen through a kernel.
+    ///
+    /// The load and the inertia term of what the sensor shows are the caller's. The motor is left
+    /// at the end of the motion.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion : Motion
+    ///     Of n samples.
+    /// kernel : RowKernel
+    ///     Of m weights, a stamp ``every`` so many samples.
+    /// start : dict of str to float, optional
+    ///     As for ``follow``.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (rows,)
+    ///     N·m or N; rows is (n − m − 1)/``every`` rounded up, 0 where the motion is too short.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``follow``.
     #[pyo3(signature = (motion, kernel, *, start=None))]
     fn follow_rows<'py>(
         &self,
@@ -93,11 +129,29 @@ impl Motor {
         Ok(PyArray1::from_vec(py, rows.or_input_error(py)?))
     }
 
-    /// Exact derivatives by parameters along a measured motion: of friction less gravity and added
-    /// efforts, of the effort of the drive, and of how far the centre of mass is ahead of the
-    /// reading; each of shape (parameters, n).
-    /// Where a start is given its values are parameters too: `start.force` and so on. The motor is
-    /// left as it was.
+    /// Exact derivatives of efforts along a measured motion by parameters; the motor is left as it
+    /// was.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion : Motion
+    ///     Of n samples.
+    /// parameters : sequence of str
+    ///     Whole paths, as ``parameters`` of the motor has them; where a start is given its values
+    ///     too: ``start.force`` and so on.
+    /// start : dict of str to float, optional
+    ///     As for ``follow``.
+    ///
+    /// Returns
+    /// -------
+    /// needed, driven, ahead : numpy.ndarray, shape (parameters, n)
+    ///     Of friction less gravity and added efforts, of the effort of the drive, and of how far
+    ///     the centre of mass is ahead of the reading; SI, per unit of the parameter.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``follow``; a path that is unknown, or one of a start that is not given.
     #[pyo3(signature = (motion, parameters, *, start=None))]
     fn follow_sensitivity<'py>(
         &self,
@@ -114,9 +168,25 @@ impl Motor {
         arrays(py, rows.or_input_error(py)?, [parameters.len(), motion.samples()])
     }
 
-    /// Exact derivatives, by the parameters at these paths, of measured minus needed effort along
-    /// a measured motion, seen through a kernel; shape (parameters, rows). Starts as in
-    /// ``follow_sensitivity``. The motor is left as it was.
+    /// Exact derivatives of what ``follow_rows`` returns by parameters; the motor is left as it
+    /// was.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion, kernel
+    ///     As for ``follow_rows``.
+    /// parameters, start
+    ///     As for ``follow_sensitivity``.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (parameters, rows)
+    ///     SI, per unit of the parameter.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``follow_sensitivity``.
     #[pyo3(signature = (motion, parameters, kernel, *, start=None))]
     fn follow_columns<'py>(
         &self,
@@ -136,11 +206,30 @@ impl Motor {
         PyArray1::from_vec(py, values.or_input_error(py)?).reshape([parameters.len(), rows])
     }
 
-    /// Exact derivatives along a measured motion by the gains of effects beside the motor's own,
-    /// each at the gain 0 and in the shape given as (name, parameters): of friction less gravity and
-    /// added efforts, of the effort of the drive, and of how far the centre of mass is ahead of the
-    /// reading; each of shape (gains, n), in the order of the candidates and of their gains. The
-    /// motor is left as it was.
+    /// Exact derivatives of efforts along a measured motion by the gains of effects beside the
+    /// motor's own, each at the gain 0; the motor is left as it was.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion : Motion
+    ///     Of n samples.
+    /// candidates : iterable of (str, dict of str to float)
+    ///     Effects by name, each with its parameters that are no gains, see ``stiction.effects()``.
+    /// start : dict of str to float, optional
+    ///     As for ``follow``.
+    /// threads : int
+    ///     1 to 256; results do not depend on it.
+    ///
+    /// Returns
+    /// -------
+    /// needed, driven, ahead : numpy.ndarray, shape (gains, n)
+    ///     As for ``follow_sensitivity``, in the order of the candidates and of their gains.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``follow``; candidates that are no such pairs, an unknown effect or parameter, a
+    ///     value out of bounds, a gain among them, threads out of bounds.
     #[pyo3(signature = (motion, candidates, *, start=None, threads=1))]
     fn signatures<'py>(
         &self,
@@ -159,7 +248,25 @@ impl Motor {
         arrays(py, rows, [gains_of(&list), motion.samples()])
     }
 
-    /// The same of measured minus needed effort, seen through a kernel; shape (gains, rows).
+    /// Exact derivatives of what ``follow_rows`` returns by the gains of effects beside the motor's
+    /// own; the motor is left as it was.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion, kernel
+    ///     As for ``follow_rows``.
+    /// candidates, start, threads
+    ///     As for ``signatures``.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (gains, rows)
+    ///     SI, per unit of the gain.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``signatures``.
     #[pyo3(signature = (motion, candidates, kernel, *, start=None, threads=1))]
     fn signature_columns<'py>(
         &self,
@@ -181,108 +288,28 @@ impl Motor {
         PyArray1::from_vec(py, values).reshape([gains_of(&list), kernel.rows(motion.samples())])
     }
 
-    /// What each of many short simulations along a measured motion comes to: the sum, by `weights`
-    /// (shape (samples of a window,)), of what the sensor would read after each sample less what it
-    /// read at the start; shape (windows,). Windows start every `stride` samples at the measured
-    /// position and velocity, with friction as `follow` leaves it there.
-    #[pyo3(signature = (motion, weights, stride, *, start=None))]
-    fn shoot<'py>(
-        &self,
-        py: Python<'py>,
-        motion: &Bound<'py, Motion>,
-        weights: &Bound<'py, PyAny>,
-        stride: i64,
-        start: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let motion = motion.get();
-        let measured = motion.measured();
-        let shots = Shots::read(weights, stride)?;
-        let windows = shots.windows()?;
-        let start = self.start(py, start)?;
-        let sums = py.detach(|| self.primed(start.as_deref()).shoot(&measured, &windows));
-        Ok(PyArray1::from_vec(py, sums.or_input_error(py)?))
-    }
-
-    /// One simulation drawn to a measured motion by a spring and a damper: what the sensor reads
-    /// after each sample, and the effort of the pull during it; shape (n,) each. The motor is left
-    /// as it was.
-    #[pyo3(signature = (motion, stiffness, damping, *, start=None))]
-    fn accompany<'py>(
-        &self,
-        py: Python<'py>,
-        motion: &Bound<'py, Motion>,
-        stiffness: f64,
-        damping: f64,
-        start: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Accompanied<'py>> {
-        let motion = motion.get();
-        let measured = motion.measured();
-        let stiffness = finite(py, "stiffness", stiffness)?;
-        let pull = Pull { stiffness, damping: finite(py, "damping", damping)? };
-        let start = self.start(py, start)?;
-        let rows = py.detach(|| self.primed(start.as_deref()).accompany(&measured, pull));
-        let (readings, efforts) = rows.or_input_error(py)?;
-        Ok((PyArray1::from_vec(py, readings), PyArray1::from_vec(py, efforts)))
-    }
-
-    /// Exact derivatives of what `shoot` returns by parameters and start values; shape
-    /// (parameters, windows). The motor is left as it was.
-    #[pyo3(signature = (motion, weights, stride, parameters, *, start=None))]
-    fn shoot_sensitivity<'py>(
-        &self,
-        py: Python<'py>,
-        motion: &Bound<'py, Motion>,
-        weights: &Bound<'py, PyAny>,
-        stride: i64,
-        parameters: Vec<String>,
-        start: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let motion = motion.get();
-        let measured = motion.measured();
-        let shots = Shots::read(weights, stride)?;
-        let windows = shots.windows()?;
-        let rows = self.beside(py, start, |spec, start| {
-            shoot_sensitivity(spec, start, &measured, &windows, &parameters)
-        })?;
-        let shape = [parameters.len(), windows.number(motion.samples())];
-        PyArray1::from_vec(py, rows.or_input_error(py)?).reshape(shape)
-    }
-
-    /// Exact derivatives of what `shoot` returns by an effort along +x that acts during one part of
-    /// each window, for every of so many equal parts; shape (parts, windows). The motor is left as
-    /// it was.
-    #[pyo3(signature = (motion, weights, stride, parts, *, start=None))]
-    fn shoot_response<'py>(
-        &self,
-        py: Python<'py>,
-        motion: &Bound<'py, Motion>,
-        weights: &Bound<'py, PyAny>,
-        stride: i64,
-        parts: i64,
-        start: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let motion = motion.get();
-        let measured = motion.measured();
-        let shots = Shots::read(weights, stride)?;
-        let windows = shots.windows()?;
-        let most = windows.weights.len();
-        let Some(parts) = usize::try_from(parts).ok().filter(|n| (1..=most).contains(n)) else {
-            return Err(input_error(
-                py,
-                format!("parts = {parts} is out of bounds: allowed is 1 to {most}, one a sample"),
-            ));
-        };
-        let rows = self.beside(py, start, |spec, start| {
-            shoot_response(spec, start, &measured, &windows, parts)
-        })?;
-        let shape = [parts, windows.number(motion.samples())];
-        PyArray1::from_vec(py, rows.or_input_error(py)?).reshape(shape)
-    }
-
-    /// Exact derivatives of position and velocity by parameters, from the present state.
+    /// Exact derivatives of position and velocity by parameters, from the present state; the motor
+    /// is left as it was.
     ///
-    /// Returns two arrays of shape (parameters, n), parts of one of shape (2, parameters, n) that
-    /// may be given as ``out``; the motor is left as it was.
+    /// Parameters
+    /// ----------
+    /// current, dt, load, temperature, enabled
+    ///     As for ``simulate``.
+    /// parameters : sequence of str
+    ///     Whole paths, as ``parameters`` of the motor has them.
+    /// out : numpy.ndarray, shape (2, parameters, n), optional
+    ///     Array to fill, C-contiguous float64.
+    ///
+    /// Returns
+    /// -------
+    /// position, velocity : numpy.ndarray, shape (parameters, n)
+    ///     After each sample, rad and rad/s (m and m/s) per unit of the parameter; views of ``out``
+    ///     where that is given.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``simulate``; an unknown path, an ``out`` that is no such array.
     #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None, out=None))]
     #[allow(clippy::type_complexity)] // a pair of arrays, as Python gets it
     #[allow(clippy::too_many_arguments)] // keywords of the Python class

@@ -2,6 +2,7 @@
 
 mod along;
 mod own;
+mod shots;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -145,7 +146,31 @@ impl Motor {
         Ok(Self { core: Mutex::new(core) })
     }
 
-    /// One sample with held current; position and velocity at its end.
+    /// One sample with held current.
+    ///
+    /// Parameters
+    /// ----------
+    /// current : float
+    ///     Input of the drive: A, V, N·m or N, of a servo its goal, rad or m.
+    /// dt : float
+    ///     Duration in s.
+    /// load : float
+    ///     External effort, N·m or N, positive along +x.
+    /// temperature : float, optional
+    ///     In °C, for what depends on it; without it nobody knows it.
+    /// enabled : bool
+    ///     Whether the drive is on.
+    ///
+    /// Returns
+    /// -------
+    /// position, velocity : float
+    ///     At its end; rad and rad/s, or m and m/s.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     Numbers that are not finite, a ``dt`` that is not above 0 and at most 1e6 s or too long
+    ///     for this machine.
     #[pyo3(signature = (current, dt, *, load=0.0, temperature=None, enabled=true))]
     fn step(
         &self,
@@ -166,8 +191,28 @@ impl Motor {
         core.step(current, load, dt).or_input_error(py)
     }
 
-    /// Samples with held inputs: the arrays asked for, by name, how many samples there were, the time
-    /// on the session clock before the first, and how often each branch was taken.
+    /// Samples with held inputs: what ``simulate`` stands on.
+    ///
+    /// Parameters
+    /// ----------
+    /// current, dt, load, temperature, enabled, outputs, out
+    ///     As for ``simulate``.
+    ///
+    /// Returns
+    /// -------
+    /// columns : dict of str to numpy.ndarray, shape (n,)
+    ///     By name.
+    /// length : int
+    ///     How many samples there were.
+    /// start : float
+    ///     Time on the session clock before the first, s.
+    /// statistics : dict of str to int
+    ///     How often each branch was taken since the last reset.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``simulate``.
     #[pyo3(signature = (current, dt, *, load=None, temperature=None, enabled=None, outputs=None, out=None))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn run<'py>(
@@ -241,8 +286,28 @@ impl Motor {
         Ok((result, n, start, statistics(py, &counted)?))
     }
 
-    /// Inputs held for durations (shape (n,) each): times of the rows, the arrays asked for, by name,
-    /// and what it cost.
+    /// Inputs held for long: what ``simulate_segments`` stands on.
+    ///
+    /// Parameters
+    /// ----------
+    /// durations, current, times, load, temperature, enabled, outputs
+    ///     As for ``simulate_segments``.
+    /// tolerance : float
+    ///     Error of the position that is aimed at, rad (m).
+    ///
+    /// Returns
+    /// -------
+    /// times : numpy.ndarray, shape (rows,)
+    ///     Of the rows, s from the start.
+    /// columns : dict of str to numpy.ndarray, shape (rows,)
+    ///     By name.
+    /// cost : dict of str to int
+    ///     ``evaluations`` of the law, ``steps``, ``refused`` steps and ``rests``.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``simulate_segments``.
     #[pyo3(signature = (
         durations, current, *, tolerance, times=None, load=None, temperature=None, enabled=None, outputs=None
     ))]

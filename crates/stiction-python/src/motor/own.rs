@@ -81,8 +81,22 @@ impl Motor {
         Column::names(&self.lock().spec().friction)
     }
 
-    /// Back to rest at this position (or in motion at this velocity), friction never moved; the
-    /// session clock in s and the path travelled so far are what slow effects go by.
+    /// Back to rest, or to motion, with friction never moved.
+    ///
+    /// Parameters
+    /// ----------
+    /// position : float
+    ///     rad or m.
+    /// velocity : float
+    ///     rad/s or m/s.
+    /// time, path : float
+    ///     Time on the session clock, s, and path travelled so far, rad or m: what slow effects go
+    ///     by.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     A velocity beyond ±1e6 rad/s (m/s), numbers that are not finite.
     #[pyo3(signature = (position=0.0, velocity=0.0, *, time=0.0, path=0.0))]
     fn reset(
         &self,
@@ -108,6 +122,11 @@ impl Motor {
     }
 
     /// State of body and friction as a dict of floats and arrays; assign one to continue from it.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     A state that no motor with this law returned.
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let entries = self.lock().entries();
@@ -120,7 +139,12 @@ impl Motor {
         self.lock().restore(&entries).or_input_error(state.py())
     }
 
-    /// Takes over the state of another motor of the same definition, whatever it is.
+    /// Takes over the state of another motor.
+    ///
+    /// Parameters
+    /// ----------
+    /// other : Motor
+    ///     Of the same definition, which is not checked: what it is is taken over too.
     fn adopt(&self, other: &Bound<'_, Self>) {
         // Copied out first: two locks at once could wait for each other.
         let core = other.get().lock().clone();

@@ -1,0 +1,191 @@
+//! Where a motor gets to by itself along a measured motion, and its derivatives.
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use stiction_core::shoot::{Pull, shoot_response, shoot_sensitivity};
+
+use super::Motor;
+use crate::arguments::Shots;
+use crate::error::{IntoPython, finite, input_error};
+use crate::motion::Motion;
+
+/// Two arrays: readings, efforts of the pull.
+type Accompanied<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
+#[pymethods]
+impl Motor {
+    /// What each of many short simulations along a measured motion comes to.
+    ///
+    /// A window starts at the measured position and velocity, with friction as ``follow`` leaves it
+    /// there. The motor is left as it was.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion : Motion
+    /// weights : array_like, shape (samples of a window,)
+    ///     Of what the sensor would read after each sample of a window.
+    /// stride : int
+    ///     Samples from the start of a window to that of the next.
+    /// start : dict of str to float, optional
+    ///     As for ``follow``.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (windows,)
+    ///     Sum, by the weights, of what the sensor would read less what it read at the start, rad
+    ///     or m times their unit; empty where the motion is shorter than a window.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``follow``; weights that are no flat array of finite numbers, a stride below 1, a
+    ///     ``dt`` too long for this machine.
+    #[pyo3(signature = (motion, weights, stride, *, start=None))]
+    fn shoot<'py>(
+        &self,
+        py: Python<'py>,
+        motion: &Bound<'py, Motion>,
+        weights: &Bound<'py, PyAny>,
+        stride: i64,
+        start: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let motion = motion.get();
+        let measured = motion.measured();
+        let shots = Shots::read(weights, stride)?;
+        let windows = shots.windows()?;
+        let start = self.start(py, start)?;
+        let sums = py.detach(|| self.primed(start.as_deref()).shoot(&measured, &windows));
+        Ok(PyArray1::from_vec(py, sums.or_input_error(py)?))
+    }
+
+    /// One simulation drawn to a measured motion by a spring and a damper; the motor is left as it
+    /// was, and starts from there.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion : Motion
+    ///     Of n samples.
+    /// stiffness : float
+    ///     Of the spring, N·m/rad or N/m.
+    /// damping : float
+    ///     Of the damper, N·m·s/rad or N·s/m.
+    /// start : dict of str to float, optional
+    ///     As for ``follow``.
+    ///
+    /// Returns
+    /// -------
+    /// readings : numpy.ndarray, shape (n,)
+    ///     What the sensor reads after each sample, without its rounding, rad or m.
+    /// pull : numpy.ndarray, shape (n,)
+    ///     Effort of spring and damper during it, N·m or N.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``follow``; a stiffness or damping that is not finite, a ``dt`` too long for this
+    ///     machine.
+    #[pyo3(signature = (motion, stiffness, damping, *, start=None))]
+    fn accompany<'py>(
+        &self,
+        py: Python<'py>,
+        motion: &Bound<'py, Motion>,
+        stiffness: f64,
+        damping: f64,
+        start: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Accompanied<'py>> {
+        let motion = motion.get();
+        let measured = motion.measured();
+        let stiffness = finite(py, "stiffness", stiffness)?;
+        let pull = Pull { stiffness, damping: finite(py, "damping", damping)? };
+        let start = self.start(py, start)?;
+        let rows = py.detach(|| self.primed(start.as_deref()).accompany(&measured, pull));
+        let (readings, efforts) = rows.or_input_error(py)?;
+        Ok((PyArray1::from_vec(py, readings), PyArray1::from_vec(py, efforts)))
+    }
+
+    /// Exact derivatives of what ``shoot`` returns by parameters; the motor is left as it was.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion, weights, stride
+    ///     As for ``shoot``.
+    /// parameters, start
+    ///     As for ``follow_sensitivity``.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (parameters, windows)
+    ///     SI, per unit of the parameter.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``shoot`` and ``follow_sensitivity``.
+    #[pyo3(signature = (motion, weights, stride, parameters, *, start=None))]
+    fn shoot_sensitivity<'py>(
+        &self,
+        py: Python<'py>,
+        motion: &Bound<'py, Motion>,
+        weights: &Bound<'py, PyAny>,
+        stride: i64,
+        parameters: Vec<String>,
+        start: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let motion = motion.get();
+        let measured = motion.measured();
+        let shots = Shots::read(weights, stride)?;
+        let windows = shots.windows()?;
+        let rows = self.beside(py, start, |spec, start| {
+            shoot_sensitivity(spec, start, &measured, &windows, &parameters)
+        })?;
+        let shape = [parameters.len(), windows.number(motion.samples())];
+        PyArray1::from_vec(py, rows.or_input_error(py)?).reshape(shape)
+    }
+
+    /// Exact derivatives of what ``shoot`` returns by an effort along +x that acts during one part
+    /// of each window; the motor is left as it was.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion, weights, stride, start
+    ///     As for ``shoot``.
+    /// parts : int
+    ///     How many equal ones a window has; the last takes the rest.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (parts, windows)
+    ///     Per N·m or N.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``shoot``; parts below 1 or more than a window has samples.
+    #[pyo3(signature = (motion, weights, stride, parts, *, start=None))]
+    fn shoot_response<'py>(
+        &self,
+        py: Python<'py>,
+        motion: &Bound<'py, Motion>,
+        weights: &Bound<'py, PyAny>,
+        stride: i64,
+        parts: i64,
+        start: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let motion = motion.get();
+        let measured = motion.measured();
+        let shots = Shots::read(weights, stride)?;
+        let windows = shots.windows()?;
+        let most = windows.weights.len();
+        let Some(parts) = usize::try_from(parts).ok().filter(|n| (1..=most).contains(n)) else {
+            return Err(input_error(
+                py,
+                format!("parts = {parts} is out of bounds: allowed is 1 to {most}, one a sample"),
+            ));
+        };
+        let rows = self.beside(py, start, |spec, start| {
+            shoot_response(spec, start, &measured, &windows, parts)
+        })?;
+        let shape = [parts, windows.number(motion.samples())];
+        PyArray1::from_vec(py, rows.or_input_error(py)?).reshape(shape)
+    }
+}
