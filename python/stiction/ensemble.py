@@ -28,6 +28,8 @@ Reduce = Literal["last", "rms", "extremes"]
 target, or the least and the greatest value."""
 MEMBER_SIZE: Final = 6144.0
 """Bytes that a machine with a large state takes while it is set up; measured."""
+MOST_THREADS: Final = 256
+"""What the core takes."""
 _REDUCTIONS = ("last", "rms", "extremes")
 
 
@@ -224,7 +226,7 @@ class Ensemble(_Ensemble):
             raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
         every = given.whole(every, "every", least=1)
         if threads is None:
-            threads = os.cpu_count() or 1
+            threads = min(os.cpu_count() or 1, MOST_THREADS)
         threads = given.whole(threads, "threads", least=1)
         if reduce is not None and every != 1:
             raise InputError("every goes with rows, and reduce keeps none; give one of them")

@@ -12,8 +12,9 @@ import numpy as np
 from .catalogue import EffectRecord, effects
 from .errors import InputError
 from .parameter import Parameter
-from .plant import Effect, Plant
+from .plant import Plant
 from .residual import started, starting_velocity
+from .stated import Effect
 from .trajectory import FloatArray
 from .weak_form import Candidate, Start, WeakForm
 

@@ -11,59 +11,20 @@ import numpy as np
 import numpy.typing as npt
 
 from . import given, plant_file
-from ._native import FrictionModel
-from .catalogue import LawRecord, laws
 from .drive import check_servo, gain_name, servo_numbers
 from .errors import InputError
 from .frozen import ByPath, Frozen, freeze, path_of
 from .motor import Motor
 from .parameter import Parameter, number
 from .recording.units import Motion
+from .stated import Effect, Friction
 from .trajectory import Trajectory
 from .wording import listed
 
-__all__ = ["Effect", "Friction", "Plant"]
+__all__ = ["Plant"]
 
 GRAVITY: Final = 9.80665
 """m/s²."""
-
-
-@dataclass(frozen=True)
-class Friction:
-    """A law with the parameters and options that the file states."""
-
-    law: str
-    parameters: Mapping[str, Parameter] = field(default_factory=dict)
-    options: Mapping[str, str] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        freeze(self, Frozen, "parameters", "options")
-
-    def model(self) -> FrictionModel:
-        """The friction model; what is not stated takes the catalogue's default."""
-        values = {name: parameter.value for name, parameter in self.parameters.items()}
-        return FrictionModel(self.law, **values, **self.options)
-
-    @property
-    def record(self) -> LawRecord:
-        """The catalogue's record of the law."""
-        return next(record for record in laws() if record.name == self.law)
-
-    @property
-    def springy(self) -> bool:
-        """Whether the contact yields before it slides, so that displacements count as they are."""
-        return any(parameter.name == "initial_stiffness" for parameter in self.record.parameters)
-
-
-@dataclass(frozen=True)
-class Effect:
-    """An effect with the parameters that the file states."""
-
-    name: str
-    parameters: Mapping[str, Parameter] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        freeze(self, Frozen, "parameters")
 
 
 @dataclass(frozen=True)
@@ -324,7 +285,11 @@ class Plant:
         """
         if not settings:
             return self
-        payload = {n: Parameter(v, fixed=True) for n, v in settings.items() if n.startswith("pay")}
+        payload = {
+            name: Parameter(number(value, f"{self.source}: [body] {name}"), fixed=True)
+            for name, value in settings.items()
+            if name.startswith("payload")
+        }
         servo = {name: value for name, value in settings.items() if name not in payload}
         if servo and not self.servo:
             raise InputError(
@@ -392,7 +357,8 @@ class Plant:
         """
         stated = self.parameters
         changed = dict(stated)
-        for name, value in values.items():
+        wanted = given.mapping(values, "Plant.with_values: values", "numbers by path")
+        for name, value in wanted.items():
             path = path_of(name, stated, f"{self.source}: ", "is not stated")
             changed[path] = replace(
                 stated[path], value=number(_plain(value), f"{self.source}: {path}")

@@ -151,11 +151,6 @@ def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Param
         )
     for name in _PAYLOAD:
         if name in body:
-            if not 0.0 <= body[name].value < math.inf:
-                raise InputError(
-                    f"{where} {name} = {body[name].value} is out of bounds: give a finite number "
-                    "from 0"
-                )
             body[name] = Parameter(body[name].value, fixed=True)
     check_payload(body, motion, where)
     if "payload_m" in body and motion == "linear":
@@ -171,12 +166,17 @@ def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Param
 
 
 def check_payload(body: Mapping[str, Parameter], motion: str, where: str) -> None:
-    """Refuse a payload of which nobody knows how far from the axis it hangs.
+    """Refuse a payload that is none, or of which nobody knows how far from the axis it hangs.
 
     Raises
     ------
     InputError
     """
+    for name in _PAYLOAD:
+        if name in body and not 0.0 <= body[name].value < math.inf:
+            raise InputError(
+                f"{where} {name} = {body[name].value} is out of bounds: give a finite number from 0"
+            )
     if motion == "rotary" and "payload_kg" in body and "payload_m" not in body:
         raise InputError(
             f"{where} payload_kg is stated without payload_m; state how far from the axis it "

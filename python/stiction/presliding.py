@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from .plant import Friction
+from .stated import Friction
 
 __all__ = ["presliding"]
 

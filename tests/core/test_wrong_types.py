@@ -51,6 +51,18 @@ REFUSED = {
     "recording of nothing": (lambda: st.Recording.load(None), "None is not a path"),
     "settings": (lambda: recording(settings=3), "settings is 3; give names"),
     "value that is none": (lambda: plant().with_values({"inertia": np.nan}), "inertia: nan is not"),
+    "values by no name": (lambda: plant().with_values(3), "values is 3; give numbers by path"),
+    "payload below nothing": (
+        lambda: plant().under({"payload_kg": -0.3, "payload_m": 0.1}),
+        "payload_kg = -0.3 is out of bounds",
+    ),
+    "payload in words": (lambda: plant().under({"payload_kg": "much"}), "payload_kg: 'much'"),
+    "an output twice": (
+        lambda: motor().simulate_segments(
+            [0.1], [1.0], tolerance=1e-6, outputs=("position", "position")
+        ),
+        "output 'position' is asked for twice",
+    ),
     "count": (lambda: st.Recording.load("x.csv", count_size=np.nan), "count_size: nan is not"),
     "count of nothing": (lambda: st.Recording.load("x.csv", count_size=0.0), "count_size = 0.0"),
     "ensemble's parameters": (lambda: ensemble(parameters=[1]), "parameters is [1]; give values"),

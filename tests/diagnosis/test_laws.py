@@ -15,7 +15,7 @@ from tests.reference.session_reference import make_sessions
 import stiction as st
 from stiction.diagnosis import laws
 from stiction.diagnosis.model import Model
-from stiction.plant import Friction
+from stiction.stated import Friction
 
 SECONDS = 72.0
 

@@ -18,8 +18,8 @@ from stiction.diagnosis.periodic import COUPLED, FREQUENCY, ORDERS
 from stiction.diagnosis.response import RESPONSE
 from stiction.diagnosis.smoother import BINS, smoother
 from stiction.parameter import Parameter
-from stiction.plant import Effect
 from stiction.report.views import HINTS
+from stiction.stated import Effect
 
 SPACING = 0.005
 

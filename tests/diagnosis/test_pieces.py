@@ -33,7 +33,7 @@ from stiction.fitting.result import FitParameter
 from stiction.fitting.rows import Nuisances
 from stiction.fitting.statistics import interval_width
 from stiction.parameter import Parameter
-from stiction.plant import Effect
+from stiction.stated import Effect
 
 DT = 1e-3
 COUNT = 2.0 * math.pi / 2**18

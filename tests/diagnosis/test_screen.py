@@ -11,7 +11,7 @@ from stiction.diagnosis.evidence import Plan
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.screen import Problem, Score, Signatures, screen
 from stiction.parameter import Parameter
-from stiction.plant import Effect
+from stiction.stated import Effect
 
 ROWS, FITTED, SURROGATES = 600, 400, 8
 NAMES = ("cogging", "torque_bias", "input_delay")

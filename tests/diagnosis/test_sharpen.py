@@ -18,7 +18,7 @@ from stiction.diagnosis.omnibus import Rest
 from stiction.diagnosis.sharpen import is_sharpened
 from stiction.diagnosis.view import View
 from stiction.parameter import Parameter
-from stiction.plant import Effect
+from stiction.stated import Effect
 
 # A friction that repeats 8 and 24 times a turn, one wave nearly as large as the other: where they
 # cancel, the first alone does harm, and the rows that decide do not want it.

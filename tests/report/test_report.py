@@ -31,12 +31,12 @@ from stiction.diagnosis.result import (
 )
 from stiction.fitting.result import FitParameter
 from stiction.parameter import Parameter
-from stiction.plant import Effect
 from stiction.report import write
 from stiction.report.figures import headline, most_shown
 from stiction.report.numbers import between, digits, percent, quantity, tick
 from stiction.report.panels import shortened
 from stiction.report.sections.parameters import rows_of_effect
+from stiction.stated import Effect
 
 LARGEST_REPORT = 5_000_000  # bytes; what an e-mail carries
 HOSTILE = "<script>alert(1)</script>&\"' $x^2$ -->]]> \u202e名.csv"

@@ -108,6 +108,11 @@ def test_the_bare_last_word_of_a_path_does_where_it_is_unique() -> None:
         values["c"]
 
 
+def test_a_diagnosis_is_not_saved_nowhere() -> None:
+    with pytest.raises(st.InputError, match="None is not a path"):
+        diagnosed().save(None)  # type: ignore[arg-type]
+
+
 def test_a_diagnosis_has_what_findings_json_has() -> None:
     found = diagnosed()
     content = found.to_dict()

@@ -196,7 +196,7 @@ pub fn check(windows: &Windows<'_>) -> Result<()> {
             given: 0.0,
             lower: 1.0,
             upper: f64::INFINITY,
-            unit: "samples".to_owned(),
+            unit: " samples".to_owned(),
         });
     }
     Ok(())

@@ -13,9 +13,10 @@ import numpy as np
 from ..fitting.pushes import told as pushes_told
 from ..fitting.result import FitResult
 from ..fitting.rows import Rows
-from ..plant import Effect, Plant
+from ..plant import Plant
 from ..recording import Check
 from ..session import Session
+from ..stated import Effect
 from ..trajectory import FloatArray
 from .advice import advise
 from .candidates import Scales, scales_of

@@ -17,7 +17,7 @@ from ..fitting.forms import followable
 from ..fitting.minimise import MOST_EVALUATIONS, launch
 from ..fitting.start import complete, free_paths
 from ..parameter import Parameter
-from ..plant import Friction
+from ..stated import Friction
 from ..wording import did_you_mean, listed
 from .decide import DECIDED_Z, heldout_gain
 from .gain import Gain, HeldOut, gain_of

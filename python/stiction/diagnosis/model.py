@@ -19,7 +19,8 @@ from ..fitting.solve import evaluate
 from ..fitting.start import free_paths
 from ..fitting.statistics import covariance, differ, jackknife
 from ..parameter import Parameter
-from ..plant import Effect, Plant
+from ..plant import Plant
+from ..stated import Effect
 from ..trajectory import FloatArray
 from .candidates import Candidate
 from .evidence import Evidence, Plan

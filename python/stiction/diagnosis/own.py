@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from ..plant import Effect
+from ..stated import Effect
 from ..trajectory import FloatArray
 from .coordinates import COORDINATES, UNJUDGED, Coordinate, Look
 from .evidence import Evidence

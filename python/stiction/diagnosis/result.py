@@ -8,6 +8,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from .. import given
 from ..fitting.result import FitParameter
 from ..frozen import ByPath, Frozen, freeze
 from ..plant import Plant
@@ -381,7 +382,7 @@ class Diagnosis:
         """
         from ..report import write
 
-        return write(self, Path(folder))
+        return write(self, given.path(folder, "Diagnosis.save"))
 
     def plot(self) -> Figure:
         """The residual before and after, on rows held out.

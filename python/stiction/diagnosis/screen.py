@@ -12,8 +12,9 @@ import numpy as np
 
 from ..finite import finite
 from ..fitting.rows import Nuisances, Rows
-from ..plant import Effect, Plant
+from ..plant import Plant
 from ..recording.checks.signal import runs
+from ..stated import Effect
 from ..trajectory import FloatArray
 from .candidates import Candidate
 from .evidence import Evidence, Plan

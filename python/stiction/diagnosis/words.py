@@ -11,8 +11,8 @@ from ..catalogue import effects as catalogue
 from ..fitting.pushes import LEFT_OUT
 from ..fitting.result import FitParameter
 from ..fitting.rows import Push
-from ..plant import Effect
 from ..report.scale import loop_scale_of
+from ..stated import Effect
 from ..wording import counted
 from .orders import order_words
 

@@ -11,7 +11,8 @@ import numpy as np
 from ..catalogue import effects
 from ..errors import NotEnoughData
 from ..parameter import Parameter
-from ..plant import Effect, Plant
+from ..plant import Plant
+from ..stated import Effect
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .rows import begun

@@ -342,6 +342,9 @@ impl Motor {
         let names: Vec<String> = outputs.unwrap_or_else(all);
         let kinds = names.iter().map(|name| Column::named(&law, name).or_input_error(py));
         let kinds = kinds.collect::<PyResult<Vec<Column>>>()?;
+        if let Some(k) = (0..kinds.len()).find(|k| kinds[..*k].contains(&kinds[*k])) {
+            return Err(input_error(py, format!("output '{}' is asked for twice", names[k])));
+        }
         let mut arrays = vec![vec![0.0; rows.len()]; kinds.len()];
         let mut columns: Vec<(Column, &mut [f64])> =
             kinds.into_iter().zip(arrays.iter_mut().map(Vec::as_mut_slice)).collect();

@@ -15,7 +15,8 @@ from .section import Section
 
 if TYPE_CHECKING:
     from ...diagnosis.result import Cause, Diagnosis
-    from ...plant import Effect, Plant
+    from ...plant import Plant
+    from ...stated import Effect
     from ..drawings import Drawings
 
 __all__ = ["build"]

@@ -13,7 +13,8 @@ from ..numbers import between, digits
 if TYPE_CHECKING:
     from ...catalogue import EffectRecord
     from ...fitting.result import FitParameter
-    from ...plant import Effect, Plant
+    from ...plant import Plant
+    from ...stated import Effect
 
 __all__ = ["meanings_of", "row", "rows_of_effect"]
 

@@ -1,0 +1,51 @@
+"""What a plant file states of its contact: a law, and effects beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ._native import FrictionModel
+from .catalogue import LawRecord, laws
+from .frozen import Frozen, freeze
+from .parameter import Parameter
+
+__all__ = ["Effect", "Friction"]
+
+
+@dataclass(frozen=True)
+class Friction:
+    """A law with the parameters and options that the file states."""
+
+    law: str
+    parameters: Mapping[str, Parameter] = field(default_factory=dict)
+    options: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        freeze(self, Frozen, "parameters", "options")
+
+    def model(self) -> FrictionModel:
+        """The friction model; what is not stated takes the catalogue's default."""
+        values = {name: parameter.value for name, parameter in self.parameters.items()}
+        return FrictionModel(self.law, **values, **self.options)
+
+    @property
+    def record(self) -> LawRecord:
+        """The catalogue's record of the law."""
+        return next(record for record in laws() if record.name == self.law)
+
+    @property
+    def springy(self) -> bool:
+        """Whether the contact yields before it slides, so that displacements count as they are."""
+        return any(parameter.name == "initial_stiffness" for parameter in self.record.parameters)
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect with the parameters that the file states."""
+
+    name: str
+    parameters: Mapping[str, Parameter] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        freeze(self, Frozen, "parameters")
