@@ -63,7 +63,8 @@ impl<S: Scalar> Effect<S> for ReversePointMemory<S> {
         shapes: &[Shape {
             parameter: "distance",
             scale: Scale::Presliding,
-            grid: &[1.0, 4.0, 16.0],
+            // A contact without a spring has no length of its own: this one is found from far below it.
+            grid: &[0.0625, 0.25, 1.0, 4.0, 16.0],
             fitted: true,
         }],
         second: &[],
