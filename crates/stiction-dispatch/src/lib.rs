@@ -178,7 +178,7 @@ mod tests {
 
         #[inline(always)]
         fn run<V: Vector>(self) -> Vec<u64> {
-            let mut found = vec![[0.0; ROW]; 13];
+            let mut found = vec![[0.0; ROW]; 15];
             let (mut bits, mut across) = ([0_u8; 3], vec![[0.0; ROW]; ROW]);
             for chunk in 0..V::CHUNKS {
                 let (a, b) = (V::load(self.0, chunk), V::load(self.1, chunk));
@@ -196,6 +196,8 @@ mod tests {
                     V::all(0.3),
                     a.unless_below(b, -0.5, V::all(7.0)),
                     a.kept(below.same(within)),
+                    a.at_least(b),
+                    a.at_most(b),
                     V::all(3.0).power_of_two(),
                 ];
                 for (row, one) in found.iter_mut().zip(all) {
@@ -253,13 +255,15 @@ mod tests {
                 0.3,
                 if y < -0.5 { 7.0 } else { x },
                 if below == within { x } else { 0.0 },
+                if below { y } else { x },
+                if y < x { y } else { x },
             ];
             for (k_of, expected) in all.into_iter().enumerate() {
                 let given = f64::from_bits(row(k_of)[k]);
                 let alike = given.to_bits() == expected.to_bits();
                 assert!(alike || (given.is_nan() && expected.is_nan()), "{k_of} {x} {y} {given}");
             }
-            let bit = |which: usize| plain[13 * ROW + which] >> k & 1 == 1;
+            let bit = |which: usize| plain[15 * ROW + which] >> k & 1 == 1;
             assert_eq!((bit(0), bit(1)), (below && within, below == within));
             assert_eq!(bit(2), 0b0110_1001 >> k & 1 == 1);
         }

@@ -45,6 +45,11 @@ pub trait Vector: Numbers + Div<Output = Self> + Default {
     /// Of eight rows, the rows of what is at the same place in each, in vectors.
     fn across(rows: [&[f64; ROW]; ROW]) -> [[Self; CHUNKS]; ROW];
 
+    /// The greater of it and another; itself where it is no number.
+    fn at_least(self, other: Self) -> Self;
+    /// The lesser of the two likewise.
+    fn at_most(self, other: Self) -> Self;
+
     /// The other sign.
     #[inline(always)]
     fn minus(self) -> Self {

@@ -48,6 +48,19 @@ pub fn through_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
     pass_events(stepper, law, state, span);
 }
 
+/// The same where a mode is likely to change, so that nothing is attempted before that is looked for.
+#[inline]
+pub(super) fn through_likely_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
+    stepper: &mut P,
+    law: &L,
+    state: &mut L::State,
+    span: S,
+) {
+    if stepper.velocity().re() != 0.0 || !stepper.hold(law, state, span) {
+        pass_events(stepper, law, state, span);
+    }
+}
+
 /// The same for a step in which an event is due; whether the contact holds was asked already.
 #[cold]
 #[inline(never)]

@@ -22,6 +22,7 @@ mod swing;
 pub use adaptive::{Account, Adaptive};
 pub use clock::after_steps;
 pub use contact::{Along, Held};
+use events::through_likely_events;
 pub use events::{Stepper, quiet, through_events};
 pub use glide::{Efforts, Glide, Places, Plain, Seen, Verlet, glide_on};
 pub use machine::{Machine, Run};
@@ -70,7 +71,8 @@ pub fn parts<S: Scalar, L: FrictionLaw<S>>(
     phase.max(calming).max(falling.min(MOST_PARTS_FOR_A_FALL)).ceil().max(1.0)
 }
 
-/// One step of the fast integrator under a held input and load; `BARE` as in [`sample`].
+/// One step of the fast integrator under a held input and load, in which a mode is likely to change;
+/// `BARE` as in [`sample`].
 #[inline]
 pub fn step<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
     machine: &Machine<S>,
@@ -82,7 +84,7 @@ pub fn step<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
     span: S,
 ) {
     let mut stepper = fast::Fast::<S, BARE> { machine, run, input, load };
-    through_events(&mut stepper, law, state, span);
+    through_likely_events(&mut stepper, law, state, span);
 }
 
 /// Advances body and friction by these of the equal steps of a sample whose input and load are held

@@ -104,13 +104,9 @@ pub struct Bodies {
     pub pace: Row,
     /// Displacement per effort.
     pub lever: Row,
-    /// 1 where the last step was not plain, so that the lane did not take it.
+    /// 1 where the last step was not plain, so that the lane did not take it: for loops over lanes.
     pub missed: [u64; WIDTH],
-    /// Not 0 where the contact has more to note of the last step than rows do.
-    pub changed: [u64; WIDTH],
-    /// All bits where there is a body.
-    pub alive: [u64; WIDTH],
-    /// The same, a bit for each lane.
+    /// A bit for each lane where there is a body.
     pub present: u8,
 }
 
@@ -133,8 +129,6 @@ impl Bodies {
             pace: zero,
             lever: zero,
             missed: [0; WIDTH],
-            changed: [0; WIDTH],
-            alive: [0; WIDTH],
             present: 0,
         }
     }
@@ -147,7 +141,6 @@ impl Bodies {
         self.inertia.0[lane] = inertia;
         self.pace.0[lane] = pace;
         self.lever.0[lane] = lever;
-        self.alive[lane] = u64::MAX;
         self.present |= 1 << lane;
     }
 
@@ -174,14 +167,6 @@ impl Bodies {
         run.time = S::constant(time);
     }
 
-    /// Says of which lanes, a bit for each, the last step was not plain.
-    #[inline(always)]
-    pub fn miss(&mut self, lanes: u8) {
-        for (lane, missed) in self.missed.iter_mut().enumerate() {
-            *missed = u64::from(lanes >> lane & 1);
-        }
-    }
-
     /// A bit for each lane of these that is there and where something does not hold, at its place in
     /// the row.
     #[inline(always)]
@@ -206,7 +191,7 @@ impl Bodies {
         self.velocity.put(chunk, velocity);
     }
 
-    /// Moves some lanes on where something holds.
+    /// The same where something holds.
     #[inline(always)]
     pub fn go_where<V: Vector>(
         &mut self,
@@ -214,12 +199,10 @@ impl Bodies {
         taken: V::Mask,
         displacement: V,
         velocity: V,
-        friction: V,
     ) {
         self.position.more_where(chunk, taken, displacement);
         self.path.more_where(chunk, taken, displacement.abs());
         self.velocity.put_where(chunk, taken, velocity);
-        self.friction.put_where(chunk, taken, friction);
     }
 
     /// [`Verlet::depart`] of a lane.
@@ -250,18 +233,12 @@ impl Bodies {
         (inertia * self.velocity.0[lane] + half * both) * share - half * share * undamped
     }
 
-    /// Whether the last step was not plain for some lane.
+    /// What a loop over lanes has left in `missed`.
     #[inline(always)]
-    pub fn misses(&self) -> bool {
-        let lanes = self.missed.iter().zip(&self.alive);
-        lanes.fold(0, |any, (missed, alive)| any | (missed & alive)) != 0
-    }
-
-    /// Whether the last step left some contact more to note than rows do.
-    #[inline(always)]
-    pub fn changes(&self) -> bool {
-        let lanes = self.changed.iter().zip(&self.alive);
-        lanes.fold(0, |any, (changed, alive)| any | (changed & alive)) != 0
+    pub fn rest(&self) -> Rest {
+        let any = self.missed.iter().fold(0, |any, missed| any | missed) != 0;
+        let missed = if any { bits(&self.missed) & self.present } else { 0 };
+        Rest { missed, changed: 0 }
     }
 
     /// Moves a lane on where `plain`, see `Glide::accept`.
@@ -279,6 +256,29 @@ impl Bodies {
         self.velocity.take(lane, plain, velocity);
         self.friction.take(lane, plain, friction);
     }
+}
+
+/// What a step of a row leaves to be done, a bit for each lane.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Rest {
+    /// Where it was not plain, so that the lane did not take it.
+    pub missed: u8,
+    /// Where the contact has more to note of it than rows do.
+    pub changed: u8,
+}
+
+/// A bit for each lane that is not 0.
+pub fn bits(lanes: &[u64; WIDTH]) -> u8 {
+    (0..WIDTH).fold(0, |bits, lane| bits | u8::from(lanes[lane] != 0) << lane)
+}
+
+/// The lanes of these bits.
+pub fn lanes(mut bits: u8) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros() as usize;
+        bits &= bits.wrapping_sub(1);
+        (lane < WIDTH).then_some(lane)
+    })
 }
 
 /// A body's share of steps against one damping, see [`Verlet`].
@@ -302,18 +302,16 @@ pub trait Contacts<S: Scalar, L: FrictionLaw<S>>: Clone + Default {
     fn load(&mut self, lane: usize, law: &L, state: &L::State);
     /// Puts the state of a lane back.
     fn store(&self, lane: usize, state: &mut L::State);
-    /// Notes what a step of a lane has changed besides its rows, by what it left in
-    /// [`Bodies::changed`].
-    fn note(&mut self, _lane: usize, _what: u64, _law: &L, _state: &mut L::State) {}
+    /// Notes what the last step of a lane has changed besides its rows.
+    fn note(&mut self, _lane: usize, _law: &L, _state: &mut L::State) {}
     /// Brings up to date what steps leave to be known later: friction.
     #[inline(always)]
     fn settle(&mut self, _bodies: &mut Bodies) {}
     /// Takes a step of all lanes of some blocks under their efforts; those that it is not plain for stay
-    /// where they are and say so in `missed`. Compiled for several widths: mark it as
-    /// `#[inline(always)]`. A processor looks a few hundred operations ahead, which is one block: what
-    /// takes as many stage by stage shares the waiting among them. Returns which of them may have left
-    /// something in `missed` or `changed`.
-    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N];
+    /// where they are. Compiled for several widths: mark it as `#[inline(always)]`. A processor looks a
+    /// few hundred operations ahead, which is one block: what takes as many stage by stage shares the
+    /// waiting among them.
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [Rest; N];
 }
 
 /// [`WIDTH`] motors.

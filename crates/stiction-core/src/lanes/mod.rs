@@ -18,7 +18,7 @@ mod team;
 
 pub use stiction_dispatch::Width;
 
-pub use block::{Block, Bodies, Contacts, Row, WIDTH, pick};
+pub use block::{Block, Bodies, Contacts, Rest, Row, WIDTH, bits, lanes, pick};
 pub use team::{Job, LEAST, Member, Motor, Team};
 
 use crate::friction::FrictionLaw;

@@ -1,7 +1,9 @@
 //! What is kept of a team's motion.
 
-use super::block::{Bodies, Row};
+use super::block::{Block, Contacts, Row};
+use crate::friction::FrictionLaw;
 use crate::motor::Column;
+use crate::scalar::Scalar;
 
 /// Samples between two looks at what was recorded.
 pub const SAMPLES: usize = 64;
@@ -28,24 +30,21 @@ impl Record {
         }
     }
 
-    /// Whether friction is wanted.
+    /// Records blocks in a sample.
     #[inline(always)]
-    pub fn shows_friction(&self) -> bool {
-        self.friction.is_some()
-    }
-
-    /// Records a block at a place.
-    #[inline(always)]
-    pub fn take(&mut self, place: usize, bodies: &Bodies) {
-        if let Some(row) = self.position.as_mut().and_then(|rows| rows.get_mut(place)) {
-            *row = bodies.position;
-        }
-        if let Some(row) = self.velocity.as_mut().and_then(|rows| rows.get_mut(place)) {
-            *row = bodies.velocity;
-        }
-        if let Some(row) = self.friction.as_mut().and_then(|rows| rows.get_mut(place)) {
-            *row = bodies.friction;
-        }
+    pub fn take<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>, const N: usize>(
+        &mut self,
+        sample: usize,
+        blocks: &mut [Block<C>; N],
+    ) {
+        record(&mut self.position, sample, || blocks.each_ref().map(|block| block.bodies.position));
+        record(&mut self.velocity, sample, || blocks.each_ref().map(|block| block.bodies.velocity));
+        record(&mut self.friction, sample, || {
+            blocks.each_mut().map(|Block { bodies, contacts }| {
+                contacts.settle(bodies);
+                bodies.friction
+            })
+        });
     }
 
     /// What was recorded for a column: positions for what is measured.
@@ -57,5 +56,17 @@ impl Record {
             Column::Law(_) => &None,
         };
         rows.as_deref().unwrap_or_default()
+    }
+}
+
+/// Records the rows of a sample where they are wanted.
+#[inline(always)]
+fn record<const N: usize>(
+    rows: &mut Option<Vec<Row>>,
+    sample: usize,
+    shown: impl FnOnce() -> [Row; N],
+) {
+    if let Some(rows) = rows.as_mut().and_then(|rows| rows.as_chunks_mut().0.get_mut(sample)) {
+        *rows = shown();
     }
 }

@@ -13,6 +13,9 @@ use crate::scalar::Scalar;
 /// The drives of a team and what they are about to do.
 pub struct Supply {
     members: Vec<usize>,
+    /// Where the inputs of each member begin, block by block; again those of the first one for lanes
+    /// that are left over.
+    starts: Vec<[usize; WIDTH]>,
     gains: Vec<Row>,
     limits: Vec<Row>,
     weights: Vec<Row>,
@@ -22,7 +25,7 @@ pub struct Supply {
 
 impl Supply {
     /// The drives of these motors.
-    pub fn new<S: Scalar, L: FrictionLaw<S>>(members: &[Member<'_, S, L>]) -> Self {
+    pub fn new<S: Scalar, L: FrictionLaw<S>>(members: &[Member<'_, S, L>], samples: usize) -> Self {
         let blocks = members.len().div_ceil(WIDTH);
         let zero = vec![Row::ZERO; blocks];
         let many = vec![Row::ZERO; blocks * SAMPLES];
@@ -33,8 +36,13 @@ impl Supply {
             limits[k / WIDTH].0[k % WIDTH] = limit;
             weights[k / WIDTH].0[k % WIDTH] = weight;
         }
-        let members = members.iter().map(|member| member.number).collect();
-        Self { members, gains, limits, weights, efforts: many.clone(), loads: many }
+        let members: Vec<usize> = members.iter().map(|member| member.number).collect();
+        let starts = members.chunks(WIDTH).map(|members| {
+            let start = |lane: usize| members.get(lane).unwrap_or(&members[0]) * samples;
+            std::array::from_fn(start)
+        });
+        let starts = starts.collect();
+        Self { members, starts, gains, limits, weights, efforts: many.clone(), loads: many }
     }
 
     /// Efforts of each block in each sample.
@@ -53,7 +61,7 @@ impl Supply {
             Inputs::Each(values) => values,
             Inputs::Shared(_) => &[],
         };
-        Ahead { values, members: &self.members, samples: plan.samples, next }
+        Ahead { values, starts: &self.starts, next }
     }
 
     /// Works out the efforts of some samples, where all that they are made of is finite. Returns whether
@@ -69,8 +77,7 @@ impl Supply {
 #[derive(Clone, Copy)]
 pub struct Ahead<'a> {
     values: &'a [f64],
-    members: &'a [usize],
-    samples: usize,
+    starts: &'a [[usize; WIDTH]],
     next: usize,
 }
 
@@ -79,9 +86,8 @@ impl Ahead<'_> {
     #[inline(always)]
     pub fn fetch(&self, sample: usize) {
         let (lane, tile) = (sample % WIDTH, sample / WIDTH);
-        for member in self.members.iter().skip(lane).step_by(WIDTH) {
-            let place = member * self.samples + self.next + tile * TILE;
-            if let Some(value) = self.values.get(place) {
+        for starts in self.starts {
+            if let Some(value) = self.values.get(starts[lane] + self.next + tile * TILE) {
                 fetch(value);
             }
         }
@@ -102,7 +108,7 @@ impl Wide for Fill<'_> {
     #[inline(always)]
     fn run<V: Vector>(self) -> bool {
         let Self { supply, plan, first, length } = self;
-        let Supply { members, gains, limits, weights, efforts, loads } = supply;
+        let Supply { members, gains, limits, weights, efforts, loads, .. } = supply;
         let stretch = (first, length);
         let load = if let Rows::Same(load) = plan.loads { Some(load) } else { None };
         if load.is_none()
@@ -170,9 +176,7 @@ impl Through for Drives<'_> {
             Some(load) => V::all(load),
             None => self.loads[row].at::<V>(chunk),
         };
-        let low = input.or(input.below(limit.minus()), limit.minus());
-        let within = low.or(limit.below(input), limit);
-        gain * within + (V::all(0.0) + load) + weight
+        gain * input.at_least(limit.minus()).at_most(limit) + (V::all(0.0) + load) + weight
     }
 }
 

@@ -1,12 +1,11 @@
 //! Takes a team of motors with one law through its samples.
 
 use std::array::from_mut;
-use std::slice::from_ref;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use stiction_dispatch::{Vector, Wide};
 
-use super::block::{Block, Bodies, Contacts, Row, WIDTH};
+use super::block::{Block, Bodies, Contacts, Row, WIDTH, lanes};
 use super::record::{Record, SAMPLES};
 use super::supply::{Ahead, Supply, load_of};
 use super::tally::Tally;
@@ -19,6 +18,8 @@ use crate::scalar::Scalar;
 
 /// Members of a team at most: two blocks share the waiting, and more leave the nearest cache.
 const MOST: usize = 2 * WIDTH;
+// A stretch goes through one block or two.
+const _: () = assert!(MOST == 2 * WIDTH);
 /// Members of a team at least: fewer are done sooner one after the other.
 pub const LEAST: usize = 3;
 
@@ -143,52 +144,52 @@ impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Wide for Stretch<'_, '_, S
 
     #[inline(always)]
     fn run<V: Vector>(mut self) {
-        let (count, parts) = (self.blocks.len(), self.team.job.parts);
         let blocks = std::mem::take(&mut self.blocks);
-        for (sample, row) in self.efforts.chunks_exact(count).enumerate() {
-            self.ahead.fetch(sample);
-            for part in 1..=parts {
-                let ends = part == parts;
-                let (pairs, rest) = blocks.as_chunks_mut::<2>();
-                for (k, (pair, efforts)) in pairs.iter_mut().zip(row.chunks_exact(2)).enumerate() {
-                    self.step::<V, 2>(pair, efforts, (2 * k, sample, count), ends);
-                }
-                for (block, effort) in rest.iter_mut().zip(row.last()) {
-                    let efforts = from_ref(effort);
-                    self.step::<V, 1>(from_mut(block), efforts, (count - 1, sample, count), ends);
-                }
-            }
+        if let Ok(pair) = blocks.try_into() {
+            self.go::<V, 2>(pair);
+        } else if let [block] = blocks {
+            self.go::<V, 1>(from_mut(block));
         }
     }
 }
 
 impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Stretch<'_, '_, S, L, C> {
-    /// A step of some blocks, of which this is the first.
+    /// All samples of these blocks.
     #[inline(always)]
-    fn step<V: Vector, const N: usize>(
-        &mut self,
-        blocks: &mut [Block<C>; N],
-        efforts: &[Row],
-        (first, sample, count): (usize, usize, usize),
-        ends: bool,
-    ) {
-        for (block, effort) in blocks.iter_mut().zip(efforts) {
-            block.bodies.effort = *effort;
-        }
-        let open = C::step::<V, N>(blocks);
-        for (k, block) in blocks.iter_mut().enumerate() {
-            block.bodies.taken += 1;
-            if open[k] && block.bodies.changes() {
-                self.team.note(first + k, block, self.room);
-            }
-            if open[k] && block.bodies.misses() {
-                self.team.make_up(first + k, self.first + sample, block, self.room);
-            }
-            if ends {
-                if self.record.shows_friction() {
-                    block.contacts.settle(&mut block.bodies);
+    fn go<V: Vector, const N: usize>(&mut self, blocks: &mut [Block<C>; N]) {
+        let samples = self.efforts.as_chunks::<N>().0;
+        let (mut sample, mut left) = (0, 0);
+        // No loop in a loop: the compiler fetches numbers ahead of the inner one, each sample anew.
+        loop {
+            if left == 0 {
+                let Some(efforts) = samples.get(sample) else { return };
+                self.ahead.fetch(sample);
+                for (block, effort) in blocks.iter_mut().zip(efforts) {
+                    block.bodies.effort = *effort;
                 }
-                self.record.take(sample * count + first + k, &block.bodies);
+                left = self.team.job.parts;
+            }
+            self.step::<V, N>(blocks, sample);
+            left -= 1;
+            if left == 0 {
+                self.record.take::<S, L, C, N>(sample, blocks);
+                sample += 1;
+            }
+        }
+    }
+
+    /// A step of these blocks.
+    #[inline(always)]
+    fn step<V: Vector, const N: usize>(&mut self, blocks: &mut [Block<C>; N], sample: usize) {
+        let rests = C::step::<V, N>(blocks);
+        for (k, (block, rest)) in blocks.iter_mut().zip(rests).enumerate() {
+            block.bodies.taken += 1;
+            if rest.changed != 0 {
+                self.team.note(k, rest.changed, block, self.room);
+            }
+            if rest.missed != 0 {
+                let sample = self.first + sample;
+                self.team.make_up(k, rest.missed, sample, block, self.room);
             }
         }
     }
@@ -202,7 +203,7 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
         let plan = self.job.plan;
         let samples = plan.samples;
         let mut record = Record::new(self.kept(), count);
-        let mut supply = Supply::new(&self.members);
+        let mut supply = Supply::new(&self.members, samples);
         let mut tally = Tally::new(self.job, count);
         let mut room = vec![0_usize; self.members.len()];
         let mut first = 0;
@@ -240,16 +241,19 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
         self.end(&tally);
     }
 
-    /// Notes what the last step of a block has changed in contacts.
+    /// Notes what the last step of a block has changed in contacts of these lanes.
     #[inline(never)]
-    fn note<C: Contacts<S, L>>(&mut self, k: usize, block: &mut Block<C>, room: &mut [usize]) {
-        let members = self.members.iter_mut().zip(room).skip(k * WIDTH);
-        for (lane, (member, room)) in members.take(WIDTH).enumerate() {
-            let what = block.bodies.changed[lane];
-            if what != 0 {
-                member.make_room(room);
-                block.contacts.note(lane, what, member.law, member.state);
-            }
+    fn note<C: Contacts<S, L>>(
+        &mut self,
+        k: usize,
+        changed: u8,
+        block: &mut Block<C>,
+        room: &mut [usize],
+    ) {
+        for lane in lanes(changed) {
+            let Some(member) = self.members.get_mut(k * WIDTH + lane) else { return };
+            member.make_room(&mut room[k * WIDTH + lane]);
+            block.contacts.note(lane, member.law, member.state);
         }
     }
 
@@ -258,14 +262,14 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
     fn make_up<C: Contacts<S, L>>(
         &mut self,
         k: usize,
+        missed: u8,
         sample: usize,
         block: &mut Block<C>,
         room: &mut [usize],
     ) {
-        for lane in 0..WIDTH {
-            if block.bodies.missed[lane] != 0 {
-                self.step_alone(k * WIDTH + lane, sample, block, room);
-            }
+        block.contacts.settle(&mut block.bodies);
+        for lane in lanes(missed) {
+            self.step_alone(k * WIDTH + lane, sample, block, room);
         }
     }
 

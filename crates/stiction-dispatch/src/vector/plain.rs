@@ -93,6 +93,16 @@ impl Vector for Two {
     }
 
     #[inline(always)]
+    fn at_least(self, other: Self) -> Self {
+        self.or(self.below(other), other)
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> Self {
+        self.or(other.below(self), other)
+    }
+
+    #[inline(always)]
     fn across(rows: [&[f64; ROW]; ROW]) -> [[Self; CHUNKS]; ROW] {
         let mut found = [[Self::default(); CHUNKS]; ROW];
         for (k, found) in found.iter_mut().enumerate() {

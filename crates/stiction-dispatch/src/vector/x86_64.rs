@@ -166,6 +166,18 @@ impl Vector for Two {
     }
 
     #[inline(always)]
+    fn at_least(self, other: Self) -> Self {
+        // SAFETY: as above. Of numbers that do not compare it gives the second.
+        Self(unsafe { arch::_mm_max_pd(other.0, self.0) })
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> Self {
+        // SAFETY: as above.
+        Self(unsafe { arch::_mm_min_pd(other.0, self.0) })
+    }
+
+    #[inline(always)]
     fn across(rows: [&[f64; ROW]; ROW]) -> [[Self; CHUNKS]; ROW] {
         let mut found = [[Self::default(); CHUNKS]; ROW];
         for chunk in 0..CHUNKS {
@@ -211,6 +223,18 @@ impl Vector for Four {
     fn or(self, mask: FourBits, other: Self) -> Self {
         // SAFETY: as above.
         Self(unsafe { arch::_mm256_blendv_pd(self.0, other.0, mask.0) })
+    }
+
+    #[inline(always)]
+    fn at_least(self, other: Self) -> Self {
+        // SAFETY: as above. Of numbers that do not compare it gives the second.
+        Self(unsafe { arch::_mm256_max_pd(other.0, self.0) })
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> Self {
+        // SAFETY: as above.
+        Self(unsafe { arch::_mm256_min_pd(other.0, self.0) })
     }
 
     #[inline(always)]
@@ -280,6 +304,18 @@ impl Vector for Eight {
     fn or(self, mask: u8, other: Self) -> Self {
         // SAFETY: as above.
         Self(unsafe { arch::_mm512_mask_mov_pd(self.0, mask, other.0) })
+    }
+
+    #[inline(always)]
+    fn at_least(self, other: Self) -> Self {
+        // SAFETY: as above. Of numbers that do not compare it gives the second.
+        Self(unsafe { arch::_mm512_max_pd(other.0, self.0) })
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> Self {
+        // SAFETY: as above.
+        Self(unsafe { arch::_mm512_min_pd(other.0, self.0) })
     }
 
     #[inline(always)]

@@ -4,7 +4,7 @@ use stiction_dispatch::Vector;
 
 use super::{Coulomb, CoulombState};
 use crate::friction::elements::bell::Bells;
-use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH};
+use crate::lanes::{Block, Bodies, Contacts, Rest, Row, WIDTH};
 use crate::scalar::{Scalar, sign};
 
 /// Contacts of [`Coulomb`] whose level falls as a bell or not at all.
@@ -42,13 +42,13 @@ impl<S: Scalar> Contacts<S, Coulomb<S>> for Lanes {
     }
 
     #[inline(always)]
-    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
-        for Block { bodies, contacts } in blocks {
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [Rest; N] {
+        blocks.each_mut().map(|Block { bodies, contacts }| {
             for lane in 0..WIDTH {
                 contacts.step(lane, bodies);
             }
-        }
-        [true; N]
+            bodies.rest()
+        })
     }
 }
 

@@ -3,7 +3,7 @@
 use stiction_dispatch::Vector;
 
 use super::{Dahl, DahlState};
-use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH};
+use crate::lanes::{Block, Bodies, Contacts, Rest, Row, WIDTH};
 use crate::scalar::{Scalar, sign};
 
 /// Contacts of [`Dahl`] whose curve is a quotient, i = 2.
@@ -56,13 +56,13 @@ impl<S: Scalar> Contacts<S, Dahl<S>> for Lanes {
     }
 
     #[inline(always)]
-    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [Rest; N] {
         for Block { bodies, contacts } in blocks {
             for lane in 0..WIDTH {
                 contacts.step(lane, bodies);
             }
         }
-        [true; N]
+        [Rest::default(); N]
     }
 }
 

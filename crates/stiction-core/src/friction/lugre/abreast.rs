@@ -7,7 +7,7 @@ use super::{BristleState, LuGre};
 use crate::friction::elements::bell::Bells;
 use crate::friction::elements::lag::shares;
 use crate::friction::elements::slides::SlidesAbreast;
-use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH};
+use crate::lanes::{Block, Bodies, Contacts, Rest, Row, WIDTH};
 use crate::scalar::{Scalar, sign};
 
 /// Contacts of [`LuGre`] whose level falls as a bell or not at all, with a damping that does not fall.
@@ -53,13 +53,13 @@ impl<S: Scalar> Contacts<S, LuGre<S>> for Lanes {
     }
 
     #[inline(always)]
-    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
-        for Block { bodies, contacts } in blocks {
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [Rest; N] {
+        blocks.each_mut().map(|Block { bodies, contacts }| {
             for lane in 0..WIDTH {
                 contacts.step(lane, bodies);
             }
-        }
-        [true; N]
+            bodies.rest()
+        })
     }
 }
 

@@ -4,38 +4,24 @@
 
 use stiction_dispatch::{CHUNKS, Mask, Vector};
 
-use super::Lanes;
-use crate::lanes::Block;
+use super::forward::Ends;
+use super::{Found, Lanes};
+use crate::lanes::{Block, Bodies};
 
-/// Steps of rows of hooks of which all slide, or with `MIXED` of those lanes that do. Returns whether
-/// they were taken: all or none.
+/// Steps of rows of hooks of which all slide. Returns whether they were taken: all or none.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)] // a vector of all rows at a time
-pub(super) fn coast<V: Vector, const MIXED: bool, const N: usize>(
-    blocks: &mut [Block<Lanes>; N],
-) -> bool {
-    let mut ends = [[(V::all(0.0), V::all(0.0)); N]; CHUNKS];
-    let mut odds = [0; N];
+pub(super) fn coast<V: Vector, const N: usize>(blocks: &mut [Block<Lanes>; N]) -> bool {
+    let mut ends = [[Ends::<V>::default(); N]; CHUNKS];
+    let mut odds = 0;
     for chunk in 0..V::CHUNKS {
         for k in 0..N {
             let Block { bodies, contacts } = &blocks[k];
-            let (effort, velocity) = (bodies.effort.at::<V>(chunk), bodies.velocity.at::<V>(chunk));
-            let (force, mode) = (contacts.force.at::<V>(chunk), contacts.mode.at::<V>(chunk));
-            let net = effort - force;
-            let (displacement, predicted) = bodies.departs(chunk, net);
-            let (inertia, half) = (bodies.inertia.at::<V>(chunk), bodies.half.at::<V>(chunk));
-            let unbraked = (inertia * velocity + half * (net + effort))
-                * contacts.undamped_share.at::<V>(chunk);
-            let arrived = unbraked - contacts.undamped_braking.at::<V>(chunk) * force;
-            let begins = contacts.coasting::<V>(chunk, velocity);
-            let goes_on = contacts.beyond_by::<V>(begins, chunk, predicted);
-            let moves = V::all(0.0).below_in(goes_on, arrived.flipped(mode));
-            ends[chunk][k] = (displacement, arrived);
-            let taken = if MIXED { moves.or(contacts.sliding::<V>(chunk).not()) } else { moves };
-            odds[k] |= bodies.without::<V>(taken, chunk);
+            let goes_on = contacts.coast_on(chunk, bodies, &mut ends[chunk][k]);
+            odds |= bodies.without::<V>(goes_on, chunk);
         }
     }
-    if odds.iter().fold(0, |any, odd| any | odd) != 0 {
+    if odds != 0 {
         for block in blocks {
             block.contacts.coasts = false;
         }
@@ -43,26 +29,42 @@ pub(super) fn coast<V: Vector, const MIXED: bool, const N: usize>(
     }
     for chunk in 0..V::CHUNKS {
         for k in 0..N {
-            let (displacement, arrived) = ends[chunk][k];
-            let Block { bodies, contacts } = &mut blocks[k];
-            let force = contacts.force.at::<V>(chunk);
-            if MIXED {
-                let here = contacts.sliding::<V>(chunk);
-                bodies.go_where(chunk, here, displacement, arrived, force);
-            } else {
-                bodies.friction.put(chunk, force);
-                bodies.go(chunk, displacement, arrived);
-            }
+            let Ends { displacement, arrived, force } = ends[chunk][k];
+            blocks[k].bodies.friction.put(chunk, force);
+            blocks[k].bodies.go(chunk, displacement, arrived);
         }
     }
     true
 }
 
+/// Steps of a row before anything is accepted.
+#[inline(always)]
+pub(super) fn found<V: Vector>(row: &[Block<Lanes>; 1]) -> Found<Ends<V>, 1> {
+    let [Block { bodies, contacts }] = row;
+    let mut ends = [[Ends::default(); 1]; CHUNKS];
+    let mut odds = 0;
+    for (chunk, [ends]) in ends.iter_mut().enumerate().take(V::CHUNKS) {
+        odds |= bodies.without::<V>(contacts.coast_on(chunk, bodies, ends), chunk);
+    }
+    (ends, [odds])
+}
+
 impl Lanes {
-    /// Where a hook slides.
+    /// A step. Returns where it goes on beyond all fall.
     #[inline(always)]
-    pub(super) fn sliding<V: Vector>(&self, chunk: usize) -> V::Mask {
-        V::all(0.0).below(self.mode.at::<V>(chunk).abs())
+    fn coast_on<V: Vector>(&self, chunk: usize, bodies: &Bodies, ends: &mut Ends<V>) -> V::Mask {
+        let (effort, velocity) = (bodies.effort.at::<V>(chunk), bodies.velocity.at::<V>(chunk));
+        let (force, mode) = (self.force.at::<V>(chunk), self.mode.at::<V>(chunk));
+        let net = effort - force;
+        let (displacement, predicted) = bodies.departs(chunk, net);
+        let (inertia, half) = (bodies.inertia.at::<V>(chunk), bodies.half.at::<V>(chunk));
+        let unbraked =
+            (inertia * velocity + half * (net + effort)) * self.undamped_share.at::<V>(chunk);
+        let arrived = unbraked - self.undamped_braking.at::<V>(chunk) * force;
+        *ends = Ends { displacement, arrived, force };
+        let begins = self.coasting::<V>(chunk, velocity);
+        let goes_on = self.beyond_by::<V>(begins, chunk, predicted);
+        V::all(0.0).below_in(goes_on, arrived.flipped(mode))
     }
 
     /// Where a hook slides beyond all fall, and its force is the level there.

@@ -3,17 +3,21 @@
 
 use stiction_dispatch::{CHUNKS, Mask, Vector};
 
-use super::{Lanes, Odds, ROUNDING, accept};
+use super::{Found, Lanes, Odds, ROUNDING, accept};
 use crate::exponential::{faded, fading};
 use crate::lanes::{Block, Bodies};
 
-/// Steps of rows of hooks of which all slide, two of them stage by stage, or with `MIXED` of those
-/// lanes that do. Says of each row which lanes have not gone on.
+/// Steps of rows of hooks of which all slide. Says of each row which lanes have not gone on.
+#[inline(always)]
+pub(super) fn forward<V: Vector, const N: usize>(blocks: &mut [Block<Lanes>; N]) -> Odds<N> {
+    let (ends, odds) = found::<V, N>(blocks);
+    accept::<V, _, false, N>(blocks, odds, &ends)
+}
+
+/// The same before anything is accepted, two rows stage by stage.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)] // a vector of all rows at a time
-pub(super) fn forward<V: Vector, const MIXED: bool, const N: usize>(
-    blocks: &mut [Block<Lanes>; N],
-) -> Odds<N> {
+pub(super) fn found<V: Vector, const N: usize>(blocks: &[Block<Lanes>; N]) -> Found<Ends<V>, N> {
     const { assert!(N == 1 || N == 2) };
     let mut ends = [[Ends::<V>::default(); N]; CHUNKS];
     let mut odds = [0; N];
@@ -26,24 +30,18 @@ pub(super) fn forward<V: Vector, const MIXED: bool, const N: usize>(
             let Block { bodies, contacts } = &blocks[k];
             let goes_on =
                 contacts.go_forward(chunk, &begun[k], &slid[k], bodies, &mut ends[chunk][k]);
-            let here = if MIXED {
-                let mode = contacts.mode.at::<V>(chunk).abs();
-                goes_on.and(V::all(0.0).below(mode))
-            } else {
-                goes_on
-            };
-            odds[k] |= bodies.without::<V>(here, chunk);
+            odds[k] |= bodies.without::<V>(goes_on, chunk);
         }
     }
-    accept::<V, _, MIXED, N>(blocks, odds, &ends)
+    (ends, odds)
 }
 
 /// Where a step of some lanes ends.
 #[derive(Clone, Copy, Default)]
-struct Ends<V> {
-    displacement: V,
-    arrived: V,
-    force: V,
+pub(super) struct Ends<V> {
+    pub(super) displacement: V,
+    pub(super) arrived: V,
+    pub(super) force: V,
 }
 
 /// Departure, and levels at the start and at the end.
@@ -157,6 +155,7 @@ impl<V: Vector> super::Ends<V> for Ends<V> {
     fn take_some(&self, chunk: usize, here: V::Mask, block: &mut Block<Lanes>) {
         let Block { bodies, contacts } = block;
         contacts.force.put_where(chunk, here, self.force);
-        bodies.go_where(chunk, here, self.displacement, self.arrived, self.force);
+        bodies.friction.put_where(chunk, here, self.force);
+        bodies.go_where(chunk, here, self.displacement, self.arrived);
     }
 }

@@ -16,11 +16,10 @@ use stiction_dispatch::{CHUNKS, Mask, Vector};
 
 use super::slide::ROUNDING;
 use super::{HsiehPan, HsiehPanState};
-use crate::friction::elements::branch::SYNCHRONISED;
 use crate::friction::elements::loading::Loading;
 use crate::friction::elements::memory::ReversePoint;
 use crate::friction::elements::spring::SpringState;
-use crate::lanes::{Block, Bodies, Contacts, Row, WIDTH, pick};
+use crate::lanes::{Block, Bodies, Contacts, Rest, Row, WIDTH};
 use crate::scalar::{SHORTER, Scalar};
 
 use coast::coast;
@@ -40,11 +39,8 @@ pub struct Lanes {
     force: Row,
     position: Row,
     slope: Row,
-    /// Steps of each spring that go on from the one before, but for those of the row as a whole that
-    /// are not added yet; there may be `whole` of these less what is `left`.
+    /// Steps of each spring that go on from the one before.
     steps: Row,
-    whole: u32,
-    left: u32,
     plastic: Row,
     hardening: Row,
     /// Of the branch: its direction and the share of d_0 that a displacement is.
@@ -98,17 +94,31 @@ pub struct Lanes {
     /// 1/J and h/2 of that.
     undamped_share: Row,
     undamped_braking: Row,
-    sticks: bool,
-    slides: bool,
-    /// No lane has a hardening below 0, where a contact that cannot creep would, or its force at the
-    /// limit.
-    tame: bool,
-    /// Friction is still to be made of force and velocity.
-    untold: bool,
+    known: Known,
+    /// A bit for each lane that sticks, that slides, whose last step has turned its spring round, and
+    /// whose friction is still to be made of force and velocity.
+    sticks: u8,
+    slides: u8,
+    turned: u8,
+    untold: u8,
+    /// The same where a hook sticks that has a hardening below 0, where a contact that cannot creep
+    /// would, or its force beyond `limit`.
+    wild: u8,
     /// The last step was one of slides beyond all fall.
     coasts: bool,
     /// No level of a slide rises with speed.
     falls: bool,
+}
+
+/// What steps of sticking hooks come to where a spring does not go on as it went, up to the spring.
+#[derive(Debug, Clone, Default)]
+struct Known {
+    displacement: Row,
+    hardening: Row,
+    /// Displacement of the spring.
+    left: Row,
+    /// A bit for each lane of which that is known.
+    lanes: u8,
 }
 
 /// Branches, one in each lane.
@@ -140,10 +150,6 @@ impl Course {
         self.target.0[lane] = target;
     }
 }
-
-/// What [`Bodies::changed`] says of a spring.
-const TURNED: u64 = 1;
-const CLOSED: u64 = 2;
 
 /// Whether these contacts can go through plain steps abreast.
 pub fn fits<S: Scalar>(law: &HsiehPan<S>) -> bool {
@@ -211,12 +217,15 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         self.hardening.0[lane] = state.hardening.re();
         self.follow(lane, law, spring);
         self.excess.0[lane] = (state.latched - law.parameters.coulomb).re();
-        self.sticks = self.mode.0.contains(&0.0);
-        self.slides = self.mode.0.iter().any(|mode| *mode != 0.0);
+        let here = 1 << lane;
+        let sticks = if state.mode == 0.0 { here } else { 0 };
+        self.sticks = self.sticks & !here | sticks;
+        self.slides = self.slides & !here | here & !sticks;
+        self.untold &= !here;
         self.falls = self.viscous.0.iter().all(|viscous| *viscous == 0.0)
             && self.excess.0.iter().all(|excess| *excess >= 0.0);
         self.beyond.0[lane] = self.beyond(lane);
-        self.renew();
+        self.wild = self.wild & !here | if self.is_tame(lane) { 0 } else { sticks };
     }
 
     #[inline]
@@ -227,15 +236,15 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         if state.mode == 0.0 {
             state.spring.position = number(&self.position);
             state.spring.slope = number(&self.slope);
-            state.spring.steps = self.steps.0[lane] as u32 + (self.whole - self.left);
+            state.spring.steps = self.steps.0[lane] as u32;
             state.plastic = number(&self.plastic);
             state.hardening = number(&self.hardening);
         }
     }
 
-    fn note(&mut self, lane: usize, what: u64, law: &HsiehPan<S>, state: &mut HsiehPanState<S>) {
+    fn note(&mut self, lane: usize, law: &HsiehPan<S>, state: &mut HsiehPanState<S>) {
         let (spring, statistics) = (&mut state.spring, &mut state.statistics);
-        if what == TURNED {
+        if self.turned >> lane & 1 == 1 {
             let position = S::constant(self.present.origin.0[lane]);
             let force = S::constant(self.present.force.0[lane]);
             spring.direction = self.direction.0[lane];
@@ -252,79 +261,81 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
 
     #[inline(always)]
     fn settle(&mut self, bodies: &mut Bodies) {
-        self.tell(bodies);
+        if self.untold != 0 {
+            for lane in 0..WIDTH {
+                let damped = self.damping.0[lane] * bodies.velocity.0[lane];
+                let untold = self.untold >> lane & 1 == 1;
+                bodies.friction.take(lane, untold, self.force.0[lane] + damped);
+            }
+            self.untold = 0;
+        }
     }
 
     #[inline(always)]
-    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [bool; N] {
-        let onwards = |Block { contacts, .. }: &Block<Self>| {
-            !contacts.slides && contacts.tame && contacts.left > 0
-        };
-        let forwards = |block: &Block<Self>| !block.contacts.sticks && block.contacts.falls;
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [Rest; N] {
+        let onwards =
+            |Block { contacts, .. }: &Block<Self>| contacts.slides == 0 && contacts.wild == 0;
+        let forwards = |block: &Block<Self>| block.contacts.sticks == 0 && block.contacts.falls;
         let odds = if blocks.iter().all(onwards) {
-            onward::<V, false, N>(blocks)
+            onward::<V, N>(blocks)
         } else if blocks.iter().all(forwards) {
-            if blocks.iter().all(|block| block.contacts.coasts) && coast::<V, false, N>(blocks) {
-                return [false; N];
+            if blocks.iter().all(|block| block.contacts.coasts) && coast::<V, N>(blocks) {
+                return [Rest::default(); N];
             }
-            forward::<V, false, N>(blocks)
+            forward::<V, N>(blocks)
         } else {
             let mut odds = [0; N];
             for (block, odds) in blocks.iter_mut().zip(&mut odds) {
                 let row = from_mut(block);
                 [*odds] = if onwards(&row[0]) {
-                    onward::<V, false, 1>(row)
+                    onward::<V, 1>(row)
                 } else if forwards(&row[0]) {
-                    if row[0].contacts.coasts && coast::<V, false, 1>(row) {
+                    if row[0].contacts.coasts && coast::<V, 1>(row) {
                         continue;
                     }
-                    forward::<V, false, 1>(row)
+                    forward::<V, 1>(row)
                 } else {
-                    row[0].contacts.tell(&mut row[0].bodies);
-                    row[0].contacts.flush();
                     mixed::<V>(row)
                 };
             }
             odds
         };
-        let mut open = [false; N];
+        let mut rests = [Rest::default(); N];
         for k in 0..N {
             if odds[k] != 0 {
-                open[k] = any::<V>(&mut blocks[k], odds[k]);
+                rests[k] = any::<V>(&mut blocks[k], odds[k]);
             }
         }
-        open
+        rests
     }
 }
 
 /// Of each row, a bit for each lane that has missed its step.
 type Odds<const N: usize> = [u8; N];
 
-/// Steps of a row of which some stick and some slide.
+/// Steps of a row of which some stick and some slide. None is accepted before all are found: what is
+/// read would wait for what was written, though that is of other lanes.
 #[inline(always)]
 fn mixed<V: Vector>(row: &mut [Block<Lanes>; 1]) -> Odds<1> {
-    let (tame, falls) = (row[0].contacts.tame, row[0].contacts.falls);
+    let Lanes { wild, falls, sticks, slides, .. } = row[0].contacts;
+    row[0].contacts.known.lanes = 0;
+    let stuck = (wild == 0 && sticks != 0).then(|| onward::found::<V, 1>(row));
+    let slid = (falls && slides != 0).then(|| {
+        let coasted = coast::found::<V>(row);
+        if coasted.1[0] & slides == 0 { coasted } else { forward::found::<V, 1>(row) }
+    });
     let mut odds = row[0].bodies.present;
-    if tame && row[0].contacts.sticks {
-        odds &= onward::<V, true, 1>(row)[0];
+    if let Some((ends, [others])) = stuck {
+        odds &= accept::<V, _, true, 1>(row, [others | slides], &ends)[0];
     }
-    if falls && row[0].contacts.slides {
-        let (mut slides, mut slows) = (0, 0);
-        for chunk in 0..V::CHUNKS {
-            let Block { bodies, contacts } = &row[0];
-            let sliding = contacts.sliding::<V>(chunk);
-            let coasting = contacts.coasting::<V>(chunk, bodies.velocity.at(chunk));
-            slides |= bodies.without::<V>(sliding.not(), chunk);
-            slows |= bodies.without::<V>(coasting.or(sliding.not()), chunk);
-        }
-        if slows == 0 && coast::<V, true, 1>(row) {
-            odds &= !slides;
-        } else {
-            odds &= forward::<V, true, 1>(row)[0];
-        }
+    if let Some((ends, [others])) = slid {
+        odds &= accept::<V, _, true, 1>(row, [others | sticks], &ends)[0];
     }
     [odds]
 }
+
+/// Where steps of rows end, of each vector of theirs, and which lanes are odd.
+type Found<E, const N: usize> = ([[E; N]; CHUNKS], Odds<N>);
 
 /// Where steps of some lanes of a row end.
 trait Ends<V: Vector>: Copy {
@@ -332,13 +343,13 @@ trait Ends<V: Vector>: Copy {
     fn take_over(&self, chunk: usize, block: &mut Block<Lanes>);
     /// Notes that a whole row went.
     fn went(block: &mut Block<Lanes>);
-    /// Goes there where something holds.
+    /// Goes there where something holds, and leaves what was found of others.
     fn take_some(&self, chunk: usize, here: V::Mask, block: &mut Block<Lanes>);
 }
 
-/// Accepts the steps of rows without anything odd, and says which the others are: all of their lanes
-/// have missed. With `MIXED` those of lanes that are not odd. All rows at once first, or the compiler
-/// puts off what a row needs until the one before is through.
+/// Accepts the steps of lanes that are not odd; with `MIXED` there are lanes for which these steps are
+/// none. All rows at once first, or the compiler puts off what a row needs until the one before is
+/// through.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)] // a vector of all rows at a time
 fn accept<V: Vector, E: Ends<V>, const MIXED: bool, const N: usize>(
@@ -346,17 +357,7 @@ fn accept<V: Vector, E: Ends<V>, const MIXED: bool, const N: usize>(
     odds: Odds<N>,
     ends: &[[E; N]; CHUNKS],
 ) -> Odds<N> {
-    if MIXED {
-        for chunk in 0..V::CHUNKS {
-            for k in 0..N {
-                let here = V::Mask::of(!odds[k] >> (chunk * V::LANES));
-                ends[chunk][k].take_some(chunk, here, &mut blocks[k]);
-            }
-        }
-        return odds;
-    }
-    let mut left = odds;
-    if odds.iter().fold(0, |any, odd| any | odd) == 0 {
+    if !MIXED && odds.iter().fold(0, |any, odd| any | odd) == 0 {
         for chunk in 0..V::CHUNKS {
             for k in 0..N {
                 ends[chunk][k].take_over(chunk, &mut blocks[k]);
@@ -365,85 +366,44 @@ fn accept<V: Vector, E: Ends<V>, const MIXED: bool, const N: usize>(
         for block in blocks {
             E::went(block);
         }
-        return left;
+        return odds;
     }
     for k in 0..N {
-        if odds[k] == 0 {
-            for (chunk, ends) in ends.iter().enumerate().take(V::CHUNKS) {
+        for (chunk, ends) in ends.iter().enumerate().take(V::CHUNKS) {
+            if !MIXED && odds[k] == 0 {
                 ends[k].take_over(chunk, &mut blocks[k]);
+            } else {
+                let here = V::Mask::of(!odds[k] >> (chunk * V::LANES));
+                ends[k].take_some(chunk, here, &mut blocks[k]);
             }
+        }
+        if !MIXED && odds[k] == 0 {
             E::went(&mut blocks[k]);
-        } else {
-            left[k] = blocks[k].bodies.present;
         }
     }
-    left
+    odds
 }
 
-/// Steps of these lanes of a row. Returns whether they left anything to be done in `missed` or `changed`.
+/// Steps of these lanes of a row.
 #[inline(always)]
-fn any<V: Vector>(block: &mut Block<Lanes>, lanes: u8) -> bool {
-    block.contacts.tell(&mut block.bodies);
-    block.contacts.flush();
-    block.bodies.changed = [0; WIDTH];
-    let mut stuck = 0;
-    for chunk in 0..V::CHUNKS {
-        let mode = block.contacts.mode.at::<V>(chunk).abs();
-        stuck |= mode.within(V::all(0.0)).bits() << (chunk * V::LANES);
+fn any<V: Vector>(block: &mut Block<Lanes>, lanes: u8) -> Rest {
+    let Lanes { sticks, slides, .. } = block.contacts;
+    let mut rest = Rest::default();
+    if lanes & sticks != 0 {
+        rest = stick::<V>(block, lanes & sticks);
     }
-    let slides = lanes & !stuck;
-    let mut missed = slides;
-    if lanes & stuck != 0 {
-        missed |= stick::<V>(block, lanes & stuck);
+    if lanes & slides != 0 {
+        rest.missed |= slide(block, lanes & slides);
     }
-    block.bodies.miss(missed);
-    if slides != 0 {
-        slide(block);
-    }
-    block.contacts.renew();
-    missed != 0 || block.bodies.changed != [0; WIDTH]
+    rest
 }
 
 impl Lanes {
-    /// Friction, where steps of the row have left it out.
-    #[inline(always)]
-    fn tell(&mut self, bodies: &mut Bodies) {
-        if self.untold {
-            for lane in 0..WIDTH {
-                let damped = self.damping.0[lane] * bodies.velocity.0[lane];
-                bodies.friction.0[lane] = self.force.0[lane] + damped;
-            }
-            self.untold = false;
-        }
-    }
-
-    /// Adds steps of the row to those of each spring.
-    #[inline(always)]
-    fn flush(&mut self) {
-        let more = f64::from(self.whole - self.left);
-        for steps in &mut self.steps.0 {
-            *steps += more;
-        }
-        self.whole = self.left;
-    }
-
-    /// Looks how long all springs may go on, and whether creep of all takes its short way.
-    #[inline(always)]
-    fn renew(&mut self) {
-        self.flush();
-        let (mut most, mut tame) = (0.0_f64, true);
-        for lane in 0..WIDTH {
-            let steepest = self.initial_stiffness.0[lane];
-            // Nobody is where there is no stiffness.
-            let sticks = (self.mode.0[lane] == 0.0) & (steepest > 0.0);
-            most = most.max(pick(sticks, self.steps.0[lane], 0.0));
-            let short = (self.force.0[lane].abs() <= self.limit.0[lane])
-                & (self.slope.0[lane] * SLACK <= steepest);
-            tame &= (self.hardening.0[lane] >= 0.0) & (short | !sticks);
-        }
-        self.tame = tame;
-        self.left = SYNCHRONISED.saturating_sub(most as u32);
-        self.whole = self.left;
+    /// Whether a sticking hook is not `wild`.
+    fn is_tame(&self, lane: usize) -> bool {
+        self.hardening.0[lane] >= 0.0
+            && self.force.0[lane].abs() <= self.limit.0[lane]
+            && self.slope.0[lane] * SLACK <= self.initial_stiffness.0[lane]
     }
 
     /// [`Self::beyond`] of a lane: what is left of the fall there is less than half of the last bit.

@@ -4,7 +4,7 @@
 use stiction_dispatch::{CHUNKS, Mask, Vector};
 
 use super::stick::shortly;
-use super::{Lanes, Odds, accept};
+use super::{Found, Known, Lanes, Odds, accept};
 use crate::friction::elements::branch::SYNCHRONISED;
 use crate::lanes::{Block, Bodies};
 use crate::scalar::{SECOND_BELOW, SHORT};
@@ -16,13 +16,17 @@ const SURE: f64 = 0.99;
 /// A way that nobody misses, and no product of which with anything here is lost.
 const FAINT: f64 = 1e-140;
 
-/// Steps of rows of hooks of which all stick, two of them stage by stage, or with `MIXED` of those
-/// lanes that do. Says of each row which lanes have not gone on.
+/// Steps of rows of hooks of which all stick. Says of each row which lanes have not gone on.
+#[inline(always)]
+pub(super) fn onward<V: Vector, const N: usize>(blocks: &mut [Block<Lanes>; N]) -> Odds<N> {
+    let (ends, odds) = found::<V, N>(blocks);
+    accept::<V, _, false, N>(blocks, odds, &ends)
+}
+
+/// The same before anything is accepted, two rows stage by stage.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)] // a vector of all rows at a time
-pub(super) fn onward<V: Vector, const MIXED: bool, const N: usize>(
-    blocks: &mut [Block<Lanes>; N],
-) -> Odds<N> {
+pub(super) fn found<V: Vector, const N: usize>(blocks: &[Block<Lanes>; N]) -> Found<Ends<V>, N> {
     const { assert!(N == 1 || N == 2) };
     let mut ends = [[Ends::<V>::default(); N]; CHUNKS];
     let mut odds = [0; N];
@@ -32,32 +36,24 @@ pub(super) fn onward<V: Vector, const MIXED: bool, const N: usize>(
         for k in 0..N {
             let contacts = &blocks[k].contacts;
             let goes_on = contacts.go_on(chunk, &crept[k], &mut ends[chunk][k]);
-            let here = if MIXED {
-                // Of rows as a whole this is counted.
-                let fresh = contacts
-                    .steps
-                    .at::<V>(chunk)
-                    .below_in(goes_on, V::all(f64::from(SYNCHRONISED)));
-                let mode = contacts.mode.at::<V>(chunk).abs();
-                fresh.and(mode.within(V::all(0.0)))
-            } else {
-                goes_on
-            };
-            odds[k] |= blocks[k].bodies.without::<V>(here, chunk);
+            odds[k] |= blocks[k].bodies.without::<V>(goes_on, chunk);
         }
     }
-    accept::<V, _, MIXED, N>(blocks, odds, &ends)
+    (ends, odds)
 }
 
 /// Where a step of some lanes ends.
 #[derive(Clone, Copy, Default)]
-struct Ends<V> {
+pub(super) struct Ends<V> {
     displacement: V,
     arrived: V,
     hardening: V,
+    left: V,
     position: V,
     force: V,
     slope: V,
+    /// A bit for each where creep was found, whatever the spring does.
+    known: u8,
 }
 
 /// A step as far as the spring.
@@ -68,7 +64,9 @@ struct Crept<V: Vector> {
     unbraked: V,
     hardening: V,
     left: V,
-    steady: V::Mask,
+    /// Where creep was found, and where the spring goes on in its direction.
+    known: V::Mask,
+    onward: V::Mask,
 }
 
 /// a + b·z.
@@ -104,20 +102,25 @@ impl Lanes {
         let held = gained.kept(starts);
         let back = held.flipped(force);
         let towards = displacement - back;
-        let pace = self.pace.at::<V>(chunk) * force.abs() * slope;
+        let forward = towards * self.direction.at::<V>(chunk);
+        let onward = V::all(FAINT).below(forward);
+        let turns = forward.below(V::all(-FAINT));
+        let stiffness = self.initial_stiffness.at::<V>(chunk).or(onward, slope);
+        let pace = self.pace.at::<V>(chunk) * force.abs() * stiffness;
         let z = progress + pace;
         let second = second(z);
         let paced = pace * displacement;
         let lagged = (second * (back * z - paced)).kept(starts);
         // Margin and what the limit rises by, both times what a unit of margin gains.
         let creeps = V::all(0.0).below(gained * V::all(SURE) + paced.flipped(force));
-        let forward = towards * self.direction.at::<V>(chunk);
+        let steady = creeps.same(starts);
         Crept {
             displacement,
             unbraked,
             hardening: held - lagged.flipped(force),
             left: towards + lagged,
-            steady: V::all(FAINT).below_in(creeps.same(starts), forward),
+            known: steady.and(onward.or(turns)),
+            onward: steady.and(onward),
         }
     }
 
@@ -131,7 +134,9 @@ impl Lanes {
         let excess = slope - self.final_stiffness.at::<V>(chunk);
         let [force, slope] = shortly(before, slope, excess, left, along);
         let inside = position * self.direction.at::<V>(chunk);
-        let goes_on = V::all(0.0).below_in(crept.steady, along);
+        let fresh = self.steps.at::<V>(chunk);
+        let goes_on = fresh.below_in(crept.onward, V::all(f64::from(SYNCHRONISED)));
+        let goes_on = V::all(0.0).below_in(goes_on, along);
         let goes_on = along.below_in(goes_on, V::all(SHORT));
         let goes_on = inside.below_in(goes_on, self.closing.at::<V>(chunk));
         let goes_on = force.abs().below_in(goes_on, self.limit.at::<V>(chunk));
@@ -139,9 +144,11 @@ impl Lanes {
             displacement: crept.displacement,
             arrived: crept.unbraked - self.braking.at::<V>(chunk) * force,
             hardening: crept.hardening,
+            left,
             position,
             force,
             slope,
+            known: crept.known.bits(),
         };
         goes_on
     }
@@ -156,13 +163,13 @@ impl<V: Vector> super::Ends<V> for Ends<V> {
         contacts.position.put(chunk, self.position);
         contacts.force.put(chunk, self.force);
         contacts.slope.put(chunk, self.slope);
+        contacts.steps.more(chunk, V::all(1.0));
         bodies.go(chunk, self.displacement, self.arrived);
     }
 
     #[inline(always)]
     fn went(block: &mut Block<Lanes>) {
-        block.contacts.left -= 1;
-        block.contacts.untold = true;
+        block.contacts.untold = u8::MAX;
     }
 
     #[inline(always)]
@@ -175,7 +182,13 @@ impl<V: Vector> super::Ends<V> for Ends<V> {
         contacts.position.put_where(chunk, here, self.position);
         contacts.force.put_where(chunk, here, self.force);
         contacts.slope.put_where(chunk, here, self.slope);
-        let friction = self.force + contacts.damping.at::<V>(chunk) * self.arrived;
-        bodies.go_where(chunk, here, self.displacement, self.arrived, friction);
+        bodies.go_where(chunk, here, self.displacement, self.arrived);
+        let (first, all) = (chunk * V::LANES, ((1_u32 << V::LANES) - 1) as u8);
+        contacts.untold |= (here.bits() & all) << first;
+        let Known { displacement, hardening, left, lanes } = &mut contacts.known;
+        displacement.put(chunk, self.displacement);
+        hardening.put(chunk, self.hardening);
+        left.put(chunk, self.left);
+        *lanes = (*lanes & !(all << first)) | (self.known & all) << first;
     }
 }

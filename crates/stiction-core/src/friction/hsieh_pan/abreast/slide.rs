@@ -3,21 +3,20 @@
 use super::{Lanes, ROUNDING};
 use crate::exponential::{faded, fading};
 use crate::friction::elements::lag::shares;
-use crate::lanes::{Block, Bodies, Row, WIDTH, pick};
+use crate::lanes::{Block, Bodies, Row, WIDTH, bits, pick};
 use crate::scalar::sign;
 
-/// Steps of those sliding hooks of a row that have missed theirs. The spring is asked only where it
-/// may hold one of them back or catch its hook.
+/// Steps of these sliding hooks of a row. The spring is asked only where it may hold one of them back
+/// or catch its hook. Returns which of them have missed theirs.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)] // a lane of all rows at a time
-pub(super) fn slide(block: &mut Block<Lanes>) {
+pub(super) fn slide(block: &mut Block<Lanes>, lanes: u8) -> u8 {
     let Block { bodies, contacts } = block;
     let mut here = [0; WIDTH];
     let mut slid = Slides::default();
     let (mut faster, mut pulled) = (0, 0);
     for lane in 0..WIDTH {
-        here[lane] = u64::from((bodies.missed[lane] != 0) & (contacts.mode.0[lane] != 0.0))
-            & bodies.alive[lane];
+        here[lane] = u64::from(lanes >> lane & 1);
         faster |= here[lane] & u64::from(slid.take(lane, contacts, bodies));
     }
     if faster != 0 {
@@ -60,9 +59,12 @@ pub(super) fn slide(block: &mut Block<Lanes>) {
             catches[lane] = asked[lane] & u64::from(!goes_on);
         }
     }
+    let mut accepted = [0; WIDTH];
     for lane in 0..WIDTH {
-        contacts.slid(lane, (here[lane] != 0) & (catches[lane] == 0), &slid, bodies);
+        let here = (here[lane] != 0) & (catches[lane] == 0);
+        accepted[lane] = u64::from(contacts.slid(lane, here, &slid, bodies));
     }
+    lanes & !bits(&accepted)
 }
 
 /// Steps of sliding hooks, one in each lane.
@@ -182,9 +184,10 @@ impl Lanes {
         at
     }
 
-    /// The end of a step of a sliding hook, accepted where one is `here` and goes on.
+    /// The end of a step of a sliding hook, accepted where one is `here` and goes on. Returns whether it
+    /// was.
     #[inline(always)]
-    fn slid(&mut self, lane: usize, here: bool, slid: &Slides, bodies: &mut Bodies) {
+    fn slid(&mut self, lane: usize, here: bool, slid: &Slides, bodies: &mut Bodies) -> bool {
         let (effort, velocity) = (bodies.effort.0[lane], bodies.velocity.0[lane]);
         let (mode, damping) = (self.mode.0[lane], slid.damping.0[lane]);
         let force = slid.sigma.0[lane] * mode;
@@ -192,9 +195,9 @@ impl Lanes {
         let arrived = bodies.arrive(lane, slid.net.0[lane] + effort, damping, undamped);
         let (turned, stops) = (mode * velocity < 0.0, mode * arrived <= 0.0);
         let accepted = here & !turned & !stops;
-        bodies.missed[lane] &= u64::from(!accepted);
         self.force.take(lane, accepted, force);
         let friction = undamped + damping * arrived;
         bodies.accept(lane, accepted, slid.displacement.0[lane], arrived, friction);
+        accepted
     }
 }

@@ -4,53 +4,51 @@
 use stiction_dispatch::{Mask, Vector};
 
 use super::onward::{line, second};
-use super::{CLOSED, Lanes, TURNED};
+use super::{Lanes, SLACK};
 use crate::exponential::faded;
 use crate::friction::elements::branch::SYNCHRONISED;
-use crate::lanes::{Block, Bodies};
+use crate::lanes::{Block, Bodies, Rest};
 use crate::scalar::{SECOND, SHORT, SHORTER};
 
-/// Steps of these sticking hooks of a row. What few of them need is left out where none does. Returns
-/// which of them have missed theirs.
+/// Steps of these sticking hooks of a row. What few of them need is left out where none does.
 #[inline(always)]
-pub(super) fn stick<V: Vector>(block: &mut Block<Lanes>, lanes: u8) -> u8 {
+pub(super) fn stick<V: Vector>(block: &mut Block<Lanes>, lanes: u8) -> Rest {
     let Block { bodies, contacts } = block;
-    let (mut accepted, mut turned, mut closed) = (0, 0, 0);
+    let (mut accepted, mut turned, mut closed, mut tame) = (0, 0, 0, 0);
     for chunk in 0..V::CHUNKS {
         let first = chunk * V::LANES;
         let bits = (lanes >> first) & ((1_u32 << V::LANES) - 1) as u8;
         if bits == 0 {
             continue;
         }
-        let begun = contacts.depart::<V>(chunk, bodies);
-        let mut crept = contacts.creep(chunk, &begun);
+        let mut crept = contacts.known::<V>(chunk);
         if bits & !crept.found.bits() != 0 {
-            crept = contacts.any_creep(chunk, &begun, bodies).unless(&crept);
+            let begun = contacts.depart(chunk, bodies);
+            crept = contacts.creep(chunk, &begun).unless(&crept);
+            if bits & !crept.found.bits() != 0 {
+                crept = contacts.any_creep(chunk, &begun, bodies).unless(&crept);
+            }
         }
         let mut pulled = contacts.stretch(chunk, crept.left);
         if bits & !pulled.found.bits() != 0 {
             pulled = contacts.walk(chunk, pulled);
         }
-        let [all, back, closes] =
-            contacts.arrive(chunk, V::Mask::of(bits), &begun, &crept, &pulled, bodies);
+        let [all, back, closes, short] =
+            contacts.arrive(chunk, V::Mask::of(bits), &crept, &pulled, bodies);
         accepted |= (all.bits() & bits) << first;
         turned |= (back.bits() & bits) << first;
         closed |= (closes.bits() & bits) << first;
+        tame |= (short.bits() & bits) << first;
     }
-    if turned | closed != 0 {
-        for (lane, changed) in bodies.changed.iter_mut().enumerate() {
-            let one = |bits: u8| u64::from(bits >> lane & 1);
-            *changed = TURNED * one(turned) + CLOSED * one(closed);
-        }
-    }
-    lanes & !accepted
+    contacts.turned = turned;
+    contacts.untold |= accepted;
+    contacts.wild = contacts.wild & !accepted | accepted & !tame;
+    Rest { missed: lanes & !accepted, changed: turned | closed }
 }
 
 /// How a sticking hook begins a step, and what drives its creep.
 #[derive(Clone, Copy)]
 struct Departure<V: Vector> {
-    /// Effort less force at the start.
-    push: V,
     displacement: V,
     /// Sign of the force, limit less hardening, and what a held force would gain.
     side: V,
@@ -63,11 +61,11 @@ struct Departure<V: Vector> {
     risen: V,
 }
 
-/// Creep of a step.
+/// A step up to the spring: the way of the body, creep, and the way of the spring.
 #[derive(Clone, Copy)]
 struct Crept<V: Vector> {
-    hardening: V,
     displacement: V,
+    hardening: V,
     left: V,
     found: V::Mask,
 }
@@ -78,8 +76,8 @@ impl<V: Vector> Crept<V> {
     fn unless(self, other: &Self) -> Self {
         let found = other.found;
         Self {
+            displacement: self.displacement,
             hardening: self.hardening.or(found, other.hardening),
-            displacement: self.displacement.or(found, other.displacement),
             left: self.left.or(found, other.left),
             found: self.found.or(found),
         }
@@ -119,6 +117,18 @@ fn equal<V: Vector>(one: V, other: V) -> V::Mask {
 }
 
 impl Lanes {
+    /// What is known of steps already.
+    #[inline(always)]
+    fn known<V: Vector>(&self, chunk: usize) -> Crept<V> {
+        let known = &self.known;
+        Crept {
+            displacement: known.displacement.at(chunk),
+            hardening: known.hardening.at(chunk),
+            left: known.left.at(chunk),
+            found: V::Mask::of(known.lanes >> (chunk * V::LANES)),
+        }
+    }
+
     /// Where a step of a sticking hook goes to before its contact is asked.
     #[inline(always)]
     fn depart<V: Vector>(&self, chunk: usize, bodies: &Bodies) -> Departure<V> {
@@ -140,7 +150,7 @@ impl Lanes {
         let gain = self.twice_coefficient.at::<V>(chunk) * force.abs() * stiffness;
         let pace = self.pace.at::<V>(chunk) * force.abs() * stiffness;
         let risen = gain * (displacement * side);
-        Departure { push, displacement, side, margin, starts, held, gain, pace, risen }
+        Departure { displacement, side, margin, starts, held, gain, pace, risen }
     }
 
     /// `Plastic::plain_creep`.
@@ -163,8 +173,8 @@ impl Lanes {
         let goes_on = starts.but(long).but(outrun);
         let found = idle.or(goes_on).or(overtakes.or(starts).not());
         Crept {
+            displacement,
             hardening: gained.kept(creeps),
-            displacement: (gained * side).kept(creeps),
             left: displacement.or(creeps, rest),
             found,
         }
@@ -200,12 +210,11 @@ impl Lanes {
         let later = rise * (time * time * second);
         let sooner = margin * time * (z * second - one).minus() + later;
         let gained = later.or(starts, sooner) * rate;
-        let taken = gained * side;
         let ends = outrun.but(long).and(x.abs().below(c(1e-3)));
         Crept {
+            displacement,
             hardening: gained,
-            displacement: taken,
-            left: displacement - taken,
+            left: displacement - gained * side,
             found: z.below(c(SHORTER)).and(ends.or(starts.not())),
         }
     }
@@ -273,22 +282,23 @@ impl Lanes {
     }
 
     /// The end of a step of a sticking hook, accepted where one is `here`, its parts were found and it
-    /// holds. Returns where it was, and where its spring turned round and closed a loop.
+    /// holds. Returns where it was, where its spring turned round and closed a loop, and where it is
+    /// not `wild`.
     #[inline(always)]
     fn arrive<V: Vector>(
         &mut self,
         chunk: usize,
         here: V::Mask,
-        begun: &Departure<V>,
         crept: &Crept<V>,
         pulled: &Pulled<V>,
         bodies: &mut Bodies,
-    ) -> [V::Mask; 3] {
+    ) -> [V::Mask; 4] {
         let zero = V::all(0.0);
         let (effort, velocity) = (bodies.effort.at::<V>(chunk), bodies.velocity.at::<V>(chunk));
-        let (force, damping) = (pulled.force, self.damping.at::<V>(chunk));
+        let (from, before) = (self.position.at::<V>(chunk), self.force.at::<V>(chunk));
+        let (force, push) = (pulled.force, effort - before);
         let unbraked = (self.kept.at::<V>(chunk) * velocity
-            + bodies.half.at::<V>(chunk) * (begun.push + effort))
+            + bodies.half.at::<V>(chunk) * (push + effort))
             * self.share.at::<V>(chunk);
         let arrived = unbraked - self.braking.at::<V>(chunk) * force;
         let reached = self.greatest.at::<V>(chunk).within(force.abs());
@@ -297,7 +307,6 @@ impl Lanes {
         let accepted = here.and(crept.found).and(pulled.found).but(breaks);
         let turned = accepted.and(pulled.back);
         let closed = accepted.and(pulled.closes).but(pulled.back);
-        let (from, before) = (self.position.at::<V>(chunk), self.force.at::<V>(chunk));
         self.present.origin.put_where(chunk, turned, from);
         self.present.force.put_where(chunk, turned, before);
         let back = self.direction.at::<V>(chunk).minus();
@@ -306,11 +315,13 @@ impl Lanes {
         self.slope.put_where(chunk, accepted, pulled.slope);
         self.position.put_where(chunk, accepted, pulled.position);
         self.steps.put_where(chunk, accepted, pulled.steps);
-        self.plastic.more_where(chunk, accepted, crept.displacement);
+        self.plastic.more_where(chunk, accepted, crept.hardening.flipped(before));
         self.hardening.more_where(chunk, accepted, crept.hardening);
-        let friction = force + damping * arrived;
-        bodies.go_where(chunk, accepted, begun.displacement, arrived, friction);
-        [accepted, turned, closed]
+        bodies.go_where(chunk, accepted, crept.displacement, arrived);
+        let steep = (pulled.slope * V::all(SLACK)).within(self.initial_stiffness.at(chunk));
+        let short = force.abs().within(self.limit.at(chunk)).and(steep);
+        let tame = short.and(zero.within(self.hardening.at(chunk)));
+        [accepted, turned, closed, tame]
     }
 }
 
