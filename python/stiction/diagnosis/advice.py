@@ -22,7 +22,8 @@ _CHIRP: Final = ("chirp", "a chirp of the input up to a tenth of the sampling ra
 _DWELLS: Final = ("dwells", "rests of 0.1 to 5 s, each followed by slow and by fast loading")
 _CYCLE: Final = (
     "cycle",
-    "from cold: a short cycle, again after minutes of rest, again after long fast motion",
+    "once more from cold, added to this session with cold = true: a short cycle, again after "
+    "minutes of rest, again after long fast motion",
 )
 BY_COORDINATE: Final = {
     MOMENTS.name: (

@@ -36,8 +36,8 @@ impl<S: Scalar> Effect<S> for RunIn<S> {
         coordinate: "cumulative path, odd in direction",
         channels: &[],
         look_alikes: &["warm_up"],
-        experiment: "from cold, a session of its own: a short cycle, again after minutes of rest, again \
-                     after long fast motion",
+        experiment: "once more from cold, added to this session with cold = true: a short cycle, again \
+                     after minutes of rest, again after long fast motion",
         plan: "cycle",
         gains: &["coulomb"],
         shapes: &[Shape {

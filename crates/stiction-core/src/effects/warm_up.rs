@@ -39,8 +39,8 @@ impl<S: Scalar> Effect<S> for WarmUp<S> {
         coordinate: "session clock, odd in direction",
         channels: &[],
         look_alikes: &["run_in"],
-        experiment: "from cold, a session of its own: a short cycle, again after minutes of rest, again \
-                     after long fast motion",
+        experiment: "once more from cold, added to this session with cold = true: a short cycle, again \
+                     after minutes of rest, again after long fast motion",
         plan: "cycle",
         gains: &["coulomb", "viscous"],
         shapes: &[Shape {
