@@ -193,10 +193,13 @@ def _view(
         # In a recording in which the model has lost the machine anything may come and go.
         best = np.argmax(gained, axis=0), np.arange(gained.shape[1])
         gained[best] = whole[best] = 0.0
+    # Recordings may overlap on the clock, where a machine was switched on twice.
+    order = np.argsort(curve[0], kind="stable")
+    place, middle, low, high = (values[order] for values in curve)
     gain = np.sum(gained, axis=0)
     shares = gain / np.maximum(np.sum(whole, axis=0), 1e-300)
     size = float(np.sqrt(max(gain[0], 0.0) / max(rows, 1))) / max(friction, 1e-300)
-    return View(coordinate, *curve, float(shares[0]), limit(shares[1:]), size)
+    return View(coordinate, place, middle, low, high, float(shares[0]), limit(shares[1:]), size)
 
 
 def _by_recording(recording: np.ndarray, columns: FloatArray) -> FloatArray:
