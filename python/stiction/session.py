@@ -51,7 +51,8 @@ class Session:
         stated, the end of the one before it.
     ages : tuple of float
         How long the machine has been on by then, s: the same, but that it begins at 0 with each
-        recording that is ``cold``.
+        recording that is ``cold``, and with the first one where the clock began long before the
+        session, as one that counts from 1970.
 
     Raises
     ------

@@ -11,6 +11,8 @@ import pytest
 import stiction as st
 from stiction.fitting.forms import set_clocks
 from stiction.recording import Recording
+from stiction.recording.checks import starts
+from stiction.recording.session_clock import left
 from stiction.session import load
 
 
@@ -106,10 +108,64 @@ def test_a_session_file_says_which_recordings_began_cold(tmp_path: Path) -> None
     assert session.ages == (0.0, 0.0, 100.0)
 
 
+@pytest.mark.parametrize(
+    ("first", "ages"),
+    [
+        pytest.param(2.0, (2.0, 12.0), id="switched on before the session"),
+        pytest.param(1.76e9, (0.0, 10.0), id="since 1970"),
+        pytest.param(-50.0, (0.0, 10.0), id="below 0"),
+    ],
+)
+def test_a_clock_that_began_long_before_tells_nothing_of_when_it_was_switched_on(
+    first: float, ages: tuple[float, ...]
+) -> None:
+    recordings = [recorded(0, start_s=first), recorded(1, start_s=first + 10.0)]
+    assert st.Session(recordings).ages == pytest.approx(ages)
+    said = [check.what for _, check in starts(recordings)]
+    assert said == (
+        []
+        if first == 2.0
+        else [f"the clock stands at {first:.6g} s when the first recording begins"]
+    )
+
+
+def test_what_follows_a_cold_recording_that_is_left_out_begins_cold() -> None:
+    recordings = [
+        recorded(0, start_s=4.0),
+        recorded(1, start_s=7200.0, cold=True),
+        recorded(2, start_s=7220.0),
+        recorded(3, start_s=7240.0),
+    ]
+    kept = left(recordings, [0, 2, 3])
+    assert [each.cold for each in kept] == [False, True, False]
+    assert [each.start_s for each in kept] == [4.0, 7220.0, 7240.0]
+    assert not recordings[2].cold
+
+
+@pytest.mark.parametrize(
+    ("pause", "cold", "verdict", "words"),
+    [
+        (60.0, True, "note", "begins cold, 60 s after"),
+        (7200.0, True, "fine", "begins cold, 7200 s after"),
+        (7200.0, False, "note", "and not cold"),
+        (60.0, False, None, ""),
+    ],
+)
+def test_what_is_called_cold_too_soon_or_not_at_all_is_noted(
+    pause: float, cold: bool, verdict: str | None, words: str
+) -> None:
+    one = recorded(0, start_s=1.0)
+    found = starts([one, recorded(1, start_s=1.0 + one.duration + pause, cold=cold)])
+    assert [check.verdict for _, check in found] == ([verdict] if verdict else [])
+    assert all(words in check.what for _, check in found)
+
+
 def test_recordings_that_overlap_on_the_session_clock_are_refused() -> None:
     with pytest.raises(st.InputError, match=r"recording 1 starts at 2 s, before recording 2 ends"):
         st.Session((recorded(start_s=2.0), recorded(1)))
     assert len(st.Session((recorded(start_s=3.0), recorded(1)))) == 2
+    with pytest.raises(st.InputError, match="on one clock, also of one that begins cold"):
+        st.Session((recorded(start_s=2.0), recorded(1, start_s=4.0, cold=True)))
 
 
 def test_an_overlap_in_a_session_file_names_the_files(tmp_path: Path) -> None:

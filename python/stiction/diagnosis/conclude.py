@@ -155,8 +155,8 @@ class Conclusion:
     @cached_property
     def _seen(self) -> list[Look]:
         scales = scales_of(self.evidence, self.base.plant)
-        ages = self.session.ages
-        return looks(self.evidence, self.base.plant, ages, scales.units["presliding"])
+        starts = self.session.starts
+        return looks(self.evidence, self.base.plant, starts, scales.units["presliding"])
 
     @cached_property
     def rests(self) -> tuple[Rest, Rest]:

@@ -15,6 +15,7 @@ from ..given import instance, whole
 from ..plant import Plant
 from ..recording import Check, Recording
 from ..recording.recording import recordings_of
+from ..recording.session_clock import left
 from ..recording.split import name_of
 from ..recording.usable import checks_of, usable
 from ..session import Session
@@ -172,7 +173,7 @@ def _usable(checks: Sequence[tuple[str, Check]], session: Session) -> tuple[Sess
         for k, of in session.replicates.items()
         if k in places and of in places
     }
-    return Session([session.recordings[k] for k in kept], session.plant, repeats), told
+    return Session(left(session.recordings, kept), session.plant, repeats), told
 
 
 def _testable(

@@ -6,6 +6,7 @@ import hashlib
 import math
 import os
 from collections.abc import Iterable, Mapping
+from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -208,6 +209,12 @@ class Recording:
             keep_faulty=keep_faulty,
         )
         return recording
+
+    def from_cold(self) -> Recording:
+        """The same recording, ``cold``."""
+        again = copy(self)
+        object.__setattr__(again, "cold", True)
+        return again
 
     def _fill(
         self,

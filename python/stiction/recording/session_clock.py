@@ -9,7 +9,7 @@ from ..errors import InputError
 from .recording import Recording
 from .split import name_of
 
-__all__ = ["ages_of", "starts_of"]
+__all__ = ["ages_of", "left", "origin_of", "starts_of"]
 
 
 def starts_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
@@ -31,13 +31,31 @@ def starts_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
     for before, after in pairwise(order):
         end = stated[before] + recordings[before].duration
         if stated[after] < end:
+            cold = ", also of one that begins cold" if recordings[after].cold else ""
             raise InputError(
                 f"session: {name_of(recordings[after], after)} starts at "
                 f"{stated[after]:g} s, before {name_of(recordings[before], before)} ends at "
                 f"{end:.6g} s; one machine makes one recording at a time: state start_s of each, "
-                "on one clock, or of none"
+                f"on one clock{cold}, or of none"
             )
     return stated
+
+
+def origin_of(recordings: Sequence[Recording]) -> float:
+    """Where on the session clock the machine was switched on, s, if nobody says that it was cold.
+
+    At 0, unless that lies further from the first recording than the session is long: a clock that
+    counts from midnight, or from 1970, tells nothing of it. Then where the first one begins.
+
+    Raises
+    ------
+    InputError
+        As `starts_of`.
+    """
+    starts = starts_of(recordings)
+    first = min(starts, default=0.0)
+    ends = (start + each.duration for start, each in zip(starts, recordings, strict=True))
+    return 0.0 if 0.0 <= first <= max(ends, default=0.0) - first else first
 
 
 def ages_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
@@ -50,8 +68,26 @@ def ages_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
     InputError
         As `starts_of`.
     """
-    starts = starts_of(recordings)
-    switched_on = [start for start, each in zip(starts, recordings, strict=True) if each.cold]
+    starts, origin = starts_of(recordings), origin_of(recordings)
+    cold = [start for start, each in zip(starts, recordings, strict=True) if each.cold]
     return tuple(
-        start - max((on for on in switched_on if on <= start), default=0.0) for start in starts
+        start - max((on for on in cold if on <= start), default=origin) for start in starts
     )
+
+
+def left(recordings: Sequence[Recording], places: Sequence[int]) -> list[Recording]:
+    """Some of the recordings; what follows one from cold that is not among them begins cold itself.
+
+    Raises
+    ------
+    InputError
+        As `starts_of`.
+    """
+    starts, kept = starts_of(recordings), {}
+    lost = False
+    for k in sorted(range(len(recordings)), key=lambda k: starts[k]):
+        cold = recordings[k].cold or lost
+        if k in places:
+            kept[k] = recordings[k].from_cold() if cold else recordings[k]
+        lost = cold and k not in places
+    return [kept[k] for k in places]

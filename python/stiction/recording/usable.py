@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .checks import Check, check
+from .checks import Check, check, starts
 from .recording import Recording
 from .split import name_of
 
@@ -13,7 +13,8 @@ __all__ = ["checks_of", "usable"]
 
 def checks_of(recordings: Sequence[Recording]) -> list[tuple[str, Check]]:
     """What was found in each recording, by its name."""
-    return [(name_of(r, k), c) for k, r in enumerate(recordings) for c in check(r)]
+    own = [(name_of(r, k), c) for k, r in enumerate(recordings) for c in check(r)]
+    return own + starts(recordings)
 
 
 def usable(

@@ -7,6 +7,7 @@ from . import clock, readings
 from .finding import Check, Verdict
 from .noise import Stretches, noise, noise_levels
 from .signal import spike_rows, without_spikes
+from .starts import starts
 
 __all__ = [
     "Check",
@@ -15,6 +16,7 @@ __all__ = [
     "check",
     "noise_levels",
     "spike_rows",
+    "starts",
     "without_spikes",
 ]
 
