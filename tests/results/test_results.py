@@ -113,6 +113,16 @@ def test_a_diagnosis_is_not_saved_nowhere() -> None:
         diagnosed().save(None)  # type: ignore[arg-type]
 
 
+def test_a_cold_start_that_is_doubtful_is_told_in_the_sentence_and_among_the_checks() -> None:
+    first, second = session().recordings
+    without = [effect.name for effect in st.effects()][1:]
+    found = st.diagnose(plant(), [first, second.from_cold()], without=without, surrogates=4)
+    assert "recording 2: it begins cold, 0.001 s after the one before it ended" in found.sentence
+    (told,) = (c for c in found.data["checks"] if c["name"] == "doubtful cold start")
+    assert told["recording"] == "recording 2"
+    assert "cold" not in diagnosed().sentence
+
+
 def test_a_diagnosis_has_what_findings_json_has() -> None:
     found = diagnosed()
     content = found.to_dict()

@@ -14,6 +14,7 @@ from ..fitting.forms import told as residual_told
 from ..given import instance, whole
 from ..plant import Plant
 from ..recording import Check, Recording
+from ..recording.checks import DOUBTED
 from ..recording.recording import recordings_of
 from ..recording.session_clock import left
 from ..recording.split import name_of
@@ -123,6 +124,8 @@ def diagnose(
         seed=seed,
     )
     usable, fault = _usable(checks, entire)
+    # What is missing, and whether anything is, hangs on it.
+    doubt = next((f"{n}: {c.what}; {c.try_}." for n, c in checks if c.name == DOUBTED), "")
     if usable is None:
         found = replace(
             found, verdict="data_fault", sentence=fault, advice=advise((), (), (), checks, machine)
@@ -130,7 +133,7 @@ def diagnose(
     else:
         try:
             found = _testable(found, usable, unwanted, others, surrogates, threads, checks)
-            found = replace(found, sentence=f"{found.sentence} {fault}".rstrip())
+            found = replace(found, sentence=" ".join(filter(None, (found.sentence, fault, doubt))))
         except NotEnoughData as error:
             told = str(error)
             found = replace(found, sentence=f"These data cannot be tested: {told}.")

@@ -7,9 +7,10 @@ from . import clock, readings
 from .finding import Check, Verdict
 from .noise import Stretches, noise, noise_levels
 from .signal import spike_rows, without_spikes
-from .starts import starts
+from .starts import DOUBTED, starts
 
 __all__ = [
+    "DOUBTED",
     "Check",
     "Stretches",
     "Verdict",

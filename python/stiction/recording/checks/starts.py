@@ -11,7 +11,10 @@ from ..session_clock import origin_of, starts_of
 from ..split import name_of
 from .finding import Check
 
-__all__ = ["starts"]
+__all__ = ["DOUBTED", "starts"]
+
+DOUBTED: Final = "doubtful cold start"
+"""Name of the check of a start that is called cold, or is not, against its pause."""
 
 SOON_S: Final = 600.0
 """A machine that is called cold after a shorter pause is rather warm."""
@@ -58,7 +61,7 @@ def _paused(pause: float, cold: bool) -> Check | None:
     said = f"it begins cold, {pause:.6g} s after the one before it ended"
     if cold and pause < SOON_S:
         return Check(
-            "cold start",
+            DOUBTED,
             "note",
             said,
             "where the machine was still warm, what goes with time or with use is taken for gone",
@@ -68,7 +71,7 @@ def _paused(pause: float, cold: bool) -> Check | None:
         return Check("cold start", "fine", said)
     if pause > LATE_S:
         return Check(
-            "cold start",
+            DOUBTED,
             "note",
             f"it begins {pause:.6g} s after the one before it ended, and not cold",
             "the time since the machine was switched on is counted on through that pause",
