@@ -46,8 +46,8 @@ class Look:
         Position within a turn; over a stroke of a linear machine the position itself.
     travelled, elapsed : numpy.ndarray, shape (n,)
         Distance and time since the direction last changed.
-    path : numpy.ndarray, shape (n,)
-        Travelled since the session began.
+    age, path : numpy.ndarray, shape (n,)
+        Time since the machine was switched on, and travelled since then.
     bend : numpy.ndarray, shape (n,)
         Fourth derivative of the position.
     load, temperature : numpy.ndarray, shape (n,)
@@ -66,6 +66,7 @@ class Look:
     angle: FloatArray
     travelled: FloatArray
     elapsed: FloatArray
+    age: FloatArray
     path: FloatArray
     bend: FloatArray
     load: FloatArray
@@ -236,7 +237,16 @@ GIVEN: Final = Coordinate(
     upright="residual over the size of the effort, %",
 )
 """Where a drive gives less of what is asked the faster it runs."""
-UNJUDGED: Final = (BEND, BRAKING, CAUGHT, GIVEN, LOOP)
+AGE: Final = Coordinate(
+    "time since it was switched on",
+    "time since the machine was switched on, s",
+    True,
+    lambda look: look.age,
+    slow=True,
+)
+"""Where a machine that warms up shows it, however often it was cold. What is left is looked at over
+the session clock: a machine that is another one on the next day shows that there."""
+UNJUDGED: Final = (AGE, BEND, BRAKING, CAUGHT, GIVEN, LOOP)
 """Coordinates that single effects are drawn over; what is left is not judged by them."""
 
 
@@ -272,8 +282,10 @@ def _look(evidence: Evidence, plant: Plant, clock: float, window: float, rows: R
     pulled = effort - form.own(plant).inertia * form.acceleration
     asked = _asked(evidence.recordings[rows.index], form, plant)
     velocity, acceleration, driving = asked or (velocity, form.acceleration, effort)
+    passed = form.time - evidence.recordings[rows.index].time[0]
     return Look(
-        time=form.time - evidence.recordings[rows.index].time[0] + clock,
+        time=clock + passed,
+        age=form.clock + passed,
         position=position,
         velocity=velocity,
         acceleration=acceleration,

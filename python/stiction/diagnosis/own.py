@@ -78,7 +78,7 @@ OWN: Final[dict[str, str | Wave]] = {
     "rate_dependent_breakaway": "loading before the slide",
     "input_delay": "rate of the effort",
     "goal_rate_limit": "effort",
-    "warm_up": "session time, in slides",
+    "warm_up": "time switched on, in slides",
     "run_in": "path, in slides",
     "drive_deadband": "effort along the motion",
     "shaft_compliance": "fourth derivative of the position",
@@ -117,7 +117,7 @@ def _in_slides(name: str) -> Coordinate:
     )
 
 
-_DRAWN["session time, in slides"] = _in_slides("session time along the motion")
+_DRAWN["time switched on, in slides"] = _in_slides("time since it was switched on")
 _DRAWN["path, in slides"] = _in_slides("path along the motion")
 
 
