@@ -129,6 +129,12 @@ def test_a_clock_that_began_long_before_tells_nothing_of_when_it_was_switched_on
     )
 
 
+def test_a_second_day_does_not_make_a_wall_clock_one_of_the_machine() -> None:
+    morning, more = recorded(0, start_s=32400.0), recorded(1, start_s=32410.0)
+    next_day = recorded(2, start_s=118800.0, cold=True)
+    assert st.Session([morning, more, next_day]).ages == (0.0, 10.0, 0.0)
+
+
 def test_what_follows_a_cold_recording_that_is_left_out_begins_cold() -> None:
     recordings = [
         recorded(0, start_s=4.0),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -44,8 +45,9 @@ def starts_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
 def origin_of(recordings: Sequence[Recording]) -> float:
     """Where on the session clock the machine was switched on, s, if nobody says that it was cold.
 
-    At 0, unless that lies further from the first recording than the session is long: a clock that
-    counts from midnight, or from 1970, tells nothing of it. Then where the first one begins.
+    At 0, unless that lies further from the first recording than the session is long, up to the
+    first start from cold: a clock that counts from midnight, or from 1970, tells nothing of it.
+    Then where the first one begins.
 
     Raises
     ------
@@ -54,7 +56,9 @@ def origin_of(recordings: Sequence[Recording]) -> float:
     """
     starts = starts_of(recordings)
     first = min(starts, default=0.0)
-    ends = (start + each.duration for start, each in zip(starts, recordings, strict=True))
+    anew = (s for s, each in zip(starts, recordings, strict=True) if each.cold and s > first)
+    until = min(anew, default=math.inf)
+    ends = (s + each.duration for s, each in zip(starts, recordings, strict=True) if s < until)
     return 0.0 if 0.0 <= first <= max(ends, default=0.0) - first else first
 
 
