@@ -193,7 +193,7 @@ def _view(
         # In a recording in which the model has lost the machine anything may come and go.
         best = np.argmax(gained, axis=0), np.arange(gained.shape[1])
         gained[best] = whole[best] = 0.0
-    # Recordings may overlap on the clock, where a machine was switched on twice.
+    # Recordings may be listed in another order than that of the clock.
     order = np.argsort(curve[0], kind="stable")
     place, middle, low, high = (values[order] for values in curve)
     gain = np.sum(gained, axis=0)
