@@ -16,7 +16,7 @@ from ..plant import Plant
 from ..recording import Check, Recording
 from ..recording.checks import DOUBTED
 from ..recording.recording import recordings_of
-from ..recording.session_clock import left
+from ..recording.session_clock import remaining
 from ..recording.split import name_of
 from ..recording.usable import checks_of, usable
 from ..session import Session
@@ -176,7 +176,7 @@ def _usable(checks: Sequence[tuple[str, Check]], session: Session) -> tuple[Sess
         for k, of in session.replicates.items()
         if k in places and of in places
     }
-    return Session(left(session.recordings, kept), session.plant, repeats), told
+    return Session(remaining(session.recordings, kept), session.plant, repeats), told
 
 
 def _testable(

@@ -15,7 +15,7 @@ from ..plant import Plant
 from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.recording import recordings_of
-from ..recording.session_clock import left
+from ..recording.session_clock import remaining
 from ..recording.split import BLOCK_S, name_of, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
@@ -188,7 +188,7 @@ def _without_faults(recordings: list[Recording]) -> tuple[list[Recording], list[
     kept, fault = usable(recordings, checks_of(recordings))
     if kept is None:
         return recordings, [fault.replace("cannot be used", "are fitted, though they have a fault")]
-    return left(recordings, kept), [fault] if fault else []
+    return remaining(recordings, kept), [fault] if fault else []
 
 
 def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:

@@ -10,7 +10,7 @@ from ..errors import InputError
 from .recording import Recording
 from .split import name_of
 
-__all__ = ["ages_of", "left", "origin_of", "starts_of"]
+__all__ = ["ages_of", "origin_of", "remaining", "starts_of"]
 
 
 def starts_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
@@ -79,7 +79,7 @@ def ages_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
     )
 
 
-def left(recordings: Sequence[Recording], places: Sequence[int]) -> list[Recording]:
+def remaining(recordings: Sequence[Recording], places: Sequence[int]) -> list[Recording]:
     """Some of the recordings; what follows one from cold that is not among them begins cold itself.
 
     Raises
