@@ -308,14 +308,18 @@ pub trait Contacts<S: Scalar, L: FrictionLaw<S>>: Clone + Default {
     #[inline(always)]
     fn settle(&mut self, _bodies: &mut Bodies) {}
     /// Takes a step of all lanes of some blocks under their efforts; those that it is not plain for stay
-    /// where they are. Compiled for several widths: mark it as `#[inline(always)]`. A processor looks a
+    /// where they are. Returns what is left to be done, if anything. Compiled for several widths: mark it as `#[inline(always)]`. A processor looks a
     /// few hundred operations ahead, which is one block: what takes as many stage by stage shares the
     /// waiting among them.
-    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [Rest; N];
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> Option<[Rest; N]>;
 }
 
 /// [`WIDTH`] motors.
+///
+/// A load waits for a store that is still under way to the same place of another page of 4096 bytes,
+/// as if it were the same place. Half a page apart, few rows of one block are where another is written.
 #[derive(Debug, Clone)]
+#[repr(C, align(2048))]
 pub struct Block<C> {
     /// Their bodies.
     pub bodies: Bodies,

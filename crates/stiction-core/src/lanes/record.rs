@@ -8,12 +8,12 @@ use crate::scalar::Scalar;
 /// Samples between two looks at what was recorded.
 pub const SAMPLES: usize = 64;
 
-/// Columns of the last few samples, lane by lane.
+/// Columns of the last few samples, lane by lane; nothing of those that nobody wants.
 #[derive(Debug)]
 pub struct Record {
-    position: Option<Vec<Row>>,
-    velocity: Option<Vec<Row>>,
-    friction: Option<Vec<Row>>,
+    position: Vec<Row>,
+    velocity: Vec<Row>,
+    friction: Vec<Row>,
 }
 
 impl Record {
@@ -21,7 +21,7 @@ impl Record {
     pub fn new(kinds: &[Column], blocks: usize) -> Self {
         let room = |wanted: &[Column]| {
             let needed = kinds.iter().any(|kind| wanted.contains(kind));
-            needed.then(|| vec![Row::ZERO; SAMPLES * blocks])
+            if needed { vec![Row::ZERO; SAMPLES * blocks] } else { Vec::new() }
         };
         Self {
             position: room(&[Column::Position, Column::Measured]),
@@ -30,43 +30,58 @@ impl Record {
         }
     }
 
-    /// Records blocks in a sample.
-    #[inline(always)]
-    pub fn take<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>, const N: usize>(
-        &mut self,
-        sample: usize,
-        blocks: &mut [Block<C>; N],
-    ) {
-        record(&mut self.position, sample, || blocks.each_ref().map(|block| block.bodies.position));
-        record(&mut self.velocity, sample, || blocks.each_ref().map(|block| block.bodies.velocity));
-        record(&mut self.friction, sample, || {
-            blocks.each_mut().map(|Block { bodies, contacts }| {
-                contacts.settle(bodies);
-                bodies.friction
-            })
-        });
+    /// Its rows, for so many blocks.
+    pub fn rows<const N: usize>(&mut self) -> Recording<'_, N> {
+        Recording {
+            position: self.position.as_chunks_mut().0,
+            velocity: self.velocity.as_chunks_mut().0,
+            friction: self.friction.as_chunks_mut().0,
+        }
     }
 
     /// What was recorded for a column: positions for what is measured.
     pub fn of(&self, kind: Column) -> &[Row] {
-        let rows = match kind {
+        match kind {
             Column::Position | Column::Measured => &self.position,
             Column::Velocity => &self.velocity,
             Column::Friction => &self.friction,
-            Column::Law(_) => &None,
-        };
-        rows.as_deref().unwrap_or_default()
+            Column::Law(_) => &[],
+        }
     }
 }
 
-/// Records the rows of a sample where they are wanted.
-#[inline(always)]
-fn record<const N: usize>(
-    rows: &mut Option<Vec<Row>>,
-    sample: usize,
-    shown: impl FnOnce() -> [Row; N],
-) {
-    if let Some(rows) = rows.as_mut().and_then(|rows| rows.as_chunks_mut().0.get_mut(sample)) {
-        *rows = shown();
+/// Rows of a record by samples: of each those of all blocks, or none at all.
+#[derive(Debug)]
+pub struct Recording<'a, const N: usize> {
+    position: &'a mut [[Row; N]],
+    velocity: &'a mut [[Row; N]],
+    friction: &'a mut [[Row; N]],
+}
+
+impl<const N: usize> Recording<'_, N> {
+    /// Records blocks in a sample.
+    #[inline(always)]
+    pub fn take<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>>(
+        &mut self,
+        sample: usize,
+        blocks: &mut [Block<C>; N],
+    ) {
+        // Row by row: an array of them would go by way of the stack.
+        if let Some(rows) = self.position.get_mut(sample) {
+            for (row, block) in rows.iter_mut().zip(&*blocks) {
+                *row = block.bodies.position;
+            }
+        }
+        if let Some(rows) = self.velocity.get_mut(sample) {
+            for (row, block) in rows.iter_mut().zip(&*blocks) {
+                *row = block.bodies.velocity;
+            }
+        }
+        if let Some(rows) = self.friction.get_mut(sample) {
+            for (row, Block { bodies, contacts }) in rows.iter_mut().zip(blocks) {
+                contacts.settle(bodies);
+                *row = bodies.friction;
+            }
+        }
     }
 }

@@ -81,13 +81,29 @@ pub struct Ahead<'a> {
     next: usize,
 }
 
-impl Ahead<'_> {
+impl<'a> Ahead<'a> {
+    /// The same, for so many blocks.
+    #[inline(always)]
+    pub fn lines<const N: usize>(&self) -> Lines<'a, N> {
+        let starts = self.starts.first_chunk().unwrap_or(&[[0; WIDTH]; N]);
+        Lines { values: self.values.get(self.next..).unwrap_or_default(), starts }
+    }
+}
+
+/// Where so many blocks go on, line by line of the caches.
+#[derive(Clone, Copy)]
+pub struct Lines<'a, const N: usize> {
+    values: &'a [f64],
+    starts: &'a [[usize; WIDTH]; N],
+}
+
+impl<const N: usize> Lines<'_, N> {
     /// Asks for the share of this sample: the lines of all members in as many samples as are given.
     #[inline(always)]
     pub fn fetch(&self, sample: usize) {
         let (lane, tile) = (sample % WIDTH, sample / WIDTH);
         for starts in self.starts {
-            if let Some(value) = self.values.get(starts[lane] + self.next + tile * TILE) {
+            if let Some(value) = self.values.get(starts[lane] + tile * TILE) {
                 fetch(value);
             }
         }

@@ -154,42 +154,43 @@ impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Wide for Stretch<'_, '_, S
 }
 
 impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Stretch<'_, '_, S, L, C> {
-    /// All samples of these blocks.
+    /// All samples of these blocks. What it needs of others is at hand before the first of them: what
+    /// is looked for step by step takes the place of vectors that wait.
     #[inline(always)]
-    fn go<V: Vector, const N: usize>(&mut self, blocks: &mut [Block<C>; N]) {
-        let samples = self.efforts.as_chunks::<N>().0;
+    fn go<V: Vector, const N: usize>(self, blocks: &mut [Block<C>; N]) {
+        let Self { team, room, efforts, ahead, record, first, .. } = self;
+        let samples = efforts.as_chunks::<N>().0;
+        let (lines, mut rows) = (ahead.lines::<N>(), record.rows::<N>());
+        let parts = team.job.parts;
         let (mut sample, mut left) = (0, 0);
         // No loop in a loop: the compiler fetches numbers ahead of the inner one, each sample anew.
         loop {
             if left == 0 {
                 let Some(efforts) = samples.get(sample) else { return };
-                self.ahead.fetch(sample);
+                lines.fetch(sample);
                 for (block, effort) in blocks.iter_mut().zip(efforts) {
                     block.bodies.effort = *effort;
                 }
-                left = self.team.job.parts;
+                left = parts;
             }
-            self.step::<V, N>(blocks, sample);
+            let rests = C::step::<V, N>(blocks);
+            for block in &mut *blocks {
+                block.bodies.taken += 1;
+            }
+            if let Some(rests) = rests {
+                for (k, (block, rest)) in blocks.iter_mut().zip(rests).enumerate() {
+                    if rest.changed != 0 {
+                        team.note(k, rest.changed, block, room);
+                    }
+                    if rest.missed != 0 {
+                        team.make_up(k, rest.missed, first + sample, block, room);
+                    }
+                }
+            }
             left -= 1;
             if left == 0 {
-                self.record.take::<S, L, C, N>(sample, blocks);
+                rows.take::<S, L, C>(sample, blocks);
                 sample += 1;
-            }
-        }
-    }
-
-    /// A step of these blocks.
-    #[inline(always)]
-    fn step<V: Vector, const N: usize>(&mut self, blocks: &mut [Block<C>; N], sample: usize) {
-        let rests = C::step::<V, N>(blocks);
-        for (k, (block, rest)) in blocks.iter_mut().zip(rests).enumerate() {
-            block.bodies.taken += 1;
-            if rest.changed != 0 {
-                self.team.note(k, rest.changed, block, self.room);
-            }
-            if rest.missed != 0 {
-                let sample = self.first + sample;
-                self.team.make_up(k, rest.missed, sample, block, self.room);
             }
         }
     }

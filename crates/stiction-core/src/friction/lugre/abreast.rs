@@ -53,13 +53,14 @@ impl<S: Scalar> Contacts<S, LuGre<S>> for Lanes {
     }
 
     #[inline(always)]
-    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [Rest; N] {
-        blocks.each_mut().map(|Block { bodies, contacts }| {
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> Option<[Rest; N]> {
+        let rests = blocks.each_mut().map(|Block { bodies, contacts }| {
             for lane in 0..WIDTH {
                 contacts.step(lane, bodies);
             }
             bodies.rest()
-        })
+        });
+        Some(rests)
     }
 }
 

@@ -272,7 +272,7 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
     }
 
     #[inline(always)]
-    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> [Rest; N] {
+    fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> Option<[Rest; N]> {
         let onwards =
             |Block { contacts, .. }: &Block<Self>| contacts.slides == 0 && contacts.wild == 0;
         let forwards = |block: &Block<Self>| block.contacts.sticks == 0 && block.contacts.falls;
@@ -280,7 +280,7 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
             onward::<V, N>(blocks)
         } else if blocks.iter().all(forwards) {
             if blocks.iter().all(|block| block.contacts.coasts) && coast::<V, N>(blocks) {
-                return [Rest::default(); N];
+                return None;
             }
             forward::<V, N>(blocks)
         } else {
@@ -300,13 +300,16 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
             }
             odds
         };
+        if odds == [0; N] {
+            return None;
+        }
         let mut rests = [Rest::default(); N];
         for k in 0..N {
             if odds[k] != 0 {
                 rests[k] = any::<V>(&mut blocks[k], odds[k]);
             }
         }
-        rests
+        Some(rests)
     }
 }
 
