@@ -4,6 +4,7 @@ mod abreast;
 mod parameters;
 mod plain;
 mod slide;
+mod softest;
 mod state;
 mod stick;
 
@@ -25,6 +26,7 @@ use crate::scalar::{Scalar, sign};
 
 use parameters::OPTIONS;
 pub use parameters::{HsiehPanParameters, HsiehPanStart};
+use softest::Softest;
 use state::Mode;
 pub use state::{HsiehPanState, HsiehPanTrial};
 
@@ -51,21 +53,10 @@ pub struct HsiehPan<S> {
     keeps_hardening: bool,
     /// Break-away depends on the loading rate.
     rated: bool,
-    /// Just under what the slope of the spring is at the level of break-away, below which it is steeper;
-    /// k_inf where it never breaks away.
-    softest: f64,
+    softest: Softest,
     /// 1/v_s and 1/ℓ.
     per_velocity: S,
     per_distance: S,
-}
-
-fn softest<S: Scalar>(curve: &Curve<S>, p: &HsiehPanParameters<S>) -> f64 {
-    if !p.breakaway.re().is_finite() {
-        return p.final_stiffness.re();
-    }
-    let at = curve.virgin_inverse(S::constant(p.breakaway.re()));
-    let slope = curve.virgin(at).slope.re();
-    (slope * (1.0 - 1e-9)).max(p.final_stiffness.re())
 }
 
 impl<S: Scalar> HsiehPan<S> {
@@ -106,6 +97,10 @@ impl<S: Scalar> HsiehPan<S> {
         if self.drags(trial, pull) {
             return false;
         }
+        let (reach, force) = (self.parameters.slip_distance.re(), trial.series.re().abs());
+        if reach * self.softest.up_to(force) > pull.re() {
+            return false;
+        }
         let at = self.curve.virgin_inverse(trial.series);
         (self.parameters.slip_distance * self.curve.virgin(at).slope - pull).re() <= 0.0
     }
@@ -144,7 +139,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         let curve = Curve::new(p.initial_stiffness, p.final_stiffness, p.decay_distance, virgin);
         Self {
             curve,
-            softest: softest(&curve, &p),
+            softest: Softest::of(&curve, p.breakaway.re()),
             plastic: Plastic {
                 coefficient: p.hardening_coefficient,
                 exponent: p.hardening_exponent,

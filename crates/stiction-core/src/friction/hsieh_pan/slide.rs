@@ -54,11 +54,13 @@ impl<S: Scalar> HsiehPan<S> {
     #[cold]
     #[inline(never)]
     fn held_back(&self, from: S, to: S, distance: S) -> (S, Option<S>) {
-        // Up to the level of break-away the curve is nowhere softer than there.
         let (behind, now) = (from.re(), to.re());
-        let sure = behind - ROUNDING * behind.abs() + self.softest * distance.re();
-        if now <= sure && now <= self.parameters.breakaway.re() {
-            return (to, None);
+        let most = behind.abs().max(now.abs());
+        if most <= self.parameters.breakaway.re() {
+            let sure = self.softest.up_to(most) * distance.re();
+            if now <= behind - ROUNDING * behind.abs() + sure {
+                return (to, None);
+            }
         }
         let limit = self.curve.virgin(self.curve.virgin_inverse(from) + distance);
         if to.re() <= limit.force.re() { (to, None) } else { (limit.force, Some(limit.slope)) }

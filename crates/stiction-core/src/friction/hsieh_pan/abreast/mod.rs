@@ -197,7 +197,7 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         self.reach.0[lane] = p.slip_distance.re();
         self.distance.0[lane] = distance;
         self.twice.0[lane] = if law.curve.closes_at_mirror() { 2.0 } else { 1.0 };
-        self.softest.0[lane] = law.softest;
+        self.softest.0[lane] = law.softest.slope;
         self.least.0[lane] = p.slip_distance.re() * self.softest.0[lane];
         let undamped = bodies.dragged(lane, 0.0);
         self.undamped_share.0[lane] = undamped.share;
