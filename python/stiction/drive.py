@@ -92,9 +92,15 @@ def check_servo(drive: Mapping[str, Any], where: str) -> None:
     Raises
     ------
     InputError
-        Neither a proportional nor an integral gain; a supply, resistance or limit that is not above
-        0 or that no servo has.
+        A gain below 0; neither a proportional nor an integral gain; a supply, resistance or limit
+        that is not above 0 or that no servo has.
     """
+    for name in ("proportional", "integral", "derivative"):
+        if drive.get(name, 0.0) < 0.0:
+            raise InputError(
+                f"{where} {name} = {drive[name]:g} drives away from the goal: allowed is 0 or more; "
+                "change it, or the sign of goal and position"
+            )
     if drive["proportional"] == 0.0 == drive.get("integral", 0.0):
         raise InputError(
             f"{where} proportional = 0 without an integral moves nothing; give the duty per "

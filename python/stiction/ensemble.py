@@ -222,8 +222,7 @@ class Ensemble(_Ensemble):
         if reduce is not None and reduce not in _REDUCTIONS:
             near = did_you_mean(str(reduce), _REDUCTIONS)
             raise InputError(f"reduce = '{reduce}' is unknown{near}; known: {listed(_REDUCTIONS)}")
-        if isinstance(outputs, str):
-            raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
+        names = given.names(outputs, "outputs")
         every = given.whole(every, "every", least=1)
         if threads is None:
             threads = min(os.cpu_count() or 1, MOST_THREADS)
@@ -235,7 +234,7 @@ class Ensemble(_Ensemble):
         given.unmasked(current, "current")
         samples = np.shape(current)[-1:] or (0,)
         if reduce is None:
-            kept = (2.0 * len(outputs) + 1.0) * len(self) * (samples[0] // every)
+            kept = (2.0 * len(names) + 1.0) * len(self) * (samples[0] // every)
             given.memory_for(
                 8.0 * kept,
                 f"the rows of {len(self)} machines; keep fewer by every, reduce or outputs",
@@ -244,7 +243,7 @@ class Ensemble(_Ensemble):
             current,
             dt,
             load=load,
-            outputs=list(outputs),
+            outputs=names,
             keep=reduce or "every",
             every=every,
             target=target,
@@ -332,9 +331,8 @@ def simulate_ensemble(
             "give all of them one row or value a machine"
         )
     members = sizes.pop() if sizes else 1
-    keywords: dict[str, Any] = {"outputs": tuple(outputs), "every": every, "reduce": reduce}
-    if isinstance(outputs, str):
-        keywords["outputs"] = outputs
+    names = given.names(outputs, "outputs")
+    keywords: dict[str, Any] = {"outputs": tuple(names), "every": every, "reduce": reduce}
     if executor is None:
         ensemble = Ensemble(motor, members, parameters=values)
         return ensemble.simulate(inputs, dt, load=load, target=target, threads=threads, **keywords)

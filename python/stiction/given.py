@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, TypeVar
@@ -13,7 +13,17 @@ import numpy.typing as npt
 
 from .errors import InputError
 
-__all__ = ["instance", "mapping", "memory_for", "numbers", "path", "unmasked", "whole", "written"]
+__all__ = [
+    "instance",
+    "mapping",
+    "memory_for",
+    "names",
+    "numbers",
+    "path",
+    "unmasked",
+    "whole",
+    "written",
+]
 
 T = TypeVar("T")
 _WORTH_ASKING: Final = 2.0**26
@@ -79,6 +89,25 @@ def memory_for(size: float, what: str) -> None:
         np.empty(int(size), dtype=np.uint8)
     except (MemoryError, OverflowError, ValueError):
         raise InputError(f"there is no memory ({size / 2**30:.3g} GiB) for {what}") from None
+
+
+def names(given: Any, where: str) -> list[str]:
+    """Take a sequence of names, no single word.
+
+    Raises
+    ------
+    InputError
+        A word, no sequence, or something else among them.
+    """
+    if isinstance(given, str):
+        raise InputError(f"{where} = '{given}' is a word; give a sequence of names")
+    if not isinstance(given, Iterable):
+        raise InputError(f"{where} = {_shown(given)} is no sequence; give a sequence of names")
+    names = list(given)
+    for k, name in enumerate(names):
+        if not isinstance(name, str):
+            raise InputError(f"{where}[{k}] = {_shown(name)} is no word; give a sequence of names")
+    return names
 
 
 def path(given: str | os.PathLike[str], where: str) -> Path:

@@ -10,7 +10,6 @@ import numpy.typing as npt
 
 from . import _native, given
 from ._native import FrictionModel
-from .errors import InputError
 from .trajectory import FloatArray, Trajectory
 
 __all__ = ["Motor"]
@@ -104,7 +103,7 @@ class Motor(_native.Motor):
             twice, a ``dt`` that is not above 0 and at most 1e6 s or too long for this machine, more
             rows than there is memory for.
         """
-        names = None if outputs is None else _names(outputs)
+        names = None if outputs is None else given.names(outputs, "outputs")
         given.unmasked(current, "current")
         size = getattr(current, "size", 0)
         if out is None and size > MANY:
@@ -169,7 +168,7 @@ class Motor(_native.Motor):
         >>> len(run), run.statistics["evaluations"] < 500
         (2, True)
         """
-        names = None if outputs is None else _names(outputs)
+        names = None if outputs is None else given.names(outputs, "outputs")
         start = self.clock
         rows, columns, cost = self.run_segments(
             durations, current, tolerance=tolerance, times=times, load=load,
@@ -234,12 +233,6 @@ class Motor(_native.Motor):
         )
         law, keywords = self.friction_settings()
         return f"Motor({shown}, friction={FrictionModel(law, **keywords)!r})"
-
-
-def _names(outputs: Sequence[str]) -> list[str]:
-    if isinstance(outputs, str):
-        raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
-    return list(outputs)
 
 
 def _steps(dt: npt.ArrayLike) -> float | FloatArray:

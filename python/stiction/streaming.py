@@ -88,9 +88,8 @@ def stream(
             raise InputError(
                 f"{checkpoint}: is no place for a checkpoint; name a file in a folder that is there"
             )
-    if isinstance(outputs, str):
-        raise InputError(f"outputs = '{outputs}' is a word; give a sequence of names")
-    return _streamed(motor, currents, dt, tuple(outputs), every, checkpoint, load)
+    names = given.names(outputs, "outputs")
+    return _streamed(motor, currents, dt, tuple(names), every, checkpoint, load)
 
 
 def _number(value: object, name: str) -> float:

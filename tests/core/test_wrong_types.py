@@ -57,6 +57,31 @@ REFUSED = {
         "payload_kg = -0.3 is out of bounds",
     ),
     "payload in words": (lambda: plant().under({"payload_kg": "much"}), "payload_kg: 'much'"),
+    "outputs that are none": (
+        lambda: motor().simulate(ROWS, DT, outputs=3),
+        "outputs = 3 is no sequence; give",
+    ),
+    "outputs in numbers": (lambda: ensemble(outputs=[1]), r"outputs[0] = 1 is no word; give"),
+    "outputs in a word": (lambda: ensemble(outputs="position"), "'position' is a word; give"),
+    "outputs of a stream": (lambda: streamed([ROWS], outputs="position"), "is a word; give"),
+    "outputs of the core": (
+        lambda: motor().run(ROWS, DT, outputs="position"),
+        "'position' is a single word; give a sequence of names",
+    ),
+    "parameters of a sensitivity": (
+        lambda: motor().sensitivity(ROWS, DT, "inertia"),
+        "'inertia' is a single word; give a sequence of names",
+    ),
+    "parameters that are none": (
+        lambda: motor().sensitivity(ROWS, DT, 3),
+        "3 is no sequence; give",
+    ),
+    "parameters in numbers": (lambda: motor().sensitivity(ROWS, DT, [3]), "3 is no word; give"),
+    "a friction in a word": (lambda: st.Motor(1.0, friction="coulomb"), "friction is coulomb, no"),
+    "effects in a list": (
+        lambda: st.Motor(1.0, friction=st.FrictionModel("coulomb", coulomb=0.1), effects=[]),
+        "effects is []; give a dict",
+    ),
     "an output twice": (
         lambda: motor().simulate_segments(
             [0.1], [1.0], tolerance=1e-6, outputs=("position", "position")

@@ -10,6 +10,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
+from tests.reference.ladder_spring import LadderSpring
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
@@ -117,3 +118,37 @@ def test_the_law_that_follows_a_single_event_is_named_and_comes_first() -> None:
     assert rows[-1].reason.endswith("over 100 times the power")
     alike = laws.law_rows([rival("gms", 1.001)], 1, None, 0, beside=(own, event))[0]
     assert alike.reason.endswith("the same power")
+
+
+def moved_over_a_ladder(seed: int, role: str) -> st.Recording:
+    """A damper on a shaking table: elements that stick and slide, oil, and a reading of force."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(0.0, 40.0, 0.01)
+    swings = zip((0.006, 0.003, 0.002), (0.13, 0.31, 0.83), rng.uniform(0.0, 6.28, 3), strict=True)
+    position = sum(size * np.sin(2.0 * np.pi * rate * time + at) for size, rate, at in swings)
+    spring = LadderSpring(initial_stiffness=8e4, final_stiffness=50.0, decay_distance=4e-4)
+    force = np.array([spring.advance(way) for way in np.diff(position, prepend=0.0)])
+    oil = 150.0 * np.gradient(position, time)
+    effort = force + oil + 0.3 * rng.standard_normal(len(time))
+    read = position + 2e-7 * rng.standard_normal(len(time))
+    return st.Recording(time, None, read, effort=effort, role=role)
+
+
+def test_laws_of_a_contact_that_is_moved_are_fitted_and_told_by_what_they_gain() -> None:
+    plant = st.Plant.from_dict(
+        {
+            "motion": {"kind": "linear"},
+            "drive": {"kind": "prescribed_motion"},
+            "friction": {"law": "coulomb"},
+        }
+    )
+    session = st.Session(
+        [moved_over_a_ladder(k, role) for k, role in enumerate(("train", "train", "select", "test"))]
+    )
+    rivals = ("maxwell_slip", "hsieh_pan", "lugre", "dahl")
+    found = st.diagnose(plant, session, laws=rivals, surrogates=6)
+    gains = {row.law: row.heldout_gain for row in found.laws}
+    assert set(gains) == set(rivals), found.laws
+    assert all(gain is not None for gain in gains.values()), found.laws
+    assert found.laws[0].law in ("maxwell_slip", "hsieh_pan")
+    assert gains["maxwell_slip"] > 0.5

@@ -299,6 +299,10 @@ def test_only_a_servo_has_a_goal():
         # A derivative acts on the velocity alone: without the others the goal does nothing.
         ({"drive": {**PLANT["drive"], "proportional": 0.0, "derivative": 1.0}}, "moves nothing"),
         ({"drive": {**PLANT["drive"], "resistance_ohm": 1e300}}, r"resistance_ohm = 1e\+300 is"),
+        *(
+            ({"drive": {**PLANT["drive"], name: -0.5}}, f"{name} = -0.5 drives away from the goal")
+            for name in ("proportional", "integral", "derivative")
+        ),
     ],
 )
 def test_a_servo_that_cannot_be_is_refused(table, told):

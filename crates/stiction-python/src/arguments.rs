@@ -2,7 +2,7 @@
 
 use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyString};
 use stiction_core::integrate::Integrator;
 use stiction_core::motor::EffectSpec;
 use stiction_core::servo::Servo;
@@ -11,6 +11,41 @@ use stiction_core::shoot::{Windows, check};
 use crate::arrays::one_row;
 use crate::error::{IntoPython, input_error};
 use crate::state::keywords;
+
+/// Words, of outputs or of parameters.
+pub struct Words<'py>(pub Vec<Bound<'py, PyString>>);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Words<'py> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let wrong = |given: &Bound<'py, PyAny>, what: &str| {
+            let shown = given.repr().map_or_else(|_| "?".to_owned(), |shown| shown.to_string());
+            input_error(given.py(), format!("{shown} is {what}; give a sequence of names"))
+        };
+        if given.is_instance_of::<PyString>() {
+            return Err(wrong(&given, "a single word"));
+        }
+        let each = given.try_iter().map_err(|_| wrong(&given, "no sequence"))?;
+        let words = each.map(|word| {
+            let word = word?;
+            word.cast::<PyString>().cloned().map_err(|_| wrong(&word, "no word"))
+        });
+        words.collect::<PyResult<_>>().map(Self)
+    }
+}
+
+/// The same, each as a string of the core.
+pub struct Names(pub Vec<String>);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Names {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let Words(words) = given.extract()?;
+        words.iter().map(|word| word.extract()).collect::<PyResult<_>>().map(Self)
+    }
+}
 
 /// An integrator by its name.
 pub fn integrator_of(py: Python<'_>, name: &str) -> PyResult<Integrator> {
@@ -24,10 +59,15 @@ pub fn integrator_of(py: Python<'_>, name: &str) -> PyResult<Integrator> {
 }
 
 /// Effects from a dict of names and their parameters.
-pub fn effects_of(effects: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<EffectSpec>> {
+pub fn effects_of(effects: &Bound<'_, PyAny>) -> PyResult<Vec<EffectSpec>> {
+    let py = effects.py();
+    let effects = effects.cast::<PyDict>().map_err(|_| {
+        let wanted =
+            "give a dict of names and their parameters, as in {'cogging': {'order': 12.0}}";
+        input_error(py, format!("effects is {effects}; {wanted}"))
+    })?;
     let mut list = Vec::new();
-    for (name, values) in effects.into_iter().flatten() {
-        let py = values.py();
+    for (name, values) in effects {
         let name: String = name
             .extract()
             .map_err(|_| input_error(py, format!("effect name {name} is not a word")))?;

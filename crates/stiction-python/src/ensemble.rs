@@ -9,7 +9,7 @@ use stiction_core::ensemble::{Changes, Ensemble as Core, Inputs, Keep, Plan, Row
 use stiction_core::lanes::Width;
 use stiction_core::motor::Column;
 
-use crate::arguments::threads_of;
+use crate::arguments::{Names, threads_of};
 use crate::arrays::{Each, numbers, samples};
 use crate::error::{IntoPython, duration, finite, input_error};
 use crate::motor::Motor;
@@ -85,9 +85,10 @@ impl Ensemble {
         py: Python<'_>,
         motor: &Bound<'_, Motor>,
         members: usize,
-        paths: Vec<String>,
+        paths: Names,
         values: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let Names(paths) = paths;
         if members == 0 {
             return Err(input_error(py, "members = 0 is out of bounds: allowed is 1 or more"));
         }
@@ -176,12 +177,13 @@ impl Ensemble {
         current: &Bound<'py, PyAny>,
         dt: &Bound<'py, PyAny>,
         load: Option<&Bound<'py, PyAny>>,
-        outputs: Vec<String>,
+        outputs: Names,
         keep: &str,
         every: usize,
         target: Option<&Bound<'py, PyAny>>,
         threads: i64,
     ) -> PyResult<Bound<'py, PyDict>> {
+        let Names(outputs) = outputs;
         let (members, law) = {
             let core = self.lock();
             (core.len(), core.spec().friction.clone())

@@ -167,7 +167,8 @@ def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
     end a contact that is rigid would be simulated stiffer and stiffer, each time for longer.
     """
     stiffness = plant.friction.parameters.get("initial_stiffness")
-    if stiffness is None or stiffness.fixed:
+    # What is moved as its recording says rings with nothing, however stiff it is.
+    if stiffness is None or stiffness.fixed or plant.prescribed_motion:
         return plant
     shown = plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
     loops = all(isinstance(form, LoopForm) for form in forms)

@@ -8,7 +8,7 @@ use stiction_core::sensitivity::{
 use stiction_core::signatures::{signature_columns, signatures};
 
 use super::Motor;
-use crate::arguments::{candidates_of, gains_of, threads_of};
+use crate::arguments::{Names, candidates_of, gains_of, threads_of};
 use crate::arrays::{Around, Each, one_row, target};
 use crate::error::IntoPython;
 use crate::kernel::RowKernel;
@@ -157,9 +157,10 @@ impl Motor {
         &self,
         py: Python<'py>,
         motion: &Bound<'py, Motion>,
-        parameters: Vec<String>,
+        parameters: Names,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Derivatives<'py>> {
+        let Names(parameters) = parameters;
         let motion = motion.get();
         let measured = motion.measured();
         let rows = self.beside(py, start, |spec, start| {
@@ -192,10 +193,11 @@ impl Motor {
         &self,
         py: Python<'py>,
         motion: &Bound<'py, Motion>,
-        parameters: Vec<String>,
+        parameters: Names,
         kernel: &Bound<'py, RowKernel>,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let Names(parameters) = parameters;
         let motion = motion.get();
         let measured = motion.measured();
         let kernel = kernel.get().core();
@@ -318,12 +320,13 @@ impl Motor {
         py: Python<'py>,
         current: &Bound<'py, PyAny>,
         dt: &Bound<'py, PyAny>,
-        parameters: Vec<String>,
+        parameters: Names,
         load: Option<&Bound<'py, PyAny>>,
         temperature: Option<&Bound<'py, PyAny>>,
         enabled: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let Names(parameters) = parameters;
         let current = one_row("current", current)?;
         let shape = current.shape().to_vec();
         let dt = Each::steps("dt", dt, &shape)?;

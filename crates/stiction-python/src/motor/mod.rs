@@ -15,7 +15,7 @@ use stiction_core::motor::{Column, Motor as Core, MotorSpec};
 use stiction_core::segments::Segments;
 use stiction_core::sensitivity::Start;
 
-use crate::arguments::{effects_of, integrator_of, numbers_of, servo_of};
+use crate::arguments::{Names, Words, effects_of, integrator_of, numbers_of, servo_of};
 use crate::arrays::{Around, Each, one_row, target};
 use crate::error::{IntoPython, duration, finite, input_error};
 use crate::friction_model::FrictionModel;
@@ -109,8 +109,8 @@ impl Motor {
         py: Python<'_>,
         inertia: f64,
         torque_constant: f64,
-        friction: Option<&Bound<'_, FrictionModel>>,
-        effects: Option<&Bound<'_, PyDict>>,
+        friction: Option<&Bound<'_, PyAny>>,
+        effects: Option<&Bound<'_, PyAny>>,
         gravity_amplitude: f64,
         gravity_zero: f64,
         weight: f64,
@@ -119,13 +119,13 @@ impl Motor {
         count: f64,
         integrator: &str,
     ) -> PyResult<Self> {
+        let wanted = "give a FrictionModel, for instance FrictionModel('coulomb', coulomb=0.35)";
         let Some(friction) = friction else {
-            return Err(input_error(
-                py,
-                "friction is missing; give a FrictionModel, for instance \
-                 FrictionModel('coulomb', coulomb=0.35)",
-            ));
+            return Err(input_error(py, format!("friction is missing; {wanted}")));
         };
+        let friction = friction.cast::<FrictionModel>().map_err(|_| {
+            input_error(py, format!("friction is {friction}, no FrictionModel; {wanted}"))
+        })?;
         let (law, state) = {
             let core = friction.get().lock();
             (core.spec().clone(), core.state().clone())
@@ -137,7 +137,7 @@ impl Motor {
             weight,
             count,
             servo: servo.map(servo_of).transpose()?,
-            effects: effects_of(effects)?,
+            effects: effects.map(effects_of).transpose()?.unwrap_or_default(),
             integrator: integrator_of(py, integrator)?,
             ..MotorSpec::new(inertia, torque_constant, law)
         };
@@ -223,7 +223,7 @@ impl Motor {
         load: Option<&Bound<'py, PyAny>>,
         temperature: Option<&Bound<'py, PyAny>>,
         enabled: Option<&Bound<'py, PyAny>>,
-        outputs: Option<Vec<Bound<'py, PyString>>>,
+        outputs: Option<Words<'py>>,
         out: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Ran<'py>> {
         let current = one_row("current", current)?;
@@ -231,7 +231,7 @@ impl Motor {
         let dt = Each::steps("dt", dt, &[n])?;
         let around = Around::read([load, temperature, enabled], &[n])?;
         let names = match (outputs, out) {
-            (Some(names), out) => {
+            (Some(Words(names)), out) => {
                 let given = out.map_or_else(|| PyDict::new(py), Clone::clone);
                 for key in given.keys() {
                     let key = word(&key)?.to_str()?;
@@ -322,7 +322,7 @@ impl Motor {
         load: Option<&Bound<'py, PyAny>>,
         temperature: Option<&Bound<'py, PyAny>>,
         enabled: Option<&Bound<'py, PyAny>>,
-        outputs: Option<Vec<String>>,
+        outputs: Option<Names>,
     ) -> PyResult<Held<'py>> {
         let durations = one_row("durations", durations)?;
         let current = one_row("current", current)?;
@@ -339,7 +339,7 @@ impl Motor {
         let rows = segments.rows();
         let law = self.lock().spec().friction.clone();
         let all = || Column::names(&law).iter().map(|name| (*name).to_owned()).collect();
-        let names: Vec<String> = outputs.unwrap_or_else(all);
+        let names: Vec<String> = outputs.map_or_else(all, |names| names.0);
         let kinds = names.iter().map(|name| Column::named(&law, name).or_input_error(py));
         let kinds = kinds.collect::<PyResult<Vec<Column>>>()?;
         if let Some(k) = (0..kinds.len()).find(|k| kinds[..*k].contains(&kinds[*k])) {

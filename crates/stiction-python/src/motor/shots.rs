@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use stiction_core::shoot::{Pull, shoot_response, shoot_sensitivity};
 
 use super::Motor;
-use crate::arguments::Shots;
+use crate::arguments::{Names, Shots};
 use crate::error::{IntoPython, finite, input_error};
 use crate::motion::Motion;
 
@@ -128,9 +128,10 @@ impl Motor {
         motion: &Bound<'py, Motion>,
         weights: &Bound<'py, PyAny>,
         stride: i64,
-        parameters: Vec<String>,
+        parameters: Names,
         start: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let Names(parameters) = parameters;
         let motion = motion.get();
         let measured = motion.measured();
         let shots = Shots::read(weights, stride)?;

@@ -3,6 +3,11 @@
 use crate::friction::elements::loading::{Curve, Loading};
 use crate::scalar::Scalar;
 
+/// Of a stiffness, more than is lost where another one is taken off it.
+const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+/// What is sure of a slope, and of how it falls.
+const SLACK: f64 = 1.0 - 1e-9;
+
 /// What the slope of the virgin curve is at least, without asking where it has a force: over the force
 /// it falls ever less, so that it stays above its tangent at the level of break-away.
 #[derive(Debug, Clone, Copy)]
@@ -23,9 +28,10 @@ impl Softest {
         }
         let at = curve.virgin(curve.virgin_inverse(S::constant(level))).slope.re();
         let twice = if curve.closes_at_mirror() { 2.0 } else { 1.0 };
-        let easing = twice * (at - last) / (distance * at);
-        let slack = 1.0 - 1e-9;
-        Self { level, slope: (at * slack).max(last), easing: (easing * slack).max(0.0) }
+        // What is left above k_inf may be round-off of k_0, from which it is taken.
+        let left = at - last - ROUND_OFF * curve.initial_stiffness().re();
+        let easing = if left > 0.0 { twice * left / (distance * at) } else { 0.0 };
+        Self { level, slope: (at * SLACK).max(last), easing: easing * SLACK }
     }
 
     /// Up to a force of this size, which no level of break-away is below.
@@ -53,6 +59,8 @@ mod tests {
                     let said = softest.up_to(force);
                     assert!(said <= slope, "{said} {slope} at {force} of {level}");
                     assert!(said >= last && (share < 100 || said >= slope * (1.0 - 1e-8)));
+                    // Not so far below that it would answer nothing.
+                    assert!(share < 50 || (last, level) != (800.0, 0.5) || said >= 0.7 * slope);
                 }
             }
         }
