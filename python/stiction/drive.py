@@ -98,8 +98,8 @@ def check_servo(drive: Mapping[str, Any], where: str) -> None:
     for name in ("proportional", "integral", "derivative"):
         if drive.get(name, 0.0) < 0.0:
             raise InputError(
-                f"{where} {name} = {drive[name]:g} drives away from the goal: allowed is 0 or more; "
-                "change it, or the sign of goal and position"
+                f"{where} {name} = {drive[name]:g} drives away from the goal: allowed is 0 or "
+                "more; change it, or the sign of goal and position"
             )
     if drive["proportional"] == 0.0 == drive.get("integral", 0.0):
         raise InputError(

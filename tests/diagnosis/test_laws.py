@@ -142,9 +142,8 @@ def test_laws_of_a_contact_that_is_moved_are_fitted_and_told_by_what_they_gain()
             "friction": {"law": "coulomb"},
         }
     )
-    session = st.Session(
-        [moved_over_a_ladder(k, role) for k, role in enumerate(("train", "train", "select", "test"))]
-    )
+    roles = ("train", "train", "select", "test")
+    session = st.Session([moved_over_a_ladder(k, role) for k, role in enumerate(roles)])
     rivals = ("maxwell_slip", "hsieh_pan", "lugre", "dahl")
     found = st.diagnose(plant, session, laws=rivals, surrogates=6)
     gains = {row.law: row.heldout_gain for row in found.laws}

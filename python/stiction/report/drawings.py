@@ -133,8 +133,8 @@ def _headline(diagnosis: Diagnosis) -> _Order:
         "before-after",
         figures.headline,
         label,
-        f"{shown}, in {isolated(stretch.name)}: {rows}. Gaps are rows used otherwise. "
-        f"Grey band: what noise alone would leave, ±{band} (twice its rms).",
+        f"{shown}, in {isolated(stretch.name)}: {rows}. Gaps are rows used otherwise or left "
+        f"out. Grey band: what noise alone would leave, ±{band} (twice its rms).",
     )
 
 
@@ -203,5 +203,5 @@ def _closed_loop(diagnosis: Diagnosis) -> _Order:
         f"Tracking error over time, measured and simulated{both}, and their difference.",
         "Position less reference, measured and simulated under the same controller, in "
         f"{isolated(pictures.tracking.name)}; beneath, what is left between measured and simulated "
-        f"position{both}. Gaps are rows used otherwise.",
+        f"position{both}. Gaps are rows used otherwise or left out.",
     )
