@@ -10,6 +10,7 @@ import numpy as np
 from ._native import Motion
 from .errors import InputError
 from .motion import count_of
+from .recording.checks.signal import without_spikes
 from .trajectory import FloatArray, Trajectory
 from .weak_form import Start, WeakForm
 from .wording import NO_POSITION
@@ -185,7 +186,8 @@ def free_run(plant: Plant, recording: Recording, start: Start = None) -> FreeRun
     """Simulate the recorded input from the measured start and compare the motion.
 
     The starting velocity is the slope of a parabola through the first rows. The input of a servo is
-    its goal: then the loop is closed by the servo itself.
+    its goal: then the loop is closed by the servo itself. Spikes of a single sample in what was
+    measured are replaced by the mean of their neighbours, as in fits.
 
     Parameters
     ----------
@@ -202,6 +204,8 @@ def free_run(plant: Plant, recording: Recording, start: Start = None) -> FreeRun
         No position or no input; a plant without inertia or of prescribed motion.
     """
     position, source = _needed(recording)
+    # A reading that failed for a sample is no motion that a simulation could miss.
+    position = without_spikes(position)
     if recording.input is None:
         raise InputError(f"{source}: there is no input, so nothing can run freely")
     if plant.prescribed_motion:

@@ -7,6 +7,7 @@ import pytest
 from tests.reference.servo_reference import Servo
 
 import stiction as st
+from stiction.closed_loop import replay
 from stiction.loop_form import LoopForm
 from stiction.residual import free_run
 from stiction.weak_form import WeakForm
@@ -122,6 +123,16 @@ def test_settings_of_a_recording_change_gain_and_payload():
     run = free_run(machine, recorded(Servo(proportional=4.0, mass=0.5), 1, settings=settings))
     assert run.mean_absolute < 2e-3
     assert free_run(machine, recorded(Servo(), 1)).mean_absolute < 2e-3
+
+
+def test_readings_that_failed_are_no_motion_that_a_loop_misses():
+    logged = recorded(Servo(), 1)
+    spiky = logged.position.copy()
+    spiky[[100, 217, 400]] = -3.14
+    failed = st.Recording(logged.time, logged.input, spiky)
+    assert free_run(plant(), failed).rms < 1.5 * free_run(plant(), logged).rms
+    shown = replay(plant(), failed)
+    assert np.max(np.abs(shown.measured)) < 3.0
 
 
 def test_a_fit_finds_the_torque_constant_from_a_known_payload(tmp_path):
