@@ -8,6 +8,7 @@ from tests.reference.servo_reference import Servo
 
 import stiction as st
 from stiction.closed_loop import replay
+from stiction.fitting.start import complete, lightly_held
 from stiction.loop_form import LoopForm
 from stiction.residual import free_run
 from stiction.weak_form import WeakForm
@@ -341,3 +342,19 @@ def test_settings_that_are_none_are_refused():
         st.Recording(rows, rows, rows, settings={"kp": 3.0})
     with pytest.raises(st.InputError, match="only a servo has it"):
         st.Plant.from_dict({"friction": {"law": "coulomb"}}).under({"proportional": 1.0})
+
+
+def test_a_second_start_holds_a_servo_by_a_tenth_of_its_effort_but_for_what_is_stated():
+    """A regression of a guessed effort may give no friction at all, and a fit starts from there."""
+    silent = st.Plant.from_dict({**PLANT, "friction": {"law": "coulomb"}})
+    forms = [WeakForm(silent, recorded(Servo(), seed)) for seed in range(2)]
+    whole = complete(silent, forms)[0]
+    level = np.sqrt(np.mean(np.concatenate([form.measured(whole) for form in forms]) ** 2))
+    speed = np.sqrt(np.mean(np.concatenate([form.velocity for form in forms]) ** 2))
+    begun = lightly_held(silent, whole, forms).parameters
+    assert begun["friction.coulomb"].value == pytest.approx(0.1 * level)
+    assert begun["friction.viscous"].value == pytest.approx(0.1 * level / speed)
+    half = st.Plant.from_dict({**PLANT, "friction": {"law": "coulomb", "viscous": 0.004}})
+    begun = lightly_held(half, complete(half, forms)[0], forms).parameters
+    assert begun["friction.coulomb"].value == pytest.approx(0.1 * level)
+    assert begun["friction.viscous"].value == 0.004

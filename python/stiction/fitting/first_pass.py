@@ -16,7 +16,7 @@ from .forms import followable, horizon_of, shows_its_ring, stiffen
 from .minimise import Solution, launch, stopped
 from .pushes import Watch
 from .rows import Rows
-from .start import complete, free_paths
+from .start import complete, free_paths, lightly_held
 
 __all__ = ["FirstPass", "Seen", "first_pass"]
 
@@ -119,7 +119,8 @@ def _simulated(
         _logger.info("fitting it again, simulated")
         other = simulated(found.plant, horizon, servo, seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
-        begun = [found.plant, start] if servo else [found.plant]
+        light = lightly_held(plant, start, [rows.form for rows in seen.train])
+        begun = [found.plant, start, light] if servo else [found.plant]
         begun = [followable(each, other.forms) for each in begun]
         again = launch(begun, paths, other.train, most=most)
         again = replace(again, begin=found.begin, evaluations=found.evaluations + again.evaluations)

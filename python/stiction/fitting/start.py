@@ -18,7 +18,7 @@ from ..weak_form import WeakForm
 from .rows import begun
 from .variables import records
 
-__all__ = ["complete", "free_paths"]
+__all__ = ["complete", "free_paths", "lightly_held"]
 
 OFF_NEUTRAL: Final = 0.05
 """Share of its typical size from which the gain of a named effect starts that states no number."""
@@ -38,6 +38,8 @@ LENGTH: Final = "rad"
 """Unit of what a law measures distances in, on a rotary machine."""
 HARDENED: Final = 1.0
 """Creep under a held Coulomb friction to start from, in reaches."""
+HELD: Final = 0.1
+"""Share of the usual effort that friction takes where nothing says more."""
 
 
 def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
@@ -95,6 +97,36 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
         tried = [dict.fromkeys(lengths, share * span) for share in REACHES]
         return _likeliest([whole.with_values(values) for values in tried], forms)
     return [whole]
+
+
+def lightly_held(plant: Plant, whole: Plant, forms: Sequence[WeakForm]) -> Plant:
+    """A completed plant with dry and viscous friction of a tenth of the usual effort each.
+
+    For machines whose effort is not measured: what a regression takes for their friction may be
+    none at all. What the file states stays.
+
+    Parameters
+    ----------
+    plant, whole : Plant
+        As the file states it, and with what ``complete`` added.
+    forms : sequence of WeakForm
+    """
+    effort = np.concatenate([form.measured(whole) for form in forms])
+    speed = np.concatenate([form.velocity for form in forms])
+    dry = HELD * float(np.sqrt(np.mean(effort**2)))
+    levels = {
+        "coulomb": dry,
+        "breakaway": ABOVE_COULOMB * dry,
+        "viscous": dry / max(float(np.sqrt(np.mean(speed**2))), 1e-300),
+    }
+    stated, known = plant.friction.parameters, records(whole)
+    return whole.with_values(
+        {
+            f"friction.{name}": float(np.clip(level, *known[f"friction.{name}"].bounds))
+            for name, level in levels.items()
+            if name in whole.friction.parameters and name not in stated
+        }
+    )
 
 
 def _usual_speed(forms: Sequence[WeakForm]) -> float:
@@ -168,8 +200,8 @@ def _regression(plant: Plant, forms: Sequence[WeakForm]) -> tuple[float, float, 
     level = float(np.sqrt(np.mean(effort**2)))
     accelerating = float(np.sqrt(np.mean(matrix[:, 0] ** 2)))
     # A sign that no machine has means that the data do not tell: then a share of the effort.
-    inertia = solved[0] if solved[0] > 0.0 else 0.1 * level / max(accelerating, 1e-300)
-    coulomb = solved[1] if solved[1] > 0.0 else 0.1 * level
+    inertia = solved[0] if solved[0] > 0.0 else HELD * level / max(accelerating, 1e-300)
+    coulomb = solved[1] if solved[1] > 0.0 else HELD * level
     return float(inertia), float(max(coulomb, 1e-9)), float(solved[2])
 
 
