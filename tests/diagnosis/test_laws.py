@@ -120,7 +120,7 @@ def test_the_law_that_follows_a_single_event_is_named_and_comes_first() -> None:
     assert alike.reason.endswith("the same power")
 
 
-def moved_over_a_ladder(seed: int, role: str) -> st.Recording:
+def moved_over_a_ladder(seed: int, role: str, offset: float = 0.0) -> st.Recording:
     """A damper on a shaking table: elements that stick and slide, oil, and a reading of force."""
     rng = np.random.default_rng(seed)
     time = np.arange(0.0, 40.0, 0.01)
@@ -129,21 +129,25 @@ def moved_over_a_ladder(seed: int, role: str) -> st.Recording:
     spring = LadderSpring(initial_stiffness=8e4, final_stiffness=50.0, decay_distance=4e-4)
     force = np.array([spring.advance(way) for way in np.diff(position, prepend=0.0)])
     oil = 150.0 * np.gradient(position, time)
-    effort = force + oil + 0.3 * rng.standard_normal(len(time))
+    effort = offset + force + oil + 0.3 * rng.standard_normal(len(time))
     read = position + 2e-7 * rng.standard_normal(len(time))
     return st.Recording(time, None, read, effort=effort, role=role)
 
 
-def test_laws_of_a_contact_that_is_moved_are_fitted_and_told_by_what_they_gain() -> None:
-    plant = st.Plant.from_dict(
-        {
-            "motion": {"kind": "linear"},
-            "drive": {"kind": "prescribed_motion"},
-            "friction": {"law": "coulomb"},
-        }
-    )
+def moved_damper(offset: float = 0.0) -> tuple[st.Plant, st.Session]:
+    """A plant that is moved, without memory, and recordings of a damper that has one."""
+    table = {
+        "motion": {"kind": "linear"},
+        "drive": {"kind": "prescribed_motion"},
+        "friction": {"law": "coulomb"},
+    }
     roles = ("train", "train", "select", "test")
-    session = st.Session([moved_over_a_ladder(k, role) for k, role in enumerate(roles)])
+    recordings = [moved_over_a_ladder(k, role, offset) for k, role in enumerate(roles)]
+    return st.Plant.from_dict(table), st.Session(recordings)
+
+
+def test_laws_of_a_contact_that_is_moved_are_fitted_and_told_by_what_they_gain() -> None:
+    plant, session = moved_damper()
     rivals = ("maxwell_slip", "hsieh_pan", "lugre", "dahl")
     found = st.diagnose(plant, session, laws=rivals, surrogates=6)
     gains = {row.law: row.heldout_gain for row in found.laws}
@@ -151,3 +155,9 @@ def test_laws_of_a_contact_that_is_moved_are_fitted_and_told_by_what_they_gain()
     assert all(gain is not None for gain in gains.values()), found.laws
     assert found.laws[0].law in ("maxwell_slip", "hsieh_pan")
     assert gains["maxwell_slip"] > 0.5
+
+
+def test_a_law_is_not_outdone_by_an_offset_that_has_nothing_to_do_with_it() -> None:
+    found = st.diagnose(*moved_damper(offset=3.0), laws=("maxwell_slip",), surrogates=6)
+    assert "The friction law itself lacks something: maxwell_slip" in found.sentence
+    assert not any(cause.decided for cause in found.effects), found.sentence

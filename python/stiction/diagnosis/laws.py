@@ -22,7 +22,7 @@ from ..wording import did_you_mean, listed
 from .decide import DECIDED_Z, heldout_gain
 from .gain import Gain, HeldOut, gain_of
 from .lone import Lone
-from .model import Model
+from .model import Model, fitted
 from .result import Advice, LawRow
 from .selection import Search
 from .words import joined
@@ -34,6 +34,8 @@ THE_LAW: Final = "the friction law"
 YIELDING: Final = "maxwell_slip"
 """Law that is tried unasked beside names given to a plant whose law does not yield: a contact that
 does imitates many effects then."""
+OF_A_LAW: Final = frozenset({"breakaway", "creep", "memory"})
+"""Families of effects that say how friction goes with speed, time and reversals, as laws do."""
 WORTH_A_TERM: Final = 0.95
 """Share of the power that an optional term of a law may leave at most to stay in a comparison."""
 WORTH_MORE: Final = 0.1
@@ -60,9 +62,12 @@ class Rival:
     model : Model or None
         None where it could not be fitted.
     beside : float
-        Share that it removes, on rows that decide, of what the plant leaves with all its effects.
+        Share that it removes, on rows that decide, of what the plant leaves with all its effects;
+        with those of them that are no part of any law, where that is more.
     z : float
         That over its standard error.
+    kept : tuple of str
+        Effects that it needs for that.
     """
 
     law: str
@@ -70,6 +75,7 @@ class Rival:
     model: Model | None
     beside: float = 0.0
     z: float = 0.0
+    kept: tuple[str, ...] = ()
 
     @property
     def better(self) -> bool:
@@ -80,8 +86,9 @@ class Rival:
         """What that means, in a sentence."""
         summary = next(record.summary for record in all_laws() if record.name == self.law)
         beside = ", whatever is added to it" if named else ""
+        kept = f", with {joined(self.kept)}," if self.kept else ""
         return (
-            f"The friction law itself lacks something: {self.law} ({summary}) leaves "
+            f"The friction law itself lacks something: {self.law} ({summary}){kept} leaves "
             f"{100 * self.beside:.0f} % less than {own}{beside}."
         )
 
@@ -138,9 +145,37 @@ def rivals_of(selection: Search, wanted: Sequence[str]) -> list[Rival]:
             # Half a fit is no fair comparison: what is known of the effects stays.
             selection.interrupted = True
             break
-        beside, z = (0.0, 0.0) if model is None else heldout_gain(final, model)
-        rivals.append(Rival(law, law in wanted, model, beside, z))
+        rival = Rival(law, law in wanted, model)
+        rivals.append(rival if model is None else _beside(final, model, rival, selection))
     return rivals
+
+
+def _beside(final: Model, model: Model, rival: Rival, selection: Search) -> Rival:
+    """Another law with what it removes of what the last model leaves.
+
+    An offset or a ripple has nothing to do with the law: a rival that lacks it would be outdone by
+    effects, whatever its friction is worth.
+    """
+    beside, z = heldout_gain(final, model)
+    alone = replace(rival, beside=beside, z=z)
+    named = {
+        choice.winner.name
+        for choice in selection.choices
+        if choice.winner.candidate.record.family not in OF_A_LAW
+    }
+    kept = tuple(effect for effect in final.plant.effects if effect.name in named)
+    if not kept:
+        return alone
+    both = replace(model.plant, effects=(*model.plant.effects, *kept))
+    found = fitted(model.evidence, both, model.nuisances)
+    if found.solution.interrupted:
+        # What is known of the law alone stays.
+        selection.interrupted = True
+        return alone
+    beside, z = heldout_gain(final, found)
+    if beside <= alone.beside:
+        return alone
+    return replace(rival, beside=beside, z=z, kept=tuple(effect.name for effect in kept))
 
 
 def better_law(rivals: Sequence[Rival]) -> Rival | None:
