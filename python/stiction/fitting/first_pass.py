@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..plant import Plant
 from ..weak_form import WeakForm
 from .forms import followable, horizon_of, shows_its_ring, stiffen
-from .minimise import Solution, launch, stopped
+from .minimise import Solution, launch, or_from, stopped
 from .pushes import Watch
 from .rows import Rows
 from .start import complete, free_paths, lightly_held
@@ -119,10 +119,12 @@ def _simulated(
         _logger.info("fitting it again, simulated")
         other = simulated(found.plant, horizon, servo, seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
-        light = lightly_held(plant, start, [rows.form for rows in seen.train])
-        begun = [found.plant, start, light] if servo else [found.plant]
+        begun = [found.plant, start] if servo else [found.plant]
         begun = [followable(each, other.forms) for each in begun]
         again = launch(begun, paths, other.train, most=most)
+        if servo:
+            light = lightly_held(plant, start, [rows.form for rows in seen.train])
+            again = or_from([light], again, other.train, most=most)
         again = replace(again, begin=found.begin, evaluations=found.evaluations + again.evaluations)
         if servo or (
             shows_its_ring(again.plant, other.forms) and _lost(again, other.train) is None

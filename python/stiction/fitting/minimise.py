@@ -17,7 +17,15 @@ from .rows import Nuisances, Rows, Start, numbers, primed, start_quantities, tim
 from .slopes import places_of, slopes
 from .variables import Variables, records
 
-__all__ = ["MOST_EVALUATIONS", "Solution", "from_elsewhere", "launch", "minimise", "stopped"]
+__all__ = [
+    "MOST_EVALUATIONS",
+    "Solution",
+    "from_elsewhere",
+    "launch",
+    "minimise",
+    "or_from",
+    "stopped",
+]
 
 MOST_EVALUATIONS: Final = 60
 CONVERGED: Final = 1e-8
@@ -184,10 +192,28 @@ def from_elsewhere(
     lead back. Where the law has neither, or the fit was interrupted, the solution. ``most``: of
     evaluations of each start, at most.
     """
+    return or_from(_elsewhere(solution), solution, rows, most=most)
+
+
+def or_from(
+    starts: Sequence[Plant], solution: Solution, rows: Sequence[Rows], *, most: int
+) -> Solution:
+    """The better of a solution and short fits from other starts; to its end, where one is better.
+
+    Parameters
+    ----------
+    starts : sequence of Plant
+        Where to fit from as well.
+    solution : Solution
+        What is known; it comes back as it is where it was interrupted.
+    rows : sequence of Rows
+    most : int
+        Evaluations of each start at most.
+    """
     better, spent = solution, solution.evaluations
     paths = solution.variables.paths
     few = min(FEW_EVALUATIONS, most)
-    for start in _elsewhere(solution):
+    for start in () if solution.interrupted else starts:
         try:
             again = minimise(start, paths, rows, most=few, nuisances=better.nuisances)
             spent += again.evaluations
@@ -208,8 +234,6 @@ def from_elsewhere(
 
 def _elsewhere(solution: Solution) -> list[Plant]:
     """Starts apart from a solution."""
-    if solution.interrupted:
-        return []
     plant, known = solution.plant, records(solution.plant)
     paths = solution.variables.paths
     usual = {
