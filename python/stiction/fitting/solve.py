@@ -36,7 +36,7 @@ from .statistics import (
     jackknife,
     undetermined_directions,
 )
-from .variables import Variables, unit_of
+from .variables import Variables, states_bound, unit_of
 
 __all__ = ["evaluate", "fit", "reweighted", "settled"]
 
@@ -313,7 +313,7 @@ def evaluate(
         parameters=parameters,
         covariance=matrix,
         correlations=correlations(matrix),
-        bounds_hit=_bound_sentences(parameters, followed=stated != plant),
+        bounds_hit=_bound_sentences(parameters, given, followed=stated != plant),
         undetermined=_undetermined_sentences(parameters, flat, train),
         assumed=(told,) if told else (),
         r2=fitted[2],
@@ -369,19 +369,39 @@ def _errors(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> tuple[f
     )
 
 
-def _bound_sentences(parameters: dict[str, FitParameter], *, followed: bool) -> tuple[str, ...]:
-    """What ended at a bound; ``followed``: the stiffness ends where windows stop following it."""
+def _bound_sentences(
+    parameters: dict[str, FitParameter], given: Plant, *, followed: bool
+) -> tuple[str, ...]:
+    """What ended at a bound; ``followed``: the stiffness ends where windows stop following it.
+
+    Only a bound that ``given`` states can be widened.
+    """
     sentences = []
     for path, p in parameters.items():
+        if not p.at_bound:
+            continue
+        value = f"{p.value:.6g}" + (f" {p.unit}" if p.unit != "1" else "")
         if path == STIFFNESS and p.at_bound == "upper" and followed:
             sentences.append(
-                f"{path} ended at {p.value:.6g} {p.unit}, the stiffest contact that can be "
-                "simulated between these samples: record more often to tell it"
+                f"{path} ended at {value}, the stiffest contact that can be simulated between "
+                "these samples: record more often to tell it"
             )
-        elif p.at_bound:
+        elif states_bound(given, path, p.at_bound):
             sentences.append(
-                f"{path} ended at its {p.at_bound} bound, {p.value:.6g} {p.unit}: widen the bound, "
-                "or the data pull it where it has no meaning"
+                f"{path} ended at its {p.at_bound} bound, {value}: widen the bound, or the data "
+                "pull it where it has no meaning"
+            )
+        elif p.at_bound == "lower" and p.value == 0.0:
+            sentences.append(
+                f"{path} ended at 0, below which it has no meaning: these data show nothing of it, "
+                "or something that the model lacks pulls it down"
+            )
+        else:
+            end = "least" if p.at_bound == "lower" else "greatest"
+            sentences.append(
+                f"{path} ended at {value}, the {end} that a fit lets it take: what pulls it there "
+                "is something else that the model lacks, or data that do not tell it, so do not "
+                "read the value as one of the machine; state it fixed where you know it"
             )
     return tuple(sentences)
 

@@ -13,7 +13,7 @@ from ..catalogue import ParameterRecord, effects
 from ..plant import Plant
 from ..trajectory import FloatArray
 
-__all__ = ["Variables", "records", "unit_of"]
+__all__ = ["Variables", "bounds_of", "records", "states_bound", "unit_of"]
 
 Mask = np.ndarray[Any, np.dtype[np.bool_]]
 
@@ -72,6 +72,25 @@ def unit_of(plant: Plant, path: str) -> str:
     return record.linear_unit if linear else record.unit
 
 
+def bounds_of(plant: Plant, path: str) -> tuple[float, float]:
+    """What a parameter may be at all, whatever a plant states."""
+    return _BODY[path][:2] if path in _BODY else records(plant)[path].bounds
+
+
+def states_bound(plant: Plant, path: str, side: str) -> bool:
+    """Whether a plant states the bound on a side, "lower" or "upper", that a parameter meets.
+
+    False where it states none, or one beyond what the parameter may be at all.
+    """
+    stated = plant.parameters.get(path)
+    if stated is None:
+        return False
+    low, high = bounds_of(plant, path)
+    if side == "lower":
+        return stated.min is not None and stated.min >= low
+    return stated.max is not None and stated.max <= high
+
+
 @dataclass(frozen=True)
 class Variables:
     """The vector that an optimiser sees, and its way to the parameters of a plant.
@@ -97,10 +116,9 @@ class Variables:
     @classmethod
     def of(cls, plant: Plant, paths: Sequence[str]) -> Variables:
         """The variables of the parameters at these paths."""
-        known = records(plant)
         least, most = [], []
         for path in paths:
-            low, high = _BODY[path][:2] if path in _BODY else known[path].bounds
+            low, high = bounds_of(plant, path)
             stated = plant.parameters[path]
             least.append(low if stated.min is None else max(low, stated.min))
             most.append(high if stated.max is None else min(high, stated.max))
