@@ -179,7 +179,7 @@ def effort_residual(
     """
     form = WeakForm(plant, recording, support=support)
     measured, model = form.efforts(plant)
-    return EffortResidual(form.time, measured, model, form.kernel.support, plant.effort_unit)
+    return EffortResidual(form.time, measured, model, form.kernel.support, form.effort_unit)
 
 
 def free_run(plant: Plant, recording: Recording, start: Start = None) -> FreeRun:

@@ -117,6 +117,8 @@ class WeakForm:
             raise InputError(f"{source}: {NO_POSITION}")
         self.prescribed = plant.prescribed_motion or recording.input is None
         driving = recording.effort if self.prescribed else recording.input
+        own = plant.effort_unit
+        self.effort_unit = recording.units.get("effort") or own if self.prescribed else own
         if driving is None:
             raise InputError(
                 f"{source}: there is no effort; prescribed motion needs an effort column"

@@ -1,4 +1,4 @@
-"""What is said of a parameter that ended at a bound: only a bound that was stated can be widened."""
+"""What is said of a parameter that ended at a bound: only a stated one can be widened."""
 
 from __future__ import annotations
 

@@ -484,7 +484,7 @@ def test_a_wave_is_told_by_its_amplitude_and_by_the_order_that_was_chosen() -> N
     effect = Effect(
         record.name, MappingProxyType({name: Parameter(v) for name, v in values.items()})
     )
-    rows = rows_of_effect(effect, fitted, record, "rotary")
+    rows = rows_of_effect(effect, fitted, record, replace(plant(), effects=(effect,)), "N·m")
     assert [row["name"] for row in rows] == [
         *("amplitude", "cosine", "sine", "order"),
         *("amplitude_2", "cosine_2", "sine_2", "order_2"),

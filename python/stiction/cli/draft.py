@@ -13,6 +13,7 @@ from textwrap import wrap
 from ..errors import InputError
 from ..recording.columns import CANONICAL
 from ..recording.guess import ColumnGuess, Guess
+from ..recording.units import SI_UNIT, find_unit
 from ..wording import listed
 
 __all__ = ["kinds_of", "plant_text", "session_text"]
@@ -30,6 +31,9 @@ _ENDS = re.compile(r"[^A-Za-z]+")
 def plant_text(found: Guess) -> str:
     """A plant.toml for what was guessed."""
     effort, body, rate = ("N·m", "kg·m²", "rad") if found.motion == "rotary" else ("N", "kg", "m")
+    measured = _measured_unit(found, effort)
+    start = f"{measured}; " if measured else ""
+    damping = f"{measured}·s/{rate}" if measured else f"s/{rate}"
     other = "linear" if found.motion == "rotary" else "rotary"
     lines = [
         *_comment(
@@ -49,12 +53,12 @@ def plant_text(found: Guess) -> str:
         "",
         "[friction]",
         *_comment(
-            f"Dry friction with true stick, and viscous friction in {effort}·s/{rate}: the "
+            f"Dry friction with true stick, and viscous friction in {damping}: the "
             "plainest law. `stiction laws` lists the others, `stiction laws coulomb` the "
             "parameters of this one. Naming the law is enough to fit it."
         ),
         'law = "coulomb"',
-        f"# coulomb = 0.1  # {effort}; a number here is where the fit starts",
+        f"# coulomb = 0.1  # {start}a number here is where the fit starts",
         "",
         *_sensor(found),
     ]
@@ -223,6 +227,16 @@ def _column_value(one: ColumnGuess) -> str:
         return name
     scale = "" if one.scale == 1.0 else f", scale = {one.scale!r}"
     return f"{{ name = {name}, unit = {_quoted(one.unit or '1')}{scale} }}"
+
+
+def _measured_unit(found: Guess, effort: str) -> str:
+    """Unit of the measured effort: of a sliding test that records a ratio it may be a stress."""
+    units = {one.role: one.unit for one in found.columns}
+    if "friction_coefficient" not in units:
+        return effort
+    if "normal_force" not in units:
+        return ""
+    return SI_UNIT[find_unit(units["normal_force"] or "N", "normal_force").quantity]
 
 
 def _missing(role: str, found: Guess) -> list[str]:

@@ -279,7 +279,7 @@ class Conclusion:
                 stretches=_stretches(evidence, test, base, final),
                 before=self.rests[0],
                 after=self.rests[1],
-                effort_unit=final.plant.effort_unit,
+                effort_unit=extended.unit,
                 position_unit=final.plant.position_unit,
                 floor=floor,
                 causes=self.own,

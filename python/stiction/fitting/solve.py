@@ -36,7 +36,7 @@ from .statistics import (
     jackknife,
     undetermined_directions,
 )
-from .variables import Variables, states_bound, unit_of
+from .variables import Variables, states_bound, unit_of, with_effort_in
 
 __all__ = ["evaluate", "fit", "reweighted", "settled"]
 
@@ -292,6 +292,7 @@ def evaluate(
         # Of the two ways to be wrong, the wider one, with the few degrees that recordings leave.
         wider = np.sqrt(np.diag(between)[: len(paths)]) * (interval_width(len(jacobians)) / width)
         errors = np.maximum(errors, wider)
+    effort_unit = _effort_unit(plant, train)
     parameters = {}
     for k, path in enumerate(paths):
         error = float("inf") if path in dead else float(errors[k])
@@ -300,7 +301,7 @@ def evaluate(
             value=value,
             stderr=error,
             ci95=(value - width * error, value + width * error),
-            unit=unit_of(plant, path),
+            unit=with_effort_in(effort_unit, plant, path),
             at_bound=sides[k],
             start=float(starts[k]),
         )
@@ -321,7 +322,7 @@ def evaluate(
         train_relative=fitted[1],
         heldout_rms=heldout[0] if heldout else None,
         heldout_relative=heldout[1] if heldout else None,
-        unit=plant.effort_unit,
+        unit=effort_unit,
         split=described,
         success=solution.success,
         message=solution.message,
@@ -329,6 +330,12 @@ def evaluate(
         timing_offset=nuisances.timing,
         starts={names[index]: dict(start) for index, start in nuisances.starts.items()},
     )
+
+
+def _effort_unit(plant: Plant, rows: Sequence[Rows]) -> str:
+    """Unit of the efforts that were compared; that of a force where recordings differ in it."""
+    seen = {each.form.effort_unit for each in rows}
+    return seen.pop() if len(seen) == 1 else plant.effort_unit
 
 
 def _sides(

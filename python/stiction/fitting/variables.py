@@ -13,7 +13,7 @@ from ..catalogue import ParameterRecord, effects
 from ..plant import Plant
 from ..trajectory import FloatArray
 
-__all__ = ["Variables", "bounds_of", "records", "states_bound", "unit_of"]
+__all__ = ["Variables", "bounds_of", "records", "states_bound", "unit_of", "with_effort_in"]
 
 Mask = np.ndarray[Any, np.dtype[np.bool_]]
 
@@ -70,6 +70,24 @@ def unit_of(plant: Plant, path: str) -> str:
     if record.unit == "input":
         return INPUT_UNITS.get(str(plant.drive.get("input", "")), "1")
     return record.linear_unit if linear else record.unit
+
+
+def with_effort_in(measured: str, plant: Plant, path: str) -> str:
+    """Unit of the parameter at a path where efforts were measured in another unit than a force's.
+
+    A stress, in Pa, or a friction coefficient, which has no unit, takes the place of N (or N·m).
+    """
+    unit, own = unit_of(plant, path), plant.effort_unit
+    if measured == own:
+        return unit
+    if path == "body.inertia":
+        unit = f"{own}·s²/{plant.position_unit}"
+    unit = unit.replace(f"({own})", own).replace(own, measured)
+    if measured != "1":
+        return unit
+    for written, short in (("1·", ""), ("/1^n", ""), ("/1", "")):
+        unit = unit.replace(written, short)
+    return unit
 
 
 def bounds_of(plant: Plant, path: str) -> tuple[float, float]:

@@ -95,9 +95,11 @@ def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
         height_ratios=(0.8, *(1.0 for _ in left)),
     )
     buckets = 350 if narrow else 700
-    upper.plot(*thinned(stretch.time, stretch.effort, buckets), color=MEASURED, linewidth=0.9)
+    given = suited([_extent([stretch.effort])], pictures.effort_unit)
+    shown = thinned(stretch.time, given.factor * stretch.effort, buckets)
+    upper.plot(*shown, color=MEASURED, linewidth=0.9)
     named(upper, "measured effort", narrow)
-    upper.set_ylabel(f"effort ({pictures.effort_unit})")
+    upper.set_ylabel(given.on_axis("effort"))
     band = FLOOR_TIMES * scale.factor * pictures.floor
     span = max(scale.factor * _extent([values for _, values, _ in left]), 1.3 * band)
     for panel, (name, values, colour) in zip(lower, left, strict=True):
@@ -105,7 +107,7 @@ def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
         shown = thinned(stretch.time, scale.factor * values, buckets)
         panel.plot(*shown, color=colour, linewidth=0.8)
         panel.set_ylim(-1.08 * span, 1.08 * span)
-        panel.set_ylabel(f"residual ({scale.unit})")
+        panel.set_ylabel(scale.on_axis("residual"))
         named(panel, f"{name}: {scale.text(_rms(values))} rms not explained", narrow)
     lower[-1].set_xlabel("time in the recording (s)")
     upper.set_xlim(min(0.0, float(stretch.time[0])), float(stretch.time[-1]))
@@ -134,7 +136,7 @@ def cause(diagnosis: Diagnosis, index: int, *, narrow: bool = False) -> Figure:
     upright, scale = _upright(before, pictures, scale_of(diagnosis))
     _curves(panel, before, after, scale, size=3.5)
     panel.set_xlabel(_axis(before, pictures))
-    panel.set_ylabel(f"{upright} ({scale.unit})")
+    panel.set_ylabel(scale.on_axis(upright))
     ticks(panel, 4 if narrow else 8, 6)
     legend_above(panel, 3)
     return drawn
@@ -176,13 +178,13 @@ def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
             panel.tick_params(labelleft=False)
         axis = _axis(view, pictures)
         # On a phone the title above has to do for the name.
-        panel.set_xlabel(axis[axis.rindex("(") :] if narrow else axis, fontsize=SMALL)
+        panel.set_xlabel(axis[max(axis.rfind("("), 0) :] if narrow else axis, fontsize=SMALL)
         title = _panel_title(first, view, both=both, narrow=narrow)
         size = SMALL - 1.0 if narrow else SMALL
         panel.set_title(title, fontsize=size, loc="left", color=INK, pad=4.0)
     for panel in panels[len(views) :]:
         panel.set_axis_off()
-    drawn.supylabel(f"mean residual ({scale.unit})", x=0.0, fontsize=TEXT)
+    drawn.supylabel(scale.on_axis("mean residual"), x=0.0, fontsize=TEXT)
     handles, labels = panels[0].get_legend_handles_labels()
     keywords = {"frameon": False, "fontsize": SMALL, "handlelength": 1.6, "columnspacing": 1.2}
     drawn.legend(handles, labels, loc="upper left", ncols=3, borderaxespad=0.1, **keywords)
@@ -274,7 +276,7 @@ def errors(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     panel.set_ylim(len(rows) - 0.4, -0.6)
     panel.grid(False, axis="y")
     panel.set_xlim(0.0, 1.08 * max(_extent([one, two]), floor))
-    panel.set_xlabel(f"residual, rms ({scale.unit})")
+    panel.set_xlabel(scale.on_axis("residual, rms"))
     panel.xaxis.set_major_locator(MaxNLocator(4 if narrow else 7, steps=STEPS))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
     legend_above(panel, 3)
@@ -415,7 +417,7 @@ def _share_of(share: float) -> str:
 
 def _axis(view: View, pictures: Pictures) -> str:
     name, unit = _quantity(view.coordinate.axis, pictures)
-    return f"{name} ({_across(view)[1]}{unit})"
+    return Scale(1.0, f"{_across(view)[1]}{unit}").on_axis(name)
 
 
 def _upright(view: View, pictures: Pictures, scale: Scale) -> tuple[str, Scale]:
@@ -437,7 +439,7 @@ def _across(view: View) -> tuple[float, str]:
 def _quantity(axis: str, pictures: Pictures) -> tuple[str, str]:
     """Name and unit of what an axis shows."""
     name, _, unit = axis.format(x=pictures.position_unit, f=pictures.effort_unit).rpartition(", ")
-    return name, unit
+    return name, unit.removeprefix("1·")
 
 
 def _error_rows(diagnosis: Diagnosis, longest: int) -> list[tuple[str, float, float]]:

@@ -12,9 +12,15 @@ from .numbers import quantity
 if TYPE_CHECKING:
     from ..diagnosis.result import Diagnosis
 
-__all__ = ["Scale", "loop_scale_of", "scale_of", "suited"]
+__all__ = ["Scale", "effort_unit_of", "loop_scale_of", "scale_of", "suited"]
 
-_PREFIXES: Final = ((0.05, 1.0, ""), (5e-5, 1e3, "m"), (0.0, 1e6, "µ"))
+_PREFIXES: Final = (
+    (1e7, 1e-6, "M"),
+    (1e4, 1e-3, "k"),
+    (0.05, 1.0, ""),
+    (5e-5, 1e3, "m"),
+    (0.0, 1e6, "µ"),
+)
 
 
 @dataclass(frozen=True)
@@ -31,6 +37,10 @@ class Scale:
     factor: float
     unit: str
 
+    def on_axis(self, name: str) -> str:
+        """What an axis says: a name, and the unit where there is one."""
+        return name if self.unit in ("", "1") else f"{name} ({self.unit})"
+
     def text(self, value: float | None, figures: int = 3) -> str:
         """An SI value in this unit, with it."""
         return quantity(None if value is None else self.factor * value, self.unit, figures)
@@ -38,14 +48,19 @@ class Scale:
 
 def scale_of(diagnosis: Diagnosis) -> Scale:
     """The unit that suits what the models leave: N·m or mN·m, N or mN."""
-    unit = diagnosis.plant.effort_unit
     sizes = [
         size
         for model in (diagnosis.baseline, diagnosis.extended)
         if model is not None
         for size in (model.train_rms, model.heldout_rms or 0.0, model.noise_floor_rms)
     ]
-    return suited(sizes, unit)
+    return suited(sizes, effort_unit_of(diagnosis))
+
+
+def effort_unit_of(diagnosis: Diagnosis) -> str:
+    """The unit in which efforts were measured."""
+    model = diagnosis.baseline
+    return diagnosis.plant.effort_unit if model is None else model.unit
 
 
 def loop_scale_of(diagnosis: Diagnosis) -> Scale:
@@ -62,7 +77,9 @@ def loop_scale_of(diagnosis: Diagnosis) -> Scale:
 
 
 def suited(sizes: Iterable[float], unit: str) -> Scale:
-    """The unit that writes the largest of these SI values without many zeros."""
+    """The unit that writes the largest of these SI values without many zeros; "" for none."""
+    if unit in ("", "1"):
+        return Scale(1.0, "")
     largest = max((size for size in sizes if math.isfinite(size)), default=1.0)
     for least, factor, prefix in _PREFIXES:
         if largest >= least:

@@ -56,7 +56,7 @@ def stress(recording: Recording) -> list[Check]:
             "unit of the effort",
             "note",
             "the effort is a stress, in Pa",
-            "what is given in N is in Pa here, and what is given in N·s/m in Pa·s/m",
+            "friction is told in Pa, and what multiplies a speed in Pa·s/m, where others have N",
             "multiply the stress by the area where forces are wanted",
         )
     ]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ...wording import counted
 from ..numbers import duration, quantity
+from ..scale import effort_unit_of, suited
 from .section import Section
 
 if TYPE_CHECKING:
@@ -43,7 +44,9 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
         "passed": _passed(checks),
         "split": _split(data.get("split")),
         "residual": data.get("residual") or "",
-        "noise": [_noise(entry, plant.position_unit, plant.effort_unit) for entry in data["noise"]]
+        "noise": [
+            _noise(entry, plant.position_unit, effort_unit_of(diagnosis)) for entry in data["noise"]
+        ]
         if data.get("noise")
         else [],
         "hashes": list(zip(names, hashes, strict=True)),
@@ -112,5 +115,5 @@ def _noise(entry: Mapping[str, Any], position: str, effort: str) -> dict[str, st
         "recording": entry["recording"],
         "position": quantity(entry["position"], position, 2),
         "count": quantity(count, position, 3) if count else "none seen",
-        "effort": quantity(entry["effort"], effort, 2),
+        "effort": suited([entry["effort"]], effort).text(entry["effort"], 2),
     }

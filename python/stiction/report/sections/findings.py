@@ -10,6 +10,7 @@ from ...diagnosis.orders import order_words
 from ...diagnosis.words import joined
 from ..drawings import cause_name
 from ..numbers import percent, percent_between, plain, quantity
+from ..scale import effort_unit_of
 from .parameters import row, rows_of_effect
 from .section import Section
 
@@ -33,7 +34,7 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
     records = {record.name: record for record in effects()}
     causes = [
         {
-            **_cause(cause, records.get(cause.name), diagnosis.plant),
+            **_cause(cause, records.get(cause.name), diagnosis),
             "rivals": _rivals(diagnosis, cause),
             "picture": drawings.get(cause_name(index, cause.name)),
         }
@@ -64,7 +65,8 @@ def _rivals(diagnosis: Diagnosis, cause: Cause) -> list[str]:
     ]
 
 
-def _cause(cause: Cause, record: EffectRecord | None, plant: Plant) -> dict[str, Any]:
+def _cause(cause: Cause, record: EffectRecord | None, diagnosis: Diagnosis) -> dict[str, Any]:
+    plant = diagnosis.plant
     summary = cause.what
     if record is not None and summary.startswith(f"{record.summary}: "):
         # The values stand in the table, with their units and intervals.
@@ -72,7 +74,7 @@ def _cause(cause: Cause, record: EffectRecord | None, plant: Plant) -> dict[str,
     effect = next((each for each in plant.effects if each.name == cause.name), None)
     rows = [row(path, p, "", beside=cause.parameters) for path, p in cause.parameters.items()]
     if record is not None and effect is not None:
-        rows = rows_of_effect(effect, cause.parameters, record, plant.motion)
+        rows = rows_of_effect(effect, cause.parameters, record, plant, effort_unit_of(diagnosis))
     gain = cause.gain
     doubtful = bool(cause.parameters) and all(
         p.ci95[0] <= 0.0 <= p.ci95[1] for p in cause.parameters.values()

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from ...catalogue import effects, laws
+from ...fitting.variables import with_effort_in
 from ...frozen import Frozen
 from ..numbers import between, digits
 
@@ -61,7 +62,11 @@ def row(
 
 
 def rows_of_effect(
-    effect: Effect, parameters: Mapping[str, FitParameter], record: EffectRecord, motion: str
+    effect: Effect,
+    parameters: Mapping[str, FitParameter],
+    record: EffectRecord,
+    plant: Plant,
+    measured: str,
 ) -> list[dict[str, Any]]:
     """All of an effect: amplitudes of its waves, what was fitted, and what was chosen or assumed.
 
@@ -73,10 +78,13 @@ def rows_of_effect(
         What was fitted of it, by path.
     record : EffectRecord
         Of the catalogue.
-    motion : str
-        "rotary" or "linear", for units.
+    plant : Plant
+        With the effect.
+    measured : str
+        Unit in which efforts were measured.
     """
-    units = {p.name: p.linear_unit if motion == "linear" else p.unit for p in record.parameters}
+    linear = plant.motion == "linear"
+    shares = {p.name for p in record.parameters if p.unit == "1"}
     meanings = {p.name: p.meaning for p in record.parameters}
     by_name = {path.rsplit(".", 1)[-1]: p for path, p in parameters.items()}
     names = [*by_name, *(name for name in effect.parameters if name not in by_name)]
@@ -84,7 +92,9 @@ def rows_of_effect(
     for tail in ("", "_2"):
         cosine, sine = by_name.get(f"cosine{tail}"), by_name.get(f"sine{tail}")
         if cosine is not None and sine is not None:
-            rows.append(_amplitude(tail, cosine, sine, meanings.get(f"cosine{tail}", "")))
+            name = f"cosine{tail}"
+            wave = cosine, sine
+            rows.append(_amplitude(tail, wave, meanings.get(name, ""), share=name in shares))
         for name in names:
             if name.endswith("_2") != bool(tail):
                 continue
@@ -92,10 +102,10 @@ def rows_of_effect(
             if path in parameters:
                 rows.append(row(path, parameters[path], meaning, beside=parameters))
             else:
-                unit = units.get(name, "")
+                unit = with_effort_in(measured, plant, path)
                 rows.append(_stated(path, effect.parameters[name].value, meaning, unit))
             if "order" in name:
-                rows[-1]["unit"] = "per 2π m" if motion == "linear" else "per turn"
+                rows[-1]["unit"] = "per 2π m" if linear else "per turn"
                 rows[-1]["meaning"] = f"periods of the {'second ' if tail else ''}wave"
     return rows
 
@@ -115,12 +125,14 @@ def _stated(path: str, value: float, meaning: str, unit: str) -> dict[str, Any]:
     }
 
 
-def _amplitude(tail: str, cosine: FitParameter, sine: FitParameter, meaning: str) -> dict[str, Any]:
-    """The size of a wave, which its parts say only together."""
+def _amplitude(
+    tail: str, wave: tuple[FitParameter, FitParameter], meaning: str, *, share: bool
+) -> dict[str, Any]:
+    """The size of a wave, which its parts say only together; ``share``: of something else."""
+    cosine, sine = wave
     size = math.hypot(cosine.value, sine.value)
     halves = [0.5 * (p.ci95[1] - p.ci95[0]) for p in (cosine, sine)]
     half = math.hypot(cosine.value * halves[0], sine.value * halves[1]) / size if size else 0.0
-    share = cosine.unit == "1"
     factor = 100.0 if share else 1.0
     value, interval = between(factor * size, factor * max(size - half, 0.0), factor * (size + half))
     whole = meaning.replace("amplitude of the cosine part", "amplitude").replace(
@@ -132,7 +144,7 @@ def _amplitude(tail: str, cosine: FitParameter, sine: FitParameter, meaning: str
         "meaning": f"{whole.replace('as a share of', 'of')}: cosine and sine together",
         "value": value,
         "interval": interval,
-        "unit": "%" if share else cosine.unit,
+        "unit": "%" if share else cosine.unit.removeprefix("1"),
         "notes": [],
     }
 

@@ -1,0 +1,82 @@
+"""Reports say in which unit efforts were measured: not every sliding test measures a force."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.fitting.variables import with_effort_in
+from stiction.report.scale import Scale, suited
+
+PLANT = st.Plant.from_dict(
+    {
+        "motion": {"kind": "linear"},
+        "drive": {"kind": "prescribed_motion"},
+        "friction": {"law": "coulomb"},
+    }
+)
+
+
+def sheared(tmp_path: Path, *, normal: str) -> st.Recording:
+    """A friction coefficient about 0.6 over to-and-fro motion; ``normal`` is the unit beside it."""
+    time = np.arange(4000) * 0.01
+    moved = 1e-3 * np.sin(0.9 * time)
+    speed = 0.9e-3 * np.cos(0.9 * time)
+    noise = 1e-3 * np.random.default_rng(1).standard_normal(time.size)
+    coefficient = 0.6 * np.sign(speed) + 20.0 * speed + noise
+    table = np.column_stack([time, moved, coefficient, np.full(time.size, 20.0)])
+    np.savetxt(tmp_path / "s.csv", table, "%.9g", ",", header="t,x,mu,n", comments="")
+    columns: dict[str, object] = {
+        "time": {"name": "t", "unit": "s"},
+        "position": {"name": "x", "unit": "m"},
+        "friction_coefficient": "mu",
+    }
+    if normal:
+        columns["normal_force"] = {"name": "n", "unit": normal}
+    return st.Recording.load(tmp_path / "s.csv", columns)
+
+
+@pytest.mark.parametrize(
+    ("normal", "unit", "damping", "shown"),
+    [
+        ("MPa", "Pa", "Pa·s/m", "MPa"),
+        ("N", "N", "N·s/m", "N"),
+        ("", "1", "s/m", ""),
+    ],
+)
+def test_what_is_fitted_is_told_in_the_unit_that_was_measured(
+    tmp_path: Path, normal: str, unit: str, damping: str, shown: str
+) -> None:
+    found = st.fit(PLANT, sheared(tmp_path, normal=normal))
+    assert found.unit == unit
+    assert found["friction.coulomb"].unit == unit
+    assert found["friction.viscous"].unit == damping
+    assert suited([found["friction.coulomb"].value], found.unit).unit == shown
+
+
+@pytest.mark.parametrize(
+    ("path", "stress", "ratio"),
+    [
+        ("friction.coulomb", "Pa", "1"),
+        ("body.inertia", "Pa·s²/m", "s²/m"),
+        ("effects.viscous_quadratic.quadratic", "Pa·s²/m²", "s²/m²"),
+        ("effects.stribeck.velocity", "m/s", "m/s"),
+    ],
+)
+def test_every_unit_with_a_force_in_it_goes_along(path: str, stress: str, ratio: str) -> None:
+    table = PLANT.to_dict() | {"effects": [{"name": "viscous_quadratic"}, {"name": "stribeck"}]}
+    machine = st.Plant.from_dict(table)
+    assert with_effort_in("Pa", machine, path) == stress
+    assert with_effort_in("1", machine, path) == ratio
+    turning = replace(machine, motion="rotary")
+    assert "N·m" not in with_effort_in("1", turning, path)
+
+
+def test_large_and_pure_numbers_are_written_plainly() -> None:
+    assert suited([13926.9], "Pa").text(13926.9) == "13.9\u00a0kPa"
+    assert suited([0.003], "1") == Scale(1.0, "")
+    assert Scale(1.0, "").on_axis("residual") == "residual"
