@@ -6,9 +6,11 @@ import math
 from types import SimpleNamespace
 from typing import cast
 
+import numpy as np
 import pytest
 
 import stiction as st
+from stiction._native import Motion
 from stiction.diagnosis.advice import advise
 from stiction.diagnosis.candidates import Scales
 from stiction.diagnosis.listing import screened
@@ -16,7 +18,7 @@ from stiction.diagnosis.orders import open_orders, order_words
 from stiction.diagnosis.remedies import GOALS, meant, recorded
 from stiction.diagnosis.result import Unexplained
 from stiction.diagnosis.screen import Score
-from stiction.diagnosis.words import NO_COORDINATE, sentence
+from stiction.diagnosis.words import NO_COORDINATE, sentence, what
 from stiction.fitting.result import FitParameter
 from stiction.plan import EXPERIMENTS
 
@@ -94,6 +96,40 @@ def test_what_comes_late_is_told_by_its_sign() -> None:
 
     assert "higher while speeding up" in lags(0.3)
     assert "lower while speeding up" in lags(-0.7)
+
+
+@pytest.mark.parametrize(
+    ("share", "told"),
+    [
+        (0.2, "dry friction is higher forwards (6 N) than backwards (4 N)"),
+        (-0.2, "dry friction is higher backwards (6 N) than forwards (4 N)"),
+    ],
+)
+def test_an_asymmetry_says_which_way_friction_is_higher(share: float, told: str) -> None:
+    """As the machine itself has it: the fitted plant is moved both ways."""
+    table = plant("linear", moved=True).to_dict()
+    table["friction"] |= {"coulomb": 5.0, "viscous": 0.0}
+    table["effects"] = [{"name": "direction_asymmetry", "coulomb": share, "viscous": 0.0}]
+    machine = st.Plant.from_dict(table)
+    positions = np.concatenate([np.linspace(0.0, 1.0, 100), np.linspace(1.0, 0.0, 100)])
+    _, _, friction, _ = machine.follower().follow(Motion(positions, np.zeros(199), 1e-3))
+    assert (friction[50], friction[150]) == pytest.approx((5 * (1 + share), -5 * (1 - share)), 1e-3)
+
+    def fitted(value: float, half: float, unit: str) -> FitParameter:
+        return FitParameter(value, half / 2, (value - half, value + half), unit, "", value)
+
+    own = {
+        "friction.coulomb": fitted(5.0, 0.1, "N"),
+        "effects.direction_asymmetry.coulomb": fitted(share, 0.01, "1"),
+        "effects.direction_asymmetry.viscous": fitted(0.01, 0.02, "1"),
+    }
+    said = what(EFFECTS["direction_asymmetry"], own, machine.effects[0])
+    assert said.startswith(f"{told}, forwards being where the position grows: coulomb {share}")
+    assert "viscous friction" not in said
+    share_alone = {path: p for path, p in own.items() if not path.startswith("friction.")}
+    assert "40 % of its mean" in what(
+        EFFECTS["direction_asymmetry"], share_alone, machine.effects[0]
+    )
 
 
 @pytest.mark.parametrize(

@@ -375,7 +375,7 @@ def _causes(
                 look_alikes=(*rivals_left, *others),
                 parameters=fitted_values,
                 gain=None if test is None else gain_of(test, k, k + 1, seed),
-                what=what(record, fitted_values, _effect(final.plant, record.name)),
+                what=what(record, result.parameters, _effect(final.plant, record.name)),
                 means=means,
                 try_=remedy,
                 coordinate=record.coordinate,

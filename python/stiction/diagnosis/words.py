@@ -14,6 +14,7 @@ from ..fitting.rows import Push
 from ..report.scale import loop_scale_of
 from ..stated import Effect
 from ..wording import counted
+from .directions import found
 from .orders import order_words
 
 if TYPE_CHECKING:
@@ -82,10 +83,14 @@ def gain_words(gain: Gain | None) -> str:
 
 
 def what(record: EffectRecord, parameters: Mapping[str, FitParameter], effect: Effect) -> str:
-    """What was found of an effect, with its fitted values, and orders that were chosen."""
+    """What was found of an effect, with its fitted values, and orders that were chosen.
+
+    ``parameters`` are those of the whole model.
+    """
     values = [
         order_words(path, p) or value_words(path.rsplit(".", 1)[-1], p)
         for path, p in parameters.items()
+        if path.startswith(f"effects.{record.name}.")
     ]
     chosen = [shape.parameter for shape in record.shapes if shape.scale == "order"]
     chosen += [name for name in record.second if name not in record.gains and "order" in name]
@@ -94,7 +99,8 @@ def what(record: EffectRecord, parameters: Mapping[str, FitParameter], effect: E
         for name in chosen
         if name in effect.parameters and effect.parameters[name].fixed
     ]
-    return f"{record.summary}: {', '.join(values)}" if values else record.summary
+    meaning = found(record, parameters)
+    return f"{meaning}: {', '.join(values)}" if values else meaning
 
 
 def sentence(

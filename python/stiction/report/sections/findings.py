@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 from ...catalogue import EffectRecord, effects
+from ...diagnosis.directions import found
 from ...diagnosis.orders import order_words
 from ...diagnosis.words import joined
 from ..drawings import cause_name
@@ -68,9 +69,12 @@ def _rivals(diagnosis: Diagnosis, cause: Cause) -> list[str]:
 def _cause(cause: Cause, record: EffectRecord | None, diagnosis: Diagnosis) -> dict[str, Any]:
     plant = diagnosis.plant
     summary = cause.what
-    if record is not None and summary.startswith(f"{record.summary}: "):
-        # The values stand in the table, with their units and intervals.
-        summary = record.summary
+    if record is not None:
+        model = {} if diagnosis.extended is None else diagnosis.extended.parameters
+        meaning = found(record, {**model, **cause.parameters})
+        if summary.startswith(f"{meaning}: "):
+            # The values stand in the table, with their units and intervals.
+            summary = meaning
     effect = next((each for each in plant.effects if each.name == cause.name), None)
     rows = [row(path, p, "", beside=cause.parameters) for path, p in cause.parameters.items()]
     if record is not None and effect is not None:
