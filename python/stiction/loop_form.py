@@ -63,7 +63,7 @@ class LoopForm(WeakForm):
     def stiffen(self, plant: Plant) -> None:
         """Takes the stiffness K of a plant as it stands, whatever a recording was set to."""
         drive = plant.drive
-        self.stiffness = abs(
+        self.stiffness: float = abs(
             plant.gain * drive["proportional"] * drive["supply_v"] / drive["resistance_ohm"]
         )
 

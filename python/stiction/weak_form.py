@@ -100,6 +100,8 @@ class WeakForm:
 
     simulated: ClassVar[bool] = False
     """Whether the plant moves by itself, and is not led along the measured motion."""
+    stiffness: float | None = None
+    """Effort per position where the residual is an error of position, counted as an effort."""
 
     def __init__(
         self,

@@ -93,7 +93,7 @@ def ceiling_of(
             continue
         pairs += 1
         before, after = (_residuals(both, *model, number) for model in models)
-        effort = [each.form.measured(models[0][0])[each.mask][:number] for each in both]
+        effort = [each.form.whole(models[0][0])[each.mask][:number] for each in both]
         powers += [
             _power(*before),
             _power(*after),

@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from ..compared import compared_by
 from ..fitting.pushes import told as pushes_told
 from ..fitting.result import FitResult
 from ..fitting.rows import Rows
@@ -253,7 +254,12 @@ class Conclusion:
             sentence=_opening(self.interrupted, bool(causes))
             + ("" if better is None else f"{better.words(own_law, bool(causes))} ")
             + sentence(verdict, causes, gain, unexplained, reason)
-            + no_machine(max(left, lost_on_test(test, len(causes), null)), bool(causes), verdict),
+            + no_machine(
+                max(left, lost_on_test(test, len(causes), null)),
+                bool(causes),
+                verdict,
+                compared_by(final.plant),
+            ),
             plant=extended.plant,
             effects=tuple(causes),
             gain=gain,
@@ -280,6 +286,7 @@ class Conclusion:
                 before=self.rests[0],
                 after=self.rests[1],
                 effort_unit=extended.unit,
+                effort_name="effort by its own law" if final.plant.servo else "measured effort",
                 position_unit=final.plant.position_unit,
                 floor=floor,
                 causes=self.own,
@@ -432,6 +439,7 @@ def _summary(
         noise_floor_rms=floor,
         remarks=result.remarks,
         assumed=result.assumed,
+        stiffness=result.stiffness,
     )
 
 
@@ -450,7 +458,8 @@ def _stretches(
     for each in rows:
         form, mask = each.form, each.mask
         both = [np.where(mask, each.residual(m.plant, m.nuisances), np.nan) for m in (base, final)]
-        measured = np.where(mask, form.measured(base.plant), np.nan)
+        seen = form.measured(base.plant) if form.stiffness is None else form.readings[1:]
+        measured = np.where(mask, seen, np.nan)
         started = evidence.recordings[each.index].time[0]
         stretches.append(
             Stretch(evidence.names[each.index], form.time - started, measured, both[0], both[1])

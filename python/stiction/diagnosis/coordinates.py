@@ -83,7 +83,8 @@ class Coordinate:
     name : str
         As in findings.json.
     axis : str
-        What its axis says, with {x} and {f} for the units of position and effort.
+        What its axis says, with {x} and {f} for the units of position and effort and {e} for the
+        name of the effort.
     odd : bool
         The residual is counted along the motion: friction that is too low is positive both ways.
     values : callable
@@ -147,7 +148,7 @@ COORDINATES: Final = (
     Coordinate(
         "acceleration", "acceleration, {x}/s²", False, lambda look: look.acceleration, tails=True
     ),
-    Coordinate("effort", "measured effort, {f}", False, lambda look: look.effort, tails=True),
+    Coordinate("effort", "{e}, {f}", False, lambda look: look.effort, tails=True),
     Coordinate("rate of the effort", "rate of the effort, {f}/s", False, lambda look: look.rate),
     Coordinate(
         "distance since the reversal",

@@ -47,7 +47,7 @@ class HeldOut:
         Weighted, one of each plant.
     weights : numpy.ndarray, shape (n,)
     effort : numpy.ndarray, shape (n,)
-        Measured, weighted.
+        Measured, weighted; of a servo its motion, counted as the residual is.
     cells : Cells
     rows : tuple of Rows
     """
@@ -59,7 +59,7 @@ class HeldOut:
     rows: tuple[Rows, ...]
 
     def relative(self, index: int) -> float:
-        """2-norm of the residual of one plant over that of the measured effort."""
+        """2-norm of the residual of one plant over that of what it is a part of."""
         scale = float(np.linalg.norm(self.effort / self.weights))
         left = float(np.linalg.norm(self.residuals[index] / self.weights))
         return left / scale if scale > 0.0 else float("inf")
@@ -82,9 +82,8 @@ def residuals_of(
 
     residuals = tuple(left(plant, nuisances) for plant, nuisances in models)
     weights = np.concatenate([np.full(int(e.mask.sum()), e.weight) for e in rows])
-    # The gain of a servo may be fitted: its effort is that of the first plant, the base.
     base = models[0][0]
-    effort = np.concatenate([e.weight * e.form.measured(base)[e.mask] for e in rows])
+    effort = np.concatenate([e.weight * e.form.whole(base)[e.mask] for e in rows])
     return HeldOut(residuals, weights, effort, evidence.cells_of(rows), tuple(rows))
 
 

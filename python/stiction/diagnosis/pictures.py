@@ -20,18 +20,19 @@ __all__ = ["Pictures", "Stretch", "Tracking", "before_and_after"]
 
 @dataclass(frozen=True)
 class Stretch:
-    """A recording's rows that test, with what both models leave of its effort.
+    """A recording's rows that test, with what both models leave.
 
     Attributes
     ----------
     name : str
-    time, effort, before, after : numpy.ndarray, shape (n,)
-        s, and N·m or N; NaN between rows that do not belong together.
+    time, measured, before, after : numpy.ndarray, shape (n,)
+        s, measured effort (of a servo its position, rad or m), and residuals in effort; NaN between
+        rows that do not belong together.
     """
 
     name: str
     time: FloatArray
-    effort: FloatArray
+    measured: FloatArray
     before: FloatArray
     after: FloatArray
 
@@ -80,6 +81,8 @@ class Pictures:
     effort_unit, position_unit : str
     floor : float
         rms that noise alone would leave, N·m or N.
+    effort_name : str
+        What an axis calls the effort: nobody measures that of a servo.
     tracking : Tracking or None
         The held-out recording with the largest improvement in closed loop; None where no loop was
         replayed.
@@ -92,6 +95,7 @@ class Pictures:
     position_unit: str
     floor: float
     causes: tuple[tuple[View, View], ...] = ()
+    effort_name: str = "measured effort"
     tracking: Tracking | None = None
 
 

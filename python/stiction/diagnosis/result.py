@@ -174,7 +174,7 @@ class ModelSummary:
     train_rms, select_rms, heldout_rms : float or None
         Residual; None where there are no such rows.
     train_relative, heldout_relative : float or None
-        2-norm of the residual over that of the measured effort.
+        2-norm of the residual over that of the measured effort; of a servo over its motion's.
     noise_floor_rms : float
         Residual that noise and rounding alone would leave.
     remarks : tuple of str
@@ -184,6 +184,8 @@ class ModelSummary:
         Position error in closed loop; None where controller or reference are not known.
     assumed : tuple of str
         What the plant leaves open and every value hangs on, in sentences.
+    stiffness : float or None
+        Of a servo: effort per position by which errors of its simulated loop count as a residual.
     """
 
     plant: Plant
@@ -198,6 +200,7 @@ class ModelSummary:
     remarks: tuple[str, ...]
     replay: Replay | None = None
     assumed: tuple[str, ...] = ()
+    stiffness: float | None = None
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
 from ..catalogue import effects as catalogue
+from ..compared import EFFORT, Compared, compared_by
 from ..fitting.pushes import LEFT_OUT
 from ..fitting.result import FitParameter
 from ..fitting.rows import Push
@@ -142,16 +143,17 @@ def sentence(
     return f"The simulation lacks {named}.{gained}{_unconfirmed(effects)}"
 
 
-def no_machine(left: float, named: bool, verdict: Verdict) -> str:
+def no_machine(left: float, named: bool, verdict: Verdict, by: Compared = EFFORT) -> str:
     """What to look at first where the plant leaves most of the effort, "" where it does not.
 
-    ``left`` is the share of its power on rows that the plant was not fitted to, 0 where it is less.
+    ``left`` is the share of its power on rows that the plant was not fitted to, 0 where it is less;
+    ``by`` what they are compared by.
     """
     if not left or verdict in ("data_fault", "not_testable"):
         return ""
     share = f"{100 * left:.0f} % of" if left < 1.0 else "more than"
     return (
-        f" The plant{', causes and all,' if named else ''} leaves {share} the power of the effort "
+        f" The plant{', causes and all,' if named else ''} leaves {share} the power of {by.whole} "
         "on rows that it was not fitted to: before any cause counts, check columns, units, signs "
         "and clocks, and what [drive] and [body] state, hold fixed or leave out, as gravity or a "
         "load."
@@ -308,9 +310,10 @@ def summary(diagnosis: Diagnosis) -> str:
         lines.append(f"  gain: {gain_words(cause.gain)}")
     before, after = diagnosis.baseline, diagnosis.extended
     if before is not None and before.heldout_relative is not None and after is not None:
-        told = f"effort error held out: {100 * before.heldout_relative:.2f} %"
+        by = compared_by(diagnosis.plant)
+        told = f"{by.error} held out: {by.share(before.heldout_relative)}"
         if diagnosis.effects and after.heldout_relative is not None:
-            told += f" before, {100 * after.heldout_relative:.2f} % after"
+            told += f" before, {by.share(after.heldout_relative)} after"
         lines += ["", told]
     if before is not None:
         lines += before.assumed

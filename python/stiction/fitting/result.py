@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
+from ..compared import compared_by
 from ..frozen import ByPath, Frozen, freeze
 from ..json_text import json_of
 from ..plant import Plant
@@ -57,9 +58,11 @@ class FitResult:
     bounds_hit, undetermined : tuple of str
         Sentences.
     r2 : float
-        1 − Σr²/Σ(u − ū)² over the rows fitted, u the measured effort.
+        1 − Σr²/Σ(u − ū)² over the rows fitted, u the measured effort, of a servo its motion. Below
+        0 a constant would do better.
     train_rms, train_relative : float
-        Residual: root mean square, and 2-norm over that of the measured effort.
+        Residual: root mean square, and 2-norm over that of the measured effort; of a servo that of
+        the distance of the motion from its mean.
     heldout_rms, heldout_relative : float or None
         The same over rows that were not fitted.
     unit : str
@@ -75,6 +78,8 @@ class FitResult:
         Friction state at the first row of each recording that tells of it.
     assumed : tuple of str
         What the plant leaves open and every value hangs on, in sentences.
+    stiffness : float or None
+        Of a servo: effort per position by which errors of its simulated loop count as a residual.
     """
 
     plant: Plant
@@ -96,6 +101,7 @@ class FitResult:
     timing_offset: float = 0.0
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     assumed: tuple[str, ...] = ()
+    stiffness: float | None = None
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")
@@ -137,19 +143,32 @@ class FitResult:
     __repr__ = __str__
 
     def _headline(self) -> list[str]:
+        by = compared_by(self.plant)
         lines = [
             self.message,
-            f"effort error where fitted: {100 * self.train_relative:.3f} % (relative 2-norm), "
-            f"{self.train_rms:.4g} {self.unit} rms"
-            # An effort that is constant has no spread to explain.
-            + (f", r² {self.r2:.5f}" if math.isfinite(self.r2) else ""),
+            f"{by.error} where fitted: {by.share(self.train_relative, 3)} (relative 2-norm), "
+            f"{self._size(self.train_rms)} rms{self._spread()}",
         ]
         if self.heldout_rms is not None and self.heldout_relative is not None:
             lines.append(
-                f"effort error held out: {100 * self.heldout_relative:.3f} %, "
-                f"{self.heldout_rms:.4g} {self.unit} rms"
+                f"{by.error} held out: {by.share(self.heldout_relative, 3)}, "
+                f"{self._size(self.heldout_rms)} rms"
             )
         return [*lines, self.split]
+
+    def _size(self, rms: float) -> str:
+        """A residual in its unit, of a servo as an error of position."""
+        if self.stiffness is not None:
+            return f"{rms / self.stiffness:.4g} {self.plant.position_unit}"
+        return f"{rms:.4g}" + ("" if self.unit == "1" else f" {self.unit}")
+
+    def _spread(self) -> str:
+        """r² in words; "" where there is no spread to explain, as of an effort that is constant."""
+        if not math.isfinite(self.r2):
+            return ""
+        if self.r2 < 0.0:
+            return f"; worse than a constant {compared_by(self.plant).quantity} would do"
+        return f", r² {self.r2:.5f}"
 
     def _remarks(self) -> list[str]:
         return [f"  {sentence}" for sentence in self.remarks]

@@ -323,6 +323,7 @@ def evaluate(
         heldout_rms=heldout[0] if heldout else None,
         heldout_relative=heldout[1] if heldout else None,
         unit=effort_unit,
+        stiffness=train[0].form.stiffness,
         split=described,
         success=solution.success,
         message=solution.message,
@@ -361,11 +362,11 @@ def _sides(
 
 def _errors(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> tuple[float, float, float]:
     """rms, relative 2-norm and r² over some rows."""
-    measured, residual = [], []
+    whole, residual = [], []
     for each in rows:
-        measured.append(each.form.measured(plant)[each.mask])
+        whole.append(each.form.whole(plant)[each.mask])
         residual.append(each.residual(plant, nuisances)[each.mask])
-    u, r = np.concatenate(measured), np.concatenate(residual)
+    u, r = np.concatenate(whole), np.concatenate(residual)
     power = float(r @ r)
     about_mean = float(np.sum((u - u.mean()) ** 2))
     norm = float(np.linalg.norm(u))

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from ..compared import compared_by
 from . import figures
 from .numbers import isolated, percent, plain
 from .scale import scale_of
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from markupsafe import Markup
     from matplotlib.figure import Figure
 
+    from ..diagnosis.omnibus import View
     from ..diagnosis.result import Diagnosis
 
 __all__ = ["Drawing", "Drawings", "draw"]
@@ -123,12 +125,15 @@ def _headline(diagnosis: Diagnosis) -> _Order:
         "rows that were fitted, as none are left to test on"
     )  # fmt: skip
     band = scale_of(diagnosis).text(figures.FLOOR_TIMES * pictures.floor)
+    by = compared_by(diagnosis.plant)
+    what = f"Measured {by.quantity}, and what"
+    model = "the loop, simulated from its goal alone, misses" if by.loop else "the model leaves"
     if diagnosis.effects:
-        label = "Measured effort, and what is not explained of it before and after, over time."
-        shown = "Measured effort, and what the model leaves of it before and after"
+        label = f"{what} is not explained of it before and after, over time."
+        shown = f"{what} {model} of it before and after"
     else:
-        label = "Measured effort, and what the model does not explain of it, over time."
-        shown = "Measured effort, and what the model leaves of it"
+        label = f"{what} the model does not explain of it, over time."
+        shown = f"{what} {model} of it"
     return _Order(
         "before-after",
         figures.headline,
@@ -143,13 +148,9 @@ def _cause(diagnosis: Diagnosis, index: int) -> _Order:
     assert pictures is not None
     cause = diagnosis.effects[index]
     before, after = pictures.causes[index]
-    share, left, noise = (
-        percent(max(each, 0.0)) for each in (before.share, after.share, before.threshold)
-    )
     decided = diagnosis.extended is not None and diagnosis.extended.select_rms is not None
     rows = "rows that nothing was fitted to" if decided else "the rows that decide"
-    over = before.coordinate.axis.rpartition(", ")[0]
-    over = over.format(x=pictures.position_unit, f=pictures.effort_unit)
+    over, _ = figures.quantity_of(before.coordinate.axis, pictures)
     if before.coordinate.upright:
         what = before.coordinate.upright.rpartition(", ")[0].capitalize()
     else:
@@ -158,9 +159,8 @@ def _cause(diagnosis: Diagnosis, index: int) -> _Order:
     there = " there" if where else ""
     with_it = "with this cause added" if len(diagnosis.effects) > 1 else "after"
     caption = (
-        f"{what}, against {over}, on {rows}{where}. Before, {share} of the power of the "
-        f"residual{there} follows this curve; {with_it}, {left} of what is left does; noise alone "
-        f"reaches {noise}. Grey band: where noise alone stays, 19 times out of 20."
+        f"{what}, against {over}, on {rows}{where}. {_followed(before, after, there, with_it)} "
+        "Grey band: where noise alone stays, 19 times out of 20."
     )
     if before.coordinate.odd:
         caption += " A residual that opposes the motion counts as positive."
@@ -172,6 +172,22 @@ def _cause(diagnosis: Diagnosis, index: int) -> _Order:
 
     label = f"{plain(cause.name)}: {what.lower()} against {over}, before and after."
     return _Order(cause_name(index, cause.name), drawn, label, caption)
+
+
+def _followed(before: View, after: View, there: str, with_it: str) -> str:
+    """How much of the residual follows the curve of a cause, before and after."""
+    share, left, noise = (
+        percent(max(each, 0.0)) for each in (before.share, after.share, before.threshold)
+    )
+    if before.share <= before.threshold:
+        return (
+            f"The residual{there} follows this curve no more than noise alone would ({share}; "
+            f"noise reaches {noise}): what the cause is worth shows over time, not here."
+        )
+    return (
+        f"Before, {share} of the power of the residual{there} follows this curve; {with_it}, "
+        f"{left} of what is left does; noise alone reaches {noise}."
+    )
 
 
 def _coordinates(diagnosis: Diagnosis) -> _Order:

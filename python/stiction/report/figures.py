@@ -17,6 +17,7 @@ from matplotlib.ticker import (
     MaxNLocator,
 )
 
+from ..compared import compared_by
 from ..errors import InputError
 from ..plot import (
     ACCENT,
@@ -41,7 +42,16 @@ if TYPE_CHECKING:
     from ..diagnosis.pictures import Pictures
     from ..diagnosis.result import Diagnosis, ModelSummary
 
-__all__ = ["candidates", "cause", "closed_loop", "coordinates", "errors", "headline", "most_shown"]
+__all__ = [
+    "candidates",
+    "cause",
+    "closed_loop",
+    "coordinates",
+    "errors",
+    "headline",
+    "most_shown",
+    "quantity_of",
+]
 
 NARROW: Final = 3.9
 """Width of a figure for a phone, inches: text keeps its size on 360 pixels."""
@@ -65,7 +75,7 @@ _LARGE: Final = ((2e7, 1e-6, "M"), (2e4, 1e-3, "k"), (0.0, 1.0, ""))
 
 
 def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
-    """Measured effort, and what both models leave of it, over time.
+    """Measured effort (of a servo its position), and what both models leave of it, over time.
 
     The held-out recording with the largest improvement; the band is what noise alone leaves.
 
@@ -95,11 +105,13 @@ def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
         height_ratios=(0.8, *(1.0 for _ in left)),
     )
     buckets = 350 if narrow else 700
-    given = suited([_extent([stretch.effort])], pictures.effort_unit)
-    shown = thinned(stretch.time, given.factor * stretch.effort, buckets)
+    by = compared_by(diagnosis.plant)
+    unit = pictures.position_unit if by.loop else pictures.effort_unit
+    given = suited([_extent([stretch.measured])], unit)
+    shown = thinned(stretch.time, given.factor * stretch.measured, buckets)
     upper.plot(*shown, color=MEASURED, linewidth=0.9)
-    named(upper, "measured effort", narrow)
-    upper.set_ylabel(given.on_axis("effort"))
+    named(upper, f"measured {by.quantity}", narrow)
+    upper.set_ylabel(given.on_axis(by.quantity))
     band = FLOOR_TIMES * scale.factor * pictures.floor
     span = max(scale.factor * _extent([values for _, values, _ in left]), 1.3 * band)
     for panel, (name, values, colour) in zip(lower, left, strict=True):
@@ -416,7 +428,7 @@ def _share_of(share: float) -> str:
 
 
 def _axis(view: View, pictures: Pictures) -> str:
-    name, unit = _quantity(view.coordinate.axis, pictures)
+    name, unit = quantity_of(view.coordinate.axis, pictures)
     return Scale(1.0, f"{_across(view)[1]}{unit}").on_axis(name)
 
 
@@ -424,7 +436,7 @@ def _upright(view: View, pictures: Pictures, scale: Scale) -> tuple[str, Scale]:
     """What the vertical axis of a cause says, and its unit; ``scale`` is that of residuals."""
     if not view.coordinate.upright:
         return "mean residual", scale
-    name, unit = _quantity(view.coordinate.upright, pictures)
+    name, unit = quantity_of(view.coordinate.upright, pictures)
     if unit == "%":
         return name, Scale(100.0, unit)
     return name, suited([_extent([view.mean])], unit)
@@ -436,9 +448,10 @@ def _across(view: View) -> tuple[float, str]:
     return next((factor, prefix) for least, factor, prefix in _LARGE if greatest >= least)
 
 
-def _quantity(axis: str, pictures: Pictures) -> tuple[str, str]:
+def quantity_of(axis: str, pictures: Pictures) -> tuple[str, str]:
     """Name and unit of what an axis shows."""
-    name, _, unit = axis.format(x=pictures.position_unit, f=pictures.effort_unit).rpartition(", ")
+    told = axis.format(x=pictures.position_unit, f=pictures.effort_unit, e=pictures.effort_name)
+    name, _, unit = told.rpartition(", ")
     return name, unit.removeprefix("1·")
 
 

@@ -47,13 +47,17 @@ class Scale:
 
 
 def scale_of(diagnosis: Diagnosis) -> Scale:
-    """The unit that suits what the models leave: N·m or mN·m, N or mN."""
+    """The unit that suits what the models leave: N·m or mN·m, N or mN, of a servo rad or mrad."""
     sizes = [
         size
         for model in (diagnosis.baseline, diagnosis.extended)
         if model is not None
         for size in (model.train_rms, model.heldout_rms or 0.0, model.noise_floor_rms)
     ]
+    stiffness = None if diagnosis.baseline is None else diagnosis.baseline.stiffness
+    if stiffness:
+        position = suited([size / stiffness for size in sizes], diagnosis.plant.position_unit)
+        return Scale(position.factor / stiffness, position.unit)
     return suited(sizes, effort_unit_of(diagnosis))
 
 

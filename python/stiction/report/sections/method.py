@@ -18,6 +18,7 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section:
     content = {
         "fitted": diagnosis.extended is not None,
         "effects": bool(diagnosis.effects),
+        "loop": diagnosis.plant.servo,
         "shot": "(shooting)" in (diagnosis.data.get("residual") or ""),
         "version": diagnosis.version,
         "seed": diagnosis.seed,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ...compared import compared_by
 from ..numbers import percent
 from ..scale import scale_of
 from ..views import HINTS
@@ -60,7 +61,7 @@ def _ceiling(diagnosis: Diagnosis) -> str:
     if diagnosis.ceiling is None:
         return ""
     told = diagnosis.ceiling.words(bool(diagnosis.effects))
-    return f"{told[0].upper()}{told[1:]} (rms, share of the measured effort)."
+    return f"{told[0].upper()}{told[1:]} (rms, share of {compared_by(diagnosis.plant).whole})."
 
 
 def _level(diagnosis: Diagnosis) -> dict[str, Any] | None:

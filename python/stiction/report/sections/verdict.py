@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+from ...compared import compared_by
 from ..numbers import digits, percent, percent_between
 from ..scale import scale_of
 from .section import Section
@@ -87,7 +88,7 @@ def _errors(diagnosis: Diagnosis) -> dict[str, Any] | None:
     relative = [
         model.heldout_relative if tested else model.train_relative for model in (before, after)
     ]
-    scale = scale_of(diagnosis)
+    scale, by = scale_of(diagnosis), compared_by(diagnosis.plant)
     floor = after.noise_floor_rms
     return {
         "rows": "on held-out rows" if tested else "on the rows fitted",
@@ -95,6 +96,8 @@ def _errors(diagnosis: Diagnosis) -> dict[str, Any] | None:
         "before": digits(None if one is None else scale.factor * one),
         "after": scale.text(two),
         "relative": [percent(share, 2) for share in relative],
+        "error": by.error[0].upper() + by.error[1:] if by.loop else "Effort not explained",
+        "whole": by.whole,
         "floor": scale.text(floor),
         # Noise is that of the rows fitted: recordings held out may be quieter, and nothing that
         # was called unexplained lies within it.
