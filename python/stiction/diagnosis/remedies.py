@@ -57,6 +57,55 @@ MOVED: Final[_Words] = {
         "the specimen eases with motion, not with time",
         "run it in before measuring: some full strokes after each long rest",
     ),
+    "backlash": (
+        "at each change of the effort's sign the grip is lost and caught again over a gap",
+        "preload the fixture; look for a worn pin, a loose clevis or coupling",
+    ),
+    "cogging": (
+        "an effort repeats with position, whatever the direction",
+        "state it as an effect of the plant; look for what repeats over that distance: teeth, "
+        "magnets, coils",
+    ),
+    "dwell_strengthening": (
+        "the longer it has stood, the more it takes to start it",
+        "state the growth in the law; look for grease that is squeezed out, for seals that stick, "
+        "or for a contact that ages",
+    ),
+    "frictional_lag": (
+        "friction is not a function of speed: it is higher while speeding up than while slowing "
+        "down",
+        "use a law with internal states",
+    ),
+    "gravity_unbalance": (
+        "a weight off the axis pulls towards one angle",
+        "balance the moving part, or state the gravity in the plant",
+    ),
+    "load_dependent_friction": (
+        "friction grows with the load: what was measured at one load does not hold at another",
+        "measure at the loads that matter, and record the load",
+    ),
+    "rate_dependent_breakaway": (
+        "slow loading sticks harder than fast loading",
+        "state it in the law, and measure at the rates that matter",
+    ),
+    "relaxation": (
+        "a force set by motion fades while the motion is held",
+        "wait until it has died out, or unload between tests; a law with creep (hsieh_pan) "
+        "simulates it",
+    ),
+    "reverse_point_memory": (
+        "near a reversal the contact yields like a spring: small moves come back, and small loops "
+        "close",
+        "use a law with memory of reverse points (maxwell_slip, hsieh_pan)",
+    ),
+    "shaft_compliance": (
+        "the specimen does not follow the actuator at once: what holds it gives",
+        "measure the motion at the specimen; look for a soft fixture or a loose joint",
+    ),
+    "temperature_dependent_friction": (
+        "what was measured at one temperature does not hold at another",
+        "bring the specimen to temperature first, and record it",
+    ),
 }
 """Meaning and remedy where a rig moves a specimen and measures the effort."""
 RISING_LAG: Final = (
@@ -98,14 +147,16 @@ REVERSED: Final = (
 def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
     """What an effect means, and what to do about it."""
     usual = record.means, record.remedy
+    if plant.prescribed_motion:
+        usual = MOVED.get(record.name, usual)
+    elif plant.motion == "linear":
+        usual = LINEAR.get(record.name, usual)
     effect = next((each for each in plant.effects if each.name == record.name), None)
     excess = None if effect is None else effect.parameters.get("excess")
     if record.name == "frictional_lag" and excess is not None and excess.value < 0.0:
         # What comes late is a rise of friction with speed, and its loop runs the other way round.
-        usual = RISING_LAG, record.remedy
-    if plant.prescribed_motion:
-        return MOVED.get(record.name, usual)
-    return LINEAR.get(record.name, usual) if plant.motion == "linear" else usual
+        return RISING_LAG, usual[1]
+    return usual
 
 
 def recorded(plan: str, what: str, plant: Plant, separates: Sequence[str] = ()) -> str:

@@ -155,7 +155,7 @@ def no_machine(left: float, named: bool, verdict: Verdict, by: Compared = EFFORT
     return (
         f" The plant{', causes and all,' if named else ''} leaves {share} the power of {by.whole} "
         "on rows that it was not fitted to: before any cause counts, check columns, units, signs "
-        "and clocks, and what [drive] and [body] state, hold fixed or leave out, as gravity or a "
+        "and clocks, and what the plant file states, holds fixed or leaves out, as gravity or a "
         "load."
     )
 

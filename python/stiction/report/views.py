@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-__all__ = ["HINTS"]
+if TYPE_CHECKING:
+    from ..plant import Plant
+
+__all__ = ["hint"]
 
 HINTS: Final = {
     "velocity": "friction that differs by direction or with speed",
@@ -35,3 +38,18 @@ HINTS: Final = {
     "path along the motion": "friction that changes with use: run-in, wear",
 }
 """By the name of the coordinate."""
+MOVED: Final = {
+    "acceleration": "a mass between the specimen and the sensor of the effort",
+    "response to the effort": "effort and position that are not stamped alike, or a fixture that "
+    "gives",
+    "effort": "the calibration of the sensor of the effort, or friction that grows with the effort",
+    "rate of the effort": "effort and position that are not stamped alike",
+    "order over position, times effort": "the calibration of the sensor of the effort over position",
+}
+"""The same where a rig moves a specimen: there is no drive that could be the cause."""
+
+
+def hint(coordinate: str, plant: Plant) -> str:
+    """What a residual over a coordinate usually points to on such a machine, "" where unknown."""
+    usual = HINTS.get(coordinate, "")
+    return MOVED.get(coordinate, usual) if plant.prescribed_motion else usual

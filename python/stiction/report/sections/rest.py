@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ...compared import compared_by
 from ..numbers import percent
 from ..scale import scale_of
-from ..views import HINTS
+from ..views import hint
 from .section import Section
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
             "coordinate": each.coordinate,
             "share": percent(each.share),
             "limit": percent(limits.get(each.coordinate)),
-            "hint": HINTS.get(each.coordinate, ""),
+            "hint": hint(each.coordinate, diagnosis.plant),
         }
         for each in diagnosis.unexplained
     ]
