@@ -17,9 +17,10 @@ from .parameter import number
 from .plant import Plant
 from .plant_file import read_toml, section
 from .recording import SETTINGS, Columns, Recording
+from .recording.names import names_of
 from .recording.recording import recordings_of
 from .recording.session_clock import ages_of, starts_of
-from .recording.split import BLOCK_S, EDGE_S, Split, name_of, split
+from .recording.split import BLOCK_S, EDGE_S, Split, split
 from .recording.units import FloatArray, Motion
 from .wording import counted, did_you_mean, listed
 
@@ -151,15 +152,15 @@ class Session:
 
     def _row(self, index: int) -> tuple[str, ...]:
         recording = self.recordings[index]
-        of = self.replicates.get(index)
+        of, names = self.replicates.get(index), names_of(self.recordings)
         return (
-            name_of(recording, index),
+            names[index],
             recording.role or "",
             recording.kind,
             f"{self.starts[index]:.6g}{', cold' if recording.cold else ''}",
             f"{recording.duration:.6g}",
             str(len(recording)),
-            "" if of is None else name_of(self.recordings[of], of),
+            "" if of is None else names[of],
         )
 
 

@@ -13,7 +13,7 @@ from .. import session as sessions
 from ..errors import InputError
 from ..plant import Plant
 from ..recording.formats import FORMATS
-from ..recording.split import name_of
+from ..recording.names import names_of
 from ..session import Session
 
 __all__ = ["loaded", "mended", "spoken_of"]
@@ -69,7 +69,7 @@ def spoken_of(path: Path, session: Session, plant: Plant) -> Iterator[None]:
 def mended(session: Session) -> list[str]:
     """What was repaired on reading, a sentence each."""
     return [
-        f"{name_of(recording, index)}: {repair}"
-        for index, recording in enumerate(session)
+        f"{name}: {repair}"
+        for name, recording in zip(names_of(list(session)), session, strict=True)
         for repair in recording.quality
     ]

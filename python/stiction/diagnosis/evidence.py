@@ -15,7 +15,8 @@ from ..fitting.pushes import Watch
 from ..fitting.rows import Mask, Nuisances, Rows, rows_of
 from ..plant import Plant
 from ..recording import Part, Recording
-from ..recording.split import BLOCK_S, Split, name_of, split
+from ..recording.names import names_of
+from ..recording.split import BLOCK_S, Split, split
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 
@@ -134,7 +135,7 @@ class Evidence:
         self.loop = loop
         self.recordings = list(recordings)
         self.threads = threads
-        self.names = [name_of(recording, k) for k, recording in enumerate(self.recordings)]
+        self.names = names_of(self.recordings)
         self.forms = forms_of(plant, self.recordings, self.each, horizon=horizon, loop=loop)
         self.support = max(form.kernel.support for form in self.forms)
         self.overlap = max(f.kernel.support / (f.dt * f.stride) for f in self.forms)

@@ -15,9 +15,9 @@ from ..given import instance, whole
 from ..plant import Plant
 from ..recording import Check, Recording
 from ..recording.checks import DOUBTED
+from ..recording.names import names_of
 from ..recording.recording import recordings_of
 from ..recording.session_clock import remaining
-from ..recording.split import name_of
 from ..recording.usable import checks_of, usable
 from ..session import Session
 from .advice import advise
@@ -159,8 +159,8 @@ def _repairs(session: Session) -> list[tuple[str, Check]]:
     """What was mended on reading."""
     means = "these rows were filled in from their neighbours"
     return [
-        (name_of(recording, index), Check("repair", "note", str(repair), means, ""))
-        for index, recording in enumerate(session)
+        (name, Check("repair", "note", str(repair), means, ""))
+        for name, recording in zip(names_of(list(session)), session, strict=True)
         for repair in recording.quality
     ]
 

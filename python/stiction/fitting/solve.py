@@ -14,9 +14,10 @@ from ..given import instance, whole
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
+from ..recording.names import names_of
 from ..recording.recording import recordings_of
 from ..recording.session_clock import remaining
-from ..recording.split import BLOCK_S, name_of, split
+from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from .first_pass import first_pass
@@ -157,7 +158,7 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     solution = settled(first.solution, train, most=max_evaluations)
     if solution is not first.solution:
         evaluations += solution.evaluations
-    names = [name_of(recording, k) for k, recording in enumerate(recordings)]
+    names = names_of(recordings)
     pushed = [f"{name}: {c.what}; {c.means}." for name, c in pushes_told(seen.pushes, names)]
 
     def told(found: Solution) -> FitResult:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from ..errors import InputError
+from .names import names_of
 from .recording import Recording
-from .split import name_of
 
 __all__ = ["ages_of", "origin_of", "remaining", "starts_of"]
 
@@ -32,10 +32,11 @@ def starts_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
     for before, after in pairwise(order):
         end = stated[before] + recordings[before].duration
         if stated[after] < end:
+            names = names_of(recordings)
             cold = ", also of one that begins cold" if recordings[after].cold else ""
             raise InputError(
-                f"session: {name_of(recordings[after], after)} starts at "
-                f"{stated[after]:g} s, before {name_of(recordings[before], before)} ends at "
+                f"session: {names[after]} starts at "
+                f"{stated[after]:g} s, before {names[before]} ends at "
                 f"{end:.6g} s; one machine makes one recording at a time: state start_s of each, "
                 f"on one clock{cold}, or of none"
             )

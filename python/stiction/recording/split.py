@@ -14,9 +14,10 @@ from typing import Any, Final
 from ..errors import InputError, NotEnoughData
 from ..wording import counted, listed
 from .blocks import Part, blocks, check_lengths_of
+from .names import names_of
 from .recording import SPLIT_ROLES, Recording
 
-__all__ = ["BLOCK_S", "EDGE_S", "Fold", "Part", "Split", "name_of", "split"]
+__all__ = ["BLOCK_S", "EDGE_S", "Fold", "Part", "Split", "split"]
 
 BLOCK_S: Final = 2.0
 """Length of interleaved blocks: several times what friction remembers, short enough to alternate
@@ -163,11 +164,6 @@ def split(
     return _Dealer(tuple(recordings), block_s, edge_s).deal(decides=decides)
 
 
-def name_of(recording: Recording, index: int) -> str:
-    """What a recording is called in sentences: its file, or its number counted from 1."""
-    return recording.path.name if recording.path is not None else f"recording {index + 1}"
-
-
 class _Dealer:
     """One call of `split`: who has which parts so far, and what was decided."""
 
@@ -178,7 +174,7 @@ class _Dealer:
         self.recordings = recordings
         self.block_s = block_s
         self.edge_s = edge_s
-        self.names = tuple(name_of(recording, i) for i, recording in enumerate(recordings))
+        self.names = tuple(names_of(recordings))
         self.roles: list[str | None] = [recording.role for recording in recordings]
         self.parts: dict[str, list[Part]] = {role: [] for role in SPLIT_ROLES}
         self.folds: list[Fold] = []

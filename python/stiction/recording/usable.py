@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .checks import Check, check, starts
+from .names import names_of
 from .recording import Recording
-from .split import name_of
 
 __all__ = ["checks_of", "usable"]
 
 
 def checks_of(recordings: Sequence[Recording]) -> list[tuple[str, Check]]:
     """What was found in each recording, by its name."""
-    own = [(name_of(r, k), c) for k, r in enumerate(recordings) for c in check(r)]
+    named = zip(names_of(recordings), recordings, strict=True)
+    own = [(name, c) for name, recording in named for c in check(recording)]
     return own + starts(recordings)
 
 
@@ -35,7 +36,7 @@ def usable(
     str
         "" where nothing is wrong.
     """
-    names = [name_of(recording, index) for index, recording in enumerate(recordings)]
+    names = names_of(recordings)
     # What could not be mended on reading is a whole sentence, which names file and remedy itself.
     told = {
         name: sentence

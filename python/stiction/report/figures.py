@@ -32,7 +32,18 @@ from ..plot import (
     thinned,
 )
 from .numbers import NO_BREAK, digits, percent, tick
-from .panels import STEPS, beside, grid, grid_height, legend_above, named, note, shortened, ticks
+from .panels import (
+    STEPS,
+    beside,
+    grid,
+    grid_height,
+    legend_above,
+    named,
+    note,
+    shortened,
+    ticks,
+    told_apart,
+)
 from .scale import Scale, loop_scale_of, scale_of, suited
 
 if TYPE_CHECKING:
@@ -470,8 +481,9 @@ def _error_rows(diagnosis: Diagnosis, longest: int) -> list[tuple[str, float, fl
                 rows.append((name, one, two))
     stretches = _pictures(diagnosis).stretches
     if len(stretches) > 1:
-        for stretch in stretches[:MOST_RECORDINGS]:
-            name = shortened(stretch.name, longest)
+        shown = stretches[:MOST_RECORDINGS]
+        names = told_apart([stretch.name for stretch in shown], longest)
+        for name, stretch in zip(names, shown, strict=True):
             rows.append((name, _rms(stretch.before), _rms(stretch.after)))
     return [row for row in rows if math.isfinite(row[1]) and math.isfinite(row[2])]
 

@@ -7,7 +7,7 @@ from html import escape
 from importlib import resources
 from typing import TYPE_CHECKING
 
-from ..recording.split import name_of
+from ..recording.names import names_of
 from ..residual import effort_residual, free_run
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def fit_page(result: FitResult, recordings: Sequence[Recording], title: str) -> 
         if servo
         else "measured effort, what the fitted plant needs, and what is left"
     )
-    label = f"{name_of(shown, index)}: {what}"
+    label = f"{names_of(recordings)[index]}: {what}"
     picture = inline(text_of(_drawn(result, shown)), "fit", label)
     return (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'

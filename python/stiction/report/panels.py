@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
+from itertools import takewhile
 from typing import TYPE_CHECKING, Final
 
 from matplotlib.ticker import (
@@ -29,6 +32,7 @@ __all__ = [
     "note",
     "shortened",
     "ticks",
+    "told_apart",
 ]
 
 STEPS: Final = (1, 2, 5, 10)
@@ -47,6 +51,36 @@ def shortened(name: str, longest: int) -> str:
         half = (longest - 1) // 2
         shown = f"{shown[: longest - 1 - half]}…{shown[-half:]}"
     return shown.replace("$", r"\$")
+
+
+def told_apart(names: Sequence[str], longest: int) -> list[str]:
+    """Names as they can be drawn, each still another one.
+
+    Where one is too long, what all begin or end with is left out of all; whatever still looks alike
+    is counted.
+    """
+    if len(names) < 2 or all(len(name) <= longest for name in names):
+        return [shortened(name, longest) for name in names]
+    start = _shared(names)
+    end = _shared([name[start:][::-1] for name in names])
+    shown = []
+    for name in names:
+        own = name[start : len(name) - end]
+        shown.append(shortened(f"{'…' if start else ''}{own}{'…' if end else ''}", longest))
+    alike = Counter(shown)
+    return [
+        name if alike[name] < 2 else f"{k + 1}: {shortened(full, longest - 4)}"
+        for k, (name, full) in enumerate(zip(shown, names, strict=True))
+    ]
+
+
+def _shared(names: Sequence[str]) -> int:
+    """With how many characters all begin, whole words alone."""
+    same = takewhile(lambda each: len(set(each)) == 1, zip(*names, strict=False))
+    start = sum(1 for _ in same)
+    while start and names[0][start - 1].isalnum():
+        start -= 1
+    return start
 
 
 def _has_glyph(character: str) -> bool:

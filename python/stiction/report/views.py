@@ -44,7 +44,8 @@ MOVED: Final = {
     "gives",
     "effort": "the calibration of the sensor of the effort, or friction that grows with the effort",
     "rate of the effort": "effort and position that are not stamped alike",
-    "order over position, times effort": "the calibration of the sensor of the effort over position",
+    "order over position, times effort": "the calibration of the sensor of "
+    "the effort over position",
 }
 """The same where a rig moves a specimen: there is no drive that could be the cause."""
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Final
 
+from ..names import names_of
 from ..recording import Recording
 from ..session_clock import origin_of, starts_of
-from ..split import name_of
 from .finding import Check
 
 __all__ = ["DOUBTED", "starts"]
@@ -34,12 +34,13 @@ def starts(recordings: Sequence[Recording]) -> list[tuple[str, Check]]:
     order = sorted(range(len(recordings)), key=lambda k: begins[k])
     if not order:
         return []
+    names = names_of(recordings)
     origin, first = origin_of(recordings), order[0]
     found = []
     if origin != 0.0 and not recordings[first].cold:
         found.append(
             (
-                name_of(recordings[first], first),
+                names[first],
                 Check(
                     "clock",
                     "note",
@@ -53,7 +54,7 @@ def starts(recordings: Sequence[Recording]) -> list[tuple[str, Check]]:
     for before, after in pairwise(order):
         pause = begins[after] - begins[before] - recordings[before].duration
         if check := _paused(pause, recordings[after].cold):
-            found.append((name_of(recordings[after], after), check))
+            found.append((names[after], check))
     return found
 
 

@@ -1,0 +1,56 @@
+"""What recordings are called in sentences, tables and figures."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .recording import Recording
+
+__all__ = ["names_of"]
+
+
+def names_of(recordings: Sequence[Recording]) -> list[str]:
+    """A name for each recording that no other one has.
+
+    The file, with as many of its folders as tell it from others; the number, counted from 1, of a
+    recording without a file, and behind the name of one of which even the folders are alike.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+
+    Returns
+    -------
+    list of str
+    """
+    paths = [recording.path for recording in recordings]
+    depth = [1] * len(paths)
+    names = [_named(path, 1, index) for index, path in enumerate(paths)]
+    while alike := _alike(names):
+        grown = False
+        for index in alike:
+            path = paths[index]
+            if path is not None and depth[index] < len(path.parts):
+                depth[index] += 1
+                names[index] = _named(path, depth[index], index)
+                grown = True
+        if not grown:
+            for index in alike:
+                names[index] = f"{names[index]} ({index + 1})"
+            break
+    return names
+
+
+def _alike(names: Sequence[str]) -> list[int]:
+    counts = Counter(names)
+    return [index for index, name in enumerate(names) if counts[name] > 1]
+
+
+def _named(path: PurePath | None, depth: int, index: int) -> str:
+    if path is None:
+        return f"recording {index + 1}"
+    return PurePath(*path.parts[-depth:]).as_posix()
