@@ -34,7 +34,7 @@ from stiction.parameter import Parameter
 from stiction.report import write
 from stiction.report.figures import headline, most_shown
 from stiction.report.numbers import between, digits, percent, quantity, tick
-from stiction.report.panels import shortened, told_apart
+from stiction.report.panels import shortened
 from stiction.report.sections.parameters import rows_of_effect
 from stiction.stated import Effect
 
@@ -459,15 +459,6 @@ def test_names_that_cannot_be_drawn_are_drawn_in_part() -> None:
     assert shortened("run.csv", 30) == "run.csv"
     assert shortened("$a$ 名\udcff\n", 30) == r"\$a\$ ???"
     assert shortened("a_long_name_of_a_recording.csv", 15) == "a_long_…ing.csv"
-
-
-def test_names_that_are_too_long_stay_apart() -> None:
-    logs = [f"sysid_lift_and_drop_2025-03-17_{k}0303.json" for k in (16, 17, 18)]
-    assert told_apart(logs, 16) == ["…160303…", "…170303…", "…180303…"]
-    twins = [f"{'a' * 20}{k}{'b' * 20}{m}{'c' * 20}" for k in "12" for m in "12"]
-    assert len(set(told_apart(twins, 16))) == 4
-    assert max(len(name) for name in told_apart(twins, 16)) <= 16
-    assert told_apart(["run.csv", "walk.csv"], 16) == ["run.csv", "walk.csv"]
 
 
 def test_a_headline_is_drawn_only_from_pictures() -> None:

@@ -279,6 +279,7 @@ class Conclusion:
                 *([] if event is None else [event.advice()]),
                 *advise(causes, unexplained, selection.blind, self.checks, final.plant),
             ),
+            better_law="" if better is None else better.law,
             success=not self.interrupted,
             message=MESSAGE if self.interrupted else found.message,
             pictures=Pictures(

@@ -306,6 +306,8 @@ class Diagnosis:
         Which rows trained, decided and tested, in words; "" where nothing was split.
     ceiling : Ceiling or None
         How much of the error could be explained, where recordings were made twice.
+    better_law : str
+        Friction law that alone explains clearly more than what was named, "" where none does.
     pictures : Pictures or None
         What the figures are drawn from.
     """
@@ -329,6 +331,7 @@ class Diagnosis:
     seconds: float = 0.0
     split: str = field(default="", repr=False)
     ceiling: Ceiling | None = None
+    better_law: str = ""
     pictures: Pictures | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:

@@ -26,6 +26,9 @@ TITLES: Final = {
 }
 INTERRUPTED: Final = "Interrupted before anything was named"
 NAMED_IN_PART: Final = "The simulation lacks {}, and something that has no name"
+LAW: Final = "The friction law of the simulation lacks something"
+LAW_AND_EFFECTS: Final = f"{LAW}, and effects beside it may only stand for that"
+"""Where another law explains more than what was named the sentence begins with the law as well."""
 SEVERAL: Final = "The simulation lacks effects that are known by name"
 
 
@@ -52,6 +55,8 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section:
 def _title(diagnosis: Diagnosis) -> str:
     if not diagnosis.success and not diagnosis.effects:
         return INTERRUPTED
+    if diagnosis.better_law:
+        return LAW_AND_EFFECTS if diagnosis.effects else LAW
     if diagnosis.verdict == "unexplained" and diagnosis.effects:
         several = len(diagnosis.effects) > 1
         return NAMED_IN_PART.format("known effects" if several else "a known effect")
