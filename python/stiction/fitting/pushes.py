@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -15,22 +16,29 @@ from .rows import Mask, Push, rows_of
 
 __all__ = ["LEFT_OUT", "Watch", "told"]
 
-WINDOW_S: Final = 0.1
-"""Length of the windows whose power is compared: what is shorter is a spike, no push."""
+WINDOWS_S: Final = (0.1, 0.3, 0.8)
+"""Lengths of the windows whose momentum is compared: what is shorter than the first is a spike, no
+push, and a weak hand that stays shows in the last."""
 TIMES: Final = 6.0
-"""A window stands out where the effort that it lacks is so many times that of the usual one..."""
+"""A window stands out where the effort that it lacks is so many times that of the usual one, in the
+session and in its own recording..."""
 LEAST_SHARE: Final = 2.5
+LEAST_MOVING: Final = 0.5
 LEAST_OF_EFFORT: Final = 0.1
 """... and these shares of the dry friction, which itself changes by twice its level behind a
-reversal, and of the usual effort."""
+reversal and is better known of a machine that moves on, and of the usual effort."""
 TURNS_WITHIN: Final = 0.05
 """Share of the usual speed within which dry friction turns round, here."""
+MOVES: Final = 0.1
+"""Share of the usual speed of the session from which on a machine moves on..."""
+SETTLES_S: Final = 0.1
+"""... so long before and behind."""
 LEVEL: Final = 0.75
 """A push lasts as long as windows beside it hold this share of what makes one."""
 LASTS_S: Final = 0.15
 """A push lasts so long at least."""
-GAP_S: Final = 0.25
-"""Shorter pauses between pushes belong to one."""
+TAILS: Final = 0.03
+"""Share of what it lacks before and behind the times at which it begins and ends."""
 MARGIN_S: Final = 0.2
 """Left out before and behind: a hand is there before it is seen."""
 MOST_TIME: Final = 0.4
@@ -71,8 +79,13 @@ class Watch:
     """What a machine usually needs, and when something else moved it.
 
     A regression that rows out of the ordinary have no say in tells what the effort depends on:
-    acceleration, direction, speed and position. A push is a stretch of time that lacks much effort
-    where rows alike elsewhere lack none: what a machine does, it does again.
+    acceleration, direction, speed and position. A push is a stretch of time that lacks effort of
+    one sign, beyond what is usual in the session and in its own recording and beyond what friction
+    may be, where rows alike elsewhere lack none: what a machine does, it does again.
+
+    What the mean effort of a window lacks is the momentum that nobody accounts for. The longer the
+    window, the less of it noise and effort that is late can make, so a weak hand shows in long
+    ones.
 
     Parameters
     ----------
@@ -91,26 +104,27 @@ class Watch:
         parts: Sequence[Part],
     ) -> None:
         self.plant, self.forms, self.recordings = plant, list(forms), list(recordings)
-        self.usual = self.least = 0.0
         seen = list(enumerate(self._masks(parts)))
         seen = [(k, mask) for k, mask in seen if mask.any()]
         # What a moved machine needs is measured, and a servo's effort is a guess of its own law.
         self._greatest = BEYOND * max(
-            (float(np.max(np.abs(self._effort(self.forms[k])[mask]))) for k, mask in seen),
+            (float(np.max(np.abs(self._effort(self.forms[k], mask)[mask]))) for k, mask in seen),
             default=0.0,
         )
         self._able = bool(seen) and not plant.prescribed_motion and not plant.servo
         if not self._able:
             return
-        columns = np.vstack([self._columns(self.forms[k])[mask] for k, mask in seen])
-        effort = np.concatenate([self._effort(self.forms[k])[mask] for k, mask in seen])
+        columns = np.vstack([self._columns(self.forms[k], mask)[mask] for k, mask in seen])
+        effort = np.concatenate([self._effort(self.forms[k], mask)[mask] for k, mask in seen])
         self._coefficients = _robust(columns, effort)
-        self._lacked = np.abs(effort - columns @ self._coefficients)
-        self.usual = float(np.median(self._lacked))
-        dry = abs(float(self._coefficients[1]))
-        level = float(np.sqrt(np.mean(effort**2)))
-        self.least = max(TIMES * self.usual, LEAST_SHARE * dry, LEAST_OF_EFFORT * level)
-        places = np.vstack([self._places(self.forms[k])[mask] for k, mask in seen])
+        self._dry = abs(float(self._coefficients[1]))
+        speeds = np.concatenate([self.forms[k].velocity[mask] for k, mask in seen])
+        self._speed = float(np.sqrt(np.mean(speeds**2)))
+        lacks = [self._lacks(self.forms[k], mask)[:, mask] for k, mask in seen]
+        self._lacked = np.abs(np.concatenate(lacks, axis=1))
+        self._usual = np.median(self._lacked, axis=1)
+        self._level = float(np.sqrt(np.mean(effort**2)))
+        places = np.vstack([self._places(self.forms[k], mask)[mask] for k, mask in seen])
         self._sizes = np.maximum(np.sqrt(np.mean(places**2, axis=0)), 1e-300)
         self._known = places / self._sizes
         self._owner = np.concatenate([np.full(int(mask.sum()), k) for k, mask in seen])
@@ -127,27 +141,53 @@ class Watch:
         return found
 
     def _look(self, index: int, mask: Mask) -> list[Push]:
-        form, begin = self.forms[index], float(self.recordings[index].time[0])
-        lacks = self._effort(form) - self._columns(form) @ self._coefficients
-        size = np.where(mask, np.abs(lacks), 0.0)
-        spacing = form.dt * form.stride
-        out = size > self.least
-        found = [
-            (first, last)
-            for first, last in _stretches(size > LEVEL * self.least, round(GAP_S / spacing))
-            if out[first:last].any() and mask[first:last].sum() * spacing >= LASTS_S
-        ]
-        lasting = sum(int(mask[first:last].sum()) for first, last in found)
-        if len(found) > MOST_PUSHES or lasting > MOST_TIME * mask.sum():
+        form = self.forms[index]
+        lacks = self._lacks(form, mask)
+        turns = self._turns(form)
+        # What is lacked for longer than a push may last is how this recording is. Of rows in which
+        # friction may be anything between its levels nothing is known.
+        own = np.quantile(np.where(turns, 0.0, np.abs(lacks))[:, mask], 1.0 - MOST_TIME, axis=1)
+        usual = np.maximum(self._usual, own)
+        least = np.maximum(TIMES * usual[:, None], self._allowed(form, mask, turns))
+        found, outside = [], []
+        for window in range(len(WINDOWS_S)):
+            share = np.where(mask, lacks[window] / np.maximum(least[window], 1e-300), 0.0)
+            for first, last in _lasting(share, round(LASTS_S / (form.dt * form.stride))):
+                rows = first + np.flatnonzero(np.abs(share[first:last]) > 1.0)
+                sign = np.sign(share[rows[0]])
+                begin, end = _narrowed(form, sign * lacks[0], least[window], window, first, last)
+                found.append(self._push(index, begin, end))
+                sure = self._from_outside(index, mask, window, np.abs(lacks[window]), rows)
+                if sure is not False:
+                    outside.append(replace(found[-1], sure=sure is True))
+        pushes = _joined(outside)
+        time = form.time[mask] - self.recordings[index].time[0]
+        left = sum(int(((time >= push.start) & (time <= push.end)).sum()) for push in pushes)
+        if len(_joined(found)) > MOST_PUSHES or left > MOST_TIME * len(time):
             return []
-        pushes = []
-        for first, last in found:
-            outside = self._from_outside(index, size, first + np.flatnonzero(out[first:last]))
-            if outside is not False:
-                start = max(float(form.time[first] - begin) - MARGIN_S, 0.0)
-                end = float(form.time[last - 1] - begin) + MARGIN_S
-                pushes.append(Push(index, start, end, sure=outside is True))
         return pushes
+
+    def _push(self, index: int, first: int, last: int) -> Push:
+        time = self.forms[index].time - self.recordings[index].time[0]
+        start = max(float(time[first]) - MARGIN_S, 0.0)
+        return Push(index, start, float(time[last - 1]) + MARGIN_S)
+
+    def _lacks(self, form: WeakForm, mask: Mask) -> FloatArray:
+        """What the mean effort of each window lacks; shape (windows, rows)."""
+        lacks = form.measured(self.plant) - self._terms(form) @ self._coefficients
+        return np.stack([_mean(form, lacks, mask, length) for length in WINDOWS_S])
+
+    def _turns(self, form: WeakForm) -> Mask:
+        """Where the machine rests or turns round."""
+        slow = np.abs(form.velocity) <= MOVES * self._speed
+        turns: Mask = _mean(form, slow.astype(float), None, 2.0 * SETTLES_S) > 0.0
+        return turns
+
+    def _allowed(self, form: WeakForm, mask: Mask, turns: Mask) -> FloatArray:
+        """What it may lack as friction and effort are not known better; shape (windows, rows)."""
+        dry = np.where(turns, LEAST_SHARE, LEAST_MOVING) * self._dry
+        windows = np.stack([_mean(form, dry, mask, length) for length in WINDOWS_S])
+        return np.maximum(windows, LEAST_OF_EFFORT * self._level)
 
     def _masks(self, parts: Sequence[Part]) -> list[Mask]:
         return [
@@ -155,7 +195,9 @@ class Watch:
             for k, (form, recording) in enumerate(zip(self.forms, self.recordings, strict=True))
         ]
 
-    def _from_outside(self, index: int, size: FloatArray, rows: np.ndarray) -> bool | None:
+    def _from_outside(
+        self, index: int, mask: Mask, window: int, size: FloatArray, rows: np.ndarray
+    ) -> bool | None:
         """Whether rows alike elsewhere lack nothing, or no drive could have done it.
 
         None where no row is like these: what happens once cannot be fitted and judged.
@@ -171,18 +213,21 @@ class Watch:
             return None
         lacks = float(np.sqrt(np.mean(size[rows] ** 2)))
         near, which = cKDTree(self._known[elsewhere]).query(
-            self._places(form)[rows] / self._sizes, NEIGHBOURS, distance_upper_bound=NEAR
+            self._places(form, mask)[rows] / self._sizes, NEIGHBOURS, distance_upper_bound=NEAR
         )
         known = np.isfinite(near).all(axis=1)
-        nothing = np.median(self._lacked[elsewhere][which[known]], axis=1) < LACKS * lacks
+        nothing = np.median(self._lacked[window, elsewhere][which[known]], axis=1) < LACKS * lacks
         if float(np.mean(known)) <= ALIKE_SHARE:
             return None
         return bool(nothing.sum() > OF_THOSE * known.sum())
 
-    def _effort(self, form: WeakForm) -> FloatArray:
-        return _mean(form, form.measured(self.plant))
+    def _effort(self, form: WeakForm, mask: Mask) -> FloatArray:
+        return _mean(form, form.measured(self.plant), mask)
 
-    def _columns(self, form: WeakForm) -> FloatArray:
+    def _columns(self, form: WeakForm, mask: Mask) -> FloatArray:
+        return _mean(form, self._terms(form), mask)
+
+    def _terms(self, form: WeakForm) -> FloatArray:
         """What the effort may depend on, in each row."""
         speed = form.velocity
         scale = max(float(np.sqrt(np.mean(speed**2))), 1e-300)
@@ -194,11 +239,12 @@ class Watch:
             np.ones_like(speed),
             *self._at(form),
         ]
-        return _mean(form, np.column_stack(columns))
+        return np.column_stack(columns)
 
-    def _places(self, form: WeakForm) -> FloatArray:
+    def _places(self, form: WeakForm, mask: Mask) -> FloatArray:
         """Where the machine is in each row: position, speed and acceleration."""
-        return _mean(form, np.column_stack([*self._at(form), form.velocity, form.acceleration]))
+        places = np.column_stack([*self._at(form), form.velocity, form.acceleration])
+        return _mean(form, places, mask)
 
     def _at(self, form: WeakForm) -> list[FloatArray]:
         position = form.mean(form.position[1:])
@@ -227,20 +273,64 @@ def _robust(columns: FloatArray, effort: FloatArray) -> FloatArray:
     return found
 
 
-def _mean(form: WeakForm, values: FloatArray) -> FloatArray:
-    """Mean over a window about each row: a hand pushes one way for a while, noise does not."""
-    length = min(max(1, round(WINDOW_S / (form.dt * form.stride))), len(values))
-    kernel = np.ones(length) / length
-    found: FloatArray = np.apply_along_axis(np.convolve, 0, values, kernel, "same")
-    return found
+def _mean(
+    form: WeakForm, values: FloatArray, mask: Mask | None, seconds: float = WINDOWS_S[0]
+) -> FloatArray:
+    """Mean over those rows of a window about each row that may be looked at."""
+    length = min(max(1, round(seconds / (form.dt * form.stride))), len(values))
+    rows = np.arange(len(values))
+    first = np.maximum(rows - length // 2, 0)
+    behind = np.minimum(rows + (length + 1) // 2, len(values))
+    seen = np.ones(len(values)) if mask is None else mask.astype(float)
+    seen = seen.reshape(-1, *[1] * (values.ndim - 1))
+
+    def summed(each: FloatArray) -> FloatArray:
+        total = np.concatenate([np.zeros_like(each[:1]), np.cumsum(each, axis=0)])
+        found: FloatArray = total[behind] - total[first]
+        return found
+
+    return summed(values * seen) / np.maximum(summed(seen), 1.0)
 
 
-def _stretches(chosen: Mask, gap: int) -> list[tuple[int, int]]:
-    """First and behind the last of each stretch of chosen rows, short gaps bridged."""
-    places = np.flatnonzero(chosen)
-    if len(places) == 0:
-        return []
-    breaks = np.flatnonzero(np.diff(places) > gap)
-    firsts = np.concatenate([places[:1], places[breaks + 1]])
-    lasts = np.concatenate([places[breaks], places[-1:]]) + 1
-    return list(zip(firsts.tolist(), lasts.tolist(), strict=True))
+def _joined(pushes: Sequence[Push]) -> list[Push]:
+    """Pushes in their order; what overlaps is one, and sure where a part of it is."""
+    joined: list[Push] = []
+    for push in sorted(pushes, key=lambda push: push.start):
+        if joined and push.start <= joined[-1].end:
+            last = joined.pop()
+            end, sure = max(last.end, push.end), last.sure or push.sure
+            push = replace(last, end=end, sure=sure)
+        joined.append(push)
+    return joined
+
+
+def _lasting(share: FloatArray, least: int) -> list[tuple[int, int]]:
+    """Stretches of so many rows that lack effort of one sign.
+
+    What is late lacks effort of one sign and then of the other, and each of them only for a moment.
+    """
+    return [
+        (first, last)
+        for sign in (1.0, -1.0)
+        for first, last in _stretches(sign * share > LEVEL)
+        if last - first >= least and float(np.max(sign * share[first:last])) > 1.0
+    ]
+
+
+def _narrowed(
+    form: WeakForm, lack: FloatArray, least: FloatArray, window: int, first: int, last: int
+) -> tuple[int, int]:
+    """The part of a stretch, found through a window, that makes the mean so large."""
+    half = round(0.5 * WINDOWS_S[window] / (form.dt * form.stride))
+    first, last = max(first - half, 0), min(last + half, len(lack))
+    beyond = np.cumsum(np.maximum(lack[first:last] - LEVEL * least[first:last], 0.0))
+    if beyond[-1] <= 0.0:
+        return first, last
+    begin, end = np.searchsorted(beyond, (TAILS * beyond[-1], (1.0 - TAILS) * beyond[-1]))
+    return first + int(begin), first + int(end) + 1
+
+
+def _stretches(chosen: Mask) -> list[tuple[int, int]]:
+    """First and behind the last of each stretch of chosen rows."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(int)))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
