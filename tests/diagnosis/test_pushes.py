@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,10 @@ from tests.reference.coulomb_reference import simulate_coulomb
 
 import stiction as st
 from stiction.diagnosis.words import push_words
+from stiction.fitting.pushes import Watch
 from stiction.fitting.rows import Push
+from stiction.recording.blocks import Part
+from stiction.weak_form import WeakForm
 
 DT, SECONDS = 1e-3, 10.0
 TRUE = {"inertia": 0.006, "coulomb": 0.25, "viscous": 0.02}
@@ -110,3 +114,87 @@ def test_nobody_pushes_where_the_machine_itself_lacks_something() -> None:
 def test_what_comes_all_the_time_is_no_push() -> None:
     often = tuple((0.7 * k + 0.3, 0.7 * k + 0.6, 1.8) for k in range(13))
     assert "pushed" not in st.fit(PLANT, [recorded(5, often)]).split
+
+
+def helped(recording: st.Recording, hands: Times, *, seconds: float = SECONDS) -> st.Recording:
+    """The same motion, a part of which hands did for the drive."""
+    rows = round(seconds / DT)
+    time = recording.time[:rows]
+    assert recording.input is not None
+    assert recording.position is not None
+    effort = recording.input[:rows].copy()
+    for start, end, size in hands:
+        effort[(time >= start) & (time < end)] -= size
+    return st.Recording(time, effort, recording.position[:rows])
+
+
+def test_a_weak_hand_that_stays_is_told_where_friction_is_known(pushed: list[st.Recording]) -> None:
+    still = pushed[1]
+    ((start, end),), *others = watched(PLANT, [helped(still, ((7.0, 9.0, 0.6),)), still])
+    assert (start, end) == pytest.approx((7.0, 9.0), abs=0.3)
+    assert others == [[]]
+
+
+def test_what_would_be_left_out_of_a_recording_counts_as_a_whole(
+    pushed: list[st.Recording],
+) -> None:
+    still, hands = pushed[1], ((0.8, 1.1, 2.5), (1.7, 2.0, 2.5), (2.6, 2.9, 2.5))
+    assert watched(PLANT, [still, helped(still, hands, seconds=3.6)]) == [[], []]
+
+
+@pytest.fixture
+def pendulum(shared_data: Path) -> dict[str, list[tuple[float, float]]]:
+    """Times in which something pushed, of each run; all of them learnt from."""
+    paths = sorted((shared_data / "dfki_simple_pendulum").glob("*.csv"))
+    columns = {"time": "time", "position": "position"}
+    loaded = [
+        st.Recording.load(
+            path, columns | {"input": {"name": "torque", "unit": "Nm"}}, motion="rotary"
+        )
+        for path in paths
+    ]
+    seen = watched(PLANT, loaded)
+    return {path.stem: seen[k] for k, path in enumerate(paths)}
+
+
+def watched(plant: st.Plant, session: list[st.Recording]) -> list[list[tuple[float, float]]]:
+    forms = [WeakForm(plant, each) for each in session]
+    parts = [Part(k, 0, len(each)) for k, each in enumerate(session)]
+    pushes = Watch(plant, forms, session, parts).look(parts)
+    return [[(p.start, p.end) for p in pushes if p.recording == k] for k in range(len(session))]
+
+
+# Efforts of the motor against inertia, weight and friction: what else moved the pendulum, s.
+HANDS = {
+    "direct_collocation": (),
+    "energy_shaping": ((6.8, 7.6), (11.2, 12.3), (15.95, 16.2)),
+    "energy_shaping_1kg": ((17.0, 17.35),),
+    "pd_system_identification": (),
+    "sac": ((10.2, 10.9), (13.9, 15.0), (17.95, 18.2), (22.0, 22.25)),
+    "torque_limited_swingup": ((6.75, 7.15), (10.0, 11.8)),
+}
+
+
+@pytest.mark.parametrize("run", HANDS)
+def test_hands_at_a_pendulum_are_told_from_its_motor(
+    pendulum: dict[str, list[tuple[float, float]]], run: str
+) -> None:
+    assert len(pendulum[run]) == len(HANDS[run])
+    for (first, last), (start, end) in zip(HANDS[run], pendulum[run], strict=True):
+        assert min(last, end) - max(first, start) > 0.75 * (last - first)
+
+
+def test_nobody_pushes_a_screw_or_a_mounting_head(shared_data: Path) -> None:
+    for name, columns, gain in (
+        ("emps/DATA_EMPS.mat", ("t", "vir", "qm"), 35.15065),
+        ("pick_and_place/headdata_first_10s.mat", ("t", "u", "y"), 1.0),
+    ):
+        time, volts, position = columns
+        recording = st.Recording.load(
+            shared_data / name,
+            {"time": time, "input": {"name": volts, "unit": "V"}, "position": position},
+            motion="linear",
+        )
+        plant = {"motion": {"kind": "linear"}, "drive": {"gain": gain}}
+        plant |= {"friction": {"law": "coulomb"}}
+        assert watched(st.Plant.from_dict(plant), [recording]) == [[]]
