@@ -60,8 +60,9 @@ lint: $(READY)
 rust-tests: $(READY)
 	cargo test --quiet
 
+# Files go over the processor's cores, each whole, for its tests share what was made once.
 python-tests: $(READY)
-	$(BIN)/pytest --quiet
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --maxprocesses 8 --dist loadfile
 
 # Scores of the diagnosis on sessions with a hidden truth; goes on where it was interrupted.
 blind: $(READY)
@@ -71,7 +72,9 @@ blind: $(READY)
 wheel: $(READY)
 	$(BIN)/maturin build --quiet --release --out dist
 
+# Measures what a wheel has, not the editable build, which is made in less time and is slower.
 bench: $(READY)
+	$(BIN)/maturin develop --quiet --release
 	cargo bench
 	$(BIN)/python benches/step_overhead.py
 

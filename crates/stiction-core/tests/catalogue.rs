@@ -5,10 +5,11 @@ mod common;
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use common::{AROUND, Stream, column_amid, drawn, motor, positions, run};
 use stiction_core::effects::{EFFECTS, Scale, neutral_values};
-use stiction_core::friction::{Channels, LAWS, Statistics};
+use stiction_core::friction::{Channels, LAWS, LawRecord, Statistics};
 use stiction_core::model::{FrictionModel, LawSpec};
 use stiction_core::motor::{Column, EffectSpec, Motor, MotorSpec, PerSample, Running};
 use stiction_core::scalar::{Dual, Scalar};
@@ -238,93 +239,110 @@ fn end_state(spec: &MotorSpec, inputs: &[f64], dt: f64) -> (f64, Vec<Statistics>
 
 #[test]
 fn gradients_equal_central_differences_on_the_same_branches() {
+    // The longest test by far: its laws go over the processor's cores.
+    let next = AtomicUsize::new(0);
+    let worker = || {
+        let mut compared = 0;
+        while let Some(law) = LAWS.get(next.fetch_add(1, Ordering::Relaxed)) {
+            compared += compare_gradients(law);
+        }
+        compared
+    };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let compared: usize = std::thread::scope(|scope| {
+        let started: Vec<_> = (0..cores).map(|_| scope.spawn(worker)).collect();
+        started.into_iter().map(|one| one.join().unwrap()).sum()
+    });
+    assert!(compared > 100, "only {compared} comparisons ran on equal branches");
+}
+
+/// Holds the exact gradients of random motors with a law against chords; how many could be.
+fn compare_gradients(law: &'static LawRecord) -> usize {
     let mut compared = 0;
-    for law in LAWS {
-        let mut stream = Stream::of(law, 11);
-        for _ in 0..6 {
-            let spec = MotorSpec {
-                effects: EFFECTS
-                    .iter()
-                    .map(|e| EffectSpec {
-                        record: e,
-                        values: e.parameters.iter().map(|p| p.typical * 0.5).collect(),
-                    })
-                    .collect(),
-                gravity_amplitude: 0.1,
-                gravity_zero: 0.05,
-                ..MotorSpec::new(0.0076 * stream.log(0.5, 2.0), 1.0, drawn(law, &mut stream))
+    let mut stream = Stream::of(law, 11);
+    for _ in 0..6 {
+        let spec = MotorSpec {
+            effects: EFFECTS
+                .iter()
+                .map(|e| EffectSpec {
+                    record: e,
+                    values: e.parameters.iter().map(|p| p.typical * 0.5).collect(),
+                })
+                .collect(),
+            gravity_amplitude: 0.1,
+            gravity_zero: 0.05,
+            ..MotorSpec::new(0.0076 * stream.log(0.5, 2.0), 1.0, drawn(law, &mut stream))
+        };
+        let inputs = excitation(150);
+        // No delay is a whole number of these: there its derivative is that to one side.
+        let dt = 4.7e-4;
+        if amplifies_round_off(&spec, &inputs, dt) {
+            continue;
+        }
+        let parameters = spec.parameters();
+        let paths: Vec<String> = parameters.iter().map(|(path, _)| path.clone()).collect();
+        let fresh = Motor::new(spec.clone()).unwrap();
+        let exact =
+            sensitivity(&spec, fresh.running(), &inputs, AROUND, PerSample::Same(dt), &paths)
+                .unwrap();
+        let (position, _, farthest) = end_state(&spec, &inputs, dt);
+        for (index, (path, value)) in parameters.iter().enumerate() {
+            let perturbed = |factor: f64| {
+                let mut values: Vec<f64> = parameters.iter().map(|(_, v)| *v).collect();
+                values[index] = value + factor;
+                respec(&spec, &values)
             };
-            let inputs = excitation(150);
-            // No delay is a whole number of these: there its derivative is that to one side.
-            let dt = 4.7e-4;
-            if amplifies_round_off(&spec, &inputs, dt) {
+            if !value.is_finite() {
                 continue;
             }
-            let parameters = spec.parameters();
-            let paths: Vec<String> = parameters.iter().map(|(path, _)| path.clone()).collect();
-            let fresh = Motor::new(spec.clone()).unwrap();
-            let exact =
-                sensitivity(&spec, fresh.running(), &inputs, AROUND, PerSample::Same(dt), &paths)
-                    .unwrap();
-            let (position, _, farthest) = end_state(&spec, &inputs, dt);
-            for (index, (path, value)) in parameters.iter().enumerate() {
-                let perturbed = |factor: f64| {
-                    let mut values: Vec<f64> = parameters.iter().map(|(_, v)| *v).collect();
-                    values[index] = value + factor;
-                    respec(&spec, &values)
-                };
-                if !value.is_finite() {
-                    continue;
-                }
-                // Three sizes: where they disagree the difference itself is not to be trusted.
-                let chord = |size: f64| {
-                    let up = end_state(&perturbed(size), &inputs, dt);
-                    let down = end_state(&perturbed(-size), &inputs, dt);
-                    let bend = (up.0 - 2.0 * position + down.0) / (2.0 * size);
-                    (up.1 == down.1).then_some(((up.0 - down.0) / (2.0 * size), bend))
-                };
-                let scale = value.abs().max(1e-3);
-                let (Some((wide, _)), Some((middle, wide_bend)), Some((narrow, narrow_bend))) =
-                    (chord(8e-6 * scale), chord(4e-6 * scale), chord(2e-6 * scale))
-                else {
-                    continue;
-                };
-                // Chords to either side that differ as much over half the width: a kink lies in it,
-                // where some branch that no statistics count changes inside a sample.
-                let (bent, wider) = (narrow_bend.abs(), wide_bend.abs());
-                if bent > 1e-6 * narrow.abs() && bent > 0.7 * wider {
-                    continue;
-                }
-                let gradient = exact.position[(index + 1) * inputs.len() - 1];
-                // A difference of positions that were of this size has no more digits than that, and
-                // two chords put together have 5/3 of the round-off of the narrow one.
-                let digits = 5.0 / 3.0 * 16.0 * f64::EPSILON * farthest / (2e-6 * scale);
-                // Beside a curve, whose bend falls with the width, a smaller kink stands out.
-                let kink = (2.0 * narrow_bend - wide_bend).abs();
-                if kink > 0.5 * (1e-6 * narrow.abs() + digits) {
-                    continue;
-                }
-                // A smooth chord comes four times closer with half the width; one with a kink away
-                // from its middle, J/2 (1 - distance / width) off, changes the more the narrower.
-                let (wider, noise) = ((wide - middle).abs(), (middle - narrow).abs());
-                if noise > 0.5 * wider + 1e-7 * narrow.abs() + digits {
-                    continue;
-                }
-                // Richardson: the error of the chord falls with the square of its size.
-                let chord = narrow + (narrow - middle) / 3.0;
-                if noise > 1e-6 * chord.abs() || digits > 1e-5 * chord.abs() {
-                    continue;
-                }
-                assert!(
-                    (gradient - chord).abs() <= 1e-6 * chord.abs() + digits,
-                    "{path}: {gradient} against {chord} ± {noise} ± {digits} of {:?}",
-                    spec.friction
-                );
-                compared += 1;
+            // Three sizes: where they disagree the difference itself is not to be trusted.
+            let chord = |size: f64| {
+                let up = end_state(&perturbed(size), &inputs, dt);
+                let down = end_state(&perturbed(-size), &inputs, dt);
+                let bend = (up.0 - 2.0 * position + down.0) / (2.0 * size);
+                (up.1 == down.1).then_some(((up.0 - down.0) / (2.0 * size), bend))
+            };
+            let scale = value.abs().max(1e-3);
+            let (Some((wide, _)), Some((middle, wide_bend)), Some((narrow, narrow_bend))) =
+                (chord(8e-6 * scale), chord(4e-6 * scale), chord(2e-6 * scale))
+            else {
+                continue;
+            };
+            // Chords to either side that differ as much over half the width: a kink lies in it,
+            // where some branch that no statistics count changes inside a sample.
+            let (bent, wider) = (narrow_bend.abs(), wide_bend.abs());
+            if bent > 1e-6 * narrow.abs() && bent > 0.7 * wider {
+                continue;
             }
+            let gradient = exact.position[(index + 1) * inputs.len() - 1];
+            // A difference of positions that were of this size has no more digits than that, and
+            // two chords put together have 5/3 of the round-off of the narrow one.
+            let digits = 5.0 / 3.0 * 16.0 * f64::EPSILON * farthest / (2e-6 * scale);
+            // Beside a curve, whose bend falls with the width, a smaller kink stands out.
+            let kink = (2.0 * narrow_bend - wide_bend).abs();
+            if kink > 0.5 * (1e-6 * narrow.abs() + digits) {
+                continue;
+            }
+            // A smooth chord comes four times closer with half the width; one with a kink away
+            // from its middle, J/2 (1 - distance / width) off, changes the more the narrower.
+            let (wider, noise) = ((wide - middle).abs(), (middle - narrow).abs());
+            if noise > 0.5 * wider + 1e-7 * narrow.abs() + digits {
+                continue;
+            }
+            // Richardson: the error of the chord falls with the square of its size.
+            let chord = narrow + (narrow - middle) / 3.0;
+            if noise > 1e-6 * chord.abs() || digits > 1e-5 * chord.abs() {
+                continue;
+            }
+            assert!(
+                (gradient - chord).abs() <= 1e-6 * chord.abs() + digits,
+                "{path}: {gradient} against {chord} ± {noise} ± {digits} of {:?}",
+                spec.friction
+            );
+            compared += 1;
         }
     }
-    assert!(compared > 100, "only {compared} comparisons ran on equal branches");
+    compared
 }
 
 /// Whether a machine that sticks and slips on a swinging shaft makes of round-off, which differs
