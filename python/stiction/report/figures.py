@@ -44,7 +44,7 @@ from .panels import (
     ticks,
     told_apart,
 )
-from .scale import Scale, loop_scale_of, scale_of, suited
+from .scale import Scale, loop_scale_of, prefixed, scale_of, suited
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -81,8 +81,6 @@ MOST_PANELS: Final = 12
 """Coordinates that are drawn; the others are flat, and stand in the table."""
 TOGETHER: Final = 0.012
 """Stretches nearer than this share of the axis are drawn as one."""
-_LARGE: Final = ((2e7, 1e-6, "M"), (2e4, 1e-3, "k"), (0.0, 1.0, ""))
-"""Places from which on they are drawn in other units: least, factor, prefix."""
 
 
 def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
@@ -454,9 +452,11 @@ def _upright(view: View, pictures: Pictures, scale: Scale) -> tuple[str, Scale]:
 
 
 def _across(view: View) -> tuple[float, str]:
-    """What the places of a view are multiplied with, and the prefix of their unit then."""
-    greatest = _extent([view.at])
-    return next((factor, prefix) for least, factor, prefix in _LARGE if greatest >= least)
+    """What the places of a view are multiplied with, and the prefix of their unit then.
+
+    Small ones keep the unit that the machine moves in, so that figures can be compared.
+    """
+    return prefixed(_extent([view.at]), at_least=1.0)
 
 
 def quantity_of(axis: str, pictures: Pictures) -> tuple[str, str]:

@@ -12,7 +12,7 @@ from .numbers import quantity
 if TYPE_CHECKING:
     from ..diagnosis.result import Diagnosis
 
-__all__ = ["Scale", "effort_unit_of", "loop_scale_of", "scale_of", "suited"]
+__all__ = ["Scale", "effort_unit_of", "loop_scale_of", "prefixed", "scale_of", "suited"]
 
 _PREFIXES: Final = (
     (1e7, 1e-6, "M"),
@@ -84,8 +84,11 @@ def suited(sizes: Iterable[float], unit: str) -> Scale:
     """The unit that writes the largest of these SI values without many zeros; "" for none."""
     if unit in ("", "1"):
         return Scale(1.0, "")
-    largest = max((size for size in sizes if math.isfinite(size)), default=1.0)
-    for least, factor, prefix in _PREFIXES:
-        if largest >= least:
-            return Scale(factor, prefix + unit)
-    return Scale(1.0, unit)
+    factor, prefix = prefixed(max((size for size in sizes if math.isfinite(size)), default=1.0))
+    return Scale(factor, prefix + unit)
+
+
+def prefixed(largest: float, *, at_least: float = 0.0) -> tuple[float, str]:
+    """Factor and prefix of the unit that suits values up to this one, taken as ``at_least``."""
+    size = max(largest, at_least)
+    return next((factor, prefix) for least, factor, prefix in _PREFIXES if size >= least)
