@@ -120,7 +120,6 @@ class Motor:
         self,
         current: npt.ArrayLike,
         dt: npt.ArrayLike,
-        *,
         load: npt.ArrayLike | None = None,
         temperature: npt.ArrayLike | None = None,
         enabled: npt.ArrayLike | None = None,

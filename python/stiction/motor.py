@@ -103,14 +103,13 @@ class Motor(_native.Motor):
             twice, a ``dt`` that is not above 0 and at most 1e6 s or too long for this machine, more
             rows than there is memory for.
         """
+        # A call that other work has pushed out of the cache takes as long as what it looks up: no
+        # keywords, and nothing is asked that only matters for arrays that are not there yet.
         names = None if outputs is None else given.names(outputs, "outputs")
-        given.unmasked(current, "current")
-        size = getattr(current, "size", 0)
-        if out is None and size > MANY:
-            kept = len(self.output_names if names is None else names)
-            given.memory_for(8.0 * size * kept, f"{size} rows of {kept} outputs; give fewer")
+        if out is None:
+            _room_for(self, current, names)
         columns, length, start, statistics = self.run(
-            current, dt, load=load, temperature=temperature, enabled=enabled, outputs=names, out=out
+            current, dt, load, temperature, enabled, names, out
         )
         steps = dt if type(dt) is float else _steps(dt)
         return Trajectory(columns, steps, length, start, statistics)
@@ -233,6 +232,14 @@ class Motor(_native.Motor):
         )
         law, keywords = self.friction_settings()
         return f"Motor({shown}, friction={FrictionModel(law, **keywords)!r})"
+
+
+def _room_for(motor: Motor, current: npt.ArrayLike, names: list[str] | None) -> None:
+    """Refuse fresh columns for which there is no memory."""
+    size = getattr(current, "size", 0)
+    if size > MANY:
+        kept = len(motor.output_names if names is None else names)
+        given.memory_for(8.0 * size * kept, f"{size} rows of {kept} outputs; give fewer")
 
 
 def _steps(dt: npt.ArrayLike) -> float | FloatArray:

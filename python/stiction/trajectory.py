@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -46,11 +46,10 @@ class Trajectory:
         What happened, in words.
     """
 
-    _columns: dict[str, FloatArray]
-    _dt: float | FloatArray
-    _length: int
-    _start: float
-    _statistics: dict[str, int]
+    # In one tuple that is kept once: a call of `simulate` that other work has pushed out of the
+    # cache takes as long as what it looks up. What is given is the trajectory's own from now on.
+    __slots__ = ("__weakref__", "_own")
+    _own: tuple[dict[str, FloatArray], float | FloatArray, int, float, dict[str, int]]
 
     def __init__(
         self,
@@ -60,14 +59,23 @@ class Trajectory:
         start: float,
         statistics: dict[str, int],
     ) -> None:
-        # Past the guard below, once. What is given is the trajectory's own from now on: a call of
-        # `simulate` that other work has pushed out of the cache takes as long as what it looks up.
-        own = self.__dict__
-        own["_columns"] = columns
-        own["_dt"] = dt
-        own["_length"] = length
-        own["_start"] = start
-        own["_statistics"] = statistics
+        _keep(self, (columns, dt, length, start, statistics))
+
+    @property
+    def _columns(self) -> dict[str, FloatArray]:
+        return self._own[0]
+
+    @property
+    def _dt(self) -> float | FloatArray:
+        return self._own[1]
+
+    @property
+    def _length(self) -> int:
+        return self._own[2]
+
+    @property
+    def _start(self) -> float:
+        return self._own[3]
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a trajectory is frozen: {name} cannot be set")
@@ -75,7 +83,7 @@ class Trajectory:
     @property
     def statistics(self) -> Mapping[str, int]:
         """How often each branch was taken since the last reset."""
-        return Frozen(self._statistics)
+        return Frozen(self._own[4])
 
     @property
     def columns(self) -> Mapping[str, FloatArray]:
@@ -113,10 +121,11 @@ class Trajectory:
         return f"{self._length} samples, {slides} break-aways, {counted.get('sticks', 0)} stops"
 
     def __getattr__(self, name: str) -> FloatArray:
+        columns = {} if name == "_own" else self._columns
         try:
-            return self.__dict__["_columns"][name]  # type: ignore[no-any-return]
+            return columns[name]
         except KeyError:
-            have = ", ".join(self.__dict__.get("_columns", ()))
+            have = ", ".join(columns)
             raise AttributeError(f"trajectory has no column '{name}'; it has {have}") from None
 
     def __getitem__(self, name: str) -> FloatArray:
@@ -234,3 +243,7 @@ class Trajectory:
         from . import plot
 
         return plot.trajectory(self)
+
+
+_keep: Final = Trajectory._own.__set__  # type: ignore[attr-defined]
+"""Past the guard of ``__setattr__``, once."""

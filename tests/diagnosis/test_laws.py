@@ -41,6 +41,16 @@ def test_a_contact_that_yields_is_no_effect_beside_coulomb(base: str) -> None:
         assert [row.law for row in found.laws] == ["maxwell_slip"]
 
 
+def test_a_dead_band_that_takes_the_input_away_makes_no_better_law() -> None:
+    # Beside the other law that dead band comes to hold back all of the input, and nothing is left.
+    session = {"seed": 32, "seconds": SECONDS, "base": "coulomb"}
+    hidden = make_sessions([{**session, "hidden": (("drive_deadband", 0.011),)}])[0]
+    found = st.diagnose(as_plant(hidden), as_session(hidden), surrogates=6)
+    assert found.verdict == "missing_effect"
+    assert [(cause.name, cause.decided) for cause in found.effects] == [("drive_deadband", True)]
+    assert found.better_law == ""
+
+
 def test_a_better_law_is_told_with_its_gain() -> None:
     found = with_law("hsieh_pan", "maxwell_slip", laws=("all",))
     first = found.laws[0]

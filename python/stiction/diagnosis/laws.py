@@ -22,7 +22,7 @@ from ..wording import did_you_mean, listed
 from .decide import DECIDED_Z, heldout_gain
 from .gain import Gain, HeldOut, gain_of
 from .lone import Lone
-from .model import Model, fitted
+from .model import LEAST_GIVEN, Model, fitted
 from .result import Advice, LawRow
 from .selection import Search
 from .words import joined
@@ -173,7 +173,8 @@ def _beside(final: Model, model: Model, rival: Rival, selection: Search) -> Riva
         selection.interrupted = True
         return alone
     beside, z = heldout_gain(final, found)
-    if beside <= alone.beside:
+    # Fitted anew beside another law an effect may run away: a dead band as wide as every input.
+    if beside <= alone.beside or found.given <= LEAST_GIVEN:
         return alone
     return replace(rival, beside=beside, z=z, kept=tuple(effect.name for effect in kept))
 

@@ -213,7 +213,7 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``simulate``.
-    #[pyo3(signature = (current, dt, *, load=None, temperature=None, enabled=None, outputs=None, out=None))]
+    #[pyo3(signature = (current, dt, load=None, temperature=None, enabled=None, outputs=None, out=None))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn run<'py>(
         &self,
