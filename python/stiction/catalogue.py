@@ -130,6 +130,11 @@ class EffectRecord:
         return not {"input delay", "input rate", "input lag"}.isdisjoint(self.hooks)
 
     @property
+    def shifts_mass(self) -> bool:
+        """Whether the centre of mass is elsewhere than where the sensor reads it."""
+        return not {"sensor map", "second mass"}.isdisjoint(self.hooks)
+
+    @property
     def late(self) -> bool:
         """Whether it lets the effort follow the input late."""
         return not {"input delay", "input lag"}.isdisjoint(self.hooks)

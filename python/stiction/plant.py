@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import given, plant_file
+from .catalogue import effects
 from .drive import check_servo, gain_name, servo_numbers
 from .errors import InputError
 from .frozen import ByPath, Frozen, freeze, path_of
@@ -400,6 +401,12 @@ class Plant:
                 f"{self.source}: [body] inertia = 0 cannot be simulated as a motor; state one"
             )
         return self._motor(inertia, integrator)
+
+    @property
+    def shifts_mass(self) -> bool:
+        """Whether an effect puts the centre of mass elsewhere than where the sensor reads it."""
+        shifting = {record.name for record in effects() if record.shifts_mass}
+        return any(effect.name in shifting for effect in self.effects)
 
     def follower(self) -> Motor:
         """The plant as a motor that is only moved along given positions (``Motor.follow``).

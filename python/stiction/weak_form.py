@@ -399,7 +399,7 @@ class WeakForm:
         if "body.inertia" in paths:
             place = list(paths).index("body.inertia")
             columns[:, place] -= self.acceleration
-            if plant.effects:
+            if plant.shifts_mass:
                 columns[:, place] -= self._bent(self.along(plant, start)[2])
         return columns
 

@@ -201,7 +201,7 @@ where
         let earlier = samples.start.checked_sub(1).filter(|_| located);
         let earlier = earlier.and_then(|sample| track.stop(sample));
         let (velocity, mut stop) = track.slope(&dt, located, earlier);
-        let mut at = run.situation();
+        let mut at = machine.at_contact(&run.situation(), S::constant(0.0));
         let some = !samples.is_empty();
         // What readings show as it is depends on no parameter: of these only the values change.
         let mut step =
@@ -254,7 +254,7 @@ where
             if direct {
                 machine.reach_directly(&at, input, load, &mut channels, [driven, ambient]);
             } else {
-                machine.reach(&at, input, load, &mut channels, [driven, ambient]);
+                machine.reach(&mut at, [&input, &load], &mut channels, [driven, ambient]);
             }
             if relaxes {
                 let friction = efforts.friction;

@@ -13,7 +13,7 @@ const HALF_PI: (f64, f64) = (1.570_796_326_734_125_6, 6.077_100_506_506_192e-11)
 ///
 /// Reduction after Cody and Waite, Software Manual for the Elementary Functions (1980); the
 /// polynomials of fdlibm (Sun Microsystems, 1993).
-#[inline]
+#[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.is_nan() || x.abs() > WIDEST {
         return x.sin_cos();

@@ -19,7 +19,7 @@ impl<S: Scalar> Wave<S> {
     }
 
     /// Its value at a position.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, position: S) -> S {
         let one = |[cosine, sine, order]: [S; 3]| {
             let (s, c) = (order * position).sin_cos();

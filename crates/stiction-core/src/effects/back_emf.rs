@@ -50,7 +50,7 @@ impl<S: Scalar> Effect<S> for BackEmf<S> {
         Self(BackEmfParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn input(&self, input: S, at: &Situation<S>) -> S {
         input - self.0.slope * input.abs() * at.velocity
     }

@@ -58,7 +58,7 @@ impl<S: Scalar> Effect<S> for Cogging<S> {
         Self(Wave::new([p.cosine, p.sine, p.order], [p.cosine_2, p.sine_2, p.order_2]))
     }
 
-    #[inline]
+    #[inline(always)]
     fn effort(&self, at: &Situation<S>, _memory: &Memory<S>) -> S {
         self.0.at(at.position)
     }

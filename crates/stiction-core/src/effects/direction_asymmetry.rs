@@ -56,7 +56,7 @@ impl<S: Scalar> Effect<S> for DirectionAsymmetry<S> {
         Self(DirectionAsymmetryParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
         let direction = at.velocity / (at.velocity * at.velocity + p.velocity * p.velocity).sqrt();

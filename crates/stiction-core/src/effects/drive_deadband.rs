@@ -46,7 +46,7 @@ impl<S: Scalar> Effect<S> for DriveDeadband<S> {
         Self(DriveDeadbandParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn input(&self, input: S, _at: &Situation<S>) -> S {
         let band = self.0.deadband;
         if input.re().abs() > band.re() {

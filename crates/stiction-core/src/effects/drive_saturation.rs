@@ -55,7 +55,7 @@ impl<S: Scalar> Effect<S> for DriveSaturation<S> {
         Self(DriveSaturationParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn input(&self, input: S, _at: &Situation<S>) -> S {
         let DriveSaturationParameters { share, limit } = self.0;
         if input.re().abs() > limit.re() {

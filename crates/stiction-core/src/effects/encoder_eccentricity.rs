@@ -47,7 +47,7 @@ impl<S: Scalar> Effect<S> for EncoderEccentricity<S> {
         Self(EncoderEccentricityParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn sensor(&self, position: S) -> Reading<S> {
         let p = &self.0;
         let (sine, cosine) = position.sin_cos();

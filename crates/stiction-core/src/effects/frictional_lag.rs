@@ -67,7 +67,7 @@ impl<S: Scalar> Effect<S> for FrictionalLag<S> {
         Self(FrictionalLagParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn level(&self, at: &Situation<S>, memory: &Memory<S>) -> LevelChange<S> {
         let FrictionalLagParameters { excess, velocity, .. } = self.0;
         let two = S::constant(2.0);
@@ -76,7 +76,7 @@ impl<S: Scalar> Effect<S> for FrictionalLag<S> {
         LevelChange { friction: excess * (late - now), viscous: S::constant(0.0) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn remember(&self, memory: &mut Memory<S>, passage: &Passage<S>) {
         let behind = passage.displacement / passage.span - memory[FOLLOWED];
         memory[FOLLOWED] += behind * come_about(passage.span / self.0.time);

@@ -50,7 +50,7 @@ impl<S: Scalar> Effect<S> for GravityUnbalance<S> {
         Self(GravityUnbalanceParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn effort(&self, at: &Situation<S>, _memory: &Memory<S>) -> S {
         let (sine, cosine) = at.position.sin_cos();
         self.0.cosine * cosine + self.0.sine * sine

@@ -54,7 +54,7 @@ impl<S: Scalar> Effect<S> for LoadDependentFriction<S> {
         Self(LoadDependentFrictionParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
         if !(at.sliding.re() > 0.0 && at.sliding.re().is_finite()) {

@@ -17,6 +17,9 @@ use crate::parameter::{Default as DefaultValue, ParameterSpec};
 use crate::scalar::Scalar;
 
 /// An effect: hooks that it does not use keep their neutral default.
+///
+/// What is asked in every sample is marked `#[inline(always)]`: only what is part of a loop is compiled
+/// for the widest vectors, and rows of derivatives take three times as long without them.
 pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     /// Parameters, in the order of [`Effect::build`]'s values. Gains default to 0.
     const PARAMETERS: &'static [ParameterSpec];
@@ -31,7 +34,7 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn build(values: &[S]) -> Self;
 
     /// Share added to the friction levels.
-    #[inline]
+    #[inline(always)]
     fn level(&self, _at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         LevelChange { friction: S::constant(0.0), viscous: S::constant(0.0) }
     }
@@ -40,15 +43,15 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         [S::constant(0.0); MEMORY]
     }
     /// Takes a sample into the memory.
-    #[inline]
+    #[inline(always)]
     fn remember(&self, _memory: &mut Memory<S>, _passage: &Passage<S>) {}
     /// Effort added on the body, positive along +x.
-    #[inline]
+    #[inline(always)]
     fn effort(&self, _at: &Situation<S>, _memory: &Memory<S>) -> S {
         S::constant(0.0)
     }
     /// What the input becomes.
-    #[inline]
+    #[inline(always)]
     fn input(&self, input: S, _at: &Situation<S>) -> S {
         input
     }
@@ -68,7 +71,7 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         None
     }
     /// What the sensor reads beyond the position.
-    #[inline]
+    #[inline(always)]
     fn sensor(&self, _position: S) -> Reading<S> {
         Reading { error: S::constant(0.0), slope: S::constant(0.0) }
     }

@@ -57,7 +57,7 @@ impl<S: Scalar> Effect<S> for PositionDependentFriction<S> {
         Self(Wave::new([p.cosine, p.sine, p.order], [p.cosine_2, p.sine_2, p.order_2]))
     }
 
-    #[inline]
+    #[inline(always)]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         LevelChange { friction: self.0.at(at.position), viscous: S::constant(0.0) }
     }

@@ -91,12 +91,12 @@ impl<S: Scalar> Effect<S> for RateDependentBreakaway<S> {
         memory
     }
 
-    #[inline]
+    #[inline(always)]
     fn level(&self, _at: &Situation<S>, memory: &Memory<S>) -> LevelChange<S> {
         LevelChange { friction: self.0.strength * memory[STRENGTH], viscous: S::constant(0.0) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn remember(&self, memory: &mut Memory<S>, passage: &Passage<S>) {
         let p = &self.0;
         let slid = slide(&mut memory[OFFSET], passage.displacement, p.window);

@@ -76,12 +76,12 @@ impl<S: Scalar> Effect<S> for ReversePointMemory<S> {
         Self(ReversePointMemoryParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn level(&self, _at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         LevelChange { friction: -self.0.share, viscous: S::constant(0.0) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn effort(&self, at: &Situation<S>, memory: &Memory<S>) -> S {
         let mut mean = S::constant(0.0);
         if !at.sliding.re().is_finite() {
@@ -95,7 +95,7 @@ impl<S: Scalar> Effect<S> for ReversePointMemory<S> {
         -(self.0.share * at.sliding * mean / MEMORY as f64)
     }
 
-    #[inline]
+    #[inline(always)]
     fn remember(&self, memory: &mut Memory<S>, passage: &Passage<S>) {
         for (stretch, share) in memory.iter_mut().zip(YIELDS) {
             *stretch = stretched(*stretch + passage.displacement, self.0.distance * share);

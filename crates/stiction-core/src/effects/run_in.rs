@@ -55,7 +55,7 @@ impl<S: Scalar> Effect<S> for RunIn<S> {
         Self(RunInParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
         let lost = -come_about(at.path / p.distance);

@@ -58,7 +58,7 @@ impl<S: Scalar> Effect<S> for Stribeck<S> {
         Self(StribeckParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
         let (left, _) = fall(at.velocity, p.velocity, p.exponent);

@@ -59,7 +59,7 @@ impl<S: Scalar> Effect<S> for TemperatureDependentFriction<S> {
         Self(TemperatureDependentFrictionParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
         let Some(temperature) = at.temperature else {

@@ -45,7 +45,7 @@ impl<S: Scalar> Effect<S> for TorqueBias<S> {
         Self(TorqueBiasParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn effort(&self, _at: &Situation<S>, _memory: &Memory<S>) -> S {
         self.0.bias
     }

@@ -59,7 +59,7 @@ impl<S: Scalar> Effect<S> for TorqueConstantRipple<S> {
         Self(Wave::new([p.cosine, p.sine, p.order], [p.cosine_2, p.sine_2, p.order_2]))
     }
 
-    #[inline]
+    #[inline(always)]
     fn input(&self, input: S, at: &Situation<S>) -> S {
         input + input * self.0.at(at.position)
     }

@@ -50,7 +50,7 @@ impl<S: Scalar> Effect<S> for TorqueConstantSaturation<S> {
         Self(TorqueConstantSaturationParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn input(&self, input: S, _at: &Situation<S>) -> S {
         let ratio = input / self.0.input;
         input - self.0.loss * ratio * ratio * input

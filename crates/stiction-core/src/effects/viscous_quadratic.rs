@@ -44,7 +44,7 @@ impl<S: Scalar> Effect<S> for ViscousQuadratic<S> {
         Self(ViscousQuadraticParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn effort(&self, at: &Situation<S>, _memory: &Memory<S>) -> S {
         -(self.0.quadratic * at.velocity * at.velocity.abs())
     }

@@ -70,7 +70,7 @@ impl<S: Scalar> Effect<S> for VoltageLimit<S> {
         Self(VoltageLimitParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn input(&self, input: S, at: &Situation<S>) -> S {
         let VoltageLimitParameters { share, limit, no_load } = self.0;
         let direction = sign(input.re());

@@ -58,7 +58,7 @@ impl<S: Scalar> Effect<S> for WarmUp<S> {
         Self(WarmUpParameters::from_values(values))
     }
 
-    #[inline]
+    #[inline(always)]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         let p = &self.0;
         // Minus what is lost so far.

@@ -343,21 +343,6 @@ impl<S: Scalar> Machine<S> {
         channels.temperature = at.temperature;
     }
 
-    /// The same of any machine.
-    #[inline(never)] // once for all laws
-    pub fn reach(
-        &self,
-        at: &Situation<S>,
-        input: S,
-        load: S,
-        channels: &mut Channels<S>,
-        [driven, ambient]: [&mut S; 2],
-    ) {
-        let effort;
-        (effort, *driven, *ambient) = self.efforts(at, input, load);
-        *channels = self.channels(at, effort, load);
-    }
-
     /// What reaches the contact of a bare machine.
     #[inline]
     pub(super) fn plain_channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {

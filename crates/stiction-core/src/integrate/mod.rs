@@ -12,6 +12,7 @@ mod events;
 mod fast;
 mod glide;
 mod machine;
+mod reach;
 mod reference;
 mod response;
 mod row;

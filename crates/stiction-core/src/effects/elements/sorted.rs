@@ -1,5 +1,7 @@
 //! The effects of a plant, sorted by where they enter.
 
+use stiction_dispatch::Task;
+
 use super::situation::{MEMORY, Memory, Passage, Reading, Relaxation, SecondMass, Situation};
 use crate::effects::{AnyEffect, Effect, Hook};
 use crate::error::{Error, Result};
@@ -93,6 +95,12 @@ impl<S: Scalar> Effects<S> {
     /// Multipliers of friction and of viscous friction.
     #[inline]
     pub fn levels(&self, at: &Situation<S>) -> (S, S) {
+        self.levels_within(at)
+    }
+
+    /// The same as part of whoever asks for it.
+    #[inline(always)]
+    pub(crate) fn levels_within(&self, at: &Situation<S>) -> (S, S) {
         let (mut friction, mut viscous, _) = self.unit;
         for place in &self.levels {
             let Kept { effect, memory } = &self.kept[*place];
@@ -123,12 +131,10 @@ impl<S: Scalar> Effects<S> {
     }
 
     /// Takes a sample into all memories.
-    #[inline]
+    #[inline(never)] // once for all laws
     pub fn remember(&mut self, passage: &Passage<S>) {
         if self.remembers {
-            for Kept { effect, memory } in &mut self.kept {
-                with_effect!(effect, |e| e.remember(memory, passage));
-            }
+            S::run(Remembering { kept: &mut self.kept, passage });
         }
     }
 
@@ -178,6 +184,12 @@ impl<S: Scalar> Effects<S> {
     /// Sum of the added efforts.
     #[inline]
     pub fn effort(&self, at: &Situation<S>) -> S {
+        self.effort_within(at)
+    }
+
+    /// The same as part of whoever asks for it.
+    #[inline(always)]
+    pub(crate) fn effort_within(&self, at: &Situation<S>) -> S {
         let (_, _, mut sum) = self.unit;
         for place in &self.efforts {
             let Kept { effect, memory } = &self.kept[*place];
@@ -200,6 +212,12 @@ impl<S: Scalar> Effects<S> {
     /// What the input becomes.
     #[inline]
     pub fn input(&self, input: S, at: &Situation<S>) -> S {
+        self.input_within(input, at)
+    }
+
+    /// The same as part of whoever asks for it.
+    #[inline(always)]
+    pub(crate) fn input_within(&self, input: S, at: &Situation<S>) -> S {
         self.inputs.iter().fold(input, |input, place| {
             with_effect!(&self.kept[*place].effect, |e| e.input(input, at))
         })
@@ -254,6 +272,23 @@ impl<S: Scalar> Effects<S> {
     /// Sum of the stiffnesses that effects add to a contact with this friction of slow sliding.
     pub fn stiffness(&self, sliding: f64) -> f64 {
         self.kept.iter().map(|kept| with_effect!(&kept.effect, |e| e.stiffness(sliding))).sum()
+    }
+}
+
+/// All memories, as a task: rows of derivatives want the widest vectors.
+struct Remembering<'a, S: Scalar> {
+    kept: &'a mut [Kept<S>],
+    passage: &'a Passage<S>,
+}
+
+impl<S: Scalar> Task for Remembering<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for Kept { effect, memory } in self.kept {
+            with_effect!(effect, |e| e.remember(memory, self.passage));
+        }
     }
 }
 
