@@ -245,5 +245,5 @@ class Trajectory:
         return plot.trajectory(self)
 
 
-_keep: Final = Trajectory._own.__set__  # type: ignore[attr-defined]
+_keep: Final = Trajectory._own.__set__  # type: ignore[attr-defined, misc]
 """Past the guard of ``__setattr__``, once."""

@@ -92,7 +92,11 @@ def ceiling_of(
         if number == 0 or not _alike(both):
             continue
         pairs += 1
-        before, after = (_residuals(both, *model, number) for model in models)
+        new = [r for r in both if r.index not in evidence.trained]
+        before, after = (
+            _residuals(both, plant, evidence.started(plant, nuisances, new), number)
+            for plant, nuisances in models
+        )
         effort = [each.form.whole(models[0][0])[each.mask][:number] for each in both]
         powers += [
             _power(*before),

@@ -283,7 +283,7 @@ class Conclusion:
             success=not self.interrupted,
             message=MESSAGE if self.interrupted else found.message,
             pictures=Pictures(
-                stretches=_stretches(evidence, test, base, final),
+                stretches=_stretches(evidence, test, (base, 0), (final, number)),
                 before=self.rests[0],
                 after=self.rests[1],
                 effort_unit=extended.unit,
@@ -451,14 +451,22 @@ def _floor(evidence: Evidence, null: FloatArray) -> float:
 
 
 def _stretches(
-    evidence: Evidence, test: HeldOut | None, base: Model, final: Model
+    evidence: Evidence, test: HeldOut | None, *models: tuple[Model, int]
 ) -> tuple[Stretch, ...]:
-    """Held-out recordings with what both models leave; those of train where none tests."""
+    """Held-out recordings with what both models leave; those of train where none tests.
+
+    With each model its place among those that were tested.
+    """
     rows = evidence.shown if test is None else test.rows
+    base = models[0][0]
+    begun = [
+        (model.plant, model.nuisances if test is None else test.nuisances[place])
+        for model, place in models
+    ]
     stretches = []
     for each in rows:
         form, mask = each.form, each.mask
-        both = [np.where(mask, each.residual(m.plant, m.nuisances), np.nan) for m in (base, final)]
+        both = [np.where(mask, each.residual(*own), np.nan) for own in begun]
         seen = form.measured(base.plant) if form.stiffness is None else form.readings[1:]
         measured = np.where(mask, seen, np.nan)
         started = evidence.recordings[each.index].time[0]

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final, TypeVar
 
 import numpy as np
 
 from ..errors import NotEnoughData
 from ..fitting.forms import forms_of, set_clocks
+from ..fitting.minimise import started
 from ..fitting.pushes import Watch
 from ..fitting.rows import Mask, Nuisances, Rows, rows_of
 from ..plant import Plant
@@ -197,6 +199,35 @@ class Evidence:
         for rows in self.shown:
             rows.weight = self._weights[rows.index]
         self.weights = np.concatenate([np.full(int(r.mask.sum()), r.weight) for r in self.shown])
+
+    @cached_property
+    def trained(self) -> frozenset[int]:
+        """Recordings of which rows are fitted."""
+        return frozenset(rows.index for rows in self.train)
+
+    def begun(self, plant: Plant, nuisances: Nuisances, known: Nuisances) -> Nuisances:
+        """Nuisances with the starts of recordings that decide and are not fitted.
+
+        Parameters
+        ----------
+        plant : Plant
+        nuisances : Nuisances
+            Fitted.
+        known : Nuisances
+            Where those starts are looked for from, as far as they are in there.
+        """
+        others = [rows for rows in self.shown if rows.index not in self.trained]
+        near = known.of({rows.index for rows in others})
+        return self.started(plant, Nuisances(nuisances.timing, near.starts), others).joined(
+            nuisances
+        )
+
+    def started(self, plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> Nuisances:
+        """Nuisances with a start of each of these recordings; see `started` of the fit."""
+        own = self.each(lambda each: started(plant, [each], nuisances), rows)
+        for each, found in zip(rows, own, strict=True):
+            nuisances = found.of({each.index}).joined(nuisances)
+        return nuisances
 
     @property
     def sealed(self) -> bool:

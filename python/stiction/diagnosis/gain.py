@@ -50,6 +50,8 @@ class HeldOut:
         Measured, weighted; of a servo its motion, counted as the residual is.
     cells : Cells
     rows : tuple of Rows
+    nuisances : tuple of Nuisances
+        Of each plant, with the starts of the recordings that test.
     """
 
     residuals: tuple[FloatArray, ...]
@@ -57,6 +59,7 @@ class HeldOut:
     effort: FloatArray
     cells: Cells
     rows: tuple[Rows, ...]
+    nuisances: tuple[Nuisances, ...] = ()
 
     def relative(self, index: int) -> float:
         """2-norm of the residual of one plant over that of what it is a part of."""
@@ -80,11 +83,21 @@ def residuals_of(
         own = evidence.each(lambda e: e.weight * e.residual(plant, nuisances)[e.mask], rows)
         return np.nan_to_num(np.concatenate(own), nan=1e6)
 
-    residuals = tuple(left(plant, nuisances) for plant, nuisances in models)
+    # What a contact brought along into these recordings is no part of a plant.
+    begun = tuple(
+        evidence.started(
+            plant,
+            nuisances,
+            [e for e in rows if e.index not in evidence.trained | nuisances.starts.keys()],
+        )
+        for plant, nuisances in models
+    )
+    plants = [plant for plant, _ in models]
+    residuals = tuple(left(*each) for each in zip(plants, begun, strict=True))
     weights = np.concatenate([np.full(int(e.mask.sum()), e.weight) for e in rows])
     base = models[0][0]
     effort = np.concatenate([e.weight * e.form.whole(base)[e.mask] for e in rows])
-    return HeldOut(residuals, weights, effort, evidence.cells_of(rows), tuple(rows))
+    return HeldOut(residuals, weights, effort, evidence.cells_of(rows), tuple(rows), begun)
 
 
 def gain_of(test: HeldOut, before: int, after: int, seed: int) -> Gain:

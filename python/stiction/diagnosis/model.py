@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
@@ -14,7 +14,7 @@ from ..finite import finite
 from ..fitting.minimise import Solution, minimise
 from ..fitting.result import FitResult
 from ..fitting.rows import Nuisances, Rows, timing_bound
-from ..fitting.slopes import slopes
+from ..fitting.slopes import places_of, slopes
 from ..fitting.solve import evaluate
 from ..fitting.start import free_paths
 from ..fitting.statistics import covariance, differ, jackknife
@@ -54,20 +54,23 @@ class Model:
     ----------
     evidence : Evidence
     solution : Solution
+    known : Nuisances
+        Where starts of recordings that decide are looked for from.
     """
 
     evidence: Evidence
     solution: Solution
+    known: Nuisances = field(default_factory=Nuisances)
 
     @property
     def plant(self) -> Plant:
         """The fitted plant."""
         return self.solution.plant
 
-    @property
+    @cached_property
     def nuisances(self) -> Nuisances:
-        """The fitted nuisances."""
-        return self.solution.nuisances
+        """The fitted nuisances, and the starts of recordings that decide."""
+        return self.evidence.begun(self.plant, self.solution.nuisances, self.known)
 
     @cached_property
     def residual(self) -> FloatArray:
@@ -90,7 +93,9 @@ class Model:
 
     def _slopes(self, rows: Sequence[Rows]) -> FloatArray:
         paths = self.solution.variables.paths
-        blocks = self.evidence.each(lambda r: slopes(r, self.plant, paths, self.nuisances), rows)
+        # At the starts of all recordings, by those of the fitted ones.
+        places, nuisances = places_of(self.solution.nuisances), self.nuisances
+        blocks = self.evidence.each(lambda r: slopes(r, self.plant, paths, nuisances, places), rows)
         return self._timed(finite(np.concatenate(blocks)))
 
     def _timed(self, columns: FloatArray) -> FloatArray:
@@ -124,7 +129,8 @@ class Model:
         if not all(np.isfinite(self.told.parameters[paths[k]].stderr) for k in own):
             return False
         train = self.evidence.train
-        jacobians = [slopes(each, self.plant, paths, self.nuisances) for each in train]
+        fitted_along = self.solution.nuisances
+        jacobians = [slopes(each, self.plant, paths, fitted_along) for each in train]
         if not whatever_shape:
             for jacobian in jacobians:
                 jacobian[:, self._shape_of(candidate)] = 0.0
@@ -254,12 +260,12 @@ def fitted(
         [path for path in free_paths(plant) if path.startswith(f"effects.{only}." if only else "")],
         evidence.train,
         most=most,
-        nuisances=nuisances,
+        nuisances=None if nuisances is None else nuisances.of(evidence.trained),
         converged=converged,
         # What is fitted here starts from a model that was fitted.
         beyond_kinks=False,
     )
-    return Model(evidence, solution)
+    return Model(evidence, solution, nuisances or Nuisances())
 
 
 def power_of(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:

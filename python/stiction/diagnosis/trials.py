@@ -166,7 +166,7 @@ def unstuck(model: Model) -> Model:
     if solution.interrupted:
         raise KeyboardInterrupt
     better = solution.power < (1.0 - WORTH_MOVING) * model.solution.power
-    return Model(model.evidence, solution) if better else model
+    return Model(model.evidence, solution, model.nuisances) if better else model
 
 
 def whole_fit(evidence: Evidence, plant: Plant, nuisances: Nuisances, *, only: str = "") -> Model:

@@ -56,6 +56,7 @@ def levenberg_marquardt(
     *,
     most: int,
     tolerance: float,
+    nothing: float = 0.0,
 ) -> Minimum:
     """Minimise Σr² within bounds.
 
@@ -75,6 +76,8 @@ def levenberg_marquardt(
         Evaluations of the residual at most.
     tolerance : float
         Relative change of cost, and of the step, below which nothing more is gained.
+    nothing : float
+        Sum of squares that rounding may leave: from there on it changes at random.
 
     Notes
     -----
@@ -92,7 +95,7 @@ def levenberg_marquardt(
     slopes, normal, uses = np.empty(0), np.empty(0), MOST_USES
     while True:
         if uses >= MOST_USES:
-            if spent >= most and cost > 0.0:
+            if spent >= most and cost > nothing:
                 # Slopes of which no step may be tried.
                 return Minimum(x, cost, False)
             slopes, uses = jacobian(x), 0
@@ -106,7 +109,7 @@ def levenberg_marquardt(
         size = np.where(dead, 1.0 / scale, largest)
         held = dead | ((x <= low) & (gradient > 0.0)) | ((x >= high) & (gradient < 0.0))
         free = np.flatnonzero(~held)
-        if cost == 0.0 or (len(free) == 0 and uses == 1):
+        if cost <= nothing or (len(free) == 0 and uses == 1):
             return Minimum(x, cost, True, uses == 1)
         if len(free) == 0:
             uses = MOST_USES

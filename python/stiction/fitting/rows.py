@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -56,7 +56,16 @@ class Nuisances:
 
     def start(self, index: int) -> Start | None:
         """Start of a recording, None where it was never moved as far as anybody knows."""
-        return self.starts.get(index)
+        return self.starts.get(index) or None
+
+    def of(self, recordings: Set[int]) -> Nuisances:
+        """The same with the starts of these recordings alone."""
+        starts = {index: start for index, start in self.starts.items() if index in recordings}
+        return Nuisances(self.timing, starts)
+
+    def joined(self, others: Nuisances) -> Nuisances:
+        """The same with the starts of others where it has none."""
+        return Nuisances(self.timing, {**others.starts, **self.starts})
 
 
 class Rows:

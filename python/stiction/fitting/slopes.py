@@ -19,7 +19,13 @@ def places_of(nuisances: Nuisances) -> list[tuple[int, str]]:
     return [(index, name) for index, own in nuisances.starts.items() for name in own]
 
 
-def slopes(rows: Rows, plant: Plant, paths: Sequence[str], nuisances: Nuisances) -> FloatArray:
+def slopes(
+    rows: Rows,
+    plant: Plant,
+    paths: Sequence[str],
+    nuisances: Nuisances,
+    places: Sequence[tuple[int, str]] | None = None,
+) -> FloatArray:
     """Weighted derivatives of the rows of one recording that count.
 
     Parameters
@@ -28,6 +34,8 @@ def slopes(rows: Rows, plant: Plant, paths: Sequence[str], nuisances: Nuisances)
     plant : Plant
     paths : sequence of str
     nuisances : Nuisances
+    places : sequence of (int, str), optional
+        Starts that have columns; those of ``nuisances`` without it.
 
     Returns
     -------
@@ -35,7 +43,7 @@ def slopes(rows: Rows, plant: Plant, paths: Sequence[str], nuisances: Nuisances)
         By parameters, by the timing offset, by the starts of all recordings; those of other
         recordings are 0, and so are those of a simulation that ran away.
     """
-    places = places_of(nuisances)
+    places = places_of(nuisances) if places is None else places
     own = [(j, name) for j, (index, name) in enumerate(places) if index == rows.index]
     found = rows.jacobian(plant, [*paths, *(f"start.{name}" for _, name in own)], nuisances)
     found = found[rows.mask]

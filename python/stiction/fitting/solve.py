@@ -22,7 +22,7 @@ from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from .first_pass import first_pass
 from .forms import as_stated, forms_of, set_clocks
-from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stopped
+from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, started, stopped
 from .pushes import Watch
 from .pushes import told as pushes_told
 from .result import FitParameter, FitResult
@@ -307,7 +307,9 @@ def evaluate(
             start=float(starts[k]),
         )
     fitted = _errors(plant, train, nuisances)
-    heldout = _errors(plant, held, nuisances) if held else None
+    trained = {each.index for each in train}
+    others = [each for each in held if each.index not in trained]
+    heldout = _errors(plant, held, started(plant, others, nuisances)) if held else None
     stated = as_stated(plant, given)
     told = assumed_gain(given.drive, train[0].form.input_unit, given.effort_unit)
     return FitResult(

@@ -1,0 +1,82 @@
+"""Recordings that decide or test begin where their contact was left: no error of a plant."""
+
+from __future__ import annotations
+
+import numpy as np
+from tests.reference.ladder_spring import LadderSpring
+
+import stiction as st
+from stiction.fitting.minimise import started
+from stiction.fitting.rows import Nuisances, Rows
+from stiction.weak_form import WeakForm
+
+DT = 0.01
+NOISE = 0.1  # N
+OIL = 150.0  # N s/m
+SLIDING = 0.005  # m, a dozen times the length over which the contact yields
+LOADED = 3e-4  # m, from where loops a tenth as wide never slide
+CURVE = {"initial_stiffness": 8e4, "final_stiffness": 1.0, "decay_distance": 4e-4}
+PLANT = st.Plant.from_dict(
+    {
+        "motion": {"kind": "linear"},
+        "drive": {"kind": "prescribed_motion"},
+        "friction": {"law": "maxwell_slip"},
+    }
+)
+
+
+def moved(seed: int, role: str, size: float, before: float = 0.0) -> st.Recording:
+    """Swings of a damper that was moved so far before anybody recorded it."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(0.0, 20.0, DT)
+    swings = zip((1.0, 0.5, 0.3), (0.23, 0.51, 0.97), rng.uniform(0.0, 6.28, 3), strict=True)
+    way = sum(share * np.sin(2.0 * np.pi * rate * time + at) for share, rate, at in swings)
+    position = size * (way - way[0])
+    spring = LadderSpring(**CURVE)
+    spring.advance(before)
+    force = np.array([spring.advance(step) for step in np.diff(position, prepend=0.0)])
+    effort = force + OIL * np.gradient(position, time) + NOISE * rng.standard_normal(len(time))
+    return st.Recording(time, None, position, effort=effort, role=role, kind=f"{size:g}")
+
+
+def session(*roles: str) -> st.Session:
+    """Slides that are fitted, and small loops under force in each of these roles."""
+    loops = [moved(k, role, 0.1 * LOADED, LOADED) for k, role in enumerate(roles, 10)]
+    return st.Session([moved(0, "train", SLIDING), moved(1, "train", LOADED), *loops])
+
+
+def test_what_a_contact_brought_along_is_no_error_of_a_fit() -> None:
+    found = st.fit(PLANT, session("test"))
+    assert found.heldout_rms is not None
+    # A contact that was never moved would be wrong by nearly all of its force, some 12 N.
+    assert found.heldout_rms < 2.0 * NOISE
+    assert found.starts == {} or "recording 3" not in found.starts
+
+
+def test_what_a_contact_brought_along_is_not_taken_for_something_missing() -> None:
+    found = st.diagnose(PLANT, session("select", "select", "test"), surrogates=6)
+    assert found.verdict == "nothing_missing", found.sentence
+    assert found.baseline.select_rms is not None
+    assert found.baseline.heldout_rms is not None
+    assert max(found.baseline.select_rms, found.baseline.heldout_rms) < 2.0 * NOISE
+
+
+def test_a_start_is_found_from_the_rows_of_its_own_recording() -> None:
+    loops = moved(20, "test", 0.1 * LOADED, LOADED)
+    form = WeakForm(PLANT, loops)
+    rows = Rows(PLANT, form, 0, np.ones(len(form), dtype=bool))
+    fitted = st.fit(PLANT, session("test")).plant
+    spring = LadderSpring(**CURVE)
+    spring.advance(LOADED)
+    found = started(fitted, [rows], Nuisances(0.0, {7: {"force": 1.0}}))
+    assert abs(found.starts[0]["force"] - spring.force()) < 0.05 * spring.force()
+    assert found.starts[7] == {"force": 1.0}
+    # Where a law brings nothing along there is nothing to find.
+    rigid = st.Plant.from_dict(
+        {
+            "motion": {"kind": "linear"},
+            "drive": {"kind": "prescribed_motion"},
+            "friction": {"law": "coulomb", "coulomb": 10.0},
+        }
+    )
+    assert started(rigid, [rows], Nuisances()) == Nuisances()
