@@ -25,6 +25,7 @@ from stiction.diagnosis.periodic import waves_of
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.replay import centre, noise_of, surrogate_residuals
 from stiction.diagnosis.result import Cause, Diagnosis
+from stiction.diagnosis.trials import Screening
 from stiction.diagnosis.verdict import relatives
 from stiction.diagnosis.words import value_words
 from stiction.finite import finite
@@ -351,6 +352,44 @@ def test_rows_that_do_not_excite_an_effect_do_not_tell_it_from_the_winner() -> N
     chosen = choose([winner, tried(0.95, 2, "does not help on rows held out", gain=-0.01)])
     assert chosen is not None
     assert chosen.decided
+
+
+def test_what_leaves_nothing_for_another_and_much_in_its_place_is_told_from_it() -> None:
+    winner, relative = tried(1.0, 1, family="a"), tried(0.9, 1, family="a")
+    for encompasses in (True, False):
+        chosen = choose([winner, relative], lambda *_, told=encompasses: told)
+        assert chosen is not None
+        assert (chosen.winner, chosen.decided) == (winner, encompasses)
+    # Within 4 % it may be the same cause in another form, and nothing tells them apart.
+    chosen = choose([winner, tried(0.97, 1, family="a")], lambda *_: True)
+    assert chosen is not None
+    assert not chosen.decided
+
+
+@pytest.mark.parametrize(
+    ("left", "more", "told"),
+    [((0.2, 0.1), (0.01, 0.1), True), ((0.2, 0.1), (0.06, -0.1), True),
+     ((0.2, 0.1), (0.06, 0.1), False), ((0.06, 0.1), (0.01, 0.1), False),
+     ((0.2, -0.1), (0.01, 0.1), False)],
+)  # fmt: skip
+def test_a_candidate_encompasses_another_where_only_one_has_something_left_for_the_other(
+    left: tuple[float, float], more: tuple[float, float], told: bool
+) -> None:
+    one, other = tried(1.0, 1), tried(0.9, 1)
+
+    def score(of: Trial, value: float, heldout: float) -> Any:
+        named = SimpleNamespace(name=of.name)
+        return SimpleNamespace(candidate=named, score=value, threshold=0.02, heldout=heldout)
+
+    class Scores:
+        """What each model leaves for the other candidate."""
+
+        _score = Screening._score
+
+        def scores(self, model: Any) -> list[Any]:
+            return [score(one, *left) if model is other.model else score(other, *more)]
+
+    assert Screening.encompasses(Scores(), one, other) is told
 
 
 def test_a_rest_of_a_contact_without_a_spring_is_looked_for_in_two_lengths() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Final
@@ -142,6 +142,9 @@ class Trial:
     def name(self) -> str:
         """Name of the effect."""
         return self.candidate.name
+
+
+Encompasses = Callable[[Trial, Trial], bool]
 
 
 @dataclass(frozen=True)
@@ -332,8 +335,16 @@ def log_gain(base: Model, model: Model) -> float:
     return total
 
 
-def choose(trials: Sequence[Trial]) -> Choice | None:
-    """The accepted candidate worth most, and those that are not told from it."""
+def choose(trials: Sequence[Trial], encompasses: Encompasses | None = None) -> Choice | None:
+    """The accepted candidate worth most, and those that are not told from it.
+
+    Parameters
+    ----------
+    trials : sequence of Trial
+    encompasses : callable, optional
+        Whether a candidate explains all that another one does and much that that does not: tells
+        candidates apart that blocks do not.
+    """
     ranked = sorted(trials, key=lambda t: -t.worth)
     accepted = [trial for trial in ranked if not trial.reason]
     if not accepted:
@@ -348,7 +359,9 @@ def choose(trials: Sequence[Trial]) -> Choice | None:
         if other is not winner
         and (other.gain > 0.0 or other.by_blocks)
         and (not other.imitates or _outdoes(other, winner))
-        and ((_alike(winner, other) and not _told(winner, other)) or _kin(winner, other))
+        and (
+            (_alike(winner, other) and not _told(winner, other, encompasses)) or _kin(winner, other)
+        )
     ]
     head = _head(winner, rivals)
     others = (trial for trial in (winner, *rivals) if trial is not head)
@@ -427,7 +440,7 @@ def parallel(a: FloatArray, b: FloatArray) -> float:
     return abs(float(a @ b)) / norm if norm > 0.0 else 0.0
 
 
-def _told(winner: Trial, other: Trial) -> bool:
+def _told(winner: Trial, other: Trial, encompasses: Encompasses | None) -> bool:
     """Whether the data tell the winner from another candidate."""
     if other.worth >= (1.0 - TOO_NEAR) * winner.worth:
         return False
@@ -436,7 +449,9 @@ def _told(winner: Trial, other: Trial) -> bool:
         after, before = limited(worse, better)
         difference += after - before
     least = CERTAIN_Z if other.worth >= (1.0 - NEAR) * winner.worth else DECIDED_Z
-    return _z(difference[difference != 0.0]) >= least
+    if _z(difference[difference != 0.0]) >= least:
+        return True
+    return encompasses is not None and encompasses(winner, other)
 
 
 def _z(values: FloatArray) -> float:

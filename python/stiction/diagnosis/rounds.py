@@ -206,7 +206,7 @@ def _refitted(
             row = found.rows[score.candidate.name]
             found.rows[row.name] = replace(row, reason="others explain more")
     choice = (
-        choose(trials)
+        choose(trials, screening.encompasses)
         or _beside(screening, trials)
         or _together(screening, found.models[-1], trials)
     )
@@ -251,7 +251,7 @@ def _beside(screening: Screening, trials: Sequence[Trial]) -> Choice | None:
     other = next((t for w in passed[:1] for t in strangers(trials, w) if t.imitates), None)
     if other is None:
         return None
-    choice = choose([trial for trial in trials if trial is not other])
+    choice = choose([trial for trial in trials if trial is not other], screening.encompasses)
     if choice is None:
         return None
     model = choice.winner.model
@@ -300,7 +300,8 @@ def _together(screening: Screening, base: Model, trials: Sequence[Trial]) -> Cho
         if promises(again) and not screening.trial(alone, again).reason:
             _logger.info("%s and %s pass together", first.name, second.name)
             passed = replace(first, reason="", by_blocks=False)
-            return choose([passed if trial is first else trial for trial in trials])
+            asked = [passed if trial is first else trial for trial in trials]
+            return choose(asked, screening.encompasses)
         break
     return None
 
@@ -433,7 +434,7 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
         if score.candidate.name in kin
         and (score.score > score.threshold or _is_asked(screening, score))
     ]
-    again = choose(trials)
+    again = choose(trials, screening.encompasses)
     if again is None:
         return
     choices = [*found.choices[:place], again, *found.choices[place + 1 :]]
