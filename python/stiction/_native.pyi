@@ -16,6 +16,7 @@ __all__ = [
     "Nothing",
     "RowKernel",
     "__version__",
+    "adaptively_smoothed",
     "effects",
     "laws",
 ]
@@ -24,6 +25,9 @@ __version__: Final[str]
 
 def laws() -> list[dict[str, Any]]: ...
 def effects() -> list[dict[str, Any]]: ...
+def adaptively_smoothed(
+    readings: npt.ArrayLike, noise: float, halves: Sequence[int]
+) -> _Floats: ...
 
 @final
 class FrictionModel:

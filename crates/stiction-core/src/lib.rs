@@ -30,6 +30,7 @@ pub mod sensitivity;
 pub mod sensor;
 pub mod servo;
 pub mod shoot;
+pub mod smoothing;
 pub mod signatures;
 mod traces;
 mod track;

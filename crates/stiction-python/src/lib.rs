@@ -9,6 +9,7 @@ mod friction_model;
 mod kernel;
 mod motion;
 mod motor;
+mod smoothing;
 mod state;
 
 use pyo3::prelude::*;
@@ -27,6 +28,8 @@ mod _native {
     use super::motion::Motion;
     #[pymodule_export]
     use super::motor::Motor;
+    #[pymodule_export]
+    use super::smoothing::adaptively_smoothed;
 
     #[pymodule_export]
     #[allow(non_upper_case_globals)] // Python's own name for it

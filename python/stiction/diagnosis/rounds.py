@@ -384,7 +384,7 @@ def _drop(evidence: Evidence, found: Search) -> set[str]:
         weak = whole.strength(choice.winner.candidate) < LEAST_STRENGTH
         if not weak and choice.winner.gain <= MIMIC * LEAST_GAIN:
             continue
-        less = whole_fit(evidence, without_effect(whole.plant, name), whole.nuisances)
+        less = _less(evidence, found, name)
         left = heldout_gain(less, whole)[0]
         # Of what it was taken for, a mimic keeps next to nothing beside its cause.
         if left > LEAST_GAIN or not (weak or left < choice.winner.gain / MIMIC):
@@ -398,6 +398,18 @@ def _drop(evidence: Evidence, found: Search) -> set[str]:
         found.choices[:] = kept
         dropped.add(name)
     return dropped
+
+
+def _less(evidence: Evidence, found: Search, name: str) -> Model:
+    """The last model fitted without one of its effects, once: it is asked for by who drops and who
+    swaps."""
+    whole = found.models[-1]
+    for model, left_out, less in found.lesser:
+        if model is whole and left_out == name:
+            return less
+    less = whole_fit(evidence, without_effect(whole.plant, name), whole.nuisances)
+    found.lesser.append((whole, name, less))
+    return less
 
 
 def _chain(evidence: Evidence, base: Model, choices: Sequence[Choice], last: Model) -> list[Model]:
@@ -427,7 +439,7 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
     if len(kin) < 2 or is_sharpened(effect, record):
         return
     evidence = screening.evidence
-    less = whole_fit(evidence, without_effect(whole.plant, record.name), whole.nuisances)
+    less = _less(evidence, found, record.name)
     trials = [
         screening.trial(less, score)
         for score in screening.scores(less)

@@ -30,6 +30,8 @@ class Search:
         Held-out gain of the best of those that were refused last because they imitate something
         else: so much is left that has no name.
     interrupted : bool
+    lesser : list of (Model, str, Model)
+        Models, an effect of each, and the model fitted without it.
     """
 
     models: list[Model]
@@ -38,6 +40,7 @@ class Search:
     blind: list[EffectRecord] = field(default_factory=list)
     imitated: float = 0.0
     interrupted: bool = False
+    lesser: list[tuple[Model, str, Model]] = field(default_factory=list)
 
     def without_last(self, reason: str) -> Search:
         """The same without the last cause, which is refused for this reason."""

@@ -38,6 +38,9 @@ LEFT: Final = 2
 """After so many steps these go on of several starts."""
 FEW_EVALUATIONS: Final = 14
 """After so many it shows which of several starts leads on."""
+EXPLORED: Final = 1e-3
+"""Change of the cost below which another start has come to its valley; most end in one that is
+known."""
 MOST_ESCAPES: Final = 4
 """Starts from beyond a kink, for laws that stick without a spring."""
 HARDENING: Final = "friction.hardening_coefficient"
@@ -266,9 +269,10 @@ def or_from(
     few = min(FEW_EVALUATIONS, most)
     for start in () if solution.interrupted else starts:
         try:
-            again = minimise(start, paths, rows, most=few, nuisances=better.nuisances)
+            known = better.nuisances
+            again = minimise(start, paths, rows, most=few, nuisances=known, converged=EXPLORED)
             spent += again.evaluations
-            if again.power < better.power and not again.interrupted and not again.success:
+            if again.power < better.power and not again.interrupted:
                 again = minimise(again.plant, paths, rows, most=most, nuisances=again.nuisances)
                 spent += again.evaluations
         except KeyboardInterrupt:

@@ -1,0 +1,47 @@
+//! Smoothing of a measured motion.
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use stiction_core::smoothing;
+
+use crate::arrays::one_row;
+use crate::error::{finite, input_error};
+
+/// Positions behind readings, each from the widest window that noise does not refute.
+///
+/// Parameters
+/// ----------
+/// readings : array_like, shape (n,)
+///     rad or m.
+/// noise : float
+///     Standard deviation of the readings, steps included; rad or m.
+/// halves : sequence of int
+///     Samples on each side of the middle of each window, rising from 0.
+///
+/// Returns
+/// -------
+/// numpy.ndarray, shape (n,)
+///
+/// Raises
+/// ------
+/// InputError
+///     Readings that are no row of finite numbers, halves that do not rise from 0.
+#[pyfunction]
+pub fn adaptively_smoothed<'py>(
+    py: Python<'py>,
+    readings: &Bound<'py, PyAny>,
+    noise: f64,
+    halves: Vec<usize>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let readings = one_row("readings", readings)?;
+    let noise = finite(py, "noise", noise)?;
+    let given = readings.as_slice()?;
+    let rising = halves.first() == Some(&0) && halves.is_sorted_by(|one, next| one < next);
+    // Wider than all readings together, the ends alone would go on.
+    if !rising || halves.last().is_some_and(|widest| *widest > given.len()) {
+        let wanted = "give whole numbers that rise from 0 to at most that of the readings";
+        return Err(input_error(py, format!("halves = {halves:?} are no windows; {wanted}")));
+    }
+    let smoothed = py.detach(|| smoothing::adaptively_smoothed(given, noise, &halves));
+    Ok(PyArray1::from_vec(py, smoothed))
+}
