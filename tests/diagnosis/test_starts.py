@@ -15,6 +15,7 @@ NOISE = 0.1  # N
 OIL = 150.0  # N s/m
 SLIDING = 0.005  # m, a dozen times the length over which the contact yields
 LOADED = 3e-4  # m, from where loops a tenth as wide never slide
+COARSE = 2e-4  # m, half the length over which it yields
 CURVE = {"initial_stiffness": 8e4, "final_stiffness": 1.0, "decay_distance": 4e-4}
 PLANT = st.Plant.from_dict(
     {
@@ -80,3 +81,20 @@ def test_a_start_is_found_from_the_rows_of_its_own_recording() -> None:
         }
     )
     assert started(rigid, [rows], Nuisances()) == Nuisances()
+
+
+def test_a_contact_that_is_moved_and_read_coarsely_is_told_without_a_ring() -> None:
+    # Within two counts the contact has yielded, and there is no inertia that could ring on it.
+    coarse = [moved(k, role, SLIDING) for k, role in enumerate(("train", "select", "test"))]
+    for recording in coarse:
+        assert recording.position is not None
+    read = [
+        st.Recording(
+            r.time, None, COARSE * np.round(r.position / COARSE), effort=r.effort, role=r.role
+        )
+        for r in coarse
+        if r.position is not None
+    ]
+    found = st.diagnose(PLANT, st.Session(read), surrogates=6)
+    assert "so that it shows little" in found.data["residual"]
+    assert "rings" not in found.data["residual"]

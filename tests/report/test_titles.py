@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tests.report.test_report import undrawn
 
+from stiction.diagnosis.gain import Gain
 from stiction.diagnosis.result import Verdict
 from stiction.report import write
 from stiction.report.panels import told_apart
@@ -34,3 +35,10 @@ def test_the_title_names_the_law_where_the_sentence_begins_with_it(tmp_path: Pat
     alone = replace(undrawn("unexplained"), effects=(), gain=None, better_law="maxwell_slip")
     text = write(alone, tmp_path).read_text("utf-8")
     assert "no known effect" not in text
+
+
+def test_the_title_does_not_claim_what_rows_held_out_do_not_bear_out(tmp_path: Path) -> None:
+    found = replace(undrawn("missing_effect"), gain=Gain(-0.02, (-0.6, 0.2)))
+    text = write(found, tmp_path).read_text("utf-8")
+    (said,) = re.findall(r"<h1[^>]*>(.*?)</h1>", text)
+    assert "does not help on held-out rows" in said

@@ -191,18 +191,20 @@ def _unconfirmed(effects: Sequence[Cause]) -> str:
 def _causes(effects: Sequence[Cause]) -> str:
     """All causes; relatives that are told from nothing but each other stand together."""
     told: list[str] = []
+    undecided: list[str] = []
     groups: list[str] = []
     together: set[str] = set()
     for cause in effects:
         group = {cause.name, *cause.look_alikes}
         kin = [c for c in effects if {c.name, *c.look_alikes} == group]
         if len(kin) < 2 or len(kin) < len(group):
-            told.append(_cause(cause))
+            (told if cause.decided else undecided).append(_cause(cause))
         elif cause.name not in together:
             together |= group
             each = joined([_with_meaning(one) for one in kin])
             groups.append(f"{each}, which together may be another cause that resembles them")
-    return joined([*told, *groups])
+    # What is told first: after "cannot tell apart" each further name would seem to be one of these.
+    return joined([*told, *undecided, *groups])
 
 
 def _with_meaning(cause: Cause) -> str:

@@ -234,7 +234,8 @@ def told(forms: Sequence[WeakForm], plant: Plant) -> str:
     over = (
         f"pre-sliding is over within {FEWEST_COUNTS:.0f} of the steps in which positions are read"
     )
-    if shows_its_ring(plant, forms):
+    # What is moved does not ring.
+    if any(form.prescribed for form in forms) or shows_its_ring(plant, forms):
         return f"{led}; {over}, so that it shows little."
     return (
         f"{led}, because the contact rings faster than it was sampled and cannot be simulated "

@@ -26,6 +26,7 @@ TITLES: Final = {
 }
 INTERRUPTED: Final = "Interrupted before anything was named"
 NAMED_IN_PART: Final = "The simulation lacks {}, and something that has no name"
+UNCONFIRMED: Final = "Something is missing, and what was named does not help on held-out rows"
 LAW: Final = "The friction law of the simulation lacks something"
 LAW_AND_EFFECTS: Final = f"{LAW}, and effects beside it may only stand for that"
 """Where another law explains more than what was named the sentence begins with the law as well."""
@@ -57,6 +58,8 @@ def _title(diagnosis: Diagnosis) -> str:
         return INTERRUPTED
     if diagnosis.better_law:
         return LAW_AND_EFFECTS if diagnosis.effects else LAW
+    if diagnosis.gain is not None and diagnosis.gain.value <= 0.0:
+        return UNCONFIRMED
     if diagnosis.verdict == "unexplained" and diagnosis.effects:
         several = len(diagnosis.effects) > 1
         return NAMED_IN_PART.format("known effects" if several else "a known effect")
