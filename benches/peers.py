@@ -29,6 +29,8 @@ import stiction as st
 HERE = Path(__file__).parent
 SAMPLES, DT = 20_000, 1e-4
 MEMBERS = 64
+# Of an ensemble in which a second thread takes no part of the time to begin.
+MORE_MEMBERS = 256
 ROUNDS = 8
 FLAGS = ["-O3", "-std=c11", "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC"]
 # Contestants that take long are timed over fewer samples.
@@ -45,6 +47,9 @@ UNITS = {f"Motor.simulate, {law}": f"C, {law}" for law in LAWS} | {
     f"{who}, {MEMBERS}, {cores}": IN_TURN
     for who in ("simulate_ensemble", "numba prange")
     for cores in ("one core", "two cores")
+}
+UNITS |= {
+    f"simulate_ensemble, {MORE_MEMBERS}, {cores}": IN_TURN for cores in ("one core", "two cores")
 }
 UNITS[f"{BAM}, {LOGS} batched"] = OF_LOGS
 
@@ -164,15 +169,15 @@ def many_in_c(folder: Path) -> tuple[Run, int]:
     return run, SAMPLES * MEMBERS
 
 
-def many_own(threads: int) -> tuple[Run, int]:
+def many_own(threads: int, members: int = MEMBERS) -> tuple[Run, int]:
     """`simulate_ensemble`, reduced to the root mean square of the position."""
     motor = st.Motor(0.0076, friction=st.FrictionModel("hsieh_pan", breakaway=0.5))
-    rows = many_efforts()
+    rows = many_efforts(members)
 
     def run() -> None:
         st.simulate_ensemble(motor, rows, DT, reduce="rms", threads=threads)
 
-    return run, SAMPLES * MEMBERS
+    return run, SAMPLES * members
 
 
 def own_logs() -> tuple[Run, int]:
@@ -262,6 +267,8 @@ def contestants(folder: Path) -> tuple[dict[str, tuple[Run, int]], dict[str, str
         IN_TURN: lambda: many_in_c(folder),
         f"simulate_ensemble, {MEMBERS}, one core": lambda: many_own(1),
         f"simulate_ensemble, {MEMBERS}, two cores": lambda: many_own(2),
+        f"simulate_ensemble, {MORE_MEMBERS}, one core": lambda: many_own(1, MORE_MEMBERS),
+        f"simulate_ensemble, {MORE_MEMBERS}, two cores": lambda: many_own(2, MORE_MEMBERS),
         OF_LOGS: own_logs,
         f"numba prange, {MEMBERS}, one core": lambda: many_in_numba(1),
         f"numba prange, {MEMBERS}, two cores": lambda: many_in_numba(2),

@@ -410,3 +410,20 @@ def test_a_fit_that_is_interrupted_near_its_end_keeps_what_it_has(
     assert not found.success
     assert "interrupted" in found.message
     assert np.isfinite(found.train_rms)
+
+
+@pytest.mark.parametrize("per_effort", [1.0, 1000.0])
+def test_a_limit_that_states_no_number_begins_within_the_commands(per_effort: float) -> None:
+    # From the catalogue's own 1 it would be far beyond all commands, or nearly all beyond it.
+    n = 10_000
+    effort = swept(n)
+    limit = 0.6 * float(np.max(np.abs(effort)))
+    position = moved(np.clip(effort, -limit, limit))
+    noise = NOISE * np.random.default_rng(3).standard_normal(n)
+    given = per_effort * (effort + noise)
+    recording = Recording(np.arange(n) * DT, given, np.round(position / COUNT) * COUNT)
+    drive = {"input": "torque_nm", "gain": 1.0 / per_effort}
+    machine = plant(drive=drive, effects=[{"name": "drive_saturation"}])
+    found = fit(machine, recording)
+    assert found["limit"].value == pytest.approx(per_effort * limit, rel=0.03)
+    assert found["share"].value == pytest.approx(1.0, abs=0.1)

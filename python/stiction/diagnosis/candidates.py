@@ -12,9 +12,9 @@ import numpy as np
 
 from ..catalogue import EffectRecord, effects
 from ..errors import InputError
+from ..fitting.start import largest_command
 from ..plant import Plant
 from ..presliding import presliding
-from ..weak_form import WeakForm
 from ..wording import did_you_mean, listed
 from .evidence import Evidence
 
@@ -24,8 +24,6 @@ FEWEST_SPEEDS: Final = (0.02, 0.90)
 """Quantiles of the moving speeds that bound the grid of a speed."""
 STILL: Final = 1e-3
 """Share of the greatest speed below which a machine counts as still."""
-LARGEST: Final = 0.999
-"""Quantile of the input in a recording that counts as its greatest: single samples do not."""
 MOST_ORDERS: Final = 80
 """Orders tried at most."""
 WIDER: Final = 1.5
@@ -157,20 +155,12 @@ def _units(evidence: Evidence, plant: Plant, span: float) -> tuple[dict[str, flo
     units = {
         "presliding": length,
         "loading": max(sliding, 1e-300),
-        "input": max(1e-300, *(_largest(form, plant) for form in forms)),
+        "input": max(1e-300, *(largest_command(form, plant) for form in forms)),
         "kernel": min(form.kernel.support for form in forms),
         "session": max(1e-3, *ends),
         "path": max(1e-9, *paths),
     }
     return units, finest / length
-
-
-def _largest(form: WeakForm, plant: Plant) -> float:
-    """Greatest command that the drive saw: input, or voltage of a servo."""
-    if plant.servo:
-        drive = form.own(plant).drive
-        return float(drive["supply_v"] * drive.get("duty_limit", 1.0))
-    return float(np.quantile(np.abs(form.input), LARGEST))
 
 
 def left_out(without: Sequence[str]) -> tuple[str, ...]:

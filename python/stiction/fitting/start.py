@@ -20,6 +20,8 @@ from .variables import records
 
 __all__ = ["complete", "free_paths", "lightly_held"]
 
+LARGEST: Final = 0.999
+"""Quantile of the input in a recording that counts as its greatest: single samples do not."""
 OFF_NEUTRAL: Final = 0.05
 """Share of its typical size from which the gain of a named effect starts that states no number."""
 REACHES: Final = tuple(10.0 ** (-6.0 + 0.25 * k) for k in range(18))
@@ -86,7 +88,7 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
         plant,
         body=body,
         friction=replace(plant.friction, parameters=stated),
-        effects=tuple(_begun(effect) for effect in plant.effects),
+        effects=tuple(_begun(effect, plant, forms) for effect in plant.effects),
     )
     if "initial_stiffness" in silent:
         return _stiffness(whole, forms, coulomb, silent)
@@ -136,11 +138,20 @@ def _usual_speed(forms: Sequence[WeakForm]) -> float:
     return float(f"{usual:.0e}")
 
 
-def _begun(effect: Effect) -> Effect:
+def largest_command(form: WeakForm, plant: Plant) -> float:
+    """Greatest command that the drive saw: input, or voltage of a servo."""
+    if plant.servo:
+        drive = form.own(plant).drive
+        return float(drive["supply_v"] * drive.get("duty_limit", 1.0))
+    return float(np.quantile(np.abs(form.input), LARGEST))
+
+
+def _begun(effect: Effect, plant: Plant, forms: Sequence[WeakForm]) -> Effect:
     """An effect with its gains stated, a little off the neutral point, where its file is silent.
 
-    At the neutral point itself no shape has a slope. Of an effect that states any number the rest
-    stays as it is.
+    At the neutral point itself no shape has a slope, nor has a limit that no command reaches or
+    that nearly all exceed: one of a command begins within those of the data. Of an effect that
+    states any number the rest stays as it is.
     """
     if effect.parameters:
         return effect
@@ -151,6 +162,11 @@ def _begun(effect: Effect) -> Effect:
         for p in record.parameters
         if p.name in record.gains or p.name in fitted
     }
+    for shape in record.shapes:
+        if shape.scale == "input" and shape.parameter in own:
+            usual = float(np.median(shape.grid))
+            command = max(largest_command(form, plant) for form in forms)
+            own[shape.parameter] = Parameter(usual * command)
     return replace(effect, parameters=own)
 
 
