@@ -230,7 +230,8 @@ impl Motor {
         let n = current.len();
         let dt = Each::steps("dt", dt, &[n])?;
         let around = Around::read([load, temperature, enabled], &[n])?;
-        let names = match (outputs, out) {
+        // Name and array of each column, where there is one to fill.
+        let wanted: Vec<(Bound<'py, PyString>, Option<Bound<'py, PyAny>>)> = match (outputs, out) {
             (Some(Words(names)), out) => {
                 let given = out.map_or_else(|| PyDict::new(py), Clone::clone);
                 for key in given.keys() {
@@ -242,32 +243,42 @@ impl Motor {
                         ));
                     }
                 }
-                names
+                let array = |name: Bound<'py, PyString>| Ok((name.clone(), given.get_item(name)?));
+                names.into_iter().map(array).collect::<PyResult<_>>()?
             }
             (None, Some(out)) if !out.is_empty() => {
-                out.keys().iter().map(|key| word(&key).cloned()).collect::<PyResult<_>>()?
+                let own = |(key, array)| Ok((word(&key)?.clone(), Some(array)));
+                out.iter().map(own).collect::<PyResult<_>>()?
             }
             _ => {
                 let names = Column::names(&self.lock().spec().friction);
-                names.into_iter().map(|name| PyString::new(py, name)).collect()
+                names.into_iter().map(|name| (PyString::new(py, name), None)).collect()
             }
+        };
+        let kinds = {
+            let core = self.lock();
+            let law = &core.spec().friction;
+            let kind =
+                |name: &Bound<'py, PyString>| Column::named(law, name.to_str()?).or_input_error(py);
+            wanted.iter().map(|(name, _)| kind(name)).collect::<PyResult<Vec<Column>>>()?
         };
         let result = PyDict::new(py);
         let mut arrays: Vec<(Column, PyReadwriteArrayDyn<'py, f64>)> =
-            Vec::with_capacity(names.len());
-        for name in &names {
-            let word = name.to_str()?;
-            let column = Column::named(&self.lock().spec().friction, word);
-            let column = column.or_input_error(py)?;
-            let array = match out.map(|out| out.get_item(name)).transpose()?.flatten() {
+            Vec::with_capacity(wanted.len());
+        for ((name, array), column) in wanted.iter().zip(kinds) {
+            let fresh;
+            let array = match array {
                 Some(array) => array,
-                None => PyArray1::<f64>::zeros(py, n, false).into_any(),
+                None => {
+                    fresh = PyArray1::<f64>::zeros(py, n, false).into_any();
+                    &fresh
+                }
             };
             if arrays.iter().any(|(other, _)| *other == column) {
-                return Err(input_error(py, format!("output '{word}' is asked for twice")));
+                return Err(input_error(py, format!("output '{name}' is asked for twice")));
             }
-            result.set_item(name, &array)?;
-            arrays.push((column, target(format_args!("out['{word}']"), &array, &[n])?));
+            result.set_item(name, array)?;
+            arrays.push((column, target(format_args!("out['{name}']"), array, &[n])?));
         }
         let current = current.as_slice()?;
         let (dt, around) = (dt.per_sample()?, around.surroundings()?);
