@@ -1,4 +1,4 @@
-//! What reaches the contact of a machine in a sample, once for all laws.
+//! What reaches the contact of a machine in a sample: compiled once, and not once for each law.
 
 use stiction_dispatch::Task;
 
@@ -51,11 +51,8 @@ impl<S: Scalar> Task for Reaching<'_, S> {
         } else {
             S::constant(0.0)
         };
-        let added = if effects.adds_efforts() {
-            effects.effort_within(at)
-        } else {
-            S::constant(0.0)
-        };
+        let added =
+            if effects.adds_efforts() { effects.effort_within(at) } else { S::constant(0.0) };
         *ambient = gravity + added;
         channels.effort = *driven + *load + *ambient;
         channels.load = at.load;
