@@ -421,6 +421,15 @@ def test_a_strength_that_is_not_quite_even_stands_for_its_family() -> None:
     assert not chosen.decided
 
 
+@pytest.mark.parametrize("uneven", [0.0, 0.2])
+def test_twins_are_one_thing_unless_its_strength_differs(uneven: float) -> None:
+    # Cogging once a turn is an unbalance; what is uneven as both may be neither.
+    winner, twin = (tried(1.0, n, family="wave", uneven=uneven) for n in (1, 2))
+    chosen = choose([winner, twin])
+    assert chosen is not None
+    assert chosen.decided == (uneven == 0.0)
+
+
 def test_a_cause_that_is_not_told_stands_under_the_simplest_of_the_best() -> None:
     simple, flexible = tried(0.95, 1), tried(1.0, 3)
     chosen = choose([flexible, simple])

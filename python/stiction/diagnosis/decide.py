@@ -364,7 +364,10 @@ def choose(trials: Sequence[Trial], encompasses: Encompasses | None = None) -> C
         )
     ]
     head = _head(winner, rivals)
-    others = (trial for trial in (winner, *rivals) if trial is not head)
+    others = [trial for trial in (winner, *rivals) if trial is not head]
+    if winner.uneven > UNEVEN_IN_FAMILY:
+        # Who stands for a family stands for its twin as well.
+        return Choice(head, tuple(others))
     return Choice(head, tuple(trial for trial in others if not _twins(head, trial)))
 
 
