@@ -121,7 +121,8 @@ class Trajectory:
         return f"{self._length} samples, {slides} break-aways, {counted.get('sticks', 0)} stops"
 
     def __getattr__(self, name: str) -> FloatArray:
-        columns = {} if name == "_own" else self._columns
+        # No column has such a name; of one that holds nothing yet, asking would go on for ever.
+        columns = {} if name.startswith("_") else self._columns
         try:
             return columns[name]
         except KeyError:

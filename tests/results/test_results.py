@@ -171,3 +171,10 @@ def test_a_run_of_many_machines_shows_itself() -> None:
 def test_a_share_that_is_not_known_is_not_shown() -> None:
     assert ", r² " in str(fitted())
     assert "r²" not in str(replace(fitted(), r2=float("nan")))
+
+
+def test_a_trajectory_that_holds_nothing_yet_has_no_columns() -> None:
+    # As while it is unpickled: asking for what it is made of must come to an end.
+    empty = st.Trajectory.__new__(st.Trajectory)
+    with pytest.raises(AttributeError, match="has no column"):
+        _ = empty.position
