@@ -401,8 +401,7 @@ def _drop(evidence: Evidence, found: Search) -> set[str]:
 
 
 def _less(evidence: Evidence, found: Search, name: str) -> Model:
-    """The last model fitted without one of its effects, once: it is asked for by who drops and who
-    swaps."""
+    """The last model fitted without one of its effects; kept, for drops and swaps ask for it."""
     whole = found.models[-1]
     for model, left_out, less in found.lesser:
         if model is whole and left_out == name:

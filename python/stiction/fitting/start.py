@@ -162,11 +162,10 @@ def _begun(effect: Effect, plant: Plant, forms: Sequence[WeakForm]) -> Effect:
         for p in record.parameters
         if p.name in record.gains or p.name in fitted
     }
+    command = max(largest_command(form, plant) for form in forms)
     for shape in record.shapes:
-        if shape.scale == "input" and shape.parameter in own:
-            usual = float(np.median(shape.grid))
-            command = max(largest_command(form, plant) for form in forms)
-            own[shape.parameter] = Parameter(usual * command)
+        if shape.scale == "input" and shape.parameter in own and command > 0.0:
+            own[shape.parameter] = Parameter(float(np.median(shape.grid)) * command)
     return replace(effect, parameters=own)
 
 
