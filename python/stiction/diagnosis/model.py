@@ -27,7 +27,16 @@ from .evidence import Evidence, Plan
 from .influence import limited
 from .regression import step
 
-__all__ = ["LEAST_GIVEN", "Model", "fitted", "power_of", "stepped", "with_effect", "without_effect"]
+__all__ = [
+    "LEAST_GIVEN",
+    "REFIT_CONVERGED",
+    "Model",
+    "fitted",
+    "power_of",
+    "stepped",
+    "with_effect",
+    "without_effect",
+]
 
 REFIT_EVALUATIONS: Final = 30
 """A refit starts from the base and an estimate of the gain: it needs few steps."""

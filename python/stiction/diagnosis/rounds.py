@@ -15,6 +15,7 @@ from ..trajectory import FloatArray
 from . import listing
 from .candidates import Candidate, candidates, present, scales_of
 from .decide import (
+    ALIKE,
     LEAST_GAIN,
     LEAST_STRENGTH,
     Choice,
@@ -42,6 +43,9 @@ REFITTED: Final = 5
 """Candidates refitted in a round."""
 SLIGHT: Final = 0.1
 """A candidate that explains less than this share of one that passed is not refitted beside it."""
+LESSER: Final = 0.7
+"""What explains another part of the residual than one that passed, and less than this share of what
+that explains, has its turn in the next round: there it is screened beside that."""
 OUTSTANDING: Final = 3.0
 """A candidate that explains this many times what any other does is refitted whatever it does held
 out."""
@@ -103,8 +107,7 @@ def search(
             found.models.append(choice.winner.model)
             _logger.info("found %s", choice.winner.name)
             found.choices[-1] = sharpened(screening, found.choices[-1])
-            found.models[-1] = found.choices[-1].winner.model
-            found.models[-1] = unstuck(found.models[-1])
+            found.models[-1] = unstuck(_settled(found.choices[-1].winner.model))
             dropped |= _drop(evidence, found)
             rests |= _take_back(screening, found)
         for place in range(len(found.choices) - 1):
@@ -196,10 +199,18 @@ def _refitted(
     trials: list[Trial],
 ) -> tuple[Choice | None, list[Trial]]:
     """What is accepted of what passed the screening; ``trials`` is filled on the way."""
+    base = found.models[-1]
+    last = len(found.choices) + 1 == MOST_EFFECTS
+    waiting = []
     for score in [*passing[:REFITTED], *asked]:
-        if not _hopeless(score, trials):
-            trial = screening.trial(found.models[-1], score)
-            trials.append(beside_a_second(screening, found.models[-1], trial))
+        if not last and score not in asked and _has_time(score, base, trials):
+            waiting.append(score)
+        elif not _hopeless(score, trials):
+            trials.append(beside_a_second(screening, base, screening.trial(base, score)))
+    if waiting and choose(trials) is None:
+        # There will be no next round.
+        for score in waiting:
+            trials.append(beside_a_second(screening, base, screening.trial(base, score)))
     tried = {trial.name for trial in trials}
     for score in passing:
         if score.candidate.name not in tried:
@@ -272,6 +283,19 @@ def _hopeless(score: Score, trials: Sequence[Trial]) -> bool:
     if any(trial.candidate.record.family == family for trial in passed):
         return False
     return any(score.score < SLIGHT * trial.score.score for trial in passed)
+
+
+def _has_time(score: Score, base: Model, trials: Sequence[Trial]) -> bool:
+    """Whether a candidate explains less than one that passed, and something else."""
+
+    def leaves(trial: Trial) -> bool:
+        explained = 1.0 - trial.model.power / base.power
+        if trial.candidate.record.family == score.candidate.record.family:
+            return False
+        unlike = parallel(trial.score.signature, score.signature) <= ALIKE
+        return unlike and score.score < LESSER * explained
+
+    return any(leaves(trial) for trial in trials if not trial.reason)
 
 
 def _together(screening: Screening, base: Model, trials: Sequence[Trial]) -> Choice | None:
@@ -440,7 +464,7 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
     evidence = screening.evidence
     less = _less(evidence, found, record.name)
     trials = [
-        screening.trial(less, score)
+        _as_it_is(screening, less, score, whole) or screening.trial(less, score)
         for score in screening.scores(less)
         if score.candidate.name in kin
         and (score.score > score.threshold or _is_asked(screening, score))
@@ -455,6 +479,23 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
     found.choices[:] = choices
     for trial in trials:
         found.rows[trial.name] = listing.tried(trial, again)
+
+
+def _as_it_is(screening: Screening, less: Model, score: Score, whole: Model) -> Trial | None:
+    """The trial whose refit is the whole model; None where that has another candidate."""
+    candidate = score.candidate
+    effect = next((each for each in whole.plant.effects if each.name == candidate.name), None)
+    held = [name for name in candidate.shape if name not in candidate.free]
+    if effect is None or any(
+        effect.parameters[candidate.own(name)].value != candidate.shape[name] for name in held
+    ):
+        return None
+    return screening.judged(less, score, whole, screening.contributed(score, whole))
+
+
+def _settled(model: Model) -> Model:
+    """The model of a trial, fitted to its end."""
+    return whole_fit(model.evidence, model.plant, model.nuisances)
 
 
 def friction_of(evidence: Evidence, base: Model) -> float:

@@ -15,13 +15,15 @@ from ..plant import Plant
 from ..trajectory import FloatArray
 from .decide import Trial, judge
 from .evidence import Evidence
-from .model import Model, fitted, power_of, stepped, with_effect
+from .model import REFIT_CONVERGED, Model, fitted, power_of, stepped, with_effect
 from .screen import Problem, Score, Signatures, screen
 
 __all__ = ["Screening", "promises", "unstuck", "whole_fit"]
 
 LAG: Final = "frictional_lag"
 """What noise of the position may look like beside what is late."""
+COMPARED: Final = 1e-4
+"""Of the power: what candidates are told apart by is many times as much."""
 LATE_SHARE: Final = 0.5
 """Of the kernel's support: a follower that keeps noise from friction is late by less."""
 SHARES: Final = (0.1, 0.3, 0.6, 1.0, 1.7, 3.0)
@@ -162,7 +164,7 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
     simulated = any(form.simulated for form in evidence.forms)
     plants = [begun(share) for share in (SHARES if simulated else FEW_SHARES)]
     start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
-    model = whole_fit(evidence, start, base.nuisances)
+    model = whole_fit(evidence, start, base.nuisances, converged=COMPARED)
     if model.power < (1.0 - KEPT * score.score) * base.power:
         return model
     # Short of what the screening promised it is caught: a base that has bent itself towards the
@@ -171,8 +173,9 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
     tried = [model]
     for share in (1.0, CAUTIOUS):
         start = with_effect(base.plant, score.candidate, (share * gains).tolist())
-        alone = whole_fit(evidence, start, base.nuisances, only=score.candidate.name)
-        tried.append(whole_fit(evidence, alone.plant, alone.nuisances))
+        name = score.candidate.name
+        alone = whole_fit(evidence, start, base.nuisances, only=name, converged=COMPARED)
+        tried.append(whole_fit(evidence, alone.plant, alone.nuisances, converged=COMPARED))
         if alone.power < base.power:
             break
     return unstuck(min(tried, key=lambda each: each.power))
@@ -190,13 +193,20 @@ def unstuck(model: Model) -> Model:
     return Model(model.evidence, solution, model.nuisances) if better else model
 
 
-def whole_fit(evidence: Evidence, plant: Plant, nuisances: Nuisances, *, only: str = "") -> Model:
+def whole_fit(
+    evidence: Evidence,
+    plant: Plant,
+    nuisances: Nuisances,
+    *,
+    only: str = "",
+    converged: float = REFIT_CONVERGED,
+) -> Model:
     """The plant fitted, whole or not at all.
 
     A fit keeps its best at Ctrl-C and goes on from there; one of several that make a decision must
     end all of them.
     """
-    model = fitted(evidence, plant, nuisances, only=only)
+    model = fitted(evidence, plant, nuisances, only=only, converged=converged)
     if model.solution.interrupted:
         raise KeyboardInterrupt
     return model

@@ -12,7 +12,7 @@ from ..trajectory import FloatArray
 
 __all__ = ["Minimum", "escaped", "levenberg_marquardt"]
 
-FIRST_DAMPING: Final = 1e-2
+FIRST_DAMPING: Final = 0.1
 """Damping to start with, in units of the scaled normal matrix's diagonal."""
 WORTH_ESCAPING: Final = 1e-3
 """Share of the sum of squares for which a start from beyond a kink is worth while."""
@@ -57,6 +57,7 @@ def levenberg_marquardt(
     most: int,
     tolerance: float,
     nothing: float = 0.0,
+    straight: bool = False,
 ) -> Minimum:
     """Minimise Σr² within bounds.
 
@@ -78,12 +79,16 @@ def levenberg_marquardt(
         Relative change of cost, and of the step, below which nothing more is gained.
     nothing : float
         Sum of squares that rounding may leave: from there on it changes at random.
+    straight : bool
+        Whether the residual depends on x nearly in a straight line: then it may end on corrected
+        slopes, too.
 
     Notes
     -----
     Slopes are corrected by what each step shows of them and used again (Broyden, Math. Comp. 19
-    (1965)) as long as steps keep what they promise; it never ends on such a step. Damping after
-    Nielsen, Damping parameter in Marquardt's method, IMM-REP-1999-05.
+    (1965)) as long as steps keep what they promise; only where the residual is ``straight`` it ends
+    on such a step. Damping after Nielsen, Damping parameter in Marquardt's method,
+    IMM-REP-1999-05.
     """
     low, high = bounds
     x = np.clip(begin, low, high)
@@ -127,6 +132,8 @@ def levenberg_marquardt(
                     break
                 return Minimum(x, cost, True, True)
             if uses > 1 and promised <= tolerance * cost:
+                if straight:
+                    return Minimum(x, cost, True)
                 uses = MOST_USES
                 break
             after = residual(tried)
@@ -139,8 +146,8 @@ def levenberg_marquardt(
                 flat = cost - power <= tolerance * cost
                 change = after - left
                 x, left, cost = tried, after, power
-                if flat and uses == 1:
-                    return Minimum(x, cost, True, True)
+                if flat and (uses == 1 or straight):
+                    return Minimum(x, cost, True, uses == 1)
                 if flat or not KEPT[0] < gained < KEPT[1]:
                     uses = MOST_USES
                 elif uses < MOST_USES:

@@ -434,6 +434,7 @@ class _Minimiser:
             most=self.most,
             tolerance=self.converged,
             nothing=self.rounding,
+            straight=not self.variables.paths,
         )
 
     @cached_property
