@@ -33,7 +33,7 @@ from .screen import Score, Signatures
 from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
 from .single_wave import several
-from .trials import Screening, promises, unstuck, whole_fit
+from .trials import COMPARED, Screening, promises, unstuck, whole_fit
 
 __all__ = ["MOST_EFFECTS", "friction_of", "search"]
 
@@ -209,8 +209,7 @@ def _refitted(
             trials.append(beside_a_second(screening, base, screening.trial(base, score)))
     if waiting and choose(trials) is None:
         # There will be no next round.
-        for score in waiting:
-            trials.append(beside_a_second(screening, base, screening.trial(base, score)))
+        trials += [beside_a_second(screening, base, screening.trial(base, s)) for s in waiting]
     tried = {trial.name for trial in trials}
     for score in passing:
         if score.candidate.name not in tried:
@@ -388,11 +387,12 @@ def _renew(evidence: Evidence, found: Search, lead: Trial) -> bool:
     effect's gain.
     """
     model, base = lead.model, found.models[-1]
-    alone = whole_fit(evidence, without_effect(model.plant, lead.name), model.nuisances)
+    plant = without_effect(model.plant, lead.name)
+    alone = whole_fit(evidence, plant, model.nuisances, converged=COMPARED)
     if alone.power > (1.0 - WORTH_RENEWING) * base.power:
         return False
     _logger.info("the base does better from another start")
-    found.models[-1] = alone
+    found.models[-1] = _settled(alone)
     return True
 
 
@@ -430,7 +430,8 @@ def _less(evidence: Evidence, found: Search, name: str) -> Model:
     for model, left_out, less in found.lesser:
         if model is whole and left_out == name:
             return less
-    less = whole_fit(evidence, without_effect(whole.plant, name), whole.nuisances)
+    plant = without_effect(whole.plant, name)
+    less = whole_fit(evidence, plant, whole.nuisances, converged=COMPARED)
     found.lesser.append((whole, name, less))
     return less
 

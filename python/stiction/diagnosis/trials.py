@@ -18,7 +18,7 @@ from .evidence import Evidence
 from .model import REFIT_CONVERGED, Model, fitted, power_of, stepped, with_effect
 from .screen import Problem, Score, Signatures, screen
 
-__all__ = ["Screening", "promises", "unstuck", "whole_fit"]
+__all__ = ["COMPARED", "Screening", "promises", "unstuck", "whole_fit"]
 
 LAG: Final = "frictional_lag"
 """What noise of the position may look like beside what is late."""
