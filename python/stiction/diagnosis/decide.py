@@ -74,6 +74,8 @@ to."""
 MOST_UNEVEN: Final = 0.3
 """What strengths of their own by kind of recording may add, as a share of a gain: with more
 the effect imitates something else."""
+OUT_OF_RANGE: Final = 1.0
+"""Stands for that where its shape says that it is something else."""
 AT_THE_EDGE: Final = 0.98
 """A shape that has come this near to the end of where it may be stands there."""
 UNEVEN_IN_FAMILY: Final = 0.12
@@ -132,6 +134,11 @@ class Trial:
     def imitates(self) -> bool:
         """Whether its shape or its strength in different kinds of recording shows it no cause."""
         return self.uneven > MOST_UNEVEN
+
+    @property
+    def is_uneven(self) -> bool:
+        """Whether its strength in different kinds of recording alone shows that."""
+        return MOST_UNEVEN < self.uneven < OUT_OF_RANGE
 
     @property
     def candidate(self) -> Candidate:
@@ -232,7 +239,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     uneven = unevenness(base, model, contributed) if not reason or by_blocks else 0.0
     beyond = _out_of_its_range(score.candidate, model) if not reason or by_blocks else ""
     if beyond:
-        by_blocks, uneven = False, 1.0
+        by_blocks, uneven = False, OUT_OF_RANGE
         reason = f"imitates something else: its {beyond}"
     elif uneven > MOST_UNEVEN:
         by_blocks = False

@@ -96,6 +96,12 @@ class Cause(_Gained):
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")
 
+    @property
+    def doubtful(self) -> bool:
+        """Whether the interval of every one of its numbers reaches 0."""
+        intervals = [parameter.ci95 for parameter in self.parameters.values()]
+        return bool(intervals) and all(low <= 0.0 <= high for low, high in intervals)
+
     def to_dict(self) -> dict[str, Any]:
         """As an entry of ``effects``."""
         return {

@@ -298,13 +298,15 @@ def _has_time(score: Score, base: Model, trials: Sequence[Trial]) -> bool:
 
 
 def _together(screening: Screening, base: Model, trials: Sequence[Trial]) -> Choice | None:
-    """The best of what is refused for its spread over blocks, where it passes beside another.
+    """The best of what is refused for how uneven it is, where it passes beside another.
 
-    Each of two causes is left in the residual that judges the other one. If the second passes
-    beside the first, and the first beside the second, both are causes.
+    Over blocks or by kind of recording: each of two causes is left in the residual that judges the
+    other one. If the second passes beside the first, and the first beside the second, both are
+    causes.
     """
-    spread = [trial for trial in trials if trial.by_blocks and not trial.unseen]
-    first = max(spread, key=lambda t: t.worth, default=None)
+    refused = [trial for trial in trials if trial.by_blocks or trial.is_uneven]
+    seen = [trial for trial in refused if not trial.unseen]
+    first = max(seen, key=lambda t: t.worth, default=None)
     if first is None or any(trial.worth > first.worth for trial in trials):
         return None
     others = [
@@ -320,9 +322,10 @@ def _together(screening: Screening, base: Model, trials: Sequence[Trial]) -> Cho
             screening.evidence, without_effect(second.model.plant, first.name), base.nuisances
         )
         again = next(s for s in screening.scores(alone) if s.candidate.name == first.name)
-        if promises(again) and not screening.trial(alone, again).reason:
+        beside = screening.trial(alone, again) if promises(again) else None
+        if beside is not None and not beside.reason:
             _logger.info("%s and %s pass together", first.name, second.name)
-            passed = replace(first, reason="", by_blocks=False)
+            passed = replace(first, reason="", by_blocks=False, uneven=beside.uneven)
             asked = [passed if trial is first else trial for trial in trials]
             return choose(asked, screening.encompasses)
         break

@@ -44,6 +44,10 @@ NO_COORDINATE = "nothing that was looked at"
 """Where more is left than noise and it shows in no coordinate."""
 INTERRUPTED = "Interrupted: this is the best so far"
 """How the sentence of a diagnosis begins that Ctrl-C ended."""
+DOUBTFUL = (
+    "the interval of every one of its numbers reaches 0, though together they help on rows held out"
+)
+"""Of a cause whose name is told, and whose numbers are not."""
 MORE_MAY_BE = ", and more may be missing"
 """And goes on where something was named by then."""
 MOST_TOLD = 3
@@ -310,6 +314,8 @@ def summary(diagnosis: Diagnosis) -> str:
         lines += ["", f"{cause.name}: {cause.what}"]
         lines += [f"  means: {cause.means}", f"  try: {cause.try_}"]
         lines.append(f"  gain: {gain_words(cause.gain)}")
+        if cause.doubtful:
+            lines.append(f"  care: {DOUBTFUL}")
     before, after = diagnosis.baseline, diagnosis.extended
     if before is not None and before.heldout_relative is not None and after is not None:
         by = compared_by(diagnosis.plant)

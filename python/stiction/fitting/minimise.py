@@ -34,6 +34,9 @@ CONVERGED: Final = 1e-8
 """Change of cost, or of parameters, below which nothing more is gained: samples at rest go over
 from stick to slip one by one, so the cost has tiny steps."""
 FIRST_EVALUATIONS: Final = 5
+LAUNCHED: Final = 1e-5
+"""Change of the cost at which a launch ends: what is left there weights recordings, and a second
+pass with these weights goes on to the end."""
 LEFT: Final = 2
 """After so many steps these go on of several starts."""
 FEW_EVALUATIONS: Final = 14
@@ -182,7 +185,7 @@ def started(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisanc
 def launch(
     plants: Sequence[Plant], paths: Sequence[str], rows: Sequence[Rows], *, most: int
 ) -> Solution:
-    """Minimise from each of several starts for a while, then to the end from the best of them.
+    """Minimise from each of several starts for a while, then on from the best of them.
 
     After a few steps the better half of them goes on.
     """
@@ -212,7 +215,8 @@ def launch(
         return stopped(best)
     if best.success:
         return best
-    whole = _further(best, rows, most, nuisances=primed(best.plant, rows, best.nuisances))
+    known = primed(best.plant, rows, best.nuisances)
+    whole = _further(best, rows, most, nuisances=known, converged=LAUNCHED)
     return replace(whole, evaluations=whole.evaluations + spent)
 
 
@@ -222,13 +226,20 @@ def stopped(best: Solution) -> Solution:
 
 
 def _further(
-    solution: Solution, rows: Sequence[Rows], most: int, *, nuisances: Nuisances | None = None
+    solution: Solution,
+    rows: Sequence[Rows],
+    most: int,
+    *,
+    nuisances: Nuisances | None = None,
+    converged: float = CONVERGED,
 ) -> Solution:
     """The same fit, gone on with."""
     paths = solution.variables.paths
     known = solution.nuisances if nuisances is None else nuisances
     try:
-        further = minimise(solution.plant, paths, rows, most=most, nuisances=known)
+        further = minimise(
+            solution.plant, paths, rows, most=most, nuisances=known, converged=converged
+        )
     except KeyboardInterrupt:
         # Before it had anything to keep.
         return replace(stopped(solution), evaluations=0)

@@ -80,14 +80,11 @@ def _cause(cause: Cause, record: EffectRecord | None, diagnosis: Diagnosis) -> d
     if record is not None and effect is not None:
         rows = rows_of_effect(effect, cause.parameters, record, plant, effort_unit_of(diagnosis))
     gain = cause.gain
-    doubtful = bool(cause.parameters) and all(
-        p.ci95[0] <= 0.0 <= p.ci95[1] for p in cause.parameters.values()
-    )
     return {
         "name": cause.name,
         "title": plain(cause.name),
         "decided": cause.decided,
-        "doubtful": doubtful,
+        "doubtful": cause.doubtful,
         "look_alikes": [plain(name) for name in cause.look_alikes],
         "what": f"{summary}{_how_often(effect, plant, cause)}",
         "means": cause.means,
