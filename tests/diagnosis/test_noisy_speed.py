@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 
 import numpy as np
@@ -22,14 +23,16 @@ MOVED = {
 SLOW_AND_FAST = ((3e-6, 10e-6), 6, 2.0)
 FOUR_SPEEDS = ((3e-6, 10e-6, 5e-6, 20e-6), 4, 0.5)
 """Speeds, how often, and s from one to the next."""
+BEGIN_S = 50.0
+"""When something happens once: in a block that is fitted."""
 
 
 @cache
 def sheared(
-    speeds: tuple[float, ...], times: int, changing: float
+    speeds: tuple[float, ...], times: int, changing: float, each: float = 6.0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Time, position and stress of rock at speeds that change every 6 s; without noise."""
-    steps, samples = np.repeat(np.tile(speeds, times), round(6.0 / DT)), round(changing / DT)
+    """Time, position and stress of rock at speeds that change every few s; without noise."""
+    steps, samples = np.repeat(np.tile(speeds, times), round(each / DT)), round(changing / DT)
     padded = np.pad(steps, (samples // 2, samples - 1 - samples // 2), "edge")
     speed = np.convolve(padded, np.full(samples, 1.0 / samples), "valid")
     stress = along(ROCK, speed, DT)[0]
@@ -68,3 +71,28 @@ def test_slow_sliding_is_smoothed_until_its_logarithm_means_something() -> None:
     found = st.fit(st.Plant.from_dict(MOVED), recording)
     # Over three times as long where noise counted beside the fast speed alone.
     assert ROCK.distance < found["slip_distance"].value < 2.0 * ROCK.distance
+
+
+def test_the_law_of_a_single_step_is_told_by_halves_of_it_that_it_did_not_see() -> None:
+    found = once(*sheared((3e-6, 10e-6), 1, DT, BEGIN_S))
+    told = re.search(r"(\w+) follows it .* and (\S+) times the power in halves", found.sentence)
+    assert told is not None, found.sentence
+    assert told[1] == "rate_and_state"
+    # Fitted to it, it leaves a twentieth.
+    assert 0.05 < float(told[2]) < 0.4
+
+
+def test_no_law_is_told_by_an_event_that_none_follows() -> None:
+    time, position, stress = sheared((3e-6, 3e-6), 1, DT, BEGIN_S)
+    since = time - BEGIN_S
+    push = 1.5e5 * np.sin(2.0 * np.pi * since / 1.6) * ((since > 0.0) & (since < 1.6))
+    assert "follows" not in once(time, position, stress + push).sentence
+
+
+def once(time: np.ndarray, position: np.ndarray, stress: np.ndarray) -> st.Diagnosis:
+    """The diagnosis of a dry contact in whose recording something happens once."""
+    plant = st.Plant.from_dict(MOVED | {"friction": {"law": "coulomb"}})
+    recording = read(time, position, stress)
+    found = st.diagnose(plant, recording, laws=("dahl", "rate_and_state"), threads=1)
+    assert found.verdict == "not_testable", found.sentence
+    return found
