@@ -21,8 +21,11 @@ FLICKER_SHARE: Final = 0.2
 """White noise beyond this share of a count makes readings flicker, and a follower with a backlash
 keeps that out. Where they do not flicker it would only be late by half a count."""
 TURNING_SHARE: Final = 0.1
-"""Noise of the velocity over its rms above which a machine that is moved seems to turn round: its
-motion is then smoothed over up to the widest kernel."""
+"""Noise of the velocity over its usual size above which a machine that is moved seems to turn
+round, or friction of one that does not follows noise: its motion is then smoothed over up to the
+widest kernel."""
+SLOW: Final = 0.05
+"""Quantile of the speed that counts as a slow one."""
 RESTS_S: Final = 0.008
 """A machine without a spring rests where readings keep within noise for so long..."""
 RESTS: Final = (4, 16)
@@ -61,6 +64,12 @@ class Driving:
         Whether the contact yields.
     prescribed : bool
         Whether the machine is moved: it does not stop by itself.
+
+    Attributes
+    ----------
+    steadied : float
+        Support, s, over which the motion of a machine that is moved is smoothed because noise is
+        much of its velocity; 0 where it is not.
     """
 
     def __init__(
@@ -82,15 +91,15 @@ class Driving:
         self._backlash = max(count, BACKLASH_TIMES * white) if flickers else 0.0
         noisy = noise > NOISY_STEP * float(np.sqrt(np.mean(np.diff(readings) ** 2)))
         self._smoothing = max(self._dt, SMOOTHING_SHARE * kernel.support) if noisy else self._dt
-        self._steadied = self._turned(readings)
+        self.steadied = self._turned(readings)
         self._window = int(np.clip(round(RESTS_S / self._dt), *RESTS))
 
     def motion(self, readings: FloatArray) -> FloatArray:
         """The motion behind readings; same shape."""
         if self._springy:
             return adaptively_smoothed(readings, self._dt, self._noise)
-        if self._steadied > 0.0:
-            return smooth(readings, self._dt, self._steadied, drifts=True)
+        if self.steadied > 0.0:
+            return smooth(readings, self._dt, self.steadied, drifts=True)
         followed = smooth(play(readings, self._backlash), self._dt, self._smoothing)
         if self._prescribed:
             return followed
@@ -116,7 +125,7 @@ class Driving:
         return LATE_WINDOWS * self._dt * self._window if held else 0.0
 
     def _turned(self, readings: FloatArray) -> float:
-        """Support, s, over which noise of a machine that is moved no longer turns its motion round.
+        """Support, s, over which noise of a machine that is moved no longer governs its velocity.
 
         0 where it does not anyway. A machine that is moved does not stop by itself: nothing is
         smeared by it but what the effort is averaged over, too.
@@ -128,8 +137,17 @@ class Driving:
             slopes = np.diff(kernel.weights, prepend=0.0, append=0.0) / self._dt
             speed = np.convolve(readings, slopes, "valid")
             noise = self._noise * float(np.linalg.norm(slopes))
-            return bool(noise <= TURNING_SHARE * np.sqrt(np.mean(speed**2)))
+            return bool(noise <= TURNING_SHARE * _usual(speed))
 
         if steady(Kernel(self._smoothing, self._dt)):
             return 0.0
         return narrowest(self._dt, steady).support
+
+
+def _usual(speed: FloatArray) -> float:
+    """Speed beside which noise of it counts: its rms, or a slow one of what goes one way.
+
+    What never turns round may be slow for long, and its friction may go with the logarithm.
+    """
+    slow = np.quantile(speed * np.sign(np.median(speed)), SLOW)
+    return float(slow) if slow > 0.0 else float(np.sqrt(np.mean(speed**2)))

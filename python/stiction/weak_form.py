@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Final, TypedDict
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, TypedDict
 
 import numpy as np
 
@@ -54,6 +55,8 @@ effort: a coarse encoder needs more than 30 ms."""
 ACCELERATION_SHARE: Final = 0.1
 """Where no inertia is stated: share of the acceleration that may be noise."""
 
+_CACHED: Final = ("motion", "lateness", "_answers", "_known")
+"""What is computed once from readings and effort."""
 MOSTLY: Final = 0.9
 """Share of the kernel through which a machine with a rigid contact moves in rows that tell of
 noise."""
@@ -232,6 +235,19 @@ class WeakForm:
             averaged=not self.prescribed,
         )
 
+    def reread(self, readings: FloatArray, effort: FloatArray) -> Self:
+        """The same recording with other readings and another measured effort, seen alike.
+
+        Both have the shape of the recording.
+        """
+        other = copy(self)
+        for name in _CACHED:
+            other.__dict__.pop(name, None)
+        other.readings, other.effort = readings, effort
+        other.position = self.driving(readings)
+        other.acceleration = other.accelerations(readings, other.position)
+        return other
+
     def own(self, plant: Plant) -> Plant:
         """The plant as it was set for this recording."""
         return plant.under(self.settings)
@@ -261,6 +277,11 @@ class WeakForm:
     def followed_late(self) -> bool:
         """Whether noise had to be kept from friction by a backlash, which turns round late."""
         return self._driving.late
+
+    @property
+    def steadied(self) -> float:
+        """Support, s, over which the motion was smoothed because noise is much of its speed."""
+        return self._driving.steadied
 
     @cached_property
     def lateness(self) -> float:

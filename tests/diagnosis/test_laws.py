@@ -119,9 +119,11 @@ def test_the_law_that_follows_a_single_event_is_named_and_comes_first() -> None:
     tried = [rival("dahl", 0.95), rival("bristle", 860.0), rival("rate_and_state", 0.445)]
     inside = SimpleNamespace(rows=lambda shown, names: np.array([True, False]))
     event = cast("Any", inside)
-    said = laws.event_words([*tried, rival("gms", 1.0)], own, event)
+    said = laws.event_words([*tried, rival("gms", 1.0)], own, event, lambda *_: 0.5)
     assert "rate_and_state follows it most closely" in said
-    assert "0.445 times the power that coulomb leaves there" in said
+    assert "0.445 times the power that coulomb leaves there, and 0.5 times the power in" in said
+    short = laws.event_words(tried, own, event, lambda *_: None)
+    assert short.endswith("leaves there. No other event confirms that.")
     assert laws.event_words(tried[:2], own, event) == ""
     rows = laws.law_rows(tried, 1, None, 0, beside=(own, event))
     assert [row.law for row in rows] == ["rate_and_state", "dahl", "bristle"]

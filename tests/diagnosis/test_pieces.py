@@ -231,6 +231,8 @@ def test_findings_hold_null_where_an_interval_is_open() -> None:
     assert "inf" not in text
     assert value_words("cosine", unknown) == "cosine 0.1 N·m (not determined)"
     assert value_words("sine", known) == "sine 0.1 N·m (0.08 to 0.12)"
+    ended = replace(known, at_bound="lower")
+    assert value_words("sine", ended) == "sine 0.1 N·m (0.08 to 0.12, at its lower bound)"
 
 
 def test_an_effect_that_the_law_holds_is_not_offered_again() -> None:

@@ -14,6 +14,8 @@ from stiction.fitting.start import complete, free_paths
 
 MOVED = {"motion": {"kind": "linear"}, "drive": {"kind": "prescribed_motion"}}
 BLOCK_S = 0.5
+PLACED = (0.0, 0.5, 1.0, 1.5)
+"""Where the blocks begin, in blocks: which of them holds the step decides much."""
 
 
 def plant(law: str, **friction: object) -> st.Plant:
@@ -97,7 +99,7 @@ def test_no_law_without_an_age_follows_the_step_on_rows_that_were_not_fitted(
         "rate_and_state": plant("rate_and_state", **RIG),
     }.items():
         left[name] = held_around_the_step(own, rock)
-    # 71, 70, 70, 29 and 24 kPa of 12.1 MPa.
+    # 78, 78, 85, 43 and 35 kPa of 12.1 MPa.
     assert left["rigid"] < 0.6 * min(left["coulomb"], left["stribeck"], left["maxwell_slip"])
     assert left["rate_and_state"] < 0.9 * left["rigid"]
 
@@ -108,9 +110,12 @@ def held_around_the_step(own: st.Plant, recording: st.Recording) -> float:
 
     form = WeakForm(own, recording, every=0.01)
     since = form.time - recording.time[0]
-    phase = since / BLOCK_S % 2.0
-    rows = Rows(own, form, 0, (since > 0.2) & (phase < 0.86))
-    held = (phase > 1.07) & (phase < 1.93) & (since > 68.0) & (since < 71.5)
-    starts = complete(own, [form])
-    found = launch(starts, free_paths(starts[0]), [rows], most=200)
-    return float(np.sqrt(np.mean(rows.residual(found.plant, found.nuisances)[held] ** 2)))
+    power = []
+    for place in PLACED:
+        phase = (since / BLOCK_S + place) % 2.0
+        rows = Rows(own, form, 0, (since > 0.2) & (phase < 0.86))
+        held = (phase > 1.07) & (phase < 1.93) & (since > 68.0) & (since < 71.5)
+        starts = complete(own, [form])
+        found = launch(starts, free_paths(starts[0]), [rows], most=200)
+        power.append(np.mean(rows.residual(found.plant, found.nuisances)[held] ** 2))
+    return float(np.sqrt(np.mean(power)))

@@ -257,14 +257,17 @@ def _out_of_its_range(candidate: Candidate, model: Model) -> str:
     """The shape that a refit took out of where it means what it says, "" where there is none.
 
     A change with speed that is not over where the speeds end is a curve of viscous friction; what
-    is late by far less than the kernel is wide is the reading of the motion.
+    is late by far less than the kernel is wide is the reading of the motion. A speed whose grid
+    begins below all speeds is no such change: over it one direction goes over into the other, and
+    the friction of the two differs however slowly that comes about.
     """
     effect = next(each for each in model.plant.effects if each.name == candidate.name)
     for shape in candidate.record.shapes:
         stated = effect.parameters[candidate.own(shape.parameter)]
         if stated.fixed or stated.max is None or stated.min is None:
             continue
-        if shape.scale == "speed" and stated.value >= AT_THE_EDGE * stated.max:
+        changes = shape.scale == "speed" and min(shape.grid) >= 0.0
+        if changes and stated.value >= AT_THE_EDGE * stated.max:
             where = "top of all speeds" if max(shape.grid) >= 1.0 else "end of its range"
             return f"{shape.parameter} went to the {where}"
         if shape.scale == "kernel" and stated.value <= stated.min / AT_THE_EDGE:

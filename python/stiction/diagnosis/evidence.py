@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, TypeVar
@@ -161,6 +162,14 @@ class Evidence:
         self._weights = [1.0] * len(self.recordings)
         self.weights = np.ones(len(self.fitted))
         self.floor = 0.0
+
+    def with_rows(self, again: Callable[[Rows], Rows]) -> Evidence:
+        """The same session with other rows in the place of those that may be looked at."""
+        other = copy(self)
+        new = dict(zip((r.index for r in self.shown), self.each(again, self.shown), strict=True))
+        other.shown = list(new.values())
+        other.train = [new[rows.index].of(rows.mask) for rows in self.train]
+        return other
 
     def each(self, work: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
         """Results of some work on each item, in their order, on as many threads as allowed."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -25,6 +25,7 @@ from .lone import Lone
 from .model import LEAST_GIVEN, Model, fitted
 from .result import Advice, LawRow
 from .selection import Search
+from .within import left_within
 from .words import joined
 
 __all__ = ["THE_LAW", "Rival", "better_law", "event_words", "law_names", "law_rows", "rivals_of"]
@@ -288,16 +289,27 @@ def law_rows(
     return tuple(row for _, row in sorted(rows, key=lambda each: -each[0]))
 
 
-def event_words(rivals: Sequence[Rival], own: Model, event: Lone) -> str:
-    """Which law follows an event in rows that were fitted, in a sentence; "" where none does."""
+def event_words(
+    rivals: Sequence[Rival],
+    own: Model,
+    event: Lone,
+    within: Callable[[Model, Model, Lone], float | None] = left_within,
+) -> str:
+    """Which law follows an event in rows that were fitted, in a sentence; "" where none does.
+
+    ``within`` tells what a law leaves in pieces of the event that it was not fitted to.
+    """
     left = {r.law: _in_event(r.model, own, event) for r in rivals if r.model is not None}
     best = min(left, key=lambda law: left[law], default=None)
     if best is None or left[best] > 1.0 - WORTH_MORE:
         return ""
+    model = next(r.model for r in rivals if r.law == best)
+    held = None if model is None else within(model, own, event)
+    halves = "" if held is None else f", and {_times(held)} in halves of it that were held out"
     return (
         f" Of the laws that were compared {best} follows it most closely: fitted to it, it leaves "
-        f"{_times(left[best])} that {own.plant.friction.law} leaves there, which no other rows "
-        "confirm."
+        f"{_times(left[best])} that {own.plant.friction.law} leaves there{halves}. No other event "
+        "confirms that."
     )
 
 

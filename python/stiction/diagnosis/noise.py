@@ -13,7 +13,7 @@ from ..plant import Plant
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 
-__all__ = ["Noise", "measure_noise", "position_noise"]
+__all__ = ["GAUSSIAN", "Noise", "measure_noise", "position_noise"]
 
 LAG_SHARE: Final = 1.0 / 3.0
 """Lag of the second difference that tells noise from misfit, as a share of the kernel's support:

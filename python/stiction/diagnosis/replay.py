@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -19,9 +19,9 @@ from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from ..weak_form import Start, WeakForm
 from .evidence import Evidence
-from .noise import Noise, measure_noise, position_noise
+from .noise import GAUSSIAN, Noise, measure_noise, position_noise
 
-__all__ = ["centre", "noise_of", "shared", "surrogate_residuals"]
+__all__ = ["centre", "noise_of", "reread", "shared", "surrogate_residuals"]
 
 _logger = logging.getLogger(__name__)
 
@@ -29,6 +29,12 @@ SMOOTHING_SHARE: Final = 1.0 / 3.0
 """Support over which the measured motion is smoothed to stand for the true one, as a share of the
 kernel's: rounding is gone, and what the kernel sees is not."""
 
+STEADIER: Final = (4.0, 3.0, 2.0)
+"""Supports of a motion that was steadied over which it is smoothed instead, the widest of them that
+noise allows: what is left of the noise of its speed would be in motion and readings alike, and no
+noise to a replay."""
+BESIDE_NOISE: Final = 1.15
+"""Readings are as far from it then as noise takes them, but for so much."""
 TRIED: Final = 2
 """Readings of a motion without noise of the effort, to see what they make of the residual."""
 
@@ -113,7 +119,7 @@ class _Replay:
         else:
             source = np.random.default_rng(self.rows.index)
             white, still = position_noise(form), np.zeros(len(self.motion))
-            alone = [self.residual(self._read(white, source), still) for _ in range(TRIED)]
+            alone = [self.residual(self.read(white, source), still) for _ in range(TRIED)]
         return measure_noise(self.rows, self.plant, self.nuisances, alone)
 
     def columns(self, noise: Noise, number: int, seed: int) -> FloatArray:
@@ -121,12 +127,12 @@ class _Replay:
         source = np.random.default_rng([seed, self.rows.index])
         columns = np.empty((int(self.rows.mask.sum()), number))
         for k in range(number):
-            readings = self._read(noise.position, source)
+            readings = self.read(noise.position, source)
             added = noise.effort * source.standard_normal(len(self.motion))
             columns[:, k] = self.residual(readings, added)[self.rows.mask]
         return columns
 
-    def _read(self, white: float, source: np.random.Generator) -> FloatArray:
+    def read(self, white: float, source: np.random.Generator) -> FloatArray:
         """The motion as the sensor reads it."""
         form = self.rows.form
         readings = self.motion + white * source.standard_normal(len(self.motion))
@@ -209,6 +215,25 @@ def _shot(form: ShootingForm, plant: Plant, start: Start) -> tuple[FloatArray, _
     return motion, residual
 
 
+def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) -> Rows:
+    """Rows of a recording that is moved, in which the plant is right and only noise is added.
+
+    Unlike a surrogate they are rows in every respect: what is derived along their motion holds the
+    noise that their residual holds.
+    """
+    replay = _Replay.of(rows, plant, nuisances)
+    form, noise, source = rows.form, replay.noise(), np.random.default_rng(seed)
+    start = nuisances.start(rows.index)
+    needed = form.along(plant, start, position=replay.motion)[1] - form.load[:-1]
+    bent = np.gradient(np.gradient(replay.motion, form.dt), form.dt)
+    effort = np.concatenate([needed[:1], needed]) + form.own(plant).inertia * bent
+    effort += noise.effort * source.standard_normal(len(effort))
+    again = form.reread(replay.read(noise.position, source), effort)
+    found = Rows(plant, again, rows.index, rows.mask)
+    found.weight = rows.weight
+    return found
+
+
 def centre(null: FloatArray) -> tuple[FloatArray, FloatArray]:
     """What all surrogates have in common, and each of them less the mean of the others."""
     number = null.shape[1]
@@ -240,4 +265,9 @@ def true_motion(form: WeakForm) -> FloatArray:
     """The measured motion without its rounding: what stands for the true one; shape (rows,)."""
     if form.adapts:
         return form.position
+    for times in STEADIER if form.steadied > 0.0 else ():
+        found = smooth(form.readings, form.dt, times * form.steadied, drifts=True)
+        off = GAUSSIAN * float(np.median(np.abs(form.readings - found)))
+        if off <= BESIDE_NOISE * form.noise:
+            return found
     return smooth(form.position, form.dt, max(form.dt, SMOOTHING_SHARE * form.kernel.support))

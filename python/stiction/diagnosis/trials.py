@@ -16,6 +16,7 @@ from ..trajectory import FloatArray
 from .decide import Trial, judge
 from .evidence import Evidence
 from .model import REFIT_CONVERGED, Model, fitted, power_of, stepped, with_effect
+from .noisy_motion import told_by_noise
 from .screen import Problem, Score, Signatures, screen
 
 __all__ = ["COMPARED", "Screening", "promises", "unstuck", "whole_fit"]
@@ -103,6 +104,7 @@ class Screening:
             trial.reason
             or _too_good(self.evidence, model)
             or _friction_is_late(self.evidence, model)
+            or told_by_noise(base, model, trial.gain)
         )
         return replace(trial, reason=reason)
 

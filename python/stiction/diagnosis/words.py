@@ -73,7 +73,9 @@ def value_words(name: str, parameter: FitParameter) -> str:
     unit = "" if parameter.unit == "1" else f" {parameter.unit}"
     known = math.isfinite(low) and math.isfinite(high)
     interval = f"{low:.3g} to {high:.3g}" if known else "not determined"
-    return f"{name} {parameter.value:.4g}{unit} ({interval})"
+    # An interval about an end of a range says nothing beyond it: a speed is not negative.
+    ended = f", at its {parameter.at_bound} bound" if parameter.at_bound else ""
+    return f"{name} {parameter.value:.4g}{unit} ({interval}{ended})"
 
 
 def gain_words(gain: Gain | None) -> str:

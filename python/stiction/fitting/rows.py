@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
+from copy import copy
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -89,6 +90,12 @@ class Rows:
         self.weight = 1.0
         self.late = form.late(plant)
         self.per_block = max(1, round(CORRELATED_S / (form.dt * form.stride)))
+
+    def of(self, mask: Mask) -> Rows:
+        """The same with others of its rows."""
+        other = copy(self)
+        other.mask = mask
+        return other
 
     def residual(self, plant: Plant, nuisances: Nuisances) -> FloatArray:
         """Measured minus needed effort of every row; shape (n,)."""
