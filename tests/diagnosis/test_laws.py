@@ -173,3 +173,13 @@ def test_a_law_is_not_outdone_by_an_offset_that_has_nothing_to_do_with_it() -> N
     found = st.diagnose(*moved_damper(offset=3.0), laws=("maxwell_slip",), surrogates=6)
     assert "The friction law itself lacks something: maxwell_slip" in found.sentence
     assert not any(cause.decided for cause in found.effects), found.sentence
+
+
+def test_a_contact_that_never_breaks_away_hides_no_offset() -> None:
+    _, session = moved_damper(offset=3.0)
+    moved = {"motion": {"kind": "linear"}, "drive": {"kind": "prescribed_motion"}}
+    plant = st.Plant.from_dict({**moved, "friction": {"law": "hsieh_pan"}})
+    found = st.fit(plant, session)
+    # What a contact brought along for a whole recording is in no other one.
+    assert found.heldout_relative is not None
+    assert found.train_relative > 0.9 * found.heldout_relative

@@ -13,9 +13,9 @@ import numpy as np
 from ..catalogue import effects
 from ..catalogue import laws as all_laws
 from ..errors import InputError
+from ..fitting.first_pass import launched
 from ..fitting.forms import followable
-from ..fitting.minimise import MOST_EVALUATIONS, launch
-from ..fitting.start import complete, free_paths
+from ..fitting.minimise import MOST_EVALUATIONS
 from ..parameter import Parameter
 from ..stated import Friction
 from ..wording import did_you_mean, listed
@@ -220,10 +220,13 @@ def _launched(base: Model, friction: Friction) -> Model | None:
     evidence = base.evidence
     try:
         bare = replace(base.plant, friction=friction)
-        starts = complete(bare, [rows.form for rows in evidence.train])
-        starts = [followable(start, evidence.forms) for start in starts]
-        paths = free_paths(starts[0])
-        return Model(evidence, launch(starts, paths, evidence.train, most=MOST_EVALUATIONS))
+        _, found = launched(
+            bare,
+            evidence.train,
+            most=MOST_EVALUATIONS,
+            within=lambda start: followable(start, evidence.forms),
+        )
+        return Model(evidence, found)
     except InputError as error:
         _logger.info("%s: %s", friction.law, error)
         return None

@@ -5,20 +5,23 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Generic, Protocol, TypeVar
+from typing import Final, Generic, Protocol, TypeVar
 
 import numpy as np
 
 from ..errors import InputError
 from ..plant import Plant
 from ..weak_form import WeakForm
-from .forms import followable, horizon_of, shows_its_ring, stiffen
+from .forms import LEAST_LEFT, followable, horizon_of, shows_its_ring, stiffen
 from .minimise import Solution, launch, or_from, stopped
 from .pushes import Watch
 from .rows import Rows
-from .start import complete, free_paths, lightly_held
+from .start import clinging, complete, free_paths, lightly_held
 
-__all__ = ["FirstPass", "Seen", "first_pass"]
+__all__ = ["FirstPass", "Seen", "first_pass", "launched"]
+
+WORTH_CLINGING: Final = 0.9
+"""Share of what else is left that a contact may leave at most which never breaks away."""
 
 _logger = logging.getLogger(__name__)
 
@@ -90,17 +93,85 @@ def first_pass(
     InputError
         No start along which the plant gives numbers.
     """
-    starts = complete(plant, [each.form for each in seen.train])
-    paths = free_paths(starts[0])
-    found = launch(starts, paths, seen.train, most=most)
-    known = FirstPass(seen, found, starts[0])
+    start, found = launched(plant, seen.train, most=most)
+    known = FirstPass(seen, found, start)
     if found.interrupted:
         return known
     try:
-        return _simulated(plant, known, paths, simulated, most=most)
+        return _simulated(plant, known, found.variables.paths, simulated, most=most)
     except KeyboardInterrupt:
         # Before what is simulated had anything to keep.
         return replace(known, solution=stopped(found))
+
+
+def launched(
+    plant: Plant,
+    rows: Sequence[Rows],
+    *,
+    most: int,
+    within: Callable[[Plant], Plant] = lambda start: start,
+) -> tuple[Plant, Solution]:
+    """Fit a plant to rows from what the data give to start from.
+
+    Where much is left, a contact that never breaks away is tried as well (see ``clinging``). That
+    comes after the others have ended, for it is slow to show where it leads. It must leave clearly
+    less beside constants: such a contact keeps what it brought along for a whole recording, and
+    so hides an offset that the other one leaves for all to see.
+
+    Parameters
+    ----------
+    plant : Plant
+    rows : sequence of Rows
+    most : int
+        Evaluations of the residual at most, of each start.
+    within : callable
+        What a start must be made to be followed.
+
+    Returns
+    -------
+    Plant
+        The likeliest start.
+    Solution
+    """
+    forms = [each.form for each in rows]
+    starts = complete(plant, forms)
+    begun = [within(start) for start in starts]
+    found = launch(begun, free_paths(begun[0]), rows, most=most)
+    if found.interrupted:
+        return starts[0], found
+    try:
+        others = [within(start) for start in clinging(plant, starts, forms)]
+        if others:
+            found = _or_clinging(others, found, rows, most=most)
+    except KeyboardInterrupt:
+        # Before there was anything to try.
+        found = stopped(found)
+    return starts[0], found
+
+
+def _or_clinging(
+    others: Sequence[Plant], found: Solution, rows: Sequence[Rows], *, most: int
+) -> Solution:
+    """The solution, or one with a contact that never breaks away where that leaves clearly less."""
+    before = _share_left(found, rows)
+    if before < LEAST_LEFT:
+        return found
+    other = or_from(others, found, rows, most=most)
+    if _share_left(other, rows) < WORTH_CLINGING * before:
+        return other
+    kept = stopped(found) if other.interrupted else found
+    return replace(kept, evaluations=other.evaluations)
+
+
+def _share_left(solution: Solution, rows: Sequence[Rows]) -> float:
+    """Share of the measured effort that is left beside a constant in each recording."""
+    left, measured = 0.0, 0.0
+    for each in rows:
+        own = each.residual(solution.plant, solution.nuisances)[each.mask]
+        left += each.weight**2 * float(np.sum((own - np.mean(own)) ** 2))
+        effort = each.form.measured(solution.plant)[each.mask]
+        measured += each.weight**2 * float(effort @ effort)
+    return float(np.sqrt(left / max(measured, 1e-300)))
 
 
 def _simulated(

@@ -20,6 +20,7 @@ from .rows import Nuisances, Rows
 
 __all__ = [
     "EVERY_S",
+    "LEAST_LEFT",
     "as_stated",
     "followable",
     "forms_of",

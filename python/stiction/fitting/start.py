@@ -18,7 +18,7 @@ from ..weak_form import WeakForm
 from .rows import begun
 from .variables import records
 
-__all__ = ["complete", "free_paths", "lightly_held"]
+__all__ = ["clinging", "complete", "free_paths", "lightly_held"]
 
 LARGEST: Final = 0.999
 """Quantile of the input in a recording that counts as its greatest: single samples do not."""
@@ -42,6 +42,12 @@ HARDENED: Final = 1.0
 """Creep under a held Coulomb friction to start from, in reaches."""
 HELD: Final = 0.1
 """Share of the usual effort that friction takes where nothing says more."""
+YIELDS_OR_BREAKS_AWAY: Final = frozenset({"breakaway", "final_stiffness", "initial_stiffness"})
+"""What a law has whose contact may as well yield for ever."""
+OUT_OF_REACH: Final = 2.0
+"""Break-away of a contact that never comes to it, over the greatest effort."""
+FLAT: Final = 0.1
+"""Share of Coulomb friction by which such a contact stiffens over the whole range of motion."""
 
 
 def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
@@ -99,6 +105,61 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
         tried = [dict.fromkeys(lengths, share * span) for share in REACHES]
         return _likeliest([whole.with_values(values) for values in tried], forms)
     return [whole]
+
+
+def clinging(plant: Plant, starts: Sequence[Plant], forms: Sequence[WeakForm]) -> list[Plant]:
+    """A start whose contact yields up to Coulomb friction instead of breaking away there.
+
+    Break-away is a kink: from a contact that breaks away at every reversal no slope leads to one
+    whose spring bends until it holds no more. What the file states stays.
+
+    Parameters
+    ----------
+    plant : Plant
+        As the file states it.
+    starts : sequence of Plant
+        What ``complete`` made of it.
+    forms : sequence of WeakForm
+
+    Returns
+    -------
+    list of Plant
+        None of a law that has no such contact, where the file states how it breaks away or how
+        stiff it is, and of a servo, whose effort nobody measured.
+    """
+    stated = plant.friction.parameters
+    silent = starts[0].friction.parameters.keys() - stated.keys()
+    if plant.servo or not silent >= YIELDS_OR_BREAKS_AWAY:
+        return []
+    span = max(float(np.ptp(form.position)) for form in forms)
+    most = max(float(np.max(np.abs(form.measured(plant)))) for form in forms)
+    coulomb = _regression(plant, forms)[1]
+
+    def clings(start: Plant) -> Plant:
+        known = {name: each.value for name, each in start.friction.parameters.items()}
+        bounds = records(start)
+        reach = coulomb / known["initial_stiffness"]
+        values = {
+            "breakaway": OUT_OF_REACH * most,
+            "final_stiffness": FLAT * coulomb / span,
+            # From one reversal to the next the force goes twice as far as from rest.
+            "decay_distance": 2.0 * reach,
+            # Nothing else of it depends on speed.
+            "damping": max(known.get("damping", 0.0), known.get("viscous", 0.0)),
+            # What hardens within a reach has crept once and for all at the first turn, and no later
+            # row tells of it: it begins to creep as fast, and goes on for as long as it is moved.
+            "hardening_coefficient": HARDENED * span / coulomb**2,
+            "creep_rate": known.get("creep_rate", 0.0) * reach / span,
+        }
+        return start.with_values(
+            {
+                f"friction.{name}": float(np.clip(value, *bounds[f"friction.{name}"].bounds))
+                for name, value in values.items()
+                if name in silent
+            }
+        )
+
+    return _likeliest([clings(start) for start in starts], forms)[:1]
 
 
 def lightly_held(plant: Plant, whole: Plant, forms: Sequence[WeakForm]) -> Plant:
