@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
@@ -173,6 +174,10 @@ def test_a_law_is_not_outdone_by_an_offset_that_has_nothing_to_do_with_it() -> N
     found = st.diagnose(*moved_damper(offset=3.0), laws=("maxwell_slip",), surrogates=6)
     assert "The friction law itself lacks something: maxwell_slip" in found.sentence
     assert not any(cause.decided for cause in found.effects), found.sentence
+    (row,) = (row for row in found.laws if row.law == "maxwell_slip")
+    # Alone it may do as badly as any other law: the row tells what it does beside the offset.
+    (beside,) = re.findall(r"; with (?:torque_bias|\S+) it leaves (\S+) times", row.reason)
+    assert float(beside) < 0.9, row.reason
 
 
 def test_a_contact_that_never_breaks_away_hides_no_offset() -> None:

@@ -283,6 +283,12 @@ def law_rows(
         if rival.terms:
             few = len(rival.terms) < 3
             reason += f", with {joined(rival.terms) if few else 'all of its optional terms'}"
+        if rival.kept:
+            # A constant hides in one law more than in another: alone they are not alike.
+            reason += (
+                f"; with {joined(rival.kept)} it leaves {_times(1.0 - rival.beside)} that all that "
+                "was named leaves"
+            )
         place = -1e300 if gain is None else gain.value
         if beside is not None:
             left = _in_event(rival.model, *beside)
