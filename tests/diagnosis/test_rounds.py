@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from stiction.catalogue import effects
-from stiction.diagnosis import decide, rounds
+from stiction.diagnosis import decide, rounds, together
 from stiction.diagnosis.decide import Choice, Trial
 from stiction.diagnosis.result import CandidateRow, Cause, Unexplained
 from stiction.diagnosis.selection import Search
@@ -67,21 +67,36 @@ SPREAD = "its held-out gain is 1.96 standard errors, below 2.00"
 
 
 @pytest.mark.parametrize(
-    ("beside_first", "beside_second", "passes"),
-    [("", "", True), (SPREAD, "", False), ("", SPREAD, False)],
+    ("uneven", "beside_first", "beside_second", "passes"),
+    [
+        (0.0, "", "", True),
+        (0.0, SPREAD, "", False),
+        (0.0, "", SPREAD, False),
+        # By kind of recording as well as over blocks, but a shape out of its range passes nowhere.
+        (0.4, "", "", True),
+        (0.4, "", SPREAD, False),
+        (decide.OUT_OF_RANGE, "", "", False),
+    ],
 )
 def test_causes_that_hide_each_other_pass_together(
-    monkeypatch: pytest.MonkeyPatch, beside_first: str, beside_second: str, passes: bool
+    monkeypatch: pytest.MonkeyPatch,
+    uneven: float,
+    beside_first: str,
+    beside_second: str,
+    passes: bool,
 ) -> None:
-    first, second = (trial(name, w, SPREAD, by_blocks=True) for name, w in (("a", 1.0), ("b", 0.5)))
+    first, second = (
+        replace(trial(name, worth, SPREAD, by_blocks=uneven == 0.0), uneven=uneven)
+        for name, worth in (("a", 1.0), ("b", 0.5))
+    )
     bench: Any = Bench(
         {"a": [trial("b", 2.0, beside_first)], "b": [trial("a", 2.5, beside_second)]}
     )
     alone = SimpleNamespace(name="b")
-    monkeypatch.setattr(rounds, "whole_fit", lambda *_: alone)
-    monkeypatch.setattr(rounds, "without_effect", lambda plant, _: plant)
+    monkeypatch.setattr(together, "whole_fit", lambda *_: alone)
+    monkeypatch.setattr(together, "without_effect", lambda plant, _: plant)
     base: Any = SimpleNamespace(nuisances=None)
-    choice = rounds._together(bench, base, [first, second])
+    choice = together.pass_together(bench, base, [first, second])
     assert (choice is not None) == passes
     if choice is not None:
         assert choice.winner.name == "a"
@@ -98,12 +113,57 @@ def test_a_refit_that_freed_the_base_leads_to_a_better_one_before_any_name() -> 
     assert [lead.name for lead in leads] == ["a", "b"]
 
 
+class Asked(Bench):
+    """Tells which candidates were refitted."""
+
+    def __init__(self, after: dict[str, list[Trial]]) -> None:
+        super().__init__(after)
+        self.refitted: list[str] = []
+
+    def trial(self, model: Any, score: Any) -> Trial:
+        self.refitted.append(score.candidate.name)
+        return super().trial(model, score)
+
+
+def scored(name: str, score: float, along: tuple[float, float], **kinds: Any) -> Trial:
+    """A trial whose score is this, of a model that explains half of the power."""
+    one = trial(name, 2.0 * score, contributed=along, **kinds)
+    one.score.score = score
+    one.model.power = 0.5
+    return one
+
+
+@pytest.mark.parametrize(
+    ("along", "score", "family", "refused", "refitted"),
+    [
+        ((0.0, 1.0), 0.3, "", "", ["a"]),
+        # It may be the same cause, a relative of it, or more of one than what passed.
+        ((1.0, 0.1), 0.3, "", "", ["a", "b"]),
+        ((0.0, 1.0), 0.3, "a", "", ["a", "b"]),
+        ((0.0, 1.0), 0.4, "", "", ["a", "b"]),
+        # Where nothing passes there is no next round.
+        ((0.0, 1.0), 0.3, "", SPREAD, ["a", "b"]),
+    ],
+)
+def test_what_explains_another_part_and_less_waits_for_the_next_round(
+    along: tuple[float, float], score: float, family: str, refused: str, refitted: list[str]
+) -> None:
+    first = replace(scored("a", 0.5, (1.0, 0.0)), reason=refused)
+    bench: Any = Asked({"base": [first, scored("b", score, along, family=family)]})
+    base: Any = SimpleNamespace(name="base", power=1.0)
+    found = Search([base])
+    rounds._round(bench, found, set())
+    assert bench.refitted == refitted
+    if refitted == ["a"]:
+        assert found.rows["b"].reason == "others explain more"
+
+
 def test_what_explains_less_than_another_is_no_first_of_two() -> None:
     spread = trial("a", 0.5, SPREAD, by_blocks=True)
     base: Any = SimpleNamespace(nuisances=None)
     bench: Any = Bench({"a": [trial("b", 2.0)]})
-    assert rounds._together(bench, base, [spread, trial("c", 1.0, "imitates")]) is None
-    assert rounds._together(bench, base, []) is None
+    assert together.pass_together(bench, base, [spread, trial("c", 1.0, "imitates")]) is None
+    assert together.pass_together(bench, base, []) is None
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,6 @@ from .decide import (
     choose,
     heldout_gain,
     parallel,
-    strangers,
 )
 from .evidence import Evidence
 from .model import Model, without_effect
@@ -33,6 +32,7 @@ from .screen import Score, Signatures
 from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
 from .single_wave import several
+from .together import pass_together, passes_beside
 from .trials import COMPARED, Screening, promises, unstuck, whole_fit
 
 __all__ = ["MOST_EFFECTS", "friction_of", "search"]
@@ -217,8 +217,8 @@ def _refitted(
             found.rows[row.name] = replace(row, reason="others explain more")
     choice = (
         choose(trials, screening.encompasses)
-        or _beside(screening, trials)
-        or _together(screening, found.models[-1], trials)
+        or passes_beside(screening, trials)
+        or pass_together(screening, found.models[-1], trials)
     )
     found.imitated = max((t.gain for t in trials if t.imitates and choice is None), default=0.0)
     for trial in trials:
@@ -251,27 +251,6 @@ def _is_asked(screening: Screening, score: Score) -> bool:
     return screening.evidence.loop and score.candidate.record.before_drive
 
 
-def _beside(screening: Screening, trials: Sequence[Trial]) -> Choice | None:
-    """What would pass, had not another trial looked like the cause that it imitates.
-
-    Two causes at once make each other's strength uneven: the one that was refused for that is asked
-    again beside the one that passed. If it passes there, both are causes.
-    """
-    passed = sorted((t for t in trials if not t.reason), key=lambda t: -t.worth)
-    other = next((t for w in passed[:1] for t in strangers(trials, w) if t.imitates), None)
-    if other is None:
-        return None
-    choice = choose([trial for trial in trials if trial is not other], screening.encompasses)
-    if choice is None:
-        return None
-    model = choice.winner.model
-    score = next(each for each in screening.scores(model) if each.candidate.name == other.name)
-    if not promises(score) or screening.trial(model, score).reason:
-        return None
-    _logger.info("%s passes beside %s", other.name, choice.winner.name)
-    return choice
-
-
 def _hopeless(score: Score, trials: Sequence[Trial]) -> bool:
     """Whether one that was refitted and passed explains so much more that this one need not be.
 
@@ -295,41 +274,6 @@ def _has_time(score: Score, base: Model, trials: Sequence[Trial]) -> bool:
         return unlike and score.score < LESSER * explained
 
     return any(leaves(trial) for trial in trials if not trial.reason)
-
-
-def _together(screening: Screening, base: Model, trials: Sequence[Trial]) -> Choice | None:
-    """The best of what is refused for how uneven it is, where it passes beside another.
-
-    Over blocks or by kind of recording: each of two causes is left in the residual that judges the
-    other one. If the second passes beside the first, and the first beside the second, both are
-    causes.
-    """
-    refused = [trial for trial in trials if trial.by_blocks or trial.is_uneven]
-    seen = [trial for trial in refused if not trial.unseen]
-    first = max(seen, key=lambda t: t.worth, default=None)
-    if first is None or any(trial.worth > first.worth for trial in trials):
-        return None
-    others = [
-        score
-        for score in screening.scores(first.model)
-        if score.candidate.name != first.name and promises(score)
-    ]
-    for score in others[:REFITTED]:
-        second = screening.trial(first.model, score)
-        if second.reason:
-            continue
-        alone = whole_fit(
-            screening.evidence, without_effect(second.model.plant, first.name), base.nuisances
-        )
-        again = next(s for s in screening.scores(alone) if s.candidate.name == first.name)
-        beside = screening.trial(alone, again) if promises(again) else None
-        if beside is not None and not beside.reason:
-            _logger.info("%s and %s pass together", first.name, second.name)
-            passed = replace(first, reason="", by_blocks=False, uneven=beside.uneven)
-            asked = [passed if trial is first else trial for trial in trials]
-            return choose(asked, screening.encompasses)
-        break
-    return None
 
 
 def _take_back(screening: Screening, found: Search) -> set[str]:

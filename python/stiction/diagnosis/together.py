@@ -1,0 +1,75 @@
+"""Two causes that hide each other: each is asked again beside the other one."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+from .decide import Choice, Trial, choose, strangers
+from .model import Model, without_effect
+from .trials import Screening, promises, whole_fit
+
+__all__ = ["pass_together", "passes_beside"]
+
+FEW: Final = 5
+"""Candidates that are asked beside the first one."""
+
+_logger = logging.getLogger(__name__)
+
+
+def passes_beside(screening: Screening, trials: Sequence[Trial]) -> Choice | None:
+    """What would pass, had not another trial looked like the cause that it imitates.
+
+    Two causes at once make each other's strength uneven: the one that was refused for that is asked
+    again beside the one that passed. If it passes there, both are causes.
+    """
+    passed = sorted((t for t in trials if not t.reason), key=lambda t: -t.worth)
+    other = next((t for w in passed[:1] for t in strangers(trials, w) if t.imitates), None)
+    if other is None:
+        return None
+    choice = choose([trial for trial in trials if trial is not other], screening.encompasses)
+    if choice is None:
+        return None
+    model = choice.winner.model
+    score = next(each for each in screening.scores(model) if each.candidate.name == other.name)
+    if not promises(score) or screening.trial(model, score).reason:
+        return None
+    _logger.info("%s passes beside %s", other.name, choice.winner.name)
+    return choice
+
+
+def pass_together(screening: Screening, base: Model, trials: Sequence[Trial]) -> Choice | None:
+    """The best of what is refused for how uneven it is, where it passes beside another.
+
+    Over blocks or by kind of recording: each of two causes is left in the residual that judges the
+    other one. If the second passes beside the first, and the first beside the second, both are
+    causes.
+    """
+    refused = [trial for trial in trials if trial.by_blocks or trial.is_uneven]
+    seen = [trial for trial in refused if not trial.unseen]
+    first = max(seen, key=lambda t: t.worth, default=None)
+    if first is None or any(trial.worth > first.worth for trial in trials):
+        return None
+    others = [
+        score
+        for score in screening.scores(first.model)
+        if score.candidate.name != first.name and promises(score)
+    ]
+    for score in others[:FEW]:
+        second = screening.trial(first.model, score)
+        if second.reason:
+            continue
+        alone = whole_fit(
+            screening.evidence, without_effect(second.model.plant, first.name), base.nuisances
+        )
+        again = next(s for s in screening.scores(alone) if s.candidate.name == first.name)
+        beside = screening.trial(alone, again) if promises(again) else None
+        if beside is not None and not beside.reason:
+            _logger.info("%s and %s pass together", first.name, second.name)
+            passed = replace(first, reason="", by_blocks=False, uneven=beside.uneven)
+            asked = [passed if trial is first else trial for trial in trials]
+            return choose(asked, screening.encompasses)
+        break
+    return None
