@@ -45,7 +45,7 @@ def trial(
 class Bench:
     """What the rounds ask of a screening: answers by the name of the model."""
 
-    evidence = SimpleNamespace(loop=False)
+    evidence = SimpleNamespace(loop=False, simulated=False)
 
     def __init__(self, after: dict[str, list[Trial]]) -> None:
         self.after = after

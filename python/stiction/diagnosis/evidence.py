@@ -171,6 +171,11 @@ class Evidence:
         other.train = [new[rows.index].of(rows.mask) for rows in self.train]
         return other
 
+    @property
+    def simulated(self) -> bool:
+        """Whether rows are those of simulations, not of efforts along the measured motion."""
+        return any(form.simulated for form in self.forms)
+
     def each(self, work: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
         """Results of some work on each item, in their order, on as many threads as allowed."""
         if self.threads == 1 or len(items) < 2:

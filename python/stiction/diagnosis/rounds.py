@@ -33,7 +33,7 @@ from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
 from .single_wave import several
 from .together import pass_together, passes_beside
-from .trials import COMPARED, Screening, promises, unstuck, whole_fit
+from .trials import Screening, compared_fit, promises, unstuck, whole_fit
 
 __all__ = ["MOST_EFFECTS", "friction_of", "search"]
 
@@ -200,7 +200,8 @@ def _refitted(
 ) -> tuple[Choice | None, list[Trial]]:
     """What is accepted of what passed the screening; ``trials`` is filled on the way."""
     base = found.models[-1]
-    last = len(found.choices) + 1 == MOST_EFFECTS
+    # Of a simulation a signature tells too little for one part to be told from another.
+    last = len(found.choices) + 1 == MOST_EFFECTS or screening.evidence.simulated
     waiting = []
     for score in [*passing[:REFITTED], *asked]:
         if not last and score not in asked and _has_time(score, base, trials):
@@ -335,7 +336,7 @@ def _renew(evidence: Evidence, found: Search, lead: Trial) -> bool:
     """
     model, base = lead.model, found.models[-1]
     plant = without_effect(model.plant, lead.name)
-    alone = whole_fit(evidence, plant, model.nuisances, converged=COMPARED)
+    alone = compared_fit(evidence, plant, model.nuisances)
     if alone.power > (1.0 - WORTH_RENEWING) * base.power:
         return False
     _logger.info("the base does better from another start")
@@ -378,7 +379,7 @@ def _less(evidence: Evidence, found: Search, name: str) -> Model:
         if model is whole and left_out == name:
             return less
     plant = without_effect(whole.plant, name)
-    less = whole_fit(evidence, plant, whole.nuisances, converged=COMPARED)
+    less = compared_fit(evidence, plant, whole.nuisances)
     found.lesser.append((whole, name, less))
     return less
 

@@ -19,12 +19,12 @@ from .model import REFIT_CONVERGED, Model, fitted, power_of, stepped, with_effec
 from .noisy_motion import told_by_noise
 from .screen import Problem, Score, Signatures, screen
 
-__all__ = ["COMPARED", "Screening", "promises", "unstuck", "whole_fit"]
+__all__ = ["Screening", "compared_fit", "promises", "unstuck", "whole_fit"]
 
 LAG: Final = "frictional_lag"
 """What noise of the position may look like beside what is late."""
 COMPARED: Final = 1e-4
-"""Of the power: what candidates are told apart by is many times as much."""
+"""Of the power, along a measured motion: what candidates are told apart by is many times as much."""
 LATE_SHARE: Final = 0.5
 """Of the kernel's support: a follower that keeps noise from friction is late by less."""
 SHARES: Final = (0.1, 0.3, 0.6, 1.0, 1.7, 3.0)
@@ -163,10 +163,9 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
         return with_effect(plant, score.candidate, (share * gains).tolist())
 
     # A contact breaks away or does not: slopes tell little of what a whole gain does.
-    simulated = any(form.simulated for form in evidence.forms)
-    plants = [begun(share) for share in (SHARES if simulated else FEW_SHARES)]
+    plants = [begun(share) for share in (SHARES if evidence.simulated else FEW_SHARES)]
     start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
-    model = whole_fit(evidence, start, base.nuisances, converged=COMPARED)
+    model = compared_fit(evidence, start, base.nuisances)
     if model.power < (1.0 - KEPT * score.score) * base.power:
         return model
     # Short of what the screening promised it is caught: a base that has bent itself towards the
@@ -176,8 +175,8 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
     for share in (1.0, CAUTIOUS):
         start = with_effect(base.plant, score.candidate, (share * gains).tolist())
         name = score.candidate.name
-        alone = whole_fit(evidence, start, base.nuisances, only=name, converged=COMPARED)
-        tried.append(whole_fit(evidence, alone.plant, alone.nuisances, converged=COMPARED))
+        alone = compared_fit(evidence, start, base.nuisances, only=name)
+        tried.append(compared_fit(evidence, alone.plant, alone.nuisances))
         if alone.power < base.power:
             break
     return unstuck(min(tried, key=lambda each: each.power))
@@ -212,6 +211,14 @@ def whole_fit(
     if model.solution.interrupted:
         raise KeyboardInterrupt
     return model
+
+
+def compared_fit(
+    evidence: Evidence, plant: Plant, nuisances: Nuisances, *, only: str = ""
+) -> Model:
+    """The same as far as a comparison needs it; to the end where a simulation may go astray."""
+    converged = REFIT_CONVERGED if evidence.simulated else COMPARED
+    return whole_fit(evidence, plant, nuisances, only=only, converged=converged)
 
 
 def _too_good(evidence: Evidence, model: Model) -> str:

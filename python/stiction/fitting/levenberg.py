@@ -10,7 +10,7 @@ import numpy as np
 
 from ..trajectory import FloatArray
 
-__all__ = ["Minimum", "escaped", "levenberg_marquardt"]
+__all__ = ["FIRST_DAMPING", "Minimum", "escaped", "levenberg_marquardt"]
 
 FIRST_DAMPING: Final = 0.1
 """Damping to start with, in units of the scaled normal matrix's diagonal."""
@@ -58,6 +58,7 @@ def levenberg_marquardt(
     tolerance: float,
     nothing: float = 0.0,
     straight: bool = False,
+    damping: float = FIRST_DAMPING,
 ) -> Minimum:
     """Minimise Σr² within bounds.
 
@@ -82,6 +83,8 @@ def levenberg_marquardt(
     straight : bool
         Whether the residual depends on x nearly in a straight line: then it may end on corrected
         slopes, too.
+    damping : float
+        To start with, in units of the scaled normal matrix's diagonal.
 
     Notes
     -----
@@ -95,7 +98,7 @@ def levenberg_marquardt(
     left = residual(x)
     cost = float(left @ left)
     spent = 1
-    damping, growth = FIRST_DAMPING, 2.0
+    growth = 2.0
     largest = np.zeros(len(x))
     slopes, normal, uses = np.empty(0), np.empty(0), MOST_USES
     while True:

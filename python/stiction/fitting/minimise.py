@@ -13,7 +13,7 @@ import numpy as np
 from ..finite import finite
 from ..plant import Plant
 from ..trajectory import FloatArray
-from .levenberg import Minimum, escaped, levenberg_marquardt
+from .levenberg import FIRST_DAMPING, Minimum, escaped, levenberg_marquardt
 from .rows import Nuisances, Rows, Start, numbers, primed, start_quantities, timing_bound
 from .slopes import places_of, slopes
 from .variables import Variables, records
@@ -37,6 +37,9 @@ FIRST_EVALUATIONS: Final = 5
 LAUNCHED: Final = 1e-5
 """Change of the cost at which a launch ends: what is left there weights recordings, and a second
 pass with these weights goes on to the end."""
+BOLD: Final = 0.01
+"""First damping where rows are simulated: a bold step leaves the valley of another cause. With ten
+times as much a goal that was held back stayed a limit of voltage."""
 LEFT: Final = 2
 """After so many steps these go on of several starts."""
 FEW_EVALUATIONS: Final = 14
@@ -446,6 +449,7 @@ class _Minimiser:
             tolerance=self.converged,
             nothing=self.rounding,
             straight=not self.variables.paths,
+            damping=BOLD if self.rows[0].form.simulated else FIRST_DAMPING,
         )
 
     @cached_property
