@@ -24,7 +24,7 @@ __all__ = ["Screening", "compared_fit", "promises", "unstuck", "whole_fit"]
 LAG: Final = "frictional_lag"
 """What noise of the position may look like beside what is late."""
 COMPARED: Final = 1e-4
-"""Of the power, along a measured motion: what candidates are told apart by is many times as much."""
+"""Of the power, along a measured motion: far less than what tells candidates apart."""
 LATE_SHARE: Final = 0.5
 """Of the kernel's support: a follower that keeps noise from friction is late by less."""
 SHARES: Final = (0.1, 0.3, 0.6, 1.0, 1.7, 3.0)
