@@ -35,8 +35,8 @@ CONVERGED: Final = 1e-8
 from stick to slip one by one, so the cost has tiny steps."""
 FIRST_EVALUATIONS: Final = 5
 LAUNCHED: Final = 1e-5
-"""Change of the cost at which a launch ends: what is left there weights recordings, and a second
-pass with these weights goes on to the end."""
+"""Change of the cost at which a launch along a measured motion ends: what is left there weights
+recordings, and a second pass with these weights goes on to the end."""
 BOLD: Final = 0.01
 """First damping where rows are simulated: a bold step leaves the valley of another cause. With ten
 times as much a goal that was held back stayed a limit of voltage."""
@@ -219,7 +219,8 @@ def launch(
     if best.success:
         return best
     known = primed(best.plant, rows, best.nuisances)
-    whole = _further(best, rows, most, nuisances=known, converged=LAUNCHED)
+    converged = CONVERGED if rows[0].form.simulated else LAUNCHED
+    whole = _further(best, rows, most, nuisances=known, converged=converged)
     return replace(whole, evaluations=whole.evaluations + spent)
 
 
