@@ -33,6 +33,7 @@ def test_a_name_and_a_table_are_both_columns() -> None:
         ({"time": {"name": "t", "scale": 0}}, "scale is 0"),
         ({"time": {"name": "t", "offset": float("nan")}}, "offset is nan"),
         ({"input": "u", "effort": "f"}, "both input and effort"),
+        ({"input": "q", "position": {"name": "q", "unit": "deg"}}, "input and position are both"),
         (["t", "u"], "give a table of roles"),
     ],
 )

@@ -57,6 +57,8 @@ CANONICAL: Final[dict[str, tuple[str, str]]] = {
 ``torque_nm`` and ``force_n`` are the effort, not the input, where the motion is prescribed.
 """
 
+NOT_THE_POSITION: Final = ("time", "input", "effort")
+"""Channels that are never the position: read from its column they would explain it all."""
 _COLUMN_KEYS: Final = ("name", "unit", "scale", "offset")
 
 
@@ -156,7 +158,8 @@ class Columns(Mapping[str, Column]):
         Raises
         ------
         InputError
-            For unknown roles, keys and units, wrong types, and an input beside an effort.
+            For unknown roles, keys and units, wrong types, an input beside an effort, and a
+            position that is another channel as well.
         """
         if isinstance(given, Columns):
             return given
@@ -180,6 +183,14 @@ class Columns(Mapping[str, Column]):
                 f"{where}: both input and effort are given; name the input of a driven machine, "
                 "or the measured effort of one that is moved, and not both"
             )
+        for role in NOT_THE_POSITION:
+            if "position" in by_role and role in by_role:
+                name = by_role["position"].name
+                if by_role[role].name == name:
+                    raise InputError(
+                        f"{where}: {role} and position are both read from {name!r}; "
+                        "name another column for one of them"
+                    )
         return cls(by_role, where=where)
 
     def __getitem__(self, role: str) -> Column:
