@@ -12,6 +12,8 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
     assert joined(["a"]) == "a"
     assert joined(["a", "b", "c"], "or") == "a, b or c"
     assert "Nothing is missing" in sentence("nothing_missing", (), None, (), "")
+    little = sentence("nothing_missing", (), None, (), "", slight=True)
+    assert little.startswith("Nothing that counts is missing: some of what is left is more than")
     assert sentence("not_testable", (), None, (), "too short") == "too short"
     sure = SimpleNamespace(
         name="cogging", decided=True, look_alikes=(), what="a pull: cosine 1", gain=None

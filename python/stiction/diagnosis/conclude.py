@@ -253,7 +253,9 @@ class Conclusion:
             verdict=verdict,
             sentence=_opening(self.interrupted, bool(causes))
             + ("" if better is None else f"{better.words(own_law, bool(causes))} ")
-            + sentence(verdict, causes, gain, unexplained, reason)
+            + sentence(
+                verdict, causes, gain, unexplained, reason, slight=_slight(selection, self.rests[1])
+            )
             + no_machine(
                 max(left, lost_on_test(test, len(causes), null)),
                 bool(causes),
@@ -293,6 +295,14 @@ class Conclusion:
                 causes=self.own,
             ),
         )
+
+
+def _slight(selection: Search, left: Rest) -> bool:
+    """Whether what was refused, or what is left in a coordinate, is more than noise makes."""
+    return bool(left.flagged(0.0)) or any(
+        (row.score or 0.0) > (row.threshold or 0.0) and (row.select_gain or 0.0) > 0.0
+        for row in selection.rows.values()
+    )
 
 
 def base_alone(found: Diagnosis, evidence: Evidence, base: Model) -> Diagnosis:

@@ -116,8 +116,10 @@ def sentence(
     gain: Gain | None,
     unexplained: Sequence[Unexplained],
     reason: str,
+    *,
+    slight: bool = False,
 ) -> str:
-    """The verdict in words."""
+    """The verdict in words; ``slight`` where more is left than noise, and too little to count."""
     if verdict in ("data_fault", "not_testable"):
         return reason
     named = _causes(effects)
@@ -125,6 +127,12 @@ def sentence(
     gained = f" {adding} removes {gain_words(gain)}."
     if gain is not None and gain.value < 0.0:
         gained = f" {adding} makes the rows worse that were held out."
+    if verdict == "nothing_missing" and slight:
+        # The tables show what is there: that it is no more than noise would contradict them.
+        return (
+            "Nothing that counts is missing: some of what is left is more than noise, but too "
+            "little beside the friction, or too uncertain, to name an effect of the catalogue."
+        )
     if verdict == "nothing_missing":
         return (
             "Nothing is missing: no effect of the catalogue explains more than noise, and what is "
