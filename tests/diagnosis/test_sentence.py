@@ -47,4 +47,7 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
     assert "lacks one of warm_up (a fall), stribeck (" in sentence(
         "ambiguous", (unsure,), None, (), ""
     )
+    worse = sentence("missing_effect", (sure,), Gain(-0.1, (-0.2, 0.1)), (), "")
+    assert worse.startswith("By the rows that decide, and by no others, the simulation lacks")
+    assert "Adding it makes the held-out rows worse." in worse
     assert Gain(0.5, (0.4, 0.6)).to_dict() == {"value": 0.5, "ci95": [0.4, 0.6]}

@@ -124,9 +124,11 @@ def sentence(
         return reason
     named = _causes(effects)
     adding = f"Adding {'it' if len(effects) == 1 else 'them'}"
-    gained = f" {adding} removes {gain_words(gain)}."
+    lacks, gained = "The simulation lacks", f" {adding} removes {gain_words(gain)}."
     if gain is not None and gain.value < 0.0:
-        gained = f" {adding} makes the rows worse that were held out."
+        # What does not bear out must not begin as if it were so.
+        lacks = "By the rows that decide, and by no others, the simulation lacks"
+        gained = f" {adding} makes the held-out rows worse."
     if verdict == "nothing_missing" and slight:
         # The tables show what is there: that it is no more than noise would contradict them.
         return (
@@ -150,11 +152,11 @@ def sentence(
                 f"{depends}."
             )
         return (
-            f"The simulation lacks {named}, and something without a name: what is left "
+            f"{lacks} {named}, and something without a name: what is left "
             f"{depends}.{gained}"
             f"{_unconfirmed(effects)}"
         )
-    return f"The simulation lacks {named}.{gained}{_unconfirmed(effects)}"
+    return f"{lacks} {named}.{gained}{_unconfirmed(effects)}"
 
 
 def no_machine(left: float, named: bool, verdict: Verdict, by: Compared = EFFORT) -> str:
