@@ -201,10 +201,10 @@ def _refitted(
     """What is accepted of what passed the screening; ``trials`` is filled on the way."""
     base = found.models[-1]
     # Of a simulation a signature tells too little for one part to be told from another.
-    last = len(found.choices) + 1 == MOST_EFFECTS or screening.evidence.simulated
+    goes_on = len(found.choices) + 1 < MOST_EFFECTS and not screening.evidence.simulated
     waiting = []
     for score in [*passing[:REFITTED], *asked]:
-        if not last and score not in asked and _has_time(score, base, trials):
+        if goes_on and score not in asked and _can_wait(score, base, trials):
             waiting.append(score)
         elif not _hopeless(score, trials):
             trials.append(beside_a_second(screening, base, screening.trial(base, score)))
@@ -264,17 +264,17 @@ def _hopeless(score: Score, trials: Sequence[Trial]) -> bool:
     return any(score.score < SLIGHT * trial.score.score for trial in passed)
 
 
-def _has_time(score: Score, base: Model, trials: Sequence[Trial]) -> bool:
+def _can_wait(score: Score, base: Model, trials: Sequence[Trial]) -> bool:
     """Whether a candidate explains less than one that passed, and something else."""
 
-    def leaves(trial: Trial) -> bool:
+    def comes_first(trial: Trial) -> bool:
         explained = 1.0 - trial.model.power / base.power
         if trial.candidate.record.family == score.candidate.record.family:
             return False
         unlike = parallel(trial.score.signature, score.signature) <= ALIKE
         return unlike and score.score < LESSER * explained
 
-    return any(leaves(trial) for trial in trials if not trial.reason)
+    return any(comes_first(trial) for trial in trials if not trial.reason)
 
 
 def _take_back(screening: Screening, found: Search) -> set[str]:
