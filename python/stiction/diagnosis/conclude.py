@@ -42,7 +42,7 @@ from .replay import centre, shared, surrogate_residuals
 from .result import Cause, Diagnosis, ModelSummary, Unexplained, Verdict
 from .rounds import friction_of
 from .selection import Search
-from .single_wave import doubted
+from .single_wave import doubted, rests_of
 from .verdict import relatives, unnamed, verdict_of
 from .view import View
 from .words import INTERRUPTED, MORE_MAY_BE, NO_COORDINATE, no_machine, push_words, sentence, what
@@ -234,6 +234,9 @@ class Conclusion:
             reason = NOTHING_YET
         else:
             unexplained = self.unexplained
+            shown = {each.coordinate for each in unexplained}
+            of_names = rests_of(causes, self.rests[1])
+            unexplained += tuple(each for each in of_names if each.coordinate not in shown)
             causes = [doubted(cause, unexplained) for cause in causes]
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)

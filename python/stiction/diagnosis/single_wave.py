@@ -1,19 +1,28 @@
-"""A weight off the axis makes one wave a turn: what leaves more of a turn is another thing.
+"""Names of which geometry leaves no rest: one wave a turn, and what a reading makes of it.
 
 The form of an effect is its author's, and a machine's own leaves a rest of it. One wave is no
-matter of form, so that a rest of it speaks against the name.
+matter of form, so that a rest of it speaks against the name: a weight off the axis leaves nothing
+over the angle, and a disc off centre nothing that repeats with position and grows with
+acceleration. An inertia that changes with the angle looks much like such a disc, but what goes with
+the squared speed is half as much.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Final
 
 from ..catalogue import EffectRecord, effects
 from .coordinates import ANGLE
+from .omnibus import Rest
+from .periodic import COUPLED
 from .result import Cause, Unexplained
 
-__all__ = ["doubted", "several"]
+__all__ = ["doubted", "rests_of", "several"]
+
+EXACT: Final = {"encoder_eccentricity": COUPLED[0].name}
+"""Where an effect leaves nothing once it is named."""
 
 
 def several(record: EffectRecord) -> tuple[str, ...]:
@@ -24,7 +33,7 @@ def several(record: EffectRecord) -> tuple[str, ...]:
 
 
 def doubted(cause: Cause, left: Sequence[Unexplained]) -> Cause:
-    """A cause; a single wave is undecided where what is left depends on the angle in the turn.
+    """A cause; undecided where what is left depends on what its geometry leaves nothing of.
 
     Parameters
     ----------
@@ -32,8 +41,27 @@ def doubted(cause: Cause, left: Sequence[Unexplained]) -> Cause:
     left : sequence of Unexplained
         What the last model leaves that noise does not explain.
     """
+    if any(each.coordinate == EXACT.get(cause.name) for each in left):
+        return replace(cause, decided=False)
     record = next(each for each in effects() if each.name == cause.name)
     others = [name for name in several(record) if name not in cause.look_alikes]
     if not others or all(each.coordinate != ANGLE.name for each in left):
         return cause
     return replace(cause, decided=False, look_alikes=(*cause.look_alikes, *others))
+
+
+def rests_of(causes: Sequence[Cause], left: Rest) -> tuple[Unexplained, ...]:
+    """What is left where named causes leave nothing, however little of it there is.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+    left : Rest
+        What the last model leaves, in every coordinate.
+    """
+    asked = {EXACT[cause.name] for cause in causes if cause.name in EXACT}
+    return tuple(
+        Unexplained(view.coordinate.name, view.share)
+        for view in left.views
+        if view.coordinate.name in asked and view.share > view.threshold
+    )

@@ -12,6 +12,7 @@ from .decide import LEAST_GAIN, heldout_gain
 from .evidence import Evidence
 from .model import Model
 from .omnibus import Rest
+from .outlying import outlying
 from .passing import MOMENTS
 from .periodic import FREQUENCY
 from .result import Unexplained, Verdict
@@ -83,7 +84,8 @@ def unnamed(
     if not told and excess > _most_excess(evidence):
         bursts = _at_moments(evidence, selection.models[-1], null)
         told = (Unexplained(MOMENTS.name if bursts else NO_COORDINATE, excess),)
-    return told
+    alone = outlying(evidence, selection.models[-1], null)
+    return tuple(sorted((*told, *alone), key=lambda each: -each.share)) if alone else told
 
 
 def verdict_of(selection: Search, left: Sequence[Unexplained], decided: bool) -> Verdict:

@@ -1,0 +1,71 @@
+"""Single recordings in which much is left, where the model is right in all others."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from ..trajectory import FloatArray
+from .evidence import Evidence
+from .model import Model
+from .result import Unexplained
+
+__all__ = ["MOST_TIMES", "outlying"]
+
+MOST_TIMES: Final = 8.0
+"""Power left over what noise leaves from which on a recording stands out, in its median block.
+
+Where nothing of the kind was hidden it came to 1.6 with a contact that yields, and to 4.1 with a
+dry one.
+"""
+FEWEST: Final = 3
+"""Recordings that are needed to call one of them another thing than the rest."""
+
+
+def outlying(evidence: Evidence, model: Model, null: FloatArray) -> tuple[Unexplained, ...]:
+    """Recordings in which far more is left than in all others, largest share first.
+
+    A mean over recordings hides the one in which a load, a mounting or a clock was another one, and
+    so does a median. Where the model has lost a machine for a moment, as where a contact breaks
+    away late, a single block is far off; here it is the middle one.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    model : Model
+        The last one.
+    null : numpy.ndarray, shape (n, surrogates)
+        Residuals of the surrogates.
+
+    Returns
+    -------
+    tuple of Unexplained
+        Each with its share of all that is left. Empty where the model misses most recordings by
+        so much, too: then none of them stands out, and the coordinates tell what is missing.
+    """
+    block, recording = evidence.cells.block, evidence.cells.recording
+    number = int(block.max()) + 1
+    power = np.bincount(block, model.residual**2, number)
+    noise = np.bincount(block, np.mean(null**2, axis=1), number)
+    of_block = np.zeros(number, dtype=np.int64)
+    of_block[block] = recording
+    there = noise > 0.0
+    asked = np.unique(of_block[there])
+    if len(asked) < FEWEST:
+        return ()
+    middle = np.zeros(len(asked))
+    beyond = np.zeros(len(asked))
+    for place, index in enumerate(asked):
+        own = there & (of_block == index)
+        middle[place] = np.median(power[own]) / np.median(noise[own])
+        beyond[place] = max(float(power[own].sum() - noise[own].sum()), 0.0)
+    usual = float(np.median(middle))
+    if usual >= MOST_TIMES:
+        return ()
+    out = np.flatnonzero(middle > MOST_TIMES * max(usual, 1.0))
+    shares = beyond / float(power.sum())
+    return tuple(
+        Unexplained(f"{evidence.names[asked[k]]} alone", float(shares[k]))
+        for k in sorted(out, key=lambda k: -shares[k])
+    )
