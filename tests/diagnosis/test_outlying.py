@@ -40,7 +40,7 @@ def test_an_inertia_that_changes_with_the_angle_is_no_sure_error_of_the_encoder(
     made = make_session(204 if turns else 214, hidden=hidden)
     parts = [np.zeros(r.time_s.size) for r in made.recordings]
     if turns:
-        # d/dt of J'(x) v, less half of J''(x) v^2: cos(x + .7) is what the inertia has more.
+        # d/dt (J v) - J' v^2 / 2, where J = cos(x + .7) is what the inertia has more.
         angles = [r.truth["position"] + 0.7 for r in made.recordings]
         speeds = [r.truth["velocity"] for r in made.recordings]
         parts = size_of(
