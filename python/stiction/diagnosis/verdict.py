@@ -78,12 +78,15 @@ def unnamed(
     if not told and selection.imitated > LEAST_GAIN:
         # What was refused as an imitation shows that there is something to imitate.
         told = (Unexplained(left.views[0].coordinate.name, selection.imitated),)
-    if not told and excess > _most_excess(evidence) and selection.choices:
+    # A few coordinates that show little beside names must not hide that most has no name.
+    open_ = not told or (bool(selection.choices) and not _outweighs(selection, told))
+    if open_ and excess > _most_excess(evidence) and selection.choices:
         null = null_of_last()
         excess = _excess(evidence, selection.models[-1], null)
-    if not told and excess > _most_excess(evidence):
+    if open_ and excess > _most_excess(evidence):
         bursts = _at_moments(evidence, selection.models[-1], null)
-        told = (Unexplained(MOMENTS.name if bursts else NO_COORDINATE, excess),)
+        more = Unexplained(MOMENTS.name if bursts else NO_COORDINATE, excess)
+        told = (more, *(each for each in told if each.coordinate != more.coordinate))
     alone = outlying(evidence, selection.models[-1], null)
     return tuple(sorted((*told, *alone), key=lambda each: -each.share)) if alone else told
 
@@ -145,7 +148,7 @@ def _outweighs(selection: Search, left: Sequence[Unexplained]) -> bool:
     if not left:
         return False
     before, after = (float(m.blocks[1].sum()) for m in (selection.models[0], selection.models[-1]))
-    return left[0].share * after > WORTH_SHARE * (before - after)
+    return max(each.share for each in left) * after > WORTH_SHARE * (before - after)
 
 
 def _at_moments(evidence: Evidence, model: Model, null: FloatArray) -> bool:

@@ -140,12 +140,8 @@ def sentence(
             "Nothing is missing: no effect of the catalogue explains more than noise, and what is "
             "left shows in no coordinate."
         )
-    rest = joined([f"{left.coordinate} ({100 * left.share:.0f} %)" for left in unexplained[:3]])
     if verdict == "unexplained":
-        depends = f"still depends on {rest}"
-        if unexplained and unexplained[0].coordinate == NO_COORDINATE:
-            share = f"{100 * unexplained[0].share:.0f} %"
-            depends = f"is more than noise and goes with {NO_COORDINATE} ({share})"
+        depends = _depends(unexplained)
         if not effects:
             return (
                 "Something is missing that no effect of the catalogue explains: the residual "
@@ -156,7 +152,10 @@ def sentence(
             f"{depends}.{gained}"
             f"{_unconfirmed(effects)}"
         )
-    return f"{lacks} {named}.{gained}{_unconfirmed(effects)}"
+    # Most of what is left may be more than noise and yet little beside what was named.
+    more = any(left.coordinate == NO_COORDINATE for left in unexplained)
+    left = f" What is left {_depends(unexplained)}." if more else ""
+    return f"{lacks} {named}.{gained}{_unconfirmed(effects)}{left}"
 
 
 def no_machine(left: float, named: bool, verdict: Verdict, by: Compared = EFFORT) -> str:
@@ -202,6 +201,22 @@ def _unconfirmed(effects: Sequence[Cause]) -> str:
             (worse if cause.gain.ci95[1] <= 0.0 else open_).append(cause.name)
     told = f" The held-out rows do not confirm {joined(open_)}." if open_ else ""
     return told + (f" The held-out rows speak against {joined(worse)}." if worse else "")
+
+
+def _depends(unexplained: Sequence[Unexplained]) -> str:
+    """On what the residual still depends, and how much of it on nothing that was looked at."""
+    shown = [each for each in unexplained if each.coordinate != NO_COORDINATE][:3]
+    on = joined([f"{each.coordinate} ({100 * each.share:.0f} %)" for each in shown])
+    nowhere = [each.share for each in unexplained if each.coordinate == NO_COORDINATE]
+    if not nowhere:
+        return f"still depends on {on}"
+    share = f"{100 * nowhere[0]:.0f} %"
+    if not shown:
+        return f"is more than noise and goes with {NO_COORDINATE} ({share})"
+    return (
+        f"is more than noise ({share}); some of it depends on {on}, and most goes with "
+        f"{NO_COORDINATE}"
+    )
 
 
 def _causes(effects: Sequence[Cause]) -> str:
