@@ -134,6 +134,7 @@ class WeakForm:
         least = support or max(SUPPORTS_S[0], FEWEST_SAMPLES * self.dt)
         # Before any kernel is made: at 10 MHz one of 30 ms would have 300 000 samples.
         possible = support is None or support <= WIDEST * self.dt
+        self.widened = support is not None
         if possible and recording.duration < 1.5 * least:
             raise NotEnoughData(_too_few(source, len(time), least))
         x = np.interp(time, stamps, without_spikes(recording.position))

@@ -11,7 +11,7 @@ import stiction as st
 from stiction.diagnosis.evidence import Evidence
 from stiction.diagnosis.model import Model, fitted
 from stiction.diagnosis.replay import noise_of, surrogate_residuals
-from stiction.fitting.forms import HORIZONS_S, horizon_of, told
+from stiction.fitting.forms import HORIZONS_S, Through, horizon_of, told
 from stiction.fitting.rows import Nuisances
 from stiction.shooting import ShootingForm
 from stiction.weak_form import WeakForm
@@ -79,7 +79,7 @@ def test_a_coarse_encoder_is_looked_at_by_short_simulations() -> None:
     assert horizon is not None
     assert HORIZONS_S[0] <= horizon <= HORIZONS_S[1]
     assert "weak form" in told(base.evidence.forms, base.plant)
-    evidence = Evidence(plant(COARSE), session(COARSE), threads=1, horizon=horizon)
+    evidence = Evidence(plant(COARSE), session(COARSE), threads=1, through=Through(horizon=horizon))
     assert all(isinstance(form, ShootingForm) for form in evidence.forms)
     assert "shooting" in told(evidence.forms, base.plant)
 
@@ -156,7 +156,7 @@ def test_a_plant_too_stiff_to_simulate_looks_bad_and_breaks_nothing(
 
 
 def test_surrogates_and_noise_are_those_of_a_right_model(coarse: list[st.Recording]) -> None:
-    evidence = Evidence(plant(COARSE), coarse, threads=1, horizon=0.1)
+    evidence = Evidence(plant(COARSE), coarse, threads=1, through=Through(horizon=0.1))
     residual = evidence.residual(plant(COARSE), Nuisances())
     null, noises = surrogate_residuals(evidence, plant(COARSE), Nuisances(), 6, 0)
     assert 0.6 < np.std(residual) / np.std(null) < 1.5

@@ -49,8 +49,8 @@ def based(
     first = first_pass(
         plant,
         evidence,
-        lambda found, horizon, loop, watch: Evidence(
-            found, recordings, threads=threads, horizon=horizon, loop=loop, watch=watch
+        lambda found, through, watch: Evidence(
+            found, recordings, threads=threads, through=through, watch=watch
         ),
         most=MOST_EVALUATIONS,
     )

@@ -26,6 +26,7 @@ from .confirm import confirmed, described, lost, lost_on_test
 from .coordinates import Look, looks
 from .evidence import Evidence
 from .gain import HeldOut, gain_of, residuals_of
+from .holds import holds_of
 from .laws import THE_LAW, Rival, better_law, event_words, law_rows, rivals_of
 from .listing import in_order
 from .lone import lone_event
@@ -116,6 +117,7 @@ class Conclusion:
         }
         found = self._told(replace(self.found, data=data))
         found = _with_pushes(found, self.evidence)
+        found = _with_checks(found, holds_of(self.evidence.shown, final, self.evidence.names))
         return replayed(replace(found, ceiling=ceiling), self.evidence, self.base, final)
 
     @cached_property
@@ -355,14 +357,13 @@ def _with_pushes(found: Diagnosis, evidence: Evidence) -> Diagnosis:
     if not checks:
         return found
     words = push_words(evidence.pushes, evidence.names)
-    data = {
-        **found.data,
-        "checks": [
-            *found.data["checks"],
-            *({"recording": name, **c.to_dict()} for name, c in checks),
-        ],
-    }
-    return replace(found, sentence=f"{found.sentence} {words}", data=data)
+    return replace(_with_checks(found, checks), sentence=f"{found.sentence} {words}")
+
+
+def _with_checks(found: Diagnosis, checks: Sequence[tuple[str, Check]]) -> Diagnosis:
+    """What was found in each recording, by its name, beside what is told of them already."""
+    more = ({"recording": name, **check.to_dict()} for name, check in checks)
+    return replace(found, data={**found.data, "checks": [*found.data["checks"], *more]})
 
 
 def _causes(

@@ -12,7 +12,7 @@ from typing import Final, TypeVar
 import numpy as np
 
 from ..errors import NotEnoughData
-from ..fitting.forms import forms_of, set_clocks
+from ..fitting.forms import KERNELS, Through, forms_of, set_clocks
 from ..fitting.minimise import started
 from ..fitting.pushes import Watch
 from ..fitting.rows import Mask, Nuisances, Rows, rows_of
@@ -86,10 +86,7 @@ class Evidence:
     recordings : sequence of Recording
     threads : int, optional
         Recordings looked at side by side; results do not depend on it.
-    horizon : float, optional
-        Length of the windows of a shooting residual, s; the weak form without it.
-    loop : bool
-        Simulate the loop of a servo over whole recordings.
+    through : Through, optional
     watch : Watch, optional
         Who looks out for pushes from outside; without it a new one learns from the rows that may
         be looked at.
@@ -130,16 +127,15 @@ class Evidence:
         recordings: Sequence[Recording],
         *,
         threads: int | None = None,
-        horizon: float | None = None,
-        loop: bool = False,
+        through: Through = KERNELS,
         watch: Watch | None = None,
     ) -> None:
         self.plant = plant
-        self.loop = loop
+        self.loop = through.loop
         self.recordings = list(recordings)
         self.threads = threads
         self.names = names_of(self.recordings)
-        self.forms = forms_of(plant, self.recordings, self.each, horizon=horizon, loop=loop)
+        self.forms = forms_of(plant, self.recordings, self.each, through)
         self.support = max(form.kernel.support for form in self.forms)
         self.overlap = max(f.kernel.support / (f.dt * f.stride) for f in self.forms)
         self.split: Split = split(self.recordings, edge_s=min(self.support, 0.25 * BLOCK_S))

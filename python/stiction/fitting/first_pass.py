@@ -12,7 +12,15 @@ import numpy as np
 from ..errors import InputError
 from ..plant import Plant
 from ..weak_form import WeakForm
-from .forms import LEAST_LEFT, followable, horizon_of, shows_its_ring, stiffen
+from .forms import (
+    LEAST_LEFT,
+    Through,
+    followable,
+    horizon_of,
+    shows_its_ring,
+    stiffen,
+    wider_of,
+)
 from .minimise import Solution, launch, or_from, stopped
 from .pushes import Watch
 from .rows import Rows
@@ -22,6 +30,17 @@ __all__ = ["FirstPass", "Seen", "first_pass", "launched"]
 
 WORTH_CLINGING: Final = 0.9
 """Share of what else is left that a contact may leave at most which never breaks away."""
+
+DROWNED: Final = 1.2
+"""So many times the inertia must come out through wider kernels..."""
+WORTH_WIDER: Final = 0.7
+"""... and so much of the share that was left may be left by them: half of its power."""
+
+STANDS: Final = 0.05
+"""Share of the greatest speed up to which a machine does not move, here."""
+QUICKER: Final = 1.5
+"""Power left in the quicker half of the motion over that in the slower one, from which on it comes
+from readings: a ripple of torque came to 0.8 to 1.0, angles read wrong to 1.7 and more."""
 
 _logger = logging.getLogger(__name__)
 
@@ -67,7 +86,7 @@ class FirstPass(Generic[S]):
 def first_pass(
     plant: Plant,
     seen: S,
-    simulated: Callable[[Plant, float | None, bool, Watch], S],
+    again: Callable[[Plant, Through, Watch], S],
     *,
     most: int,
 ) -> FirstPass[S]:
@@ -75,16 +94,17 @@ def first_pass(
 
     Where readings turn out too coarse to drive friction (see ``horizon_of``), the fit goes on from
     there with the plant simulated over short windows. Of a servo it goes on with the simulated
-    loop: what its law makes of the measured motion may never have been its effort.
+    loop: what its law makes of the measured motion may never have been its effort. Where much is
+    left and the inertia shows through wider kernels alone, it goes on with these (see
+    ``wider_of``).
 
     Parameters
     ----------
     plant : Plant
     seen : Seen
         Recordings through the kernels of the weak form.
-    simulated : callable
-        The same recordings for a plant, a length of windows in s (None without windows), whether
-        the loop of a servo is simulated, and the watch of ``seen``.
+    again : callable
+        The same recordings for a plant, what they are seen through, and the watch of ``seen``.
     most : int
         Evaluations of the residual at most, of each start.
 
@@ -98,10 +118,11 @@ def first_pass(
     if found.interrupted:
         return known
     try:
-        return _simulated(plant, known, found.variables.paths, simulated, most=most)
+        known = _simulated(plant, known, found.variables.paths, again, most=most)
+        return known if known.solution.interrupted else _wider(plant, known, again, most=most)
     except KeyboardInterrupt:
-        # Before what is simulated had anything to keep.
-        return replace(known, solution=stopped(found))
+        # Before what comes after had anything to keep.
+        return replace(known, solution=stopped(known.solution))
 
 
 def launched(
@@ -178,7 +199,7 @@ def _simulated(
     plant: Plant,
     known: FirstPass[S],
     paths: Sequence[str],
-    simulated: Callable[[Plant, float | None, bool, Watch], S],
+    again: Callable[[Plant, Through, Watch], S],
     *,
     most: int,
 ) -> FirstPass[S]:
@@ -188,24 +209,22 @@ def _simulated(
     servo = plant.servo
     if horizon is not None or servo:
         _logger.info("fitting it again, simulated")
-        other = simulated(found.plant, horizon, servo, seen.watch)
+        other = again(found.plant, Through(horizon=horizon, loop=servo), seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
         begun = [found.plant, start] if servo else [found.plant]
         begun = [followable(each, other.forms) for each in begun]
-        again = launch(begun, paths, other.train, most=most)
+        fitted = launch(begun, paths, other.train, most=most)
         if servo:
             light = lightly_held(plant, start, [rows.form for rows in seen.train])
-            again = or_from([light], again, other.train, most=most)
-        again = replace(again, begin=found.begin, evaluations=found.evaluations + again.evaluations)
+            fitted = or_from([light], fitted, other.train, most=most)
+        fitted = _after(found, fitted)
         if servo or (
-            shows_its_ring(again.plant, other.forms) and _lost(again, other.train) is None
+            shows_its_ring(fitted.plant, other.forms) and _lost(fitted, other.train) is None
         ):
-            seen, found = other, again
+            seen, found = other, fitted
             stiffen(seen.forms, found.plant)
         else:
-            found = replace(found, evaluations=again.evaluations)
-            if again.interrupted:
-                found = stopped(found)
+            found = _kept(found, fitted)
     lost = None if found.interrupted else _lost(found, seen.train)
     if lost is not None:
         raise InputError(
@@ -214,6 +233,55 @@ def _simulated(
             "nearer to the machine, or bounds for them"
         )
     return FirstPass(seen, found, start)
+
+
+def _wider(
+    plant: Plant, known: FirstPass[S], again: Callable[[Plant, Through, Watch], S], *, most: int
+) -> FirstPass[S]:
+    """What is known, fitted through wider kernels where these alone show the inertia.
+
+    A quick torque that a law misses drowns the inertia too, and must not be averaged away: it is
+    as large in slow motion as in quick one, where errors of the readings grow with the speed.
+    """
+    seen, found = known.seen, known.solution
+    support = wider_of(found.plant, found.nuisances, seen.train, seen.forms)
+    if support is None or "body.inertia" not in found.variables.paths:
+        return known
+    _logger.info("fitting it again, through wider kernels")
+    other = again(found.plant, Through(support=support), seen.watch)
+    start, wide = launched(plant, other.train, most=most)
+    wide = _after(found, wide)
+    drowned = found.plant.inertia * DROWNED < wide.plant.inertia
+    less = _share_left(wide, other.train) < WORTH_WIDER * _share_left(found, seen.train)
+    if drowned and less and _grows(wide, seen.train) and _lost(wide, other.train) is None:
+        return FirstPass(other, wide, start)
+    return replace(known, solution=_kept(found, wide))
+
+
+def _grows(solution: Solution, rows: Sequence[Rows]) -> bool:
+    """Whether more is left in the quicker half of what moves."""
+    left, speeds = [], []
+    for each in rows:
+        left.append(each.residual(solution.plant, solution.nuisances)[each.mask] ** 2)
+        speeds.append(np.abs(each.form.velocity[each.mask]))
+    power, speed = np.concatenate(left), np.concatenate(speeds)
+    moves = speed > STANDS * float(np.max(speed))
+    if not np.any(moves):
+        return False
+    quick = speed > float(np.median(speed[moves]))
+    return float(np.mean(power[quick])) > QUICKER * float(np.mean(power[moves & ~quick]))
+
+
+def _after(found: Solution, other: Solution) -> Solution:
+    """The other one, with what was done before it."""
+    evaluations = found.evaluations + other.evaluations
+    return replace(other, begin=found.begin, evaluations=evaluations)
+
+
+def _kept(found: Solution, other: Solution) -> Solution:
+    """The one that was found, with what was done after it."""
+    found = replace(found, evaluations=other.evaluations)
+    return stopped(found) if other.interrupted else found
 
 
 def _lost(solution: Solution, rows: Sequence[Rows]) -> int | None:

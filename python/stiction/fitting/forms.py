@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from ..loop_form import LoopForm
-from ..motion import noise_of
+from ..motion import SUPPORTS_S, noise_of
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.session_clock import ages_of, starts_of
@@ -20,7 +20,9 @@ from .rows import Nuisances, Rows
 
 __all__ = [
     "EVERY_S",
+    "KERNELS",
     "LEAST_LEFT",
+    "Through",
     "as_stated",
     "followable",
     "forms_of",
@@ -29,6 +31,7 @@ __all__ = [
     "shows_its_ring",
     "stiffen",
     "told",
+    "wider_of",
 ]
 
 EVERY_S: Final = 0.005
@@ -49,19 +52,41 @@ RINGS: Final = 3.0
 count sets a machine ringing, and of a ring three times as fast as itself the kernel leaves 1 %."""
 LEAST_WINDOWS: Final = 4.0
 """Windows that the shortest recording must hold."""
+MUCH_LEFT: Final = 0.2
+"""Share of the measured effort from which on what is left may come from accelerations that are
+wrong."""
+NARROW: Final = 1.5
+"""Kernels that are wider by no more than this show nothing else."""
 ROUNDED: Final = float(np.sqrt(12.0))
 """Size of a count over the standard deviation of what rounding to it makes."""
 
 _Each = Callable[[Callable[[Recording], WeakForm], Sequence[Recording]], list[WeakForm]]
 
 
+@dataclass(frozen=True)
+class Through:
+    """What recordings are seen through; kernels as narrow as their noise allows without anything.
+
+    Attributes
+    ----------
+    support : float, optional
+        Width of the kernels of the weak form, s.
+    horizon : float, optional
+        Length of the windows of a shooting residual, s.
+    loop : bool
+        Simulate the loop of a servo over whole recordings.
+    """
+
+    support: float | None = None
+    horizon: float | None = None
+    loop: bool = False
+
+
+KERNELS: Final = Through()
+
+
 def forms_of(
-    plant: Plant,
-    recordings: Sequence[Recording],
-    each: _Each,
-    *,
-    horizon: float | None = None,
-    loop: bool = False,
+    plant: Plant, recordings: Sequence[Recording], each: _Each, through: Through = KERNELS
 ) -> list[WeakForm]:
     """Recordings through kernels, or simulated; their clocks are not set yet.
 
@@ -71,18 +96,15 @@ def forms_of(
     recordings : sequence of Recording
     each : callable
         What goes over them: ``lambda work, items: list(map(work, items))``.
-    horizon : float, optional
-        Length of the windows of a shooting residual, s; the weak form without it.
-    loop : bool
-        Simulate the loop of a servo over whole recordings.
+    through : Through, optional
     """
 
     def form(recording: Recording) -> WeakForm:
-        if loop:
+        if through.loop:
             return LoopForm(plant, recording)
-        if horizon is None:
-            return WeakForm(plant, recording, every=EVERY_S)
-        return ShootingForm(plant, recording, horizon=horizon)
+        if through.horizon is None:
+            return WeakForm(plant, recording, support=through.support, every=EVERY_S)
+        return ShootingForm(plant, recording, horizon=through.horizon)
 
     return each(form, recordings)
 
@@ -160,6 +182,43 @@ def horizon_of(
     return float(np.clip(max(drifts, rings), *HORIZONS_S))
 
 
+def wider_of(
+    plant: Plant, nuisances: Nuisances, rows: Sequence[Rows], forms: Sequence[WeakForm]
+) -> float | None:
+    """How wide kernels should be tried where narrow ones leave much, None for not at all.
+
+    A kernel is as narrow as the white noise of the readings allows. Errors that go with the angle
+    or with uneven stamps are no such noise: through a narrow kernel they make accelerations of
+    their own, in which the inertia drowns, and with it whatever balances it.
+
+    Parameters
+    ----------
+    plant : Plant
+        Fitted to the rows.
+    nuisances : Nuisances
+    rows : sequence of Rows
+        That were fitted, of the weak form.
+    forms : sequence of WeakForm
+        Of all recordings.
+
+    Returns
+    -------
+    float or None
+        s.
+    """
+    widest = SUPPORTS_S[1]
+    shortest = min(form.dt * len(form.readings) for form in forms)
+    if any(form.simulated or form.prescribed for form in forms):
+        return None
+    if shortest < LEAST_WINDOWS * widest:
+        return None
+    if NARROW * max(form.kernel.support for form in forms) > widest:
+        return None
+    left = [each.residual(plant, nuisances)[each.mask] for each in rows]
+    measured = [each.form.measured(plant)[each.mask] for each in rows]
+    return widest if _size(left) > MUCH_LEFT * _size(measured) else None
+
+
 def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
     """The plant with a contact that can be simulated again and again; what is fixed stays.
 
@@ -230,6 +289,11 @@ def told(forms: Sequence[WeakForm], plant: Plant) -> str:
     if max(supports) > min(supports) + 0.5:
         width += f" to {max(supports):.0f}"
     led = f"The plant was led along the measured motion, averaged over {width} ms (weak form)"
+    if any(form.widened for form in forms):
+        return (
+            f"{led}: wider than noise asks for, because through narrower kernels the inertia "
+            "drowned in errors of the acceleration; what is over sooner is averaged away."
+        )
     if _fine(plant, forms):
         return f"{led}, because the readings of the position are fine enough to drive friction."
     over = (

@@ -21,7 +21,7 @@ from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from .first_pass import first_pass
-from .forms import as_stated, forms_of, set_clocks
+from .forms import KERNELS, Through, as_stated, forms_of, set_clocks
 from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, started, stopped
 from .pushes import Watch
 from .pushes import told as pushes_told
@@ -70,17 +70,14 @@ class _Seen:
         self,
         plant: Plant,
         recordings: Sequence[Recording],
-        horizon: float | None = None,
-        *,
-        loop: bool = False,
+        through: Through = KERNELS,
         watch: Watch | None = None,
     ) -> None:
         self.forms = forms_of(
             plant,
             recordings,
             lambda work, items: [work(item) for item in items],
-            horizon=horizon,
-            loop=loop,
+            through,
         )
         self.parts = _deal(recordings, max(form.kernel.support for form in self.forms))
         fitted = {part.recording for part in self.parts.train}
@@ -110,7 +107,8 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     of friction at the first row of a recording and an offset of up to half a sample between input
     and position are fitted along as nuisances. Where the readings turn out too coarse to drive
     friction (see ``horizon_of``), the fit goes on from there with the plant simulated over short
-    windows instead; a servo is simulated over whole recordings (see ``LoopForm``).
+    windows instead; where the inertia drowns in errors of the acceleration, through wider kernels
+    (see ``wider_of``); a servo is simulated over whole recordings (see ``LoopForm``).
 
     Parameters
     ----------
@@ -148,9 +146,7 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     first = first_pass(
         plant,
         seen,
-        lambda found, horizon, loop, watch: _Seen(
-            found, recordings, horizon, loop=loop, watch=watch
-        ),
+        lambda found, through, watch: _Seen(found, recordings, through, watch),
         most=max_evaluations,
     )
     seen, train = first.seen, first.seen.train

@@ -1,0 +1,63 @@
+"""Errors of an encoder that go with the angle drown the inertia, seen through narrow kernels."""
+
+import pytest
+from tests.reference.pendulum_reference import DRY, INERTIA, WEIGHT, swung
+
+import stiction as st
+from stiction.diagnosis.base import based
+from stiction.fitting.forms import told as residual_told
+from stiction.plant import Plant
+
+
+def pendulum():
+    return Plant.from_dict(
+        {
+            "motion": {"kind": "rotary"},
+            "drive": {"input": "torque_nm", "gain": 1.0},
+            "body": {"gravity_amplitude": 1.0, "gravity_zero_rad": 0.0},
+            "friction": {"law": "coulomb"},
+        }
+    )
+
+
+def recordings(**what):
+    return [swung(seed, **what) for seed in (1, 2, 3)]
+
+
+def fitted(**what):
+    return st.fit(pendulum(), st.Session(recordings(**what)))
+
+
+def values(result):
+    body = result.plant.body
+    return body["inertia"].value, body["gravity_amplitude"].value
+
+
+def test_errors_that_go_with_the_angle_take_no_inertia_with_them():
+    result = fitted(error=1e-3)
+    inertia, weight = values(result)
+    assert inertia == pytest.approx(INERTIA, rel=0.08)
+    assert weight == pytest.approx(WEIGHT, rel=0.08)
+    assert result.plant.friction.parameters["coulomb"].value == pytest.approx(DRY, rel=0.08)
+    assert result.train_relative < 0.05
+
+
+@pytest.mark.parametrize("what", [{}, {"error": 5e-5}, {"ripple": 0.3}])
+def test_kernels_stay_narrow_where_the_inertia_shows(what):
+    evidence, base = based(pendulum(), recordings(**what))
+    assert max(form.kernel.support for form in evidence.forms) < 0.1
+    assert "drowned" not in residual_told(evidence.forms, base.plant)
+    assert base.plant.inertia == pytest.approx(INERTIA, rel=0.1)
+
+
+def test_a_large_quick_torque_is_not_averaged_away():
+    evidence, _ = based(pendulum(), recordings(ripple=1.0))
+    assert max(form.kernel.support for form in evidence.forms) < 0.1
+
+
+def test_a_diagnosis_says_that_kernels_were_widened():
+    evidence, base = based(pendulum(), recordings(error=1e-3))
+    assert base.plant.inertia == pytest.approx(INERTIA, rel=0.05)
+    assert "the inertia drowned in errors of the acceleration" in residual_told(
+        evidence.forms, base.plant
+    )
