@@ -58,3 +58,22 @@ def test_an_inertia_that_changes_with_the_angle_is_no_sure_error_of_the_encoder(
     assert found.verdict == ("ambiguous" if turns else "missing_effect")
     left = {each.coordinate for each in found.unexplained}
     assert ("order over position, times acceleration" in left) is turns
+
+
+def test_a_torque_in_one_recording_that_tests_is_told_and_decides_nothing():
+    made = make_session(202)
+    chosen = [k for k, r in enumerate(made.recordings) if r.role == "test"][1]
+    parts = [
+        np.sin(2.0 * np.pi * 2.3 * r.time_s) * (k == chosen) for k, r in enumerate(made.recordings)
+    ]
+    found = diagnosed(made, size_of(made, parts, 0.012))
+    assert (found.verdict, found.effects) == ("nothing_missing", ())
+    (check,) = [each for each in found.data["checks"] if each["name"] == "alone"]
+    assert check["recording"] == f"recording {chosen + 1}"
+    assert f"Of the recordings that test, recording {chosen + 1} leaves" in found.sentence
+
+
+def test_a_session_like_all_its_recordings_tells_of_none():
+    made = make_session(203)
+    found = diagnosed(made, [np.zeros(r.time_s.size) for r in made.recordings])
+    assert not [each for each in found.data["checks"] if each["name"] == "alone"]

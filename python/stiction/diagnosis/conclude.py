@@ -11,7 +11,6 @@ from typing import Final
 import numpy as np
 
 from ..compared import compared_by
-from ..fitting.pushes import told as pushes_told
 from ..fitting.result import FitResult
 from ..fitting.rows import Rows
 from ..plant import Plant
@@ -33,8 +32,10 @@ from .lone import lone_event
 from .loop import borne_out, replayed
 from .model import Model
 from .noise import Noise
+from .noted import with_checks, with_pushes
 from .omnibus import Rest, rest
 from .orders import open_orders
+from .outlying import outlying_in_test
 from .own import own_view
 from .pictures import Pictures, Stretch
 from .regression import refitted
@@ -46,7 +47,15 @@ from .selection import Search
 from .single_wave import doubted, rests_of
 from .verdict import relatives, unnamed, verdict_of
 from .view import View
-from .words import INTERRUPTED, MORE_MAY_BE, NO_COORDINATE, no_machine, push_words, sentence, what
+from .words import (
+    INTERRUPTED,
+    MORE_MAY_BE,
+    NO_COORDINATE,
+    apart_words,
+    no_machine,
+    sentence,
+    what,
+)
 
 __all__ = ["Conclusion", "base_alone", "surrogates_of"]
 
@@ -116,8 +125,11 @@ class Conclusion:
             "replicates": None if ceiling is None else ceiling.to_dict(),
         }
         found = self._told(replace(self.found, data=data))
-        found = _with_pushes(found, self.evidence)
-        found = _with_checks(found, holds_of(self.evidence.shown, final, self.evidence.names))
+        found = with_pushes(found, self.evidence)
+        names, number = self.evidence.names, len(self.confirmed.choices)
+        found = with_checks(found, holds_of(self.evidence.shown, final, names))
+        apart = outlying_in_test(self.evidence, final, self.test, number)
+        found = with_checks(found, apart, apart_words(apart))
         return replayed(replace(found, ceiling=ceiling), self.evidence, self.base, final)
 
     @cached_property
@@ -334,7 +346,7 @@ def base_alone(found: Diagnosis, evidence: Evidence, base: Model) -> Diagnosis:
         success=False,
         message=MESSAGE,
     )
-    return _with_pushes(found, evidence)
+    return with_pushes(found, evidence)
 
 
 def surrogates_of(
@@ -349,21 +361,6 @@ def surrogates_of(
 def _opening(interrupted: bool, named: bool) -> str:
     """How the sentence begins: that there may be more, where Ctrl-C ended it."""
     return f"{INTERRUPTED}{MORE_MAY_BE if named else ''}. " if interrupted else ""
-
-
-def _with_pushes(found: Diagnosis, evidence: Evidence) -> Diagnosis:
-    """What was left out because something pushed the machine, in the sentence and the checks."""
-    checks = pushes_told(evidence.pushes, evidence.names)
-    if not checks:
-        return found
-    words = push_words(evidence.pushes, evidence.names)
-    return replace(_with_checks(found, checks), sentence=f"{found.sentence} {words}")
-
-
-def _with_checks(found: Diagnosis, checks: Sequence[tuple[str, Check]]) -> Diagnosis:
-    """What was found in each recording, by its name, beside what is told of them already."""
-    more = ({"recording": name, **check.to_dict()} for name, check in checks)
-    return replace(found, data={**found.data, "checks": [*found.data["checks"], *more]})
 
 
 def _causes(

@@ -6,12 +6,14 @@ from typing import Final
 
 import numpy as np
 
+from ..recording import Check
 from ..trajectory import FloatArray
-from .evidence import Evidence
+from .evidence import Cells, Evidence
+from .gain import HeldOut
 from .model import Model
 from .result import Unexplained
 
-__all__ = ["MOST_TIMES", "outlying"]
+__all__ = ["MOST_TIMES", "outlying", "outlying_in_test"]
 
 MOST_TIMES: Final = 8.0
 """Power left over what noise leaves from which on a recording stands out, in its median block.
@@ -21,6 +23,11 @@ Where nothing of the kind was hidden it came to 1.6 in 10 sessions of contacts t
 """
 FEWEST: Final = 3
 """Recordings that are needed to call one of them another thing than the rest."""
+DIFFERENT: Final = (
+    "something is different in it, as a load, a mounting or a clock; it tests alone, so that no "
+    "verdict rests on it"
+)
+AGAIN: Final = "give it another role, or record it once more"
 
 
 def outlying(evidence: Evidence, model: Model, null: FloatArray) -> tuple[Unexplained, ...]:
@@ -69,3 +76,55 @@ def outlying(evidence: Evidence, model: Model, null: FloatArray) -> tuple[Unexpl
         Unexplained(f"{evidence.names[asked[k]]} alone", float(shares[k]))
         for k in sorted(out, key=lambda k: -shares[k])
     )
+
+
+def outlying_in_test(
+    evidence: Evidence, model: Model, test: HeldOut | None, index: int
+) -> list[tuple[str, Check]]:
+    """Recordings that test in which far more is left than in those that train and decide.
+
+    No verdict rests on what was looked at last; it is told all the same, for its owner would see
+    it at once. Residuals are compared as they are weighted, by recording or kind.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    model : Model
+        The last one.
+    test : HeldOut, optional
+    index : int
+        Of the last model there.
+
+    Returns
+    -------
+    list of (str, Check)
+        By the name of the recording.
+    """
+    if test is None:
+        return []
+    shown = _middles(evidence.cells, model.residual)
+    if len(shown) < FEWEST:
+        return []
+    usual = float(np.median(list(shown.values())))
+    told = []
+    for recording, middle in _middles(test.cells, test.residuals[index]).items():
+        if usual <= 0.0 or middle <= MOST_TIMES * usual:
+            continue
+        what = (
+            f"leaves {middle / usual:.0f} times the power that those leave which train and decide"
+        )
+        told.append((evidence.names[recording], Check("alone", "note", what, DIFFERENT, AGAIN)))
+    return told
+
+
+def _middles(cells: Cells, residual: FloatArray) -> dict[int, float]:
+    """Power in the middle block of each recording."""
+    power = np.bincount(cells.block, residual**2)
+    rows = np.bincount(cells.block)
+    of_block = np.zeros(len(power), dtype=np.int64)
+    of_block[cells.block] = cells.recording
+    there = rows > 0
+    return {
+        int(k): float(np.median(power[there & (of_block == k)] / rows[there & (of_block == k)]))
+        for k in np.unique(cells.recording)
+    }

@@ -19,6 +19,7 @@ from .directions import found
 from .orders import order_words
 
 if TYPE_CHECKING:
+    from ..recording import Check
     from .gain import Gain
     from .result import Cause, Diagnosis, Unexplained, Verdict
 
@@ -190,6 +191,17 @@ def push_words(pushes: Sequence[Push], names: Sequence[str]) -> str:
         more = len(pushes) - MOST_TOLD
         words += f" {more} more {'stands' if more == 1 else 'stand'} among the data checks."
     return words
+
+
+def apart_words(apart: Sequence[tuple[str, Check]]) -> str:
+    """Recordings that test and stand apart from all others, as one sentence; "" without any."""
+    if not apart:
+        return ""
+    each = joined([f"{name} {check.what}" for name, check in apart[:MOST_TOLD]])
+    return (
+        f"Of the recordings that test, {each}: something is different there, and no verdict rests "
+        "on it."
+    )
 
 
 def _unconfirmed(effects: Sequence[Cause]) -> str:
