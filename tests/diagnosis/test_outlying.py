@@ -55,9 +55,10 @@ def test_an_inertia_that_changes_with_the_angle_is_no_sure_error_of_the_encoder(
     (cause,) = found.effects
     assert cause.name == "encoder_eccentricity"
     assert cause.decided is not turns
-    assert found.verdict == ("ambiguous" if turns else "missing_effect")
+    assert found.verdict in (("ambiguous", "unexplained") if turns else ("missing_effect",))
     left = {each.coordinate for each in found.unexplained}
-    assert ("order over position, times acceleration" in left) is turns
+    grown = {f"order over position, times {by}" for by in ("acceleration", "squared speed")}
+    assert bool(left & grown) is turns
 
 
 def test_a_torque_in_one_recording_that_tests_is_told_and_decides_nothing():
@@ -77,3 +78,18 @@ def test_a_session_like_all_its_recordings_tells_of_none():
     made = make_session(203)
     found = diagnosed(made, [np.zeros(r.time_s.size) for r in made.recordings])
     assert not [each for each in found.data["checks"] if each["name"] == "alone"]
+
+
+def test_an_encoder_that_errs_several_times_a_turn_is_no_sure_ripple():
+    made = make_session(404)
+    order, size = 5.0, 4e-3
+    count = 2.0 * np.pi / made.spec.counts_per_rev
+    for recording in made.recordings:
+        angle = recording.truth["position"]
+        read = angle + size * np.cos(order * angle + 0.3)
+        recording.position_rad = count * np.round(read / count)
+    found = diagnosed(made, [np.zeros(r.time_s.size) for r in made.recordings])
+    assert not any(cause.decided for cause in found.effects)
+    left = {each.coordinate for each in found.unexplained}
+    assert "order over position, times squared speed" in left
+    assert found.verdict == "unexplained"

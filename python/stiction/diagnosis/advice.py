@@ -42,6 +42,10 @@ BY_COORDINATE: Final = {
         "fast",
         "fast constant speed over many turns, and sines of high acceleration",
     ),
+    "order over position, times squared speed": (
+        "fast",
+        "fast constant speed over many turns, both ways",
+    ),
     "order over position, times effort": (
         "sines",
         "sines of high acceleration, and slow full turns (or full strokes) with loads either way",

@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 
 from ..errors import NotEnoughData
-from ..fitting.first_pass import first_pass
+from ..fitting.first_pass import WORTH_WIDER, first_pass, share_left
+from ..fitting.forms import wider_of
 from ..fitting.minimise import MOST_EVALUATIONS
 from ..fitting.solve import settled
 from ..plant import Plant
@@ -16,7 +17,7 @@ from ..recording import Recording
 from .evidence import Evidence
 from .model import Model
 
-__all__ = ["based"]
+__all__ = ["based", "based_wider"]
 
 LOST: Final = 1e-3
 """An inertia that shrinks to this share of what the plant states, or of what the motion told at
@@ -26,12 +27,17 @@ SHOWS: Final = 0.3
 
 
 def based(
-    plant: Plant, recordings: Sequence[Recording], *, threads: int | None = None
+    plant: Plant,
+    recordings: Sequence[Recording],
+    *,
+    threads: int | None = None,
+    wide: bool = False,
 ) -> tuple[Evidence, Model]:
     """A session and the base that is fitted to its rows of train.
 
     The way is that of `stiction.fit`: a first pass from starts that the data give, a second with
-    recordings weighted by what the first left in each.
+    recordings weighted by what the first left in each. Wider kernels (see ``wider_of``) are tried
+    with ``wide`` alone: what a cause explains through narrow ones must not be averaged away.
 
     Returns
     -------
@@ -53,6 +59,7 @@ def based(
             found, recordings, threads=threads, through=through, watch=watch
         ),
         most=MOST_EVALUATIONS,
+        wide=wide,
     )
     evidence = first.seen
     solution = settled(first.solution, evidence.train, most=MOST_EVALUATIONS)
@@ -61,6 +68,43 @@ def based(
     if not solution.interrupted:
         _refuse_what_does_not_move(evidence, first.start, base)
     return evidence, base
+
+
+def based_wider(
+    plant: Plant,
+    recordings: Sequence[Recording],
+    evidence: Evidence,
+    final: Model,
+    *,
+    threads: int | None = None,
+) -> tuple[Evidence, Model] | None:
+    """The base through wider kernels, where these alone show the inertia; None elsewhere.
+
+    Parameters
+    ----------
+    plant : Plant
+        As it is stated.
+    recordings : sequence of Recording
+    evidence : Evidence
+        Through narrow kernels.
+    final : Model
+        With all causes that were found through these: where they explain what is left, nothing is
+        to be averaged away.
+
+    Returns
+    -------
+    (Evidence, Model) or None
+        After Ctrl-C whatever is there, and its solution is interrupted.
+    """
+    if wider_of(final.plant, final.nuisances, evidence.train, evidence.forms) is None:
+        return None
+    other, base = based(plant, recordings, threads=threads, wide=True)
+    if base.solution.interrupted:
+        return other, base
+    if not any(form.widened for form in other.forms):
+        return None
+    left = share_left(final, evidence.train)
+    return (other, base) if share_left(base, other.train) < WORTH_WIDER * left else None
 
 
 def _refuse_what_does_not_move(evidence: Evidence, begin: Plant, base: Model) -> None:

@@ -45,7 +45,7 @@ from .result import Cause, Diagnosis, ModelSummary, Unexplained, Verdict
 from .rounds import friction_of
 from .selection import Search
 from .single_wave import doubted, rests_of
-from .verdict import relatives, unnamed, verdict_of
+from .verdict import left_beside, relatives, unnamed, verdict_of
 from .view import View
 from .words import (
     INTERRUPTED,
@@ -249,9 +249,9 @@ class Conclusion:
         else:
             unexplained = self.unexplained
             shown = {each.coordinate for each in unexplained}
-            of_names = rests_of(causes, self.rests[1])
+            of_names = rests_of(causes, self.rests[1], left_beside(selection))
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
-            causes = [doubted(cause, unexplained) for cause in causes]
+            causes = [doubted(cause, unexplained, of_names) for cause in causes]
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
             if left and not unexplained:

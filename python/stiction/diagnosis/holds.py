@@ -18,11 +18,19 @@ __all__ = ["holds_of"]
 LEAST_S: Final = 5.0
 """A rest that lasts so long is told."""
 COUNTS: Final = 2.0
-"""Within so many counts, or so many times the noise, a machine is at rest."""
+"""Within so many counts a machine is at rest..."""
+DEVIATIONS: Final = 10.0
+"""... or within so many standard deviations of white noise: five seconds of it reach 8 to 9."""
+STILLEST: Final = 0.2
+"""Noise is that of the stillest part of a recording: what moves quickly may be read worse."""
 LOADED: Final = 0.25
 """Share of the dry friction from which on a weight or another load has a part in a rest."""
 HOLDS: Final = 1.5
-"""Break-away lies above sliding friction, by half of it at most in what people measure."""
+"""Break-away lies above what the model shows of friction by half of it at most."""
+SLOW: Final = 0.05
+"""Share of the greatest speed up to which friction is dry."""
+SMOOTHED_S: Final = 0.2
+"""Efforts of a rest are means over so long: of their noise nothing is held."""
 
 
 def holds_of(rows: Sequence[Rows], model: Model, names: Sequence[str]) -> list[tuple[str, Check]]:
@@ -55,40 +63,58 @@ def holds_of(rows: Sequence[Rows], model: Model, names: Sequence[str]) -> list[t
         form = each.form
         if form.prescribed or form.simulated:
             continue
-        still = COUNTS * max(form.count, form.noise)
+        still = max(COUNTS * form.count, DEVIATIONS * _noise_at_rest(form.readings))
         first, last = _longest_rest(form.readings, form.dt, still)
-        if first == last:
+        rest = slice(first, last - 1)
+        if first == last or (form.enabled is not None and not np.all(form.enabled[rest] > 0.0)):
+            # Nothing tells what holds a machine whose drive is off.
             continue
         motor = form.begun(model.plant, form.position)
         start = model.nuisances.start(each.index)
-        drive, ambient, _, _ = motor.follow(form.motion, start=start)
-        rest = slice(first, max(first + 1, last - 1))
+        drive, ambient, friction, _ = motor.follow(form.motion, start=start)
         driven, loaded = float(np.mean(drive[rest])), float(np.mean(ambient[rest]))
         if abs(loaded) < LOADED * dry.value:
             continue
+        width = min(max(1, round(SMOOTHED_S / form.dt)), last - first - 1)
+        balance = np.convolve((drive + ambient)[rest], np.full(width, 1.0 / width), "valid")
+        held = float(np.max(np.abs(balance)))
+        # A start from rest may take more than a slide, by the model itself.
+        speed = np.abs(np.diff(form.position)) / form.dt
+        slow = speed <= SLOW * float(np.max(speed))
+        shown = max(dry.value, float(np.max(np.abs(friction[slow]))))
         unit = model.plant.effort_unit
-        held = abs(driven + loaded)
         at = float(np.mean(form.readings[first:last]))
-        began, ended = first * form.dt, last * form.dt
         where = f"{at:.4g} {model.plant.position_unit}"
         what = (
-            f"rests from {began:.1f} s to {ended:.1f} s at {where}: the drive gives {driven:.3g} "
-            f"{unit}, the weight and all else {loaded:.3g} {unit}, and friction, which slides at "
-            f"{dry.value:.3g} {unit}, holds the {held:.3g} {unit} between them"
+            f"rests from {first * form.dt:.1f} s to {last * form.dt:.1f} s at {where}: the drive "
+            f"gives {driven:.3g} {unit}, the weight and all else {loaded:.3g} {unit}, and "
+            f"friction, which slides at {dry.value:.3g} {unit}, has to hold up to {held:.3g} "
+            f"{unit} between them"
         )
-        if held > HOLDS * dry.value:
-            means = (
-                "the friction of this plant holds less: its weight, its gain, an offset or a load "
-                "that it leaves out is wrong"
-            )
-            try_ = "weigh the moving part, or record slow motion both ways over the whole range"
-            told.append((names[each.index], Check("hold", "note", what, means, try_)))
-        else:
-            means = (
-                "so much its friction can hold: the plant stands still there as the machine does"
-            )
-            told.append((names[each.index], Check("hold", "note", what, means)))
+        told.append(
+            (names[each.index], Check("hold", "note", what, *_meaning(held > HOLDS * shown)))
+        )
     return told
+
+
+def _meaning(more: bool) -> tuple[str, str]:
+    """What a rest means and what to try; ``more`` than the friction of the model is held there."""
+    if not more:
+        return "so much its friction can hold: the plant stands still there as the machine does", ""
+    return (
+        "the friction of this plant holds less: its weight, its gain, an offset or a load that it "
+        "leaves out is wrong, or something else holds the machine, as a brake or a stop",
+        "weigh the moving part, or record slow motion both ways over the whole range",
+    )
+
+
+def _noise_at_rest(position: FloatArray) -> float:
+    """Standard deviation of white noise in the stillest part, from third differences."""
+    if len(position) < 4:
+        return 0.0
+    # Of a standard normal the share STILLEST lies within 0.253; third differences add 20 variances.
+    small = float(np.quantile(np.abs(np.diff(position, 3)), STILLEST))
+    return small / (0.2533 * float(np.sqrt(20.0)))
 
 
 def _longest_rest(position: FloatArray, dt: float, still: float) -> tuple[int, int]:

@@ -50,6 +50,12 @@ COUPLED: Final = (
         False,
         lambda look: look.effort,
     ),
+    Coordinate(
+        "order over position, times squared speed",
+        "phase of the best order, rad",
+        False,
+        lambda look: look.velocity**2,
+    ),
 )
 """Residual that repeats with position and grows with something else: what errs is a sensor or a
 gain. Their values are what it grows with."""

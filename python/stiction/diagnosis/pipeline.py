@@ -20,12 +20,14 @@ from ..recording.recording import recordings_of
 from ..recording.session_clock import remaining
 from ..recording.usable import checks_of, usable
 from ..session import Session
+from ..trajectory import FloatArray
 from .advice import advise
-from .base import based
+from .base import based, based_wider
 from .candidates import left_out
 from .conclude import Conclusion, base_alone, surrogates_of
 from .evidence import Evidence
 from .laws import law_names
+from .model import Model
 from .noise import Noise
 from .result import Diagnosis
 from .rounds import search
@@ -192,6 +194,42 @@ def _testable(
     _logger.info("looking through %d recordings", len(session))
     _logger.info("fitting the base")
     evidence, base = based(found.plant, session.recordings, threads=threads)
+    found, null = _replayed(found, evidence, base, surrogates)
+    if null is None:
+        return base_alone(found, evidence, base)
+    _logger.info("screening the effects")
+    selection = search(evidence, base, null, without=without)
+    if not selection.interrupted:
+        final = selection.models[-1]
+        wider = based_wider(found.plant, session.recordings, evidence, final, threads=threads)
+        if wider is not None:
+            again, null_again = _replayed(found, *wider, surrogates)
+            if null_again is None:
+                # After Ctrl-C: what was found through narrow kernels is the best so far.
+                selection.interrupted = True
+            else:
+                _logger.info("screening the effects again, through wider kernels")
+                found, null, (evidence, base) = again, null_again, wider
+                selection = search(evidence, base, null, without=without)
+    # Every decision is taken: now, and once, the rows that test.
+    return Conclusion(
+        found,
+        session,
+        evidence,
+        base,
+        selection,
+        null,
+        others,
+        checks,
+        interrupted=selection.interrupted,
+        brief=selection.interrupted,
+    ).diagnosis()
+
+
+def _replayed(
+    found: Diagnosis, evidence: Evidence, base: Model, surrogates: int
+) -> tuple[Diagnosis, FloatArray | None]:
+    """What is known with a base, and what noise would leave of it; None where Ctrl-C ended it."""
     dealt = evidence.split.to_dict()
     told = [TRAIN_IS_FITTED] if evidence.split.select else []
     dealt["rules"] = [*dealt["rules"], *told]
@@ -208,23 +246,9 @@ def _testable(
         _logger.info("replaying it with noise, %d times", surrogates)
         null, noises = surrogates_of(evidence, base, surrogates, found.seed)
     except KeyboardInterrupt:
-        return base_alone(found, evidence, base)
+        return found, None
     data["noise"] = [_noise_entry(evidence, index, noise) for index, noise in noises.items()]
-    _logger.info("screening the effects")
-    selection = search(evidence, base, null, without=without)
-    # Every decision is taken: now, and once, the rows that test.
-    return Conclusion(
-        found,
-        session,
-        evidence,
-        base,
-        selection,
-        null,
-        others,
-        checks,
-        interrupted=selection.interrupted,
-        brief=selection.interrupted,
-    ).diagnosis()
+    return found, null
 
 
 def _noise_entry(evidence: Evidence, index: int, noise: Noise) -> dict[str, Any]:

@@ -21,8 +21,16 @@ from .result import Cause, Unexplained
 
 __all__ = ["doubted", "rests_of", "several"]
 
-EXACT: Final = {"encoder_eccentricity": COUPLED[0].name}
-"""Where an effect leaves nothing once it is named."""
+EXACT: Final = dict.fromkeys(
+    ("encoder_eccentricity", "cogging", "torque_constant_ripple", "position_dependent_friction"),
+    (COUPLED[0].name, COUPLED[2].name),
+)
+"""Where an effect leaves nothing once it is named: what repeats with position and grows with
+acceleration or squared speed is an inertia that changes, or an encoder that errs several times a
+turn."""
+LEAST_REST: Final = 0.02
+"""Share of what the names took from which on such a rest counts: a large wave, a little off, leaves
+a little of everything."""
 
 
 def several(record: EffectRecord) -> tuple[str, ...]:
@@ -32,7 +40,7 @@ def several(record: EffectRecord) -> tuple[str, ...]:
     return tuple(e.name for e in effects() if e.second and e.family == record.family)
 
 
-def doubted(cause: Cause, left: Sequence[Unexplained]) -> Cause:
+def doubted(cause: Cause, left: Sequence[Unexplained], rests: Sequence[Unexplained]) -> Cause:
     """A cause; undecided where what is left depends on what its geometry leaves nothing of.
 
     Parameters
@@ -40,8 +48,10 @@ def doubted(cause: Cause, left: Sequence[Unexplained]) -> Cause:
     cause : Cause
     left : sequence of Unexplained
         What the last model leaves that noise does not explain.
+    rests : sequence of Unexplained
+        What it leaves where names leave nothing, as ``rests_of`` tells.
     """
-    if any(each.coordinate == EXACT.get(cause.name) for each in left):
+    if any(each.coordinate in EXACT.get(cause.name, ()) for each in rests):
         return replace(cause, decided=False)
     record = next(each for each in effects() if each.name == cause.name)
     others = [name for name in several(record) if name not in cause.look_alikes]
@@ -50,7 +60,7 @@ def doubted(cause: Cause, left: Sequence[Unexplained]) -> Cause:
     return replace(cause, decided=False, look_alikes=(*cause.look_alikes, *others))
 
 
-def rests_of(causes: Sequence[Cause], left: Rest) -> tuple[Unexplained, ...]:
+def rests_of(causes: Sequence[Cause], left: Rest, beside: float) -> tuple[Unexplained, ...]:
     """What is left where named causes leave nothing, however little of it there is.
 
     Parameters
@@ -58,10 +68,13 @@ def rests_of(causes: Sequence[Cause], left: Rest) -> tuple[Unexplained, ...]:
     causes : sequence of Cause
     left : Rest
         What the last model leaves, in every coordinate.
+    beside : float
+        Power of all that is left over that of what the names took.
     """
-    asked = {EXACT[cause.name] for cause in causes if cause.name in EXACT}
+    asked = {name for cause in causes for name in EXACT.get(cause.name, ())}
     return tuple(
         Unexplained(view.coordinate.name, view.share)
         for view in left.views
         if view.coordinate.name in asked and view.share > view.threshold
+        if view.share * beside > LEAST_REST
     )

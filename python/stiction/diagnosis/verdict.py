@@ -20,7 +20,7 @@ from .selection import Search
 from .view import LEAST_SIZE
 from .words import NO_COORDINATE
 
-__all__ = ["relatives", "unnamed", "verdict_of"]
+__all__ = ["left_beside", "relatives", "unnamed", "verdict_of"]
 
 WORTH_SHARE: Final = 0.25
 """What is left counts against the names where it is worth this share of what they gained."""
@@ -147,8 +147,13 @@ def _outweighs(selection: Search, left: Sequence[Unexplained]) -> bool:
     """Whether what is left is worth more than a quarter of what was named."""
     if not left:
         return False
+    return max(each.share for each in left) * left_beside(selection) > WORTH_SHARE
+
+
+def left_beside(selection: Search) -> float:
+    """Power that is left on rows that decide over that of what the names took; inf without any."""
     before, after = (float(m.blocks[1].sum()) for m in (selection.models[0], selection.models[-1]))
-    return max(each.share for each in left) * after > WORTH_SHARE * (before - after)
+    return after / (before - after) if before > after else float("inf")
 
 
 def _at_moments(evidence: Evidence, model: Model, null: FloatArray) -> bool:

@@ -23,10 +23,10 @@ from .forms import (
 )
 from .minimise import Solution, launch, or_from, stopped
 from .pushes import Watch
-from .rows import Rows
+from .rows import Nuisances, Rows
 from .start import clinging, complete, free_paths, lightly_held
 
-__all__ = ["FirstPass", "Seen", "first_pass", "launched"]
+__all__ = ["WORTH_WIDER", "FirstPass", "Seen", "first_pass", "launched", "share_left"]
 
 WORTH_CLINGING: Final = 0.9
 """Share of what else is left that a contact may leave at most which never breaks away."""
@@ -61,6 +61,18 @@ class Seen(Protocol):
         """Who looks out for pushes from outside."""
 
 
+class Fitted(Protocol):
+    """A plant that was fitted."""
+
+    @property
+    def plant(self) -> Plant:
+        """With its values."""
+
+    @property
+    def nuisances(self) -> Nuisances:
+        """What was fitted along."""
+
+
 S = TypeVar("S", bound=Seen)
 
 
@@ -89,6 +101,7 @@ def first_pass(
     again: Callable[[Plant, Through, Watch], S],
     *,
     most: int,
+    wide: bool = True,
 ) -> FirstPass[S]:
     """Fit a plant to rows of the weak form, and simulated where these do not do.
 
@@ -107,6 +120,8 @@ def first_pass(
         The same recordings for a plant, what they are seen through, and the watch of ``seen``.
     most : int
         Evaluations of the residual at most, of each start.
+    wide : bool
+        Whether wider kernels may be tried.
 
     Raises
     ------
@@ -119,7 +134,9 @@ def first_pass(
         return known
     try:
         known = _simulated(plant, known, found.variables.paths, again, most=most)
-        return known if known.solution.interrupted else _wider(plant, known, again, most=most)
+        if known.solution.interrupted or not wide:
+            return known
+        return _wider(plant, known, again, most=most)
     except KeyboardInterrupt:
         # Before what comes after had anything to keep.
         return replace(known, solution=stopped(known.solution))
@@ -174,17 +191,17 @@ def _or_clinging(
     others: Sequence[Plant], found: Solution, rows: Sequence[Rows], *, most: int
 ) -> Solution:
     """The solution, or one with a contact that never breaks away where that leaves clearly less."""
-    before = _share_left(found, rows)
+    before = share_left(found, rows)
     if before < LEAST_LEFT:
         return found
     other = or_from(others, found, rows, most=most)
-    if _share_left(other, rows) < WORTH_CLINGING * before:
+    if share_left(other, rows) < WORTH_CLINGING * before:
         return other
     kept = stopped(found) if other.interrupted else found
     return replace(kept, evaluations=other.evaluations)
 
 
-def _share_left(solution: Solution, rows: Sequence[Rows]) -> float:
+def share_left(solution: Fitted, rows: Sequence[Rows]) -> float:
     """Share of the measured effort that is left beside a constant in each recording."""
     left, measured = 0.0, 0.0
     for each in rows:
@@ -240,8 +257,9 @@ def _wider(
 ) -> FirstPass[S]:
     """What is known, fitted through wider kernels where these alone show the inertia.
 
-    A quick torque that a law misses drowns the inertia too, and must not be averaged away: it is
-    as large in slow motion as in quick one, where errors of the readings grow with the speed.
+    A quick torque that a law misses drowns the inertia too, and is averaged away with it: a
+    diagnosis tries its causes first. What is as large in slow motion as in quick one, where errors
+    of the readings grow with the speed, is left to be seen in any case.
     """
     seen, found = known.seen, known.solution
     support = wider_of(found.plant, found.nuisances, seen.train, seen.forms)
@@ -252,7 +270,7 @@ def _wider(
     start, wide = launched(plant, other.train, most=most)
     wide = _after(found, wide)
     drowned = found.plant.inertia * DROWNED < wide.plant.inertia
-    less = _share_left(wide, other.train) < WORTH_WIDER * _share_left(found, seen.train)
+    less = share_left(wide, other.train) < WORTH_WIDER * share_left(found, seen.train)
     if drowned and less and _grows(wide, seen.train) and _lost(wide, other.train) is None:
         return FirstPass(other, wide, start)
     return replace(known, solution=_kept(found, wide))

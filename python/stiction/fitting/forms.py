@@ -52,7 +52,7 @@ RINGS: Final = 3.0
 count sets a machine ringing, and of a ring three times as fast as itself the kernel leaves 1 %."""
 LEAST_WINDOWS: Final = 4.0
 """Windows that the shortest recording must hold."""
-MUCH_LEFT: Final = 0.2
+MUCH_LEFT: Final = 0.1
 """Share of the measured effort from which on what is left may come from accelerations that are
 wrong."""
 NARROW: Final = 1.5
@@ -189,7 +189,8 @@ def wider_of(
 
     A kernel is as narrow as the white noise of the readings allows. Errors that go with the angle
     or with uneven stamps are no such noise: through a narrow kernel they make accelerations of
-    their own, in which the inertia drowns, and with it whatever balances it.
+    their own, in which the inertia drowns, and with it whatever balances it. A quick torque that
+    the plant misses does the same.
 
     Parameters
     ----------
@@ -212,7 +213,7 @@ def wider_of(
         return None
     if shortest < LEAST_WINDOWS * widest:
         return None
-    if NARROW * max(form.kernel.support for form in forms) > widest:
+    if NARROW * min(form.kernel.support for form in forms) > widest:
         return None
     left = [each.residual(plant, nuisances)[each.mask] for each in rows]
     measured = [each.form.measured(plant)[each.mask] for each in rows]
@@ -292,7 +293,8 @@ def told(forms: Sequence[WeakForm], plant: Plant) -> str:
     if any(form.widened for form in forms):
         return (
             f"{led}: wider than noise asks for, because through narrower kernels the inertia "
-            "drowned in errors of the acceleration; what is over sooner is averaged away."
+            "drowned in what they show more, as where an encoder errs with the angle, or stamps "
+            "are not the times of the samples; what is over sooner is averaged away."
         )
     if _fine(plant, forms):
         return f"{led}, because the readings of the position are fine enough to drive friction."

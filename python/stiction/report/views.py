@@ -20,6 +20,8 @@ HINTS: Final = {
     "order along the motion": "friction that repeats with position: balls, teeth, a bent screw",
     "order over position, times acceleration": "the position sensor: off centre, or wrongly "
     "interpolated",
+    "order over position, times squared speed": "the position sensor, or an inertia that changes "
+    "with position",
     "order over position, times effort": "the drive's gain over position: magnets, commutation",
     "acceleration": "inertia, or a part that moves by itself",
     "response to the effort": "a delay, a filter of the drive, or a shaft that gives",
