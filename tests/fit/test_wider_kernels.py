@@ -4,7 +4,7 @@ import pytest
 from tests.reference.pendulum_reference import DRY, INERTIA, WEIGHT, swung
 
 import stiction as st
-from stiction.diagnosis.base import based
+from stiction.diagnosis.base import based, based_wider
 from stiction.fitting.forms import told as residual_told
 from stiction.plant import Plant
 
@@ -61,3 +61,14 @@ def test_a_diagnosis_says_that_kernels_were_widened():
     assert "through narrower kernels the inertia drowned" in residual_told(
         evidence.forms, base.plant
     )
+
+
+def test_kernels_that_the_recordings_cannot_hold_change_nothing(monkeypatch):
+    swings = recordings(error=1e-3)
+    narrow, base = based(pendulum(), swings)
+    for module in ("fitting.first_pass", "diagnosis.base"):
+        monkeypatch.setattr(f"stiction.{module}.wider_of", lambda *_: 12.0)
+    result = st.fit(pendulum(), st.Session(swings))
+    assert result.success
+    assert values(result)[0] < 0.8 * INERTIA
+    assert based_wider(pendulum(), swings, narrow, base) is None

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ..errors import NotEnoughData
+from ..errors import InputError, NotEnoughData
 from ..fitting.first_pass import WORTH_WIDER, first_pass, share_left
 from ..fitting.forms import wider_of
 from ..fitting.minimise import MOST_EVALUATIONS
@@ -98,7 +98,11 @@ def based_wider(
     """
     if wider_of(final.plant, final.nuisances, evidence.train, evidence.forms) is None:
         return None
-    other, base = based(plant, recordings, threads=threads, wide=True)
+    try:
+        other, base = based(plant, recordings, threads=threads, wide=True)
+    except InputError:
+        # What was found through narrow kernels stands.
+        return None
     if base.solution.interrupted:
         return other, base
     if not any(form.widened for form in other.forms):

@@ -13,7 +13,17 @@ from .coordinates import Coordinate, Look
 from .evidence import Cells, Plan
 from .view import FLAG_ABOVE, View, limit, means
 
-__all__ = ["COUPLED", "FREQUENCY", "ORDERS", "Asked", "frequency_view", "order_views", "waves_of"]
+__all__ = [
+    "COUPLED",
+    "FREQUENCY",
+    "ORDERS",
+    "WITH_ACCELERATION",
+    "WITH_SQUARED_SPEED",
+    "Asked",
+    "frequency_view",
+    "order_views",
+    "waves_of",
+]
 
 PHASES: Final = 24
 """Stretches of a period."""
@@ -37,26 +47,25 @@ ORDERS: Final = (
     ),
 )
 """Residual that repeats with position, however many times a turn, and the same along the motion."""
-COUPLED: Final = (
-    Coordinate(
-        "order over position, times acceleration",
-        "phase of the best order, rad",
-        False,
-        lambda look: look.acceleration,
-    ),
-    Coordinate(
-        "order over position, times effort",
-        "phase of the best order, rad",
-        False,
-        lambda look: look.effort,
-    ),
-    Coordinate(
-        "order over position, times squared speed",
-        "phase of the best order, rad",
-        False,
-        lambda look: look.velocity**2,
-    ),
+WITH_ACCELERATION: Final = Coordinate(
+    "order over position, times acceleration",
+    "phase of the best order, rad",
+    False,
+    lambda look: look.acceleration,
 )
+WITH_EFFORT: Final = Coordinate(
+    "order over position, times effort",
+    "phase of the best order, rad",
+    False,
+    lambda look: look.effort,
+)
+WITH_SQUARED_SPEED: Final = Coordinate(
+    "order over position, times squared speed",
+    "phase of the best order, rad",
+    False,
+    lambda look: look.velocity**2,
+)
+COUPLED: Final = (WITH_ACCELERATION, WITH_EFFORT, WITH_SQUARED_SPEED)
 """Residual that repeats with position and grows with something else: what errs is a sensor or a
 gain. Their values are what it grows with."""
 FREQUENCY: Final = Coordinate("frequency", "frequency, Hz", False, _phase)

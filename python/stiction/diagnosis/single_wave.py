@@ -16,14 +16,14 @@ from typing import Final
 from ..catalogue import EffectRecord, effects
 from .coordinates import ANGLE
 from .omnibus import Rest
-from .periodic import COUPLED
+from .periodic import WITH_ACCELERATION, WITH_SQUARED_SPEED
 from .result import Cause, Unexplained
 
 __all__ = ["doubted", "rests_of", "several"]
 
 EXACT: Final = dict.fromkeys(
     ("encoder_eccentricity", "cogging", "torque_constant_ripple", "position_dependent_friction"),
-    (COUPLED[0].name, COUPLED[2].name),
+    (WITH_ACCELERATION.name, WITH_SQUARED_SPEED.name),
 )
 """Where an effect leaves nothing once it is named: what repeats with position and grows with
 acceleration or squared speed is an inertia that changes, or an encoder that errs several times a

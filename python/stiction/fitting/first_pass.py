@@ -266,8 +266,12 @@ def _wider(
     if support is None or "body.inertia" not in found.variables.paths:
         return known
     _logger.info("fitting it again, through wider kernels")
-    other = again(found.plant, Through(support=support), seen.watch)
-    start, wide = launched(plant, other.train, most=most)
+    try:
+        other = again(found.plant, Through(support=support), seen.watch)
+        start, wide = launched(plant, other.train, most=most)
+    except InputError:
+        # Too little is left within wider edges, or it leads nowhere: what is known stands.
+        return known
     wide = _after(found, wide)
     drowned = found.plant.inertia * DROWNED < wide.plant.inertia
     less = share_left(wide, other.train) < WORTH_WIDER * share_left(found, seen.train)
