@@ -23,7 +23,11 @@ def acting(*blocks: int, seed: int = 1) -> np.ndarray:
 
 
 def asked(
-    there: np.ndarray, explained: np.ndarray, columns: np.ndarray | None = None, folds: bool = False
+    there: np.ndarray,
+    explained: np.ndarray,
+    columns: np.ndarray | None = None,
+    folds: bool = False,
+    whole: bool = False,
 ) -> bool:
     """Whether a machine in which ``there`` acts confirms what explains ``explained``."""
     noise = np.random.default_rng(2).standard_normal(len(there))
@@ -31,7 +35,8 @@ def asked(
     plans = [Plan(FITTED, ~FITTED, FITTED if folds else None)]
     evidence = SimpleNamespace(plans=plans, cells=SimpleNamespace(block=BLOCK), overlap=6.0)
     base = SimpleNamespace(evidence=evidence, columns=own, residual=there + noise)
-    return confirmed(base, SimpleNamespace(residual=there - explained + noise), explained)
+    model = SimpleNamespace(residual=there - explained + noise)
+    return confirmed(base, model, explained, whole=whole)
 
 
 def test_one_block_held_out_confirms_what_was_learnt() -> None:
@@ -70,6 +75,15 @@ def test_few_blocks_that_were_fitted_leave_doubt(blocks: tuple[int, ...]) -> Non
     """What is fitted to one block leaves nothing there, and looks as if it were known exactly."""
     cause = 3.0 * acting(*blocks, 33)
     assert not asked(cause, cause)
+
+
+@pytest.mark.parametrize(("share", "sure"), [(1.0, True), (0.6, False), (1.5, False), (0.0, False)])
+def test_few_blocks_are_enough_for_a_gain_that_was_known_beforehand(
+    share: float, sure: bool
+) -> None:
+    """A gain that takes everything was not fitted; what it leaves held out has to be noise."""
+    cause = 30.0 * acting(3, 33)
+    assert asked(np.where(FITTED, cause, share * cause), cause, whole=True) is sure
 
 
 def test_rows_held_out_by_turns_confirm_nothing() -> None:

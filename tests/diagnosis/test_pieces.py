@@ -336,6 +336,9 @@ def test_no_stranger_is_named_where_what_explains_most_imitates() -> None:
     assert choose([imitates, stranger]) is None
     assert strangers([imitates, stranger, relative], stranger) == [imitates]
     assert strangers([imitates, stranger, relative], relative) == []
+    # What a relative of the winner explains as well, in another form, is no stranger.
+    form = tried(0.95, 1, "imitates something else", family="angle", uneven=1.0)
+    assert strangers([imitates, stranger, form], stranger) == []
     chosen = choose([imitates, relative])
     assert chosen is not None
     # A member of its family that explains far more keeps it undecided, even if it does so unevenly.
@@ -350,6 +353,10 @@ def test_rows_that_do_not_excite_an_effect_do_not_tell_it_from_the_winner() -> N
     chosen = choose([winner, relative])
     assert chosen is not None
     assert (chosen.winner, chosen.rivals) == (winner, (relative,))
+    # Whose gain would have to be whole and is not is the winner in another form.
+    chosen = choose([winner, replace(tried(0.95, 2, "partly"), uneven=1.0, partly=True)])
+    assert chosen is not None
+    assert chosen.decided
     # What the rows held out do speak about and against is no rival.
     chosen = choose([winner, tried(0.95, 2, "does not help on rows held out", gain=-0.01)])
     assert chosen is not None

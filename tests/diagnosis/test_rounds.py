@@ -240,6 +240,8 @@ def test_a_single_wave_that_leaves_a_rest_may_be_the_first_of_several(
         ("encoder_eccentricity", "order over position, times acceleration", False),
         ("cogging", "order over position, times squared speed", False),
         ("encoder_eccentricity", "velocity", True),
+        ("direction_asymmetry", "effort", False),
+        ("direction_asymmetry", "velocity", True),
     ],
 )
 def test_what_geometry_leaves_no_rest_of_speaks_against_a_name(

@@ -5,7 +5,8 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 from stiction.diagnosis.gain import Gain
-from stiction.diagnosis.words import joined, sentence
+from stiction.diagnosis.result import CandidateRow
+from stiction.diagnosis.words import joined, sentence, unseen_words
 
 
 def test_words_join_and_say_what_was_not_confirmed() -> None:
@@ -51,3 +52,13 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
     assert worse.startswith("By the rows that decide, and by no others, the simulation lacks")
     assert "Adding it makes the held-out rows worse." in worse
     assert Gain(0.5, (0.4, 0.6)).to_dict() == {"value": 0.5, "ci95": [0.4, 0.6]}
+
+
+def test_what_cannot_be_judged_is_told_by_name() -> None:
+    rows = {
+        "stribeck": CandidateRow("stribeck", 0.25, 0.01, 0.0, "the rows held out hardly excite it")
+    }
+    said = unseen_words(["stribeck"], rows)
+    assert "stribeck (" in said
+    assert "would explain 25 %" in said
+    assert "neither bear it out nor refute it" in said

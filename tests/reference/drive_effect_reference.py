@@ -79,13 +79,16 @@ def _log_cosh(z):
 
 
 class DriveSaturation(DriveLoss):
-    """The share a of what the input has beyond L is lost, all of it with a = 1.
+    """Nothing of what the input has beyond L gets through: a = 1.
 
-    Foreign: the clip rounds off, L + w tanh((|u| - L) / w).
+    A part that is lost beyond some input is a torque constant that falls. So a size is reached by
+    the limit, however few samples it acts in then. Foreign: the clip rounds off,
+    L + w tanh((|u| - L) / w).
     """
 
     forms = ("library", "foreign")
     largest = 1.0
+    reached_by = "limit"
 
     @staticmethod
     def draw(rng, plant, form):
@@ -93,18 +96,38 @@ class DriveSaturation(DriveLoss):
         low = max(0.5 * quick_input(plant), 1.5 * plant["coulomb"])
         shape = {"limit": low * rng.uniform(1.0, 1.4)}
         if form == "foreign":
-            shape["width"] = shape["limit"] * rng.uniform(0.2, 0.4)
+            shape["softness"] = rng.uniform(0.2, 0.4)
         return shape
 
     @staticmethod
     def usual(plant):
         return 0.05
 
+    @staticmethod
+    def value_for(size, inputs, shape):
+        """The limit beyond which inputs have an rms of `size`, N m; `size` falls with it."""
+        inputs = np.abs(inputs)
+        low, high = 0.0, float(inputs.max())
+        for _ in range(60):
+            limit = 0.5 * (low + high)
+            lost = _beyond(inputs, limit, shape.get("softness"))
+            if np.sqrt(np.mean(lost**2)) > size:
+                low = limit
+            else:
+                high = limit
+        return high
+
     def loss(self, u):
-        beyond = np.maximum(np.abs(u) - self.limit, 0.0)
-        if hasattr(self, "width"):
-            beyond = beyond - self.width * np.tanh(beyond / self.width)
-        return np.copysign(beyond, u)
+        return np.copysign(_beyond(np.abs(u), self.limit, getattr(self, "softness", None)), u)
+
+
+def _beyond(size, limit, softness):
+    """What a clip takes of an input of this size; it rounds off over softness times the limit."""
+    beyond = np.maximum(size - limit, 0.0)
+    if softness is None:
+        return beyond
+    width = softness * limit
+    return beyond - width * np.tanh(beyond / np.maximum(width, 1e-300))
 
 
 class BackEmf(Effect):

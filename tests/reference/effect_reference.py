@@ -64,6 +64,9 @@ class Effect:
     size_support = 0.0  # s, kernel through which the size is measured; 0: none
     largest = np.inf  # amplitude that physics allows
     channel = None  # what has to be recorded for it: "load" or "temperature"
+    # Shape parameter that brings it to size instead of the amplitude, which is 1 then; told by
+    # value_for(size, inputs, shape), of the inputs of the machine without hidden effects.
+    reached_by = None
 
     def __init__(self, amplitude, shape, setting):
         self.lanes = setting.lanes

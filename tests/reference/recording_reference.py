@@ -24,6 +24,7 @@ class HiddenEffect:
     raw: float = 0.0  # the same without any smoothing
     smoothed: float = 0.0  # the same behind a kernel of 30 ms
     last: tuple | None = None  # amplitude and size of the simulation before
+    aim: float | None = None  # in place of the amplitude, of effects that a shape brings to size
 
 
 @dataclass

@@ -7,9 +7,10 @@
 A hidden effect is (name, size) or (name, size, {shape parameter: value}); ":foreign" asks for
 the form that is not the library's. The size is the RMS of the hidden torque over the whole
 session as a share of F_c. It is reached by simulating with a usual amplitude, scaling, and
-simulating again; `session.effects` states the amplitude and the size that was reached, and
-how much of it is left behind a smooth kernel of 30 ms (`smoothed`: fast ringing is not). With
-None as the size the amplitude is taken from the shape parameters and not changed.
+simulating again; of a drive's limit, beyond which everything is lost, the limit is moved instead.
+`session.effects` states the amplitude and the size that was reached, and how much of it is left
+behind a smooth kernel of 30 ms (`smoothed`: fast ringing is not). With None as the size the
+amplitude is taken from the shape parameters and not changed.
 
 The same seed gives the same machine, experiments and noise, whatever is hidden in it.
 """
@@ -132,6 +133,7 @@ class Draft:
         pauses[0] = 0.0
         self.start_s = np.round(np.cumsum(pauses) + spec.duration * np.arange(pauses.size), 3)
         self.start_path = np.zeros(len(self.order))
+        self.free_input = None  # N m, of the machine without hidden effects, where it is needed
         rows = spec.lead_rows + spec.samples
         self.noise = np.column_stack(
             [stream(seed, "noise", k, r).standard_normal(rows) for k, r in self.order]
@@ -164,8 +166,22 @@ class Draft:
         shape |= given
         if size is None:
             return HiddenEffect(name, form, None, shape, float(amplitude))
+        if size and kind.reached_by and kind.reached_by not in given:
+            return HiddenEffect(name, form, float(size), shape, 1.0, aim=float(size))
         amplitude = kind.usual(self.plant) * size / 0.01 if size else 0.0
         return HiddenEffect(name, form, float(size), shape, min(amplitude, kind.largest))
+
+    def shape_to_size(self):
+        """Give shapes the value with which effects have the size that is aimed at."""
+        for effect in self.effects:
+            if effect.aim is not None:
+                kind, size = EFFECTS[effect.name], effect.aim * self.plant["coulomb"]
+                value = kind.value_for(size, self.free_input, effect.shape)
+                effect.shape[kind.reached_by] = value
+
+    @property
+    def needs_input(self):
+        return any(e.aim is not None for e in self.effects)
 
     @property
     def needs_path(self):
@@ -262,6 +278,13 @@ def _take_paths(run, drafts):
         draft.start_path = np.concatenate([[0.0], np.cumsum(run.path[at])[:-1]])
 
 
+def _take_inputs(run, drafts):
+    """Inputs of the machine without hidden effects, and the shapes that they ask for."""
+    for draft, at in _pieces(run, drafts):
+        draft.free_input = run.input[draft.spec.lead_rows :, at].ravel()
+        draft.shape_to_size()
+
+
 def _reach(run, drafts):
     """Note the sizes that a run has reached."""
     for draft, at in _pieces(run, drafts):
@@ -279,7 +302,8 @@ def _rescale(draft):
     for effect in draft.effects:
         if not (effect.size and effect.reached):
             continue
-        now, power = (effect.amplitude, effect.reached), 1.0
+        aimed = effect.aim is not None
+        now, power = (effect.aim if aimed else effect.amplitude, effect.reached), 1.0
         if effect.last:
             growth = np.log(now[1] / effect.last[1])
             stretch = np.log(now[0] / effect.last[0])
@@ -287,9 +311,13 @@ def _rescale(draft):
                 power = float(np.clip(growth / stretch, 0.5, 4.0))
         effect.last = now
         factor = (effect.size / effect.reached) ** (1.0 / power)
+        if aimed:
+            effect.aim *= factor
+            continue
         kind = EFFECTS[effect.name]
         bound = LARGEST_FACTOR * kind.usual(draft.plant) * effect.size / 0.01
         effect.amplitude = min(effect.amplitude * factor, bound, kind.largest)
+    draft.shape_to_size()
 
 
 def _misses(draft):
@@ -333,6 +361,9 @@ def _make_batch(drafts):
     need = [d for d in drafts if d.needs_path]
     if need:
         _take_paths(simulate(lanes_of(need, without_effects=True)), need)
+    need = [d for d in drafts if d.needs_input]
+    if need:
+        _take_inputs(simulate(lanes_of(need, without_effects=True)), need)
     unscaled = [d for d in drafts if any(e.size for e in d.effects)]
     if unscaled:
         _simulated(unscaled)

@@ -170,12 +170,27 @@ def test_a_saturated_drive_clips():
     u = np.linspace(-3.0, 3.0, 61)
     hard = run_of("drive_saturation", u, 1.0, {"limit": 1.0})
     np.testing.assert_allclose(u + hard.hidden[0, :, 0], np.clip(u, -1.0, 1.0), atol=1e-15)
-    soft = run_of("drive_saturation", u, 1.0, {"limit": 1.0, "width": 0.3})
+    soft = run_of("drive_saturation", u, 1.0, {"limit": 1.0, "softness": 0.3})
     reached = u + soft.hidden[0, :, 0]
     assert np.all(np.diff(reached) >= 0.0)
     assert np.abs(reached).max() == pytest.approx(1.3, rel=1e-3)
     inside = np.abs(u) <= 1.0
     np.testing.assert_allclose(reached[inside], u[inside], atol=1e-15)
+
+
+@pytest.mark.parametrize("form", ["library", "foreign"])
+def test_a_limit_is_brought_to_size_by_where_it_lies(form):
+    """Nothing of what is beyond it gets through, however small a size is asked for."""
+    session = make_session(31, base="coulomb", hidden=[(f"drive_saturation:{form}", 0.012)])
+    (effect,) = session.effects
+    assert effect.amplitude == 1.0
+    assert effect.reached == pytest.approx(0.012, rel=0.15)
+    for r in session.recordings:
+        within = np.abs(r.torque_nm) <= effect.shape["limit"]
+        assert not r.truth["hidden"][within].any()
+        if form == "library":
+            acts = r.torque_nm + r.truth["hidden"]
+            np.testing.assert_allclose(np.abs(acts[~within]), effect.shape["limit"], rtol=1e-12)
 
 
 def test_a_coasting_bridge_ends_at_its_no_load_speed():

@@ -93,6 +93,8 @@ def advise(
     blind: Sequence[EffectRecord],
     checks: Sequence[tuple[str, Check]],
     plant: Plant,
+    *,
+    unseen: Sequence[str] = (),
 ) -> tuple[Advice, ...]:
     """Experiments, the most useful first.
 
@@ -107,6 +109,8 @@ def advise(
         Recording and what was found in it.
     plant : Plant
         Whether it is driven, or moved by a rig.
+    unseen : sequence of str
+        Effects of which what was fitted leaves no doubt, and which hardly act in what decides.
     """
     records = {record.name: record for record in effects()}
     advice: dict[str, Advice] = {}
@@ -121,6 +125,10 @@ def advise(
         for name in () if cause.decided or not cause.look_alikes else names:
             record = records[name]
             add(record.plan, record.experiment, f"it tells {joined(names)} apart", names)
+    for name in unseen:
+        record = records[name]
+        reason = f"recordings that decide hardly excite {name}, which shows in those that train"
+        add(record.plan, record.experiment, reason, (name,))
     for left in unexplained[:2]:
         if left.coordinate in BY_COORDINATE:
             reason = f"what is left depends on {left.coordinate}, and more of it shows how"

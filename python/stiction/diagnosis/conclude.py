@@ -54,6 +54,7 @@ from .words import (
     apart_words,
     no_machine,
     sentence,
+    unseen_words,
     what,
 )
 
@@ -262,6 +263,8 @@ class Conclusion:
                 "seen."
             )
             event = None if causes else lone_event(evidence, final, test, 0)
+            if verdict == "nothing_missing" and selection.unseen:
+                verdict, reason = "not_testable", unseen_words(selection.unseen, selection.rows)
         if event is not None and better is None:
             followed = event_words(self.rivals, base, event) if event.fitted else ""
             verdict, reason, unexplained = "not_testable", event.words() + followed, ()
@@ -296,7 +299,14 @@ class Conclusion:
             advice=(
                 *([] if better is None else [better.advice()]),
                 *([] if event is None else [event.advice()]),
-                *advise(causes, unexplained, selection.blind, self.checks, final.plant),
+                *advise(
+                    causes,
+                    unexplained,
+                    selection.blind,
+                    self.checks,
+                    final.plant,
+                    unseen=selection.unseen,
+                ),
             ),
             better_law="" if better is None else better.law,
             success=not self.interrupted,

@@ -25,9 +25,13 @@ AS_EXPECTED: Final = (0.75, 1.33)
 FEWEST_BLOCKS: Final = 5.0
 """Fitted blocks, counted by their share of the power, in which a cause acts. What acts in one or
 two is fitted to them: its standard error, taken over blocks, is no measure of doubt."""
+LEFT: Final = 0.1
+"""Share of the power of the rows held out that is left, where it acts, by a cause that takes all or
+nothing: its gain was not fitted, so that its blocks may be few. By chance it takes no such share of
+what was never fitted."""
 
 
-def confirmed(base: Model, model: Model, contributed: FloatArray) -> bool:
+def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool = False) -> bool:
     """Whether a contribution has about the same strength on rows held out as on those fitted.
 
     Where rows are held out by turns, in folds, there are none that were never fitted, and nothing
@@ -41,6 +45,8 @@ def confirmed(base: Model, model: Model, contributed: FloatArray) -> bool:
         With it.
     contributed : numpy.ndarray, shape (n,)
         What the effect explains of each row after its refit.
+    whole : bool
+        Its gain is what was known of it beforehand, as of a limit beyond which everything is lost.
     """
     evidence = base.evidence
     plan = evidence.plans[0]
@@ -51,7 +57,8 @@ def confirmed(base: Model, model: Model, contributed: FloatArray) -> bool:
     own = refitted(base.columns, contributed, fitted)
     count = int(block.max()) + 1
     learnt_from = np.bincount(block[fitted], own[fitted] ** 2, count)
-    if learnt_from.sum() ** 2 < FEWEST_BLOCKS * float(np.sum(learnt_from**2)):
+    few = learnt_from.sum() ** 2 < FEWEST_BLOCKS * float(np.sum(learnt_from**2))
+    if few and not whole:
         return False
     rows = np.maximum(np.bincount(block[held], minlength=count), 1)
     noise = np.bincount(block[held], model.residual[held] ** 2, count) / rows
@@ -61,6 +68,12 @@ def confirmed(base: Model, model: Model, contributed: FloatArray) -> bool:
     error = float(np.sqrt(evidence.overlap * (power @ noise)))
     if expected <= CLEAR * error:
         return False
+    if few:
+        before, after = (
+            float(power @ np.bincount(block[held], each.residual[held] ** 2, count))
+            for each in (base, model)
+        )
+        return after < LEFT * before
     seen, learnt = (_strength(base.residual[rows], own[rows]) for rows in (held, fitted))
     return learnt > 0.0 and AS_EXPECTED[0] < seen / learnt < AS_EXPECTED[1]
 

@@ -17,12 +17,14 @@ from .confirmed import confirmed as is_confirmed
 from .homogeneity import unevenness
 from .influence import limited
 from .model import LEAST_GIVEN, Model
+from .ranges import is_whole, out_of_its_range, partly_lost
 from .screen import Score
 
 __all__ = [
     "Choice",
     "Trial",
     "choose",
+    "covers",
     "heldout_gain",
     "judge",
     "log_gain",
@@ -76,8 +78,6 @@ MOST_UNEVEN: Final = 0.3
 the effect imitates something else."""
 OUT_OF_RANGE: Final = 1.0
 """Stands for that where its shape says that it is something else."""
-AT_THE_EDGE: Final = 0.98
-"""A shape that has come this near to the end of where it may be stands there."""
 UNEVEN_IN_FAMILY: Final = 0.12
 """The same, from which on a member of a family stands for the family alone."""
 LEAST_SIZE: Final = 0.001
@@ -115,6 +115,10 @@ class Trial:
     uneven : float
         What strengths of their own by kind of recording would add, as a share of its gain; 1
         where its shape says that it is something else.
+    partly : bool
+        Its gain would have to be whole and is not: the curve that is found is another cause's.
+    lone : bool
+        Refused because it gains in one of the recordings held out alone, and for nothing else.
     """
 
     score: Score
@@ -129,6 +133,8 @@ class Trial:
     uneven: float = 0.0
     unseen: bool = False
     freed: bool = False
+    partly: bool = False
+    lone: bool = False
 
     @property
     def imitates(self) -> bool:
@@ -192,10 +198,13 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     untold = record.late or (base.evidence.loop and record.before_drive)
     freed = not untold and explained > MOST_TIMES * max(score.score, score.threshold)
     reason = ""
-    by_blocks = False
+    by_blocks = lone = False
     strength = model.strength(score.candidate)
     # What is known so well where it was fitted, rows held out may confirm, however they vary.
-    confirmed = cache(lambda: strength >= SURE and is_confirmed(base, model, contributed))
+    gain_known = is_whole(score.candidate, model)
+    confirmed = cache(
+        lambda: strength >= SURE and is_confirmed(base, model, contributed, whole=gain_known)
+    )
     if model.given <= LEAST_GIVEN:
         reason = "takes away the effort itself, so that nothing is left to explain"
     elif model.plant.inertia < LEAST_INERTIA * base.plant.inertia:
@@ -229,6 +238,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
     elif _without_the_best(base, model, contributed) <= 0.5 * LEAST_GAIN and not confirmed():
         reason = "gains on rows held out in one recording alone"
+        lone = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
     elif strength < LEAST_STRENGTH:
         reason = f"its strength is {strength:.2f} standard errors, below {LEAST_STRENGTH:.2f}"
     elif size < LEAST_SIZE:
@@ -236,8 +246,15 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
             f"contributes {100 * size:.2g} % of the friction, below the {100 * LEAST_SIZE:.2g} % "
             "that matter"
         )
-    uneven = unevenness(base, model, contributed) if not reason or by_blocks else 0.0
-    beyond = _out_of_its_range(score.candidate, model) if not reason or by_blocks else ""
+    open_ = not reason or by_blocks
+    uneven = unevenness(base, model, contributed) if open_ else 0.0
+    partly = partly_lost(score.candidate, model, strength) if open_ or lone else ""
+    beyond = partly
+    if not beyond and (open_ or lone):
+        beyond = out_of_its_range(score.candidate, model)
+    if lone:
+        lone = not beyond and unevenness(base, model, contributed) <= MOST_UNEVEN
+        beyond = partly = ""
     if beyond:
         by_blocks, uneven = False, OUT_OF_RANGE
         reason = f"imitates something else: its {beyond}"
@@ -249,30 +266,21 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         )
     worth = log_gain(base, model) - PENALTY * score.candidate.parameters
     return Trial(
-        score, model, gain, z, worth, strength, size, reason, by_blocks, uneven, unseen, freed
+        score=score,
+        model=model,
+        gain=gain,
+        z=z,
+        worth=worth,
+        strength=strength,
+        size=size,
+        reason=reason,
+        by_blocks=by_blocks,
+        uneven=uneven,
+        unseen=unseen,
+        freed=freed,
+        partly=bool(partly),
+        lone=lone,
     )
-
-
-def _out_of_its_range(candidate: Candidate, model: Model) -> str:
-    """The shape that a refit took out of where it means what it says, "" where there is none.
-
-    A change with speed that is not over where the speeds end is a curve of viscous friction; what
-    is late by far less than the kernel is wide is the reading of the motion. A speed whose grid
-    begins below all speeds is no such change: over it one direction goes over into the other, and
-    the friction of the two differs however slowly that comes about.
-    """
-    effect = next(each for each in model.plant.effects if each.name == candidate.name)
-    for shape in candidate.record.shapes:
-        stated = effect.parameters[candidate.own(shape.parameter)]
-        if stated.fixed or stated.max is None or stated.min is None:
-            continue
-        changes = shape.scale == "speed" and min(shape.grid) >= 0.0
-        if changes and stated.value >= AT_THE_EDGE * stated.max:
-            where = "top of all speeds" if max(shape.grid) >= 1.0 else "end of its range"
-            return f"{shape.parameter} went to the {where}"
-        if shape.scale == "kernel" and stated.value <= stated.min / AT_THE_EDGE:
-            return f"{shape.parameter} went below what a kernel shows"
-    return ""
 
 
 def _again(base: Model, model: Model) -> float:
@@ -367,6 +375,7 @@ def choose(trials: Sequence[Trial], encompasses: Encompasses | None = None) -> C
         other
         for other in ranked
         if other is not winner
+        and not other.partly
         and (other.gain > 0.0 or other.by_blocks)
         and (not other.imitates or _outdoes(other, winner))
         and (
@@ -385,17 +394,28 @@ def strangers(trials: Sequence[Trial], winner: Trial) -> list[Trial]:
     """Who may be the cause that a winner imitates, the best first.
 
     The cause itself would explain more than what imitates it, and what is refused for its spread
-    over blocks alone may be that cause. A relative of the winner may imitate the winner.
+    over blocks alone may be that cause. A relative of the winner may imitate the winner, and others
+    that relative: in another form the winner explains more than in its own.
     """
     family = winner.candidate.record.family
+    own = [t for t in trials if t.candidate.record.family == family]
     found = [
         t
         for t in trials
-        if (t.imitates and t.candidate.record.family != family)
+        if (
+            t.imitates
+            and t.candidate.record.family != family
+            and not any(covers(r, t) for r in own)
+        )
         or (t.by_blocks and not _alike(winner, t))
     ]
     found = [t for t in found if _outdoes(t, winner)]
     return sorted(found, key=lambda t: -t.worth)
+
+
+def covers(one: Trial, other: Trial) -> bool:
+    """Whether a trial is worth about another, or more, that explains the same of the residual."""
+    return not _outdoes(other, one) and _alike(one, other)
 
 
 def _outdoes(other: Trial, winner: Trial) -> bool:

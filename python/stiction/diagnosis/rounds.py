@@ -18,9 +18,11 @@ from .decide import (
     ALIKE,
     LEAST_GAIN,
     LEAST_STRENGTH,
+    SURE,
     Choice,
     Trial,
     choose,
+    covers,
     heldout_gain,
     parallel,
 )
@@ -221,7 +223,12 @@ def _refitted(
         or passes_beside(screening, trials)
         or pass_together(screening, found.models[-1], trials)
     )
-    found.imitated = max((t.gain for t in trials if t.imitates and choice is None), default=0.0)
+    doubtless = [t for t in trials if (t.unseen and t.by_blocks) or t.lone]
+    doubtless = [t for t in doubtless if t.strength >= SURE and choice is None]
+    found.unseen = [t.name for t in sorted(doubtless, key=lambda t: -t.worth)]
+    strange = [t for t in trials if t.imitates and choice is None]
+    strange = [t for t in strange if not any(covers(other, t) for other in doubtless)]
+    found.imitated = max((t.gain for t in strange), default=0.0)
     for trial in trials:
         if choice is not None or not found.choices:
             found.rows[trial.name] = listing.tried(trial, choice)

@@ -24,10 +24,11 @@ __all__ = ["doubted", "rests_of", "several"]
 EXACT: Final = dict.fromkeys(
     ("encoder_eccentricity", "cogging", "torque_constant_ripple", "position_dependent_friction"),
     (WITH_ACCELERATION.name, WITH_SQUARED_SPEED.name),
-)
+) | {"direction_asymmetry": ("effort",)}
 """Where an effect leaves nothing once it is named: what repeats with position and grows with
 acceleration or squared speed is an inertia that changes, or an encoder that errs several times a
-turn."""
+turn; beside another friction in either direction, what goes with the effort is a drive that gives
+more in one direction than in the other."""
 LEAST_REST: Final = 0.02
 """Share of what the names took from which on such a rest counts: a large wave, a little off, leaves
 a little of everything."""

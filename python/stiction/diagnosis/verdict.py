@@ -52,7 +52,7 @@ def unnamed(
     null: FloatArray,
     null_of_last: Callable[[], FloatArray],
 ) -> tuple[Unexplained, ...]:
-    """What the last model leaves that noise does not explain, largest first.
+    """What the last model leaves that noise does not explain: coordinates, then single recordings.
 
     Parameters
     ----------
@@ -77,7 +77,9 @@ def unnamed(
         told = beside if _outweighs(selection, beside) else ()
     if not told and selection.imitated > LEAST_GAIN:
         # What was refused as an imitation shows that there is something to imitate.
-        told = (Unexplained(left.views[0].coordinate.name, selection.imitated),)
+        shown = left.flagged(0.0)
+        where = shown[0].coordinate.name if shown else NO_COORDINATE
+        told = (Unexplained(where, selection.imitated),)
     # A few coordinates that show little beside names must not hide that most has no name.
     open_ = not told or (bool(selection.choices) and not _outweighs(selection, told))
     if open_ and excess > _most_excess(evidence) and selection.choices:
@@ -88,7 +90,10 @@ def unnamed(
         more = Unexplained(MOMENTS.name if bursts else NO_COORDINATE, excess)
         told = (more, *(each for each in told if each.coordinate != more.coordinate))
     alone = outlying(evidence, selection.models[-1], null)
-    return tuple(sorted((*told, *alone), key=lambda each: -each.share)) if alone else told
+    # One recording stands first where it is most of it; beside a coordinate, in which the others
+    # show the same, several of them only make a list longer.
+    most = 1 if alone and (not told or alone[0].share > told[0].share) else 0
+    return (*alone[:most], *told, *alone[most:])
 
 
 def verdict_of(selection: Search, left: Sequence[Unexplained], decided: bool) -> Verdict:

@@ -21,7 +21,7 @@ from .orders import order_words
 if TYPE_CHECKING:
     from ..recording import Check
     from .gain import Gain
-    from .result import Cause, Diagnosis, Unexplained, Verdict
+    from .result import CandidateRow, Cause, Diagnosis, Unexplained, Verdict
 
 __all__ = [
     "INTERRUPTED",
@@ -36,6 +36,7 @@ __all__ = [
     "sentence",
     "shown_rows",
     "summary",
+    "unseen_words",
     "value_words",
     "what",
     "worse_loop_words",
@@ -157,6 +158,20 @@ def sentence(
     more = any(left.coordinate == NO_COORDINATE for left in unexplained)
     left = f" What is left {_depends(unexplained)}." if more else ""
     return f"{lacks} {named}.{gained}{_unconfirmed(effects)}{left}"
+
+
+def unseen_words(unseen: Sequence[str], rows: Mapping[str, CandidateRow]) -> str:
+    """What shows in recordings that train and cannot be judged by those that decide."""
+    summaries = {record.name: record.summary for record in catalogue()}
+    told = [
+        f"{name} ({summaries[name]}) would explain {100 * (rows[name].score or 0.0):.0f} %"
+        for name in unseen
+    ]
+    them = "it" if len(unseen) == 1 else "them"
+    return (
+        f"Of what is left where the plant was fitted {joined(told)}, and the recordings that "
+        f"decide hardly excite {them}: they neither bear {them} out nor refute {them}."
+    )
 
 
 def no_machine(left: float, named: bool, verdict: Verdict, by: Compared = EFFORT) -> str:

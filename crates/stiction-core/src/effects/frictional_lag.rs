@@ -53,7 +53,7 @@ impl<S: Scalar> Effect<S> for FrictionalLag<S> {
             Shape {
                 parameter: "velocity",
                 scale: Scale::Speed,
-                grid: &[0.1, 0.4, 0.7, 0.95],
+                grid: &[0.1, 0.4, 0.7],
                 fitted: true,
             },
             Shape { parameter: "time", scale: Scale::Kernel, grid: &[0.7, 3.0], fitted: true },

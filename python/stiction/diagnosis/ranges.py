@@ -1,0 +1,68 @@
+"""What a refit says against its own effect: shapes and gains that are not what its name says."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from .candidates import Candidate
+from .model import Model
+
+__all__ = ["is_whole", "out_of_its_range", "partly_lost"]
+
+WHOLE: Final = {"drive_saturation": ("share", 0.25, 0.95, "beyond a limit nothing gets through")}
+"""Gains that are 1 where the cause is what its name says: below what they are surely not, from what
+on they are, and why. A part that is lost of large inputs is a torque constant that falls, whatever
+its curve; a limit that rounds off loses a part at first."""
+SURELY: Final = 2.0
+"""Standard errors by which a gain is surely less."""
+AT_THE_EDGE: Final = 0.98
+"""A shape that has come this near to the end of where it may be stands there."""
+
+
+def out_of_its_range(candidate: Candidate, model: Model) -> str:
+    """The shape that a refit took out of where it means what it says, "" where there is none.
+
+    A change with speed that is not over where the speeds end is a curve of viscous friction; what
+    is late by far less than the kernel is wide is the reading of the motion. A speed whose grid
+    begins below all speeds is no such change: over it one direction goes over into the other, and
+    the friction of the two differs however slowly that comes about. And what is late and over below
+    the slowest speeds is no lag of sliding friction: there the curve of the contact is off.
+    """
+    late = any(shape.scale == "kernel" for shape in candidate.record.shapes)
+    effect = next(each for each in model.plant.effects if each.name == candidate.name)
+    for shape in candidate.record.shapes:
+        stated = effect.parameters[candidate.own(shape.parameter)]
+        if stated.fixed or stated.max is None or stated.min is None:
+            continue
+        changes = shape.scale == "speed" and min(shape.grid) >= 0.0
+        if changes and stated.value >= AT_THE_EDGE * stated.max:
+            where = "top of all speeds" if max(shape.grid) >= 1.0 else "end of its range"
+            return f"{shape.parameter} went to the {where}"
+        if changes and late and stated.value <= stated.min / AT_THE_EDGE:
+            return f"{shape.parameter} went below all speeds"
+        if shape.scale == "kernel" and stated.value <= stated.min / AT_THE_EDGE:
+            return f"{shape.parameter} went below what a kernel shows"
+    return ""
+
+
+def is_whole(candidate: Candidate, model: Model) -> bool:
+    """Whether a gain came out as what was known of it beforehand."""
+    if candidate.name not in WHOLE:
+        return False
+    name, _, least, _ = WHOLE[candidate.name]
+    return _gain(candidate, model, name) >= least
+
+
+def _gain(candidate: Candidate, model: Model, name: str) -> float:
+    effect = next(each for each in model.plant.effects if each.name == candidate.name)
+    return effect.parameters[candidate.own(name)].value
+
+
+def partly_lost(candidate: Candidate, model: Model, strength: float) -> str:
+    """The gain that would have to be whole and surely is not, "" where there is none."""
+    if candidate.name not in WHOLE:
+        return ""
+    name, least, _, why = WHOLE[candidate.name]
+    value = _gain(candidate, model, name)
+    surely_less = value * (1.0 + SURELY / max(strength, 1e-300)) < least
+    return f"{name} is {value:.2g}, and {why}" if surely_less else ""

@@ -1,0 +1,78 @@
+"""Causes of a drive that look alike: what only one of them can do tells them apart."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+from tests.blind.score import as_plant, as_session
+from tests.reference.session_reference import make_session
+
+import stiction as st
+
+SIZE = 0.012
+"""rms of what is hidden as a share of F_c."""
+
+
+@cache
+def hidden(name, seed, base="maxwell_slip", size=SIZE):
+    made = make_session(seed, base=base, hidden=[(name, size)])
+    return made, st.diagnose(as_plant(made), as_session(made), threads=1)
+
+
+def row_of(found, name):
+    (row,) = [each for each in found.candidates if each.name == name]
+    return row
+
+
+def added(made, torque):
+    """The same motion, for which the input would have been another one by this, of that size."""
+    parts = [torque(r) for r in made.recordings]
+    rms = float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+    scale = 0.015 * made.plant["coulomb"] / rms
+    inputs = [r.torque_nm + scale * part for r, part in zip(made.recordings, parts, strict=True)]
+    return st.diagnose(as_plant(made), as_session(made, inputs), threads=1)
+
+
+def test_a_limit_is_named_though_it_acts_in_one_recording_of_each_role():
+    made, found = hidden("drive_saturation", 9900008, "coulomb")
+    limit = made.effects[0].shape["limit"]
+    acts = [r.role for r in made.recordings if np.abs(r.torque_nm).max() > limit]
+    assert sorted(acts) == ["select", "test", "train"]
+    (cause,) = found.effects
+    assert (cause.name, cause.decided) == ("drive_saturation", True)
+    share, reached = (
+        cause.parameters[f"effects.drive_saturation.{name}"].value for name in ("share", "limit")
+    )
+    assert share > 0.95
+    assert reached == pytest.approx(limit, rel=0.01)
+
+
+@pytest.mark.parametrize("form", ["library", "foreign"])
+def test_a_part_that_is_lost_of_large_inputs_is_a_torque_constant_that_falls(form):
+    """Beyond a soft knee a twentieth is lost: a limit with a small share fits that best."""
+    _, found = hidden(f"torque_constant_saturation:{form}", 612, "coulomb")
+    (cause,) = found.effects
+    assert (cause.name, cause.decided) == ("torque_constant_saturation", True)
+    reason = row_of(found, "drive_saturation").reason
+    assert "beyond a limit nothing gets through" in reason
+
+
+def test_a_mass_that_is_dragged_along_is_no_friction_that_comes_late():
+    """Coupled by oil alone, it pulls at all speeds; a lag of friction is over at low ones."""
+
+    def dragged(recording):
+        velocity = recording.truth["velocity"]
+        smoothing = 1e-3 / (0.03 + 1e-3)
+        return velocity - lfilter([smoothing], [1.0, smoothing - 1.0], velocity)
+
+    found = added(make_session(551), dragged)
+    assert found.verdict == "unexplained"
+    assert "frictional_lag" not in [cause.name for cause in found.effects]
+    assert found.unexplained[0].coordinate == "response to the effort"
+
+
+def test_a_drive_that_gives_more_one_way_is_no_sure_friction_of_one_direction():
+    found = added(make_session(502), lambda recording: np.abs(recording.torque_nm))
+    assert all(not cause.decided for cause in found.effects)
+    assert "effort" in [each.coordinate for each in found.unexplained]
