@@ -169,7 +169,8 @@ def unseen_words(unseen: Sequence[str], rows: Mapping[str, CandidateRow]) -> str
     ]
     them = "it" if len(unseen) == 1 else "them"
     return (
-        f"Of what is left where the plant was fitted {joined(told)}, and the recordings that "
+        "These data cannot decide whether anything is missing: of what is left where the plant "
+        f"was fitted {joined(told)}, and the recordings that "
         f"decide hardly excite {them}: they neither bear {them} out nor refute {them}."
     )
 
