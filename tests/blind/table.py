@@ -173,6 +173,7 @@ def _rates(kinds):
         ("null: any entry in `effects`", rate(null, lambda r: r["found"])),
         ("null: a confident name", rate(null, confident)),
         ("null: unexplained", rate(null, lambda r: r["verdict"] == "unexplained")),
+        ("null: not testable", rate(null, lambda r: r["verdict"] == "not_testable")),
         ("single, 1–1.5 % F_c: class", rate(_sized(single, 0.0095, 0.0155), classed)),
         ("single, 1–1.5 % F_c: name", rate(_sized(single, 0.0095, 0.0155), named)),
         ("single, 0.4–0.5 % F_c: class", rate(_sized(single, 0.0038, 0.0053), classed)),

@@ -82,8 +82,8 @@ class DriveSaturation(DriveLoss):
     """Nothing of what the input has beyond L gets through: a = 1.
 
     A part that is lost beyond some input is a torque constant that falls. So a size is reached by
-    the limit, however few samples it acts in then. Foreign: the clip rounds off,
-    L + w tanh((|u| - L) / w).
+    the limit, unless that is given, however few samples it acts in then. Foreign: the clip rounds
+    off, L + w tanh((|u| - L) / w).
     """
 
     forms = ("library", "foreign")

@@ -127,7 +127,7 @@ def advise(
             add(record.plan, record.experiment, f"it tells {joined(names)} apart", names)
     for name in unseen:
         record = records[name]
-        reason = f"recordings that decide hardly excite {name}, which shows in those that train"
+        reason = f"recordings that decide cannot judge {name}, which shows in those that train"
         add(record.plan, record.experiment, reason, (name,))
     for left in unexplained[:2]:
         if left.coordinate in BY_COORDINATE:

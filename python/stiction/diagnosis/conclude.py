@@ -240,6 +240,7 @@ class Conclusion:
             gain = gain_of(test, 0, len(causes), found.seed)
         left = lost(evidence, final, null)
         event = None
+        unseen: Sequence[str] = ()
         verdict: Verdict
         unexplained: tuple[Unexplained, ...] = ()
         if self.brief:
@@ -263,8 +264,9 @@ class Conclusion:
                 "seen."
             )
             event = None if causes else lone_event(evidence, final, test, 0)
-            if verdict == "nothing_missing" and selection.unseen:
-                verdict, reason = "not_testable", unseen_words(selection.unseen, selection.rows)
+            if verdict == "nothing_missing" and event is None and selection.unseen:
+                unseen = selection.unseen
+                verdict, reason = "not_testable", unseen_words(unseen, selection.rows)
         if event is not None and better is None:
             followed = event_words(self.rivals, base, event) if event.fitted else ""
             verdict, reason, unexplained = "not_testable", event.words() + followed, ()
@@ -305,7 +307,7 @@ class Conclusion:
                     selection.blind,
                     self.checks,
                     final.plant,
-                    unseen=selection.unseen,
+                    unseen=unseen,
                 ),
             ),
             better_law="" if better is None else better.law,

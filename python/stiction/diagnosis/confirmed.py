@@ -8,15 +8,16 @@ same again: this is asked only of what many fitted blocks leave no doubt of.
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..trajectory import FloatArray
 from .model import Model
 from .regression import refitted
 
-__all__ = ["confirmed"]
+__all__ = ["confirmed", "in_few_blocks"]
 
 CLEAR: Final = 4.0
 """Size of what is expected on rows held out over its standard error there: far from noise."""
@@ -27,8 +28,8 @@ FEWEST_BLOCKS: Final = 5.0
 two is fitted to them: its standard error, taken over blocks, is no measure of doubt."""
 LEFT: Final = 0.1
 """Share of the power of the rows held out that is left, where it acts, by a cause that takes all or
-nothing: its gain was not fitted, so that its blocks may be few. By chance it takes no such share of
-what was never fitted."""
+nothing: its gain was known beforehand, so that its blocks may be few. By chance it takes no such
+share of what was never fitted."""
 
 
 def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool = False) -> bool:
@@ -46,7 +47,8 @@ def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool
     contributed : numpy.ndarray, shape (n,)
         What the effect explains of each row after its refit.
     whole : bool
-        Its gain is what was known of it beforehand, as of a limit beyond which everything is lost.
+        Its gain came out as what was known of it beforehand, as of a limit beyond which everything
+        is lost: blocks may be few then.
     """
     evidence = base.evidence
     plan = evidence.plans[0]
@@ -57,7 +59,7 @@ def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool
     own = refitted(base.columns, contributed, fitted)
     count = int(block.max()) + 1
     learnt_from = np.bincount(block[fitted], own[fitted] ** 2, count)
-    few = learnt_from.sum() ** 2 < FEWEST_BLOCKS * float(np.sum(learnt_from**2))
+    few = _are_few(learnt_from)
     if few and not whole:
         return False
     rows = np.maximum(np.bincount(block[held], minlength=count), 1)
@@ -76,6 +78,19 @@ def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool
         return after < LEFT * before
     seen, learnt = (_strength(base.residual[rows], own[rows]) for rows in (held, fitted))
     return learnt > 0.0 and AS_EXPECTED[0] < seen / learnt < AS_EXPECTED[1]
+
+
+def in_few_blocks(base: Model, contributed: FloatArray) -> bool:
+    """Whether a contribution, shape (n,), was fitted to blocks so few that they tell no strength.
+
+    Rows held out by turns were all fitted.
+    """
+    plan, block = base.evidence.plans[0], base.evidence.cells.block
+    return _are_few(np.bincount(block[plan.fit], contributed[plan.fit] ** 2, int(block.max()) + 1))
+
+
+def _are_few(power: NDArray[Any]) -> bool:
+    return float(power.sum()) ** 2 < FEWEST_BLOCKS * float(np.sum(power**2))
 
 
 def _strength(residual: FloatArray, own: FloatArray) -> float:

@@ -14,6 +14,7 @@ from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .candidates import Candidate
 from .confirmed import confirmed as is_confirmed
+from .confirmed import in_few_blocks
 from .homogeneity import unevenness
 from .influence import limited
 from .model import LEAST_GIVEN, Model
@@ -117,8 +118,9 @@ class Trial:
         where its shape says that it is something else.
     partly : bool
         Its gain would have to be whole and is not: the curve that is found is another cause's.
-    lone : bool
-        Refused because it gains in one of the recordings held out alone, and for nothing else.
+    doubtless : bool
+        Refused because it acts in none of the blocks held out, or in one recording of them, while
+        what was fitted leaves no doubt of it.
     """
 
     score: Score
@@ -134,7 +136,7 @@ class Trial:
     unseen: bool = False
     freed: bool = False
     partly: bool = False
-    lone: bool = False
+    doubtless: bool = False
 
     @property
     def imitates(self) -> bool:
@@ -238,7 +240,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
     elif _without_the_best(base, model, contributed) <= 0.5 * LEAST_GAIN and not confirmed():
         reason = "gains on rows held out in one recording alone"
-        lone = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
+        lone = size >= LEAST_SIZE and _acting(base, contributed) <= 1
     elif strength < LEAST_STRENGTH:
         reason = f"its strength is {strength:.2f} standard errors, below {LEAST_STRENGTH:.2f}"
     elif size < LEAST_SIZE:
@@ -248,13 +250,19 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         )
     open_ = not reason or by_blocks
     uneven = unevenness(base, model, contributed) if open_ else 0.0
-    partly = partly_lost(score.candidate, model, strength) if open_ or lone else ""
-    beyond = partly
-    if not beyond and (open_ or lone):
-        beyond = out_of_its_range(score.candidate, model)
-    if lone:
-        lone = not beyond and unevenness(base, model, contributed) <= MOST_UNEVEN
-        beyond = partly = ""
+    partly = partly_lost(score.candidate, model, strength)
+    beyond = partly or out_of_its_range(score.candidate, model)
+    # What many fitted blocks leave no doubt of, and what decides can say nothing about.
+    untold = (unseen and by_blocks) or lone
+    doubtless = (
+        untold
+        and strength >= SURE
+        and gain >= 0.0
+        and not beyond
+        and (gain_known or not in_few_blocks(base, contributed))
+        and unevenness(base, model, contributed) <= MOST_UNEVEN
+    )
+    beyond = beyond if open_ else ""
     if beyond:
         by_blocks, uneven = False, OUT_OF_RANGE
         reason = f"imitates something else: its {beyond}"
@@ -279,7 +287,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         unseen=unseen,
         freed=freed,
         partly=bool(partly),
-        lone=lone,
+        doubtless=doubtless,
     )
 
 
@@ -327,6 +335,16 @@ def _without_the_best(base: Model, model: Model, contributed: FloatArray) -> flo
     # As it may find the machine again in one, it may lose it in another.
     kept = in_order[1:-1] if len(in_order) >= FEWEST_RECORDINGS else in_order[:-1]
     return float(1.0 - left[kept].sum() / whole[kept].sum())
+
+
+def _acting(base: Model, contributed: FloatArray) -> int:
+    """Number of recordings held out in which an effect acts."""
+    recording = base.evidence.cells.recording
+    held = np.zeros(len(contributed), dtype=bool)
+    for plan in base.evidence.plans:
+        held |= plan.held
+    power = np.bincount(recording[held], contributed[held] ** 2)
+    return int(np.sum(power > TOUCHED * max(float(power.max()), 1e-300)))
 
 
 def _sign_z(values: FloatArray) -> float:
@@ -399,6 +417,7 @@ def strangers(trials: Sequence[Trial], winner: Trial) -> list[Trial]:
     """
     family = winner.candidate.record.family
     own = [t for t in trials if t.candidate.record.family == family]
+    own = [t for t in own if not t.reason or t.by_blocks or t.uneven == OUT_OF_RANGE]
     found = [
         t
         for t in trials

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from ..fitting.start import largest_command
 from .candidates import Candidate
 from .model import Model
 
@@ -13,6 +14,9 @@ WHOLE: Final = {"drive_saturation": ("share", 0.25, 0.95, "beyond a limit nothin
 """Gains that are 1 where the cause is what its name says: below what they are surely not, from what
 on they are, and why. A part that is lost of large inputs is a torque constant that falls, whatever
 its curve; a limit that rounds off loses a part at first."""
+MOST_BEYOND: Final = 3.0
+"""Largest input over a limit: a drive is not asked for more, and what is beyond is a reading that
+was never there."""
 SURELY: Final = 2.0
 """Standard errors by which a gain is surely less."""
 AT_THE_EDGE: Final = 0.98
@@ -39,21 +43,23 @@ def out_of_its_range(candidate: Candidate, model: Model) -> str:
             where = "top of all speeds" if max(shape.grid) >= 1.0 else "end of its range"
             return f"{shape.parameter} went to the {where}"
         if changes and late and stated.value <= stated.min / AT_THE_EDGE:
-            return f"{shape.parameter} went below all speeds"
+            return f"{shape.parameter} went below the usual speeds"
         if shape.scale == "kernel" and stated.value <= stated.min / AT_THE_EDGE:
             return f"{shape.parameter} went below what a kernel shows"
     return ""
 
 
 def is_whole(candidate: Candidate, model: Model) -> bool:
-    """Whether a gain came out as what was known of it beforehand."""
+    """Whether a gain came out as what was known of it, of inputs that a drive may be asked for."""
     if candidate.name not in WHOLE:
         return False
     name, _, least, _ = WHOLE[candidate.name]
-    return _gain(candidate, model, name) >= least
+    limits = [_value(candidate, model, s.parameter) for s in candidate.record.shapes]
+    asked = max(largest_command(rows.form, model.plant) for rows in model.evidence.shown)
+    return _value(candidate, model, name) >= least and asked <= MOST_BEYOND * min(limits)
 
 
-def _gain(candidate: Candidate, model: Model, name: str) -> float:
+def _value(candidate: Candidate, model: Model, name: str) -> float:
     effect = next(each for each in model.plant.effects if each.name == candidate.name)
     return effect.parameters[candidate.own(name)].value
 
@@ -63,6 +69,6 @@ def partly_lost(candidate: Candidate, model: Model, strength: float) -> str:
     if candidate.name not in WHOLE:
         return ""
     name, least, _, why = WHOLE[candidate.name]
-    value = _gain(candidate, model, name)
+    value = _value(candidate, model, name)
     surely_less = value * (1.0 + SURELY / max(strength, 1e-300)) < least
     return f"{name} is {value:.2g}, and {why}" if surely_less else ""

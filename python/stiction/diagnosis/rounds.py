@@ -18,7 +18,6 @@ from .decide import (
     ALIKE,
     LEAST_GAIN,
     LEAST_STRENGTH,
-    SURE,
     Choice,
     Trial,
     choose,
@@ -223,8 +222,7 @@ def _refitted(
         or passes_beside(screening, trials)
         or pass_together(screening, found.models[-1], trials)
     )
-    doubtless = [t for t in trials if (t.unseen and t.by_blocks) or t.lone]
-    doubtless = [t for t in doubtless if t.strength >= SURE and choice is None]
+    doubtless = [t for t in trials if t.doubtless and choice is None]
     found.unseen = [t.name for t in sorted(doubtless, key=lambda t: -t.worth)]
     strange = [t for t in trials if t.imitates and choice is None]
     strange = [t for t in strange if not any(covers(other, t) for other in doubtless)]

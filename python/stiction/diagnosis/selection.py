@@ -53,4 +53,6 @@ class Search:
         if name in rows:
             rows[name] = replace(rows[name], reason=reason)
         choices = self.choices[:-1]
-        return replace(self, models=self.models[: len(choices) + 1], choices=choices, rows=rows)
+        models = self.models[: len(choices) + 1]
+        # What was told beside it was told of another model.
+        return replace(self, models=models, choices=choices, rows=rows, unseen=[])

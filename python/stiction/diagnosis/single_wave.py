@@ -1,4 +1,4 @@
-"""Names of which geometry leaves no rest: one wave a turn, and what a reading makes of it.
+"""Names that leave no rest of one kind: one wave a turn, what a reading makes of it, a direction.
 
 The form of an effect is its author's, and a machine's own leaves a rest of it. One wave is no
 matter of form, so that a rest of it speaks against the name: a weight off the axis leaves nothing

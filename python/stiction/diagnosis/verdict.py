@@ -90,7 +90,7 @@ def unnamed(
         more = Unexplained(MOMENTS.name if bursts else NO_COORDINATE, excess)
         told = (more, *(each for each in told if each.coordinate != more.coordinate))
     alone = outlying(evidence, selection.models[-1], null)
-    # One recording stands first where it is most of it; beside a coordinate, in which the others
+    # One recording stands first where it leaves most; beside a coordinate, in which the others
     # show the same, several of them only make a list longer.
     most = 1 if alone and (not told or alone[0].share > told[0].share) else 0
     return (*alone[:most], *told, *alone[most:])

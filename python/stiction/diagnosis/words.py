@@ -170,8 +170,8 @@ def unseen_words(unseen: Sequence[str], rows: Mapping[str, CandidateRow]) -> str
     them = "it" if len(unseen) == 1 else "them"
     return (
         "These data cannot decide whether anything is missing: of what is left where the plant "
-        f"was fitted {joined(told)}, and the recordings that "
-        f"decide hardly excite {them}: they neither bear {them} out nor refute {them}."
+        f"was fitted {joined(told)}, and the recordings that decide hardly excite {them}, or in "
+        f"one of them alone: they neither bear {them} out nor refute {them}."
     )
 
 
