@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 from ..fitting.start import largest_command
 from .candidates import Candidate
@@ -10,10 +10,22 @@ from .model import Model
 
 __all__ = ["is_whole", "out_of_its_range", "partly_lost"]
 
-WHOLE: Final = {"drive_saturation": ("share", 0.25, 0.95, "beyond a limit nothing gets through")}
-"""Gains that are 1 where the cause is what its name says: below what they are surely not, from what
-on they are, and why. A part that is lost of large inputs is a torque constant that falls, whatever
-its curve; a limit that rounds off loses a part at first."""
+
+class Whole(NamedTuple):
+    """A gain that is 1 where the cause is what its name says."""
+
+    gain: str
+    partly: float
+    """What is surely below this is another cause: a limit that rounds off loses a part at first."""
+    whole: float
+    """From here on it came out as 1."""
+    why: str
+
+
+WHOLE: Final = {
+    "drive_saturation": Whole("share", 0.25, 0.95, "beyond a limit nothing gets through")
+}
+"""A part that is lost of large inputs is a torque constant that falls, whatever its curve."""
 MOST_BEYOND: Final = 3.0
 """Largest input over a limit: a drive is not asked for more, and what is beyond is a reading that
 was never there."""
@@ -53,10 +65,11 @@ def is_whole(candidate: Candidate, model: Model) -> bool:
     """Whether a gain came out as what was known of it, of inputs that a drive may be asked for."""
     if candidate.name not in WHOLE:
         return False
-    name, _, least, _ = WHOLE[candidate.name]
+    known = WHOLE[candidate.name]
     limits = [_value(candidate, model, s.parameter) for s in candidate.record.shapes]
     asked = max(largest_command(rows.form, model.plant) for rows in model.evidence.shown)
-    return _value(candidate, model, name) >= least and asked <= MOST_BEYOND * min(limits)
+    came_out = _value(candidate, model, known.gain) >= known.whole
+    return came_out and asked <= MOST_BEYOND * min(limits)
 
 
 def _value(candidate: Candidate, model: Model, name: str) -> float:
@@ -68,7 +81,7 @@ def partly_lost(candidate: Candidate, model: Model, strength: float) -> str:
     """The gain that would have to be whole and surely is not, "" where there is none."""
     if candidate.name not in WHOLE:
         return ""
-    name, least, _, why = WHOLE[candidate.name]
-    value = _value(candidate, model, name)
-    surely_less = value * (1.0 + SURELY / max(strength, 1e-300)) < least
-    return f"{name} is {value:.2g}, and {why}" if surely_less else ""
+    known = WHOLE[candidate.name]
+    value = _value(candidate, model, known.gain)
+    surely_less = value * (1.0 + SURELY / max(strength, 1e-300)) < known.partly
+    return f"{known.gain} is {value:.2g}, and {known.why}" if surely_less else ""
