@@ -17,7 +17,8 @@ from stiction.catalogue import EffectRecord
 from stiction.cli import run
 from stiction.diagnosis import listing
 from stiction.diagnosis.candidates import Scales, candidates, left_out, present, scales_of
-from stiction.diagnosis.decide import Choice, Trial, choose, strangers
+from stiction.diagnosis.choose import Choice, choose, strangers
+from stiction.diagnosis.decide import Trial
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import HeldOut, gain_of
 from stiction.diagnosis.model import LEAST_GIVEN, Model, fitted, with_effect

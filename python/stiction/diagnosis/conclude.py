@@ -24,6 +24,7 @@ from .ceiling import Ceiling, ceiling_of
 from .confirm import confirmed, described, lost, lost_on_test
 from .coordinates import Look, looks
 from .evidence import Evidence
+from .exact_forms import doubted, rests_of
 from .gain import HeldOut, gain_of, residuals_of
 from .holds import holds_of
 from .laws import THE_LAW, Rival, better_law, event_words, law_rows, rivals_of
@@ -44,7 +45,6 @@ from .replay import centre, shared, surrogate_residuals
 from .result import Cause, Diagnosis, ModelSummary, Unexplained, Verdict
 from .rounds import friction_of
 from .selection import Search
-from .single_wave import doubted, rests_of
 from .verdict import left_beside, relatives, unnamed, verdict_of
 from .view import View
 from .words import (

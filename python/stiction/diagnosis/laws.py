@@ -19,8 +19,9 @@ from ..fitting.minimise import MOST_EVALUATIONS
 from ..parameter import Parameter
 from ..stated import Friction
 from ..wording import did_you_mean, listed
-from .decide import DECIDED_Z, heldout_gain
+from .choose import DECIDED_Z
 from .gain import Gain, HeldOut, gain_of
+from .gains import heldout_gain
 from .lone import Lone
 from .model import LEAST_GIVEN, Model, fitted
 from .result import Advice, LawRow

@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import Final
 
 from .candidates import Candidate
-from .decide import Choice, Trial
+from .choose import Choice
+from .decide import Trial
 from .result import CandidateRow
 from .screen import Score
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from typing import Final
 
-from .decide import heldout_gain
+from .gains import heldout_gain
 from .model import Model, fitted
 from .replay import reread
 from .screen import NULL_TIMES

@@ -14,25 +14,17 @@ from ..plant import Plant
 from ..trajectory import FloatArray
 from . import listing
 from .candidates import Candidate, candidates, present, scales_of
-from .decide import (
-    ALIKE,
-    LEAST_GAIN,
-    LEAST_STRENGTH,
-    Choice,
-    Trial,
-    choose,
-    covers,
-    heldout_gain,
-    parallel,
-)
+from .choose import ALIKE, Choice, choose, covers, parallel
+from .decide import LEAST_GAIN, LEAST_STRENGTH, Trial
 from .evidence import Evidence
+from .exact_forms import several
+from .gains import heldout_gain
 from .model import Model, without_effect
 from .replay import centre, shared
 from .result import CandidateRow
 from .screen import Score, Signatures
 from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
-from .single_wave import several
 from .together import pass_together, passes_beside
 from .trials import Screening, compared_fit, promises, unstuck, whole_fit
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from ..catalogue import EffectRecord
-from .decide import Choice
+from .choose import Choice
 from .model import Model
 from .result import CandidateRow
 

@@ -9,7 +9,9 @@ from typing import Final
 from ..catalogue import EffectRecord
 from ..plant import Plant
 from ..stated import Effect
-from .decide import LEAST_GAIN, LEAST_Z, PENALTY, Choice, Trial, heldout_gain, log_gain
+from .choose import Choice
+from .decide import LEAST_GAIN, LEAST_Z, PENALTY, Trial
+from .gains import heldout_gain, log_gain
 from .model import Model
 from .trials import MANY_TIMES, MUCH, Screening, promises, whole_fit
 

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from .decide import Choice, Trial, choose, strangers
+from .choose import Choice, choose, strangers
+from .decide import Trial
 from .model import Model, without_effect
 from .trials import Screening, promises, whole_fit
 

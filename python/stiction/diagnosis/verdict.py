@@ -8,8 +8,9 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
-from .decide import LEAST_GAIN, heldout_gain
+from .decide import LEAST_GAIN
 from .evidence import Evidence
+from .gains import heldout_gain
 from .model import Model
 from .omnibus import Rest
 from .outlying import outlying
