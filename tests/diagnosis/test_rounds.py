@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -301,6 +301,32 @@ def test_what_explains_many_times_what_others_do_is_refitted_though_it_does_harm
     assert (rounds._outstanding(scores) is scores[0]) is asked
     assert rounds._outstanding(scores) in (scores[0], None)
     assert rounds._outstanding([]) is None
+
+
+@pytest.mark.parametrize(
+    ("times", "family", "late", "named", "asked"),
+    [
+        (1.1, "creep", False, False, True),
+        (1.1, "creep", False, True, False),
+        (2.5, "creep", False, True, True),
+        # What may be the rest of a wave, and what its slope at no delay tells too little of.
+        (1.1, "waves", False, True, True),
+        (1.1, "lag", True, True, True),
+    ],
+)
+def test_beside_a_name_a_further_one_has_to_stand_out(
+    times: float, family: str, late: bool, named: bool, asked: bool
+) -> None:
+    def of(family: str, late: bool) -> Any:
+        return SimpleNamespace(record=SimpleNamespace(family=family, late=late))
+
+    found = Search([cast("Any", None)])
+    if named:
+        found.choices.append(
+            cast("Any", SimpleNamespace(winner=SimpleNamespace(candidate=of("waves", False))))
+        )
+    score: Any = SimpleNamespace(score=times * 0.01, threshold=0.01, candidate=of(family, late))
+    assert rounds._stands_out(score, found) == asked
 
 
 @pytest.mark.parametrize(("explained", "refused"), [(0.03, True), (0.1, False)])

@@ -181,7 +181,9 @@ def test_a_saturated_drive_clips():
 @pytest.mark.parametrize("form", ["library", "foreign"])
 def test_a_limit_is_brought_to_size_by_where_it_lies(form):
     """Nothing of what is beyond it gets through, however small a size is asked for."""
-    session = make_session(31, base="coulomb", hidden=[(f"drive_saturation:{form}", 0.012)])
+    session = make_session(
+        31, base="coulomb", hidden=[(f"drive_saturation:{form}", 0.012)], seconds=30.0
+    )
     (effect,) = session.effects
     assert effect.amplitude == 1.0
     assert effect.reached == pytest.approx(0.012, rel=0.15)

@@ -45,7 +45,7 @@ from .replay import centre, shared, surrogate_residuals
 from .result import Cause, Diagnosis, ModelSummary, Unexplained, Verdict
 from .rounds import friction_of
 from .selection import Search
-from .verdict import left_beside, relatives, unnamed, verdict_of
+from .verdict import left_beside, outweighed, relatives, unnamed, verdict_of
 from .view import View
 from .words import (
     INTERRUPTED,
@@ -254,6 +254,11 @@ class Conclusion:
             of_names = rests_of(causes, self.rests[1], left_beside(selection))
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
             causes = [doubted(cause, unexplained, of_names) for cause in causes]
+            little = outweighed(selection, unexplained)
+            causes = [
+                replace(cause, decided=cause.decided and not less)
+                for cause, less in zip(causes, little, strict=True)
+            ]
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
             if left and not unexplained:

@@ -13,8 +13,10 @@ from .gain import HeldOut
 from .model import Model
 from .result import Unexplained
 
-__all__ = ["MOST_TIMES", "outlying", "outlying_in_test"]
+__all__ = ["ALONE", "MOST_TIMES", "outlying", "outlying_in_test"]
 
+ALONE: Final = " alone"
+"""What stands behind the name of a recording in the place of a coordinate."""
 MOST_TIMES: Final = 8.0
 """Power left over what noise leaves from which on a recording stands out, in its median block.
 
@@ -73,7 +75,7 @@ def outlying(evidence: Evidence, model: Model, null: FloatArray) -> tuple[Unexpl
     out = np.flatnonzero(middle > MOST_TIMES * max(usual, 1.0))
     shares = beyond / float(power.sum())
     return tuple(
-        Unexplained(f"{evidence.names[asked[k]]} alone", float(shares[k]))
+        Unexplained(f"{evidence.names[asked[k]]}{ALONE}", float(shares[k]))
         for k in sorted(out, key=lambda k: -shares[k])
     )
 

@@ -39,6 +39,9 @@ SLIGHT: Final = 0.1
 LESSER: Final = 0.7
 """What explains another part of the residual than one that passed, and less than this share of what
 that explains, has its turn in the next round: there it is screened beside that."""
+BESIDE_NAMES: Final = 2.0
+"""So many times what noise reaches a further cause explains: second ones that were hidden came to
+2.2 and more, what followed the rest of a first one's form to 1.1, 2.1 and 3.2."""
 OUTSTANDING: Final = 3.0
 """A candidate that explains this many times what any other does is refitted whatever it does held
 out."""
@@ -200,10 +203,10 @@ def _refitted(
         if goes_on and score not in asked and _can_wait(score, base, trials):
             waiting.append(score)
         elif not _hopeless(score, trials):
-            trials.append(beside_a_second(screening, base, screening.trial(base, score)))
+            trials.append(_trial(screening, found, score))
     if waiting and choose(trials) is None:
         # There will be no next round.
-        trials += [beside_a_second(screening, base, screening.trial(base, s)) for s in waiting]
+        trials += [_trial(screening, found, score) for score in waiting]
     tried = {trial.name for trial in trials}
     for score in passing:
         if score.candidate.name not in tried:
@@ -224,6 +227,34 @@ def _refitted(
             found.rows[trial.name] = listing.tried(trial, choice)
     freed = sorted((trial for trial in trials if trial.freed), key=lambda t: -t.worth)[:1]
     return choice, freed if choice is None else [*freed, choice.winner]
+
+
+def _trial(screening: Screening, found: Search, score: Score) -> Trial:
+    """A candidate refitted beside what was found; refused where that may have left it."""
+    trial = screening.trial(found.models[-1], score)
+    trial = beside_a_second(screening, found.models[-1], trial)
+    if trial.reason or _stands_out(score, found):
+        return trial
+    reason = (
+        f"explains {100 * score.score:.1f} % beside names, whose forms may leave up to "
+        f"{100 * BESIDE_NAMES * score.threshold:.1f} %"
+    )
+    return replace(trial, reason=reason)
+
+
+def _stands_out(score: Score, found: Search) -> bool:
+    """Whether a candidate beside names explains more than the form of these may leave.
+
+    What noise reaches is known for a model that is right. The form of an effect is its author's: a
+    machine's own leaves a rest of it, which something else follows a little. Relatives pass all the
+    same: what one of several waves leaves speaks against it. Of what is late the slope at no delay
+    tells too little.
+    """
+    families = {choice.winner.candidate.record.family for choice in found.choices}
+    record = score.candidate.record
+    if not families or record.family in families or record.late:
+        return True
+    return score.score > BESIDE_NAMES * score.threshold
 
 
 def _outstanding(scores: Sequence[Score]) -> Score | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -13,7 +14,7 @@ from .evidence import Evidence
 from .gains import heldout_gain
 from .model import Model
 from .omnibus import Rest
-from .outlying import outlying
+from .outlying import ALONE, outlying
 from .passing import MOMENTS
 from .periodic import FREQUENCY
 from .result import Unexplained, Verdict
@@ -21,7 +22,7 @@ from .selection import Search
 from .view import LEAST_SIZE
 from .words import NO_COORDINATE
 
-__all__ = ["left_beside", "relatives", "unnamed", "verdict_of"]
+__all__ = ["left_beside", "outweighed", "relatives", "unnamed", "verdict_of"]
 
 WORTH_SHARE: Final = 0.25
 """What is left counts against the names where it is worth this share of what they gained."""
@@ -34,6 +35,10 @@ noise failed to explain a third of it at most."""
 LEAST_EXCESS: Final = -3.0
 """Where noise alone would leave four times the power that is left, nothing of it is unexplained:
 the replays have lost the machine, as where a dry contact sticks and slips at random."""
+OUTWEIGHED: Final = 0.5
+"""What is left without a name counts against one name where it is worth this share of what that one
+took: right names came to 0.4 but for one, and what was named of a contact whose law has another
+form to 0.6 and more."""
 WINDOW_S: Final = 0.2
 """Length of the windows in which single moments are looked for."""
 FEW_WINDOWS: Final = 0.35
@@ -154,6 +159,21 @@ def _outweighs(selection: Search, left: Sequence[Unexplained]) -> bool:
     if not left:
         return False
     return max(each.share for each in left) * left_beside(selection) > WORTH_SHARE
+
+
+def outweighed(selection: Search, left: Sequence[Unexplained]) -> list[bool]:
+    """Which names took little beside what is left and has none.
+
+    All names together may outweigh that by far: the first one takes most, and later ones follow
+    what the law or the first one leaves. Recordings and moments that stand out tell nothing of
+    what acts in all others.
+    """
+    places = {each.coordinate: each.share for each in left if each.coordinate != MOMENTS.name}
+    everywhere = [share for name, share in places.items() if not name.endswith(ALONE)]
+    powers = [float(model.blocks[1].sum()) for model in selection.models]
+    unnamed = max(everywhere, default=0.0) * powers[-1]
+    steps = pairwise(powers)
+    return [unnamed > OUTWEIGHED * max(before - after, 0.0) for before, after in steps]
 
 
 def left_beside(selection: Search) -> float:
