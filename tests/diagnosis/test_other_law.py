@@ -32,25 +32,29 @@ def test_only_what_the_law_lacks_is_named_of_a_machine_with_another_law() -> Non
     found = st.diagnose(plant, as_session(made))
     assert [cause.name for cause in found.effects if cause.decided] == ["reverse_point_memory"]
     assert found.verdict in ("ambiguous", "unexplained")
-    assert all(f"perhaps {c.name}" in found.sentence for c in found.effects if not c.decided)
+    reasons = {row.name: row.reason for row in found.candidates}
+    for cause in found.effects[1:]:
+        assert f"perhaps {cause.name}" in found.sentence
+        assert "left without a name" in reasons[cause.name]
 
 
 @pytest.mark.parametrize(
     ("coordinate", "share", "little"),
     [
         # The first took 80 of 100, the second 8, and 12 are left.
-        (NO_COORDINATE, 0.9, [False, True]),
-        ("effort", 0.4, [False, True]),
-        ("effort", 0.2, [False, False]),
+        (NO_COORDINATE, 0.9, {"second"}),
+        ("effort", 0.4, {"second"}),
+        ("effort", 0.2, set()),
         # What stands out in some rows says nothing of the others.
-        (MOMENTS.name, 0.9, [False, False]),
-        ("third alone", 0.9, [False, False]),
+        (MOMENTS.name, 0.9, set()),
+        ("third alone", 0.9, set()),
     ],
 )
 def test_a_name_that_took_less_than_twice_what_is_left_is_not_decided(
-    coordinate: str, share: float, little: list[bool]
+    coordinate: str, share: float, little: set[str]
 ) -> None:
     models = [SimpleNamespace(blocks=(None, np.full(4, p))) for p in (25.0, 5.0, 3.0)]
-    selection: Any = SimpleNamespace(models=models)
+    names = [SimpleNamespace(winner=SimpleNamespace(name=each)) for each in ("first", "second")]
+    selection: Any = SimpleNamespace(models=models, choices=names)
     assert verdict.outweighed(selection, [Unexplained(coordinate, share)]) == little
-    assert verdict.outweighed(selection, []) == [False, False]
+    assert verdict.outweighed(selection, []) == set()

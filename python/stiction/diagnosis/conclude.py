@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
@@ -243,6 +243,7 @@ class Conclusion:
         unseen: Sequence[str] = ()
         verdict: Verdict
         unexplained: tuple[Unexplained, ...] = ()
+        little: Set[str] = frozenset()
         if self.brief:
             # What was not looked for any more is not claimed, and neither is that nothing is left.
             decided = all(cause.decided for cause in causes)
@@ -255,10 +256,7 @@ class Conclusion:
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
             causes = [doubted(cause, unexplained, of_names) for cause in causes]
             little = outweighed(selection, unexplained)
-            causes = [
-                replace(cause, decided=cause.decided and not less)
-                for cause, less in zip(causes, little, strict=True)
-            ]
+            causes = [replace(c, decided=c.decided and c.name not in little) for c in causes]
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
             if left and not unexplained:
@@ -292,7 +290,7 @@ class Conclusion:
             plant=extended.plant,
             effects=tuple(causes),
             gain=gain,
-            candidates=in_order(selection.rows.values(), selection.choices),
+            candidates=in_order(selection.rows.values(), selection.choices, little),
             laws=law_rows(
                 self.rivals,
                 len(self.decided.models),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import replace
 from typing import Final
 
@@ -16,8 +16,7 @@ __all__ = ["in_order", "screened", "stopped", "tried", "unscreened"]
 
 IMITATED: Final = 0.1
 """Share of a signature beside the base below which the base is what hides it."""
-
-
+OUTWEIGHED: Final = "what is left without a name is worth more than half of what it took"
 STOPPED: Final = "the diagnosis was interrupted"
 
 
@@ -66,12 +65,21 @@ def stopped(score: Score, trials: Sequence[Trial]) -> CandidateRow:
     return row if trial.reason else replace(row, reason=f"passes, and not decided: {STOPPED}")
 
 
-def in_order(rows: Iterable[CandidateRow], choices: Sequence[Choice]) -> tuple[CandidateRow, ...]:
-    """Every effect: accepted ones in their order, then by score."""
+def in_order(
+    rows: Iterable[CandidateRow], choices: Sequence[Choice], outweighed: Set[str] = frozenset()
+) -> tuple[CandidateRow, ...]:
+    """Every effect: accepted ones in their order, then by score.
+
+    Of those that are ``outweighed`` by what is left without a name their rows tell it.
+    """
     accepted: Mapping[str, int] = {c.winner.name: k for k, c in enumerate(choices)}
+    told = (
+        replace(row, reason=f"{row.reason}, but {OUTWEIGHED}") if row.name in outweighed else row
+        for row in rows
+    )
     return tuple(
         sorted(
-            rows,
+            told,
             key=lambda row: (
                 accepted.get(row.name, len(accepted)),
                 -(row.score if row.score is not None else -1.0),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Set
 from itertools import pairwise
 from typing import Final
 
@@ -161,7 +161,7 @@ def _outweighs(selection: Search, left: Sequence[Unexplained]) -> bool:
     return max(each.share for each in left) * left_beside(selection) > WORTH_SHARE
 
 
-def outweighed(selection: Search, left: Sequence[Unexplained]) -> list[bool]:
+def outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
     """Which names took little beside what is left and has none.
 
     All names together may outweigh that by far: the first one takes most, and later ones follow
@@ -172,8 +172,12 @@ def outweighed(selection: Search, left: Sequence[Unexplained]) -> list[bool]:
     everywhere = [share for name, share in places.items() if not name.endswith(ALONE)]
     powers = [float(model.blocks[1].sum()) for model in selection.models]
     unnamed = max(everywhere, default=0.0) * powers[-1]
-    steps = pairwise(powers)
-    return [unnamed > OUTWEIGHED * max(before - after, 0.0) for before, after in steps]
+    names = (choice.winner.name for choice in selection.choices)
+    return {
+        name
+        for name, (before, after) in zip(names, pairwise(powers), strict=True)
+        if unnamed > OUTWEIGHED * max(before - after, 0.0)
+    }
 
 
 def left_beside(selection: Search) -> float:
