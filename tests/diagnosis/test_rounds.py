@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +16,7 @@ from stiction.diagnosis.decide import Trial
 from stiction.diagnosis.exact_forms import doubted
 from stiction.diagnosis.result import CandidateRow, Cause, Unexplained
 from stiction.diagnosis.selection import Search
+from stiction.diagnosis.trials import stands_out
 
 BLOCKS = np.ones(30), np.ones(30)
 
@@ -304,29 +305,27 @@ def test_what_explains_many_times_what_others_do_is_refitted_though_it_does_harm
 
 
 @pytest.mark.parametrize(
-    ("times", "family", "late", "named", "asked"),
+    ("times", "family", "late", "loop", "named", "passes"),
     [
-        (1.1, "creep", False, False, True),
-        (1.1, "creep", False, True, False),
-        (2.5, "creep", False, True, True),
-        # What may be the rest of a wave, and what its slope at no delay tells too little of.
-        (1.1, "waves", False, True, True),
-        (1.1, "lag", True, True, True),
+        (1.1, "creep", False, False, False, True),
+        (1.1, "creep", False, False, True, False),
+        (2.5, "creep", False, False, True, True),
+        # What may be the rest of a wave, and of what a slope tells too little.
+        (1.1, "waves", False, False, True, True),
+        (1.1, "lag", True, False, True, True),
+        (1.1, "goal", False, True, True, True),
+        (1.1, "goal", False, False, True, False),
     ],
 )
 def test_beside_a_name_a_further_one_has_to_stand_out(
-    times: float, family: str, late: bool, named: bool, asked: bool
+    times: float, family: str, late: bool, loop: bool, named: bool, passes: bool
 ) -> None:
-    def of(family: str, late: bool) -> Any:
-        return SimpleNamespace(record=SimpleNamespace(family=family, late=late))
-
-    found = Search([cast("Any", None)])
-    if named:
-        found.choices.append(
-            cast("Any", SimpleNamespace(winner=SimpleNamespace(candidate=of("waves", False))))
-        )
-    score: Any = SimpleNamespace(score=times * 0.01, threshold=0.01, candidate=of(family, late))
-    assert rounds._stands_out(score, found) == asked
+    record = SimpleNamespace(family=family, late=late, before_drive=family == "goal")
+    score: Any = SimpleNamespace(
+        score=times * 0.01, threshold=0.01, candidate=SimpleNamespace(record=record)
+    )
+    evidence: Any = SimpleNamespace(loop=loop)
+    assert stands_out(evidence, score, {"waves"} if named else set()) == passes
 
 
 @pytest.mark.parametrize(("explained", "refused"), [(0.03, True), (0.1, False)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 from stiction.diagnosis.gain import Gain
-from stiction.diagnosis.result import CandidateRow
+from stiction.diagnosis.result import CandidateRow, Unexplained
 from stiction.diagnosis.words import joined, sentence, unseen_words
 
 
@@ -48,6 +48,14 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
     assert "lacks one of warm_up (a fall), stribeck (" in sentence(
         "ambiguous", (unsure,), None, (), ""
     )
+    alone = SimpleNamespace(
+        name="run_in", decided=False, look_alikes=(), what="a change", gain=None
+    )
+    taken = sentence(
+        "ambiguous", (sure, alone), None, (Unexplained("effort", 0.4),), "", outweighed={"run_in"}
+    )
+    assert "perhaps run_in" in taken
+    assert "still depends on effort (40 %). It is worth more than half of what run_in" in taken
     worse = sentence("missing_effect", (sure,), Gain(-0.1, (-0.2, 0.1)), (), "")
     assert worse.startswith("By the rows that decide, and by no others, the simulation lacks")
     assert "Adding it makes the held-out rows worse." in worse

@@ -279,7 +279,13 @@ class Conclusion:
             sentence=_opening(self.interrupted, bool(causes))
             + ("" if better is None else f"{better.words(own_law, bool(causes))} ")
             + sentence(
-                verdict, causes, gain, unexplained, reason, slight=_slight(selection, self.rests[1])
+                verdict,
+                causes,
+                gain,
+                unexplained,
+                reason,
+                slight=_slight(selection, self.rests[1]),
+                outweighed=little,
             )
             + no_machine(
                 max(left, lost_on_test(test, len(causes), null)),

@@ -12,7 +12,7 @@ from .decide import Trial
 from .result import CandidateRow
 from .screen import Score
 
-__all__ = ["in_order", "screened", "stopped", "tried", "unscreened"]
+__all__ = ["OUTWEIGHED", "in_order", "screened", "stopped", "tried", "unscreened"]
 
 IMITATED: Final = 0.1
 """Share of a signature beside the base below which the base is what hides it."""

@@ -69,7 +69,8 @@ class Cause(_Gained):
     name, family : str
         Effect, and the class that it belongs to (``class`` in findings.json).
     decided : bool
-        Whether the data tell it from its look-alikes.
+        Whether the data tell it from its look-alikes, and what is left without a name is worth less
+        than half of what it took.
     look_alikes : tuple of str
         Effects that explain the same about as well.
     parameters : Mapping of str to FitParameter

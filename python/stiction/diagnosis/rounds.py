@@ -26,7 +26,15 @@ from .screen import Score, Signatures
 from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
 from .together import pass_together, passes_beside
-from .trials import Screening, compared_fit, promises, unstuck, whole_fit
+from .trials import (
+    BESIDE_NAMES,
+    Screening,
+    compared_fit,
+    promises,
+    stands_out,
+    unstuck,
+    whole_fit,
+)
 
 __all__ = ["MOST_EFFECTS", "friction_of", "search"]
 
@@ -39,9 +47,6 @@ SLIGHT: Final = 0.1
 LESSER: Final = 0.7
 """What explains another part of the residual than one that passed, and less than this share of what
 that explains, has its turn in the next round: there it is screened beside that."""
-BESIDE_NAMES: Final = 2.0
-"""So many times what noise reaches a further cause explains: second ones that were hidden came to
-2.2 and more, what followed the rest of a first one's form to 1.1, 2.1 and 3.2."""
 OUTSTANDING: Final = 3.0
 """A candidate that explains this many times what any other does is refitted whatever it does held
 out."""
@@ -215,7 +220,7 @@ def _refitted(
     choice = (
         choose(trials, screening.encompasses)
         or passes_beside(screening, trials)
-        or pass_together(screening, found.models[-1], trials)
+        or pass_together(screening, found.models[-1], trials, found.families)
     )
     doubtless = [t for t in trials if t.doubtless and choice is None]
     found.unseen = [t.name for t in sorted(doubtless, key=lambda t: -t.worth)]
@@ -233,28 +238,13 @@ def _trial(screening: Screening, found: Search, score: Score) -> Trial:
     """A candidate refitted beside what was found; refused where that may have left it."""
     trial = screening.trial(found.models[-1], score)
     trial = beside_a_second(screening, found.models[-1], trial)
-    if trial.reason or _stands_out(score, found):
+    if trial.reason or stands_out(screening.evidence, score, found.families):
         return trial
     reason = (
-        f"explains {100 * score.score:.1f} % beside names, whose forms may leave up to "
-        f"{100 * BESIDE_NAMES * score.threshold:.1f} %"
+        f"scores {100 * score.score:.1f} % of what the causes before it leave; below "
+        f"{100 * BESIDE_NAMES * score.threshold:.1f} % their forms may leave that"
     )
     return replace(trial, reason=reason)
-
-
-def _stands_out(score: Score, found: Search) -> bool:
-    """Whether a candidate beside names explains more than the form of these may leave.
-
-    What noise reaches is known for a model that is right. The form of an effect is its author's: a
-    machine's own leaves a rest of it, which something else follows a little. Relatives pass all the
-    same: what one of several waves leaves speaks against it. Of what is late the slope at no delay
-    tells too little.
-    """
-    families = {choice.winner.candidate.record.family for choice in found.choices}
-    record = score.candidate.record
-    if not families or record.family in families or record.late:
-        return True
-    return score.score > BESIDE_NAMES * score.threshold
 
 
 def _outstanding(scores: Sequence[Score]) -> Score | None:

@@ -46,6 +46,11 @@ class Search:
     interrupted: bool = False
     lesser: list[tuple[Model, str, Model]] = field(default_factory=list)
 
+    @property
+    def families(self) -> set[str]:
+        """Families of the causes that are named."""
+        return {choice.winner.candidate.record.family for choice in self.choices}
+
     def without_last(self, reason: str) -> Search:
         """The same without the last cause, which is refused for this reason."""
         name = self.choices[-1].winner.name

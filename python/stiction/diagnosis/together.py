@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import replace
 from typing import Final
 
 from .choose import Choice, choose, strangers
 from .decide import Trial
 from .model import Model, without_effect
-from .trials import Screening, promises, whole_fit
+from .trials import Screening, promises, stands_out, whole_fit
 
 __all__ = ["pass_together", "passes_beside"]
 
@@ -35,36 +35,44 @@ def passes_beside(screening: Screening, trials: Sequence[Trial]) -> Choice | Non
         return None
     model = choice.winner.model
     score = next(each for each in screening.scores(model) if each.candidate.name == other.name)
-    if not promises(score) or screening.trial(model, score).reason:
+    families = {choice.winner.candidate.record.family}
+    if not promises(score) or not stands_out(screening.evidence, score, families):
+        return None
+    if screening.trial(model, score).reason:
         return None
     _logger.info("%s passes beside %s", other.name, choice.winner.name)
     return choice
 
 
-def pass_together(screening: Screening, base: Model, trials: Sequence[Trial]) -> Choice | None:
+def pass_together(
+    screening: Screening, base: Model, trials: Sequence[Trial], families: Set[str] = frozenset()
+) -> Choice | None:
     """The best of what is refused for how uneven it is, where it passes beside another.
 
     Over blocks or by kind of recording: each of two causes is left in the residual that judges the
     other one. If the second passes beside the first, and the first beside the second, both are
-    causes.
+    causes. ``families`` are those of causes that are named already.
     """
+    evidence = screening.evidence
     refused = [trial for trial in trials if trial.by_blocks or trial.is_uneven]
     seen = [trial for trial in refused if not trial.unseen]
     first = max(seen, key=lambda t: t.worth, default=None)
     if first is None or any(trial.worth > first.worth for trial in trials):
         return None
+    if not stands_out(evidence, first.score, families):
+        return None
+    own = {first.candidate.record.family}
     others = [
         score
         for score in screening.scores(first.model)
         if score.candidate.name != first.name and promises(score)
+        if stands_out(evidence, score, families | own)
     ]
     for score in others[:FEW]:
         second = screening.trial(first.model, score)
         if second.reason:
             continue
-        alone = whole_fit(
-            screening.evidence, without_effect(second.model.plant, first.name), base.nuisances
-        )
+        alone = whole_fit(evidence, without_effect(second.model.plant, first.name), base.nuisances)
         again = next(s for s in screening.scores(alone) if s.candidate.name == first.name)
         beside = screening.trial(alone, again) if promises(again) else None
         if beside is not None and not beside.reason:

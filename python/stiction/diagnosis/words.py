@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
@@ -120,8 +120,13 @@ def sentence(
     reason: str,
     *,
     slight: bool = False,
+    outweighed: Collection[str] = (),
 ) -> str:
-    """The verdict in words; ``slight`` where more is left than noise, and too little to count."""
+    """The verdict in words.
+
+    ``slight`` where more is left than noise, and too little to count; ``outweighed`` are names that
+    took less than twice what is left without one.
+    """
     if verdict in ("data_fault", "not_testable"):
         return reason
     named = _causes(effects)
@@ -156,7 +161,9 @@ def sentence(
         )
     # Most of what is left may be more than noise and yet little beside what was named.
     more = any(left.coordinate == NO_COORDINATE for left in unexplained)
-    left = f" What is left {_depends(unexplained)}." if more else ""
+    left = f" What is left {_depends(unexplained)}." if more or outweighed else ""
+    if outweighed:
+        left += f" It is worth more than half of what {joined(sorted(outweighed))} took."
     return f"{lacks} {named}.{gained}{_unconfirmed(effects)}{left}"
 
 

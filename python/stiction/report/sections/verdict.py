@@ -30,6 +30,7 @@ UNCONFIRMED: Final = "Something is missing, and what was named does not help on 
 LAW: Final = "The friction law of the simulation lacks something"
 LAW_AND_EFFECTS: Final = f"{LAW}, and effects beside it may only stand for that"
 """Where another law explains more than what was named the sentence begins with the law as well."""
+UNSURE: Final = "Something is missing, and not every name for it is sure"
 SEVERAL: Final = "The simulation lacks effects that are known by name"
 
 
@@ -63,6 +64,9 @@ def _title(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unexplained" and diagnosis.effects:
         several = len(diagnosis.effects) > 1
         return NAMED_IN_PART.format("known effects" if several else "a known effect")
+    open_ = any(effect.look_alikes for effect in diagnosis.effects)
+    if diagnosis.verdict == "ambiguous" and not open_:
+        return UNSURE
     if diagnosis.verdict == "missing_effect" and len(diagnosis.effects) > 1:
         return SEVERAL
     return TITLES[diagnosis.verdict]
