@@ -320,7 +320,7 @@ def test_what_explains_many_times_what_others_do_is_refitted_though_it_does_harm
 def test_beside_a_name_a_further_one_has_to_stand_out(
     times: float, family: str, late: bool, loop: bool, named: bool, passes: bool
 ) -> None:
-    record = SimpleNamespace(family=family, late=late, before_drive=family == "goal")
+    record = SimpleNamespace(family=family, late=late)
     score: Any = SimpleNamespace(
         score=times * 0.01, threshold=0.01, candidate=SimpleNamespace(record=record)
     )

@@ -81,13 +81,11 @@ def stands_out(evidence: Evidence, score: Score, families: Set[str]) -> bool:
 
     What noise reaches is known for a model that is right. The form of an effect is its author's: a
     machine's own leaves a rest of it, which something else follows a little. Relatives pass all the
-    same: what one of several waves leaves speaks against it. Of what is late, and of what stands
-    before the drive of a simulated loop, a slope tells too little.
+    same: what one of several waves leaves speaks against it. Of what is late a slope tells too
+    little, and so it does of all causes where a loop is simulated, which bends itself far.
     """
     record = score.candidate.record
-    if not families or record.family in families or record.late:
-        return True
-    if evidence.loop and record.before_drive:
+    if not families or record.family in families or record.late or evidence.loop:
         return True
     return score.score > BESIDE_NAMES * score.threshold
 
