@@ -30,7 +30,8 @@ ALIKE: Final = 0.5
 THE_SAME: Final = 1e-5
 """Two fits and contributions that differ by less than this share are one: fits end that near."""
 UNEVEN_IN_FAMILY: Final = 0.12
-"""The same, from which on a member of a family stands for the family alone."""
+"""What strengths of their own by kind of recording may add to the gain of a member of a family:
+with more it stands for the family alone."""
 
 Encompasses = Callable[[Trial, Trial], bool]
 
