@@ -17,11 +17,21 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
     assert little.startswith("Nothing that counts is missing: some of what is left is more than")
     assert sentence("not_testable", (), None, (), "too short") == "too short"
     sure = SimpleNamespace(
-        name="cogging", decided=True, look_alikes=(), what="a pull: cosine 1", gain=None
+        name="cogging",
+        decided=True,
+        look_alikes=(),
+        what="a pull: cosine 1",
+        gain=None,
+        outweighed=False,
     )
     alike = ("stribeck", "torque_bias")
     unsure = SimpleNamespace(
-        name="warm_up", decided=False, look_alikes=alike[:1], what="a fall", gain=None
+        name="warm_up",
+        decided=False,
+        look_alikes=alike[:1],
+        what="a fall",
+        gain=None,
+        outweighed=False,
     )
     fall = "friction falls from a level at rest to a lower one as speed rises"
     assert sentence("ambiguous", (sure, unsure), None, (), "").startswith(
@@ -29,7 +39,12 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
         "which these data cannot tell apart. Adding them removes"
     )
     other = SimpleNamespace(
-        name="stribeck", decided=False, look_alikes=("warm_up",), what="a bump", gain=None
+        name="stribeck",
+        decided=False,
+        look_alikes=("warm_up",),
+        what="a bump",
+        gain=None,
+        outweighed=False,
     )
     assert sentence("ambiguous", (unsure, sure, other), None, (), "").startswith(
         "The simulation lacks cogging (a pull) and warm_up (a fall) and stribeck (a bump), which "
@@ -37,7 +52,9 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
     )
     # Two such groups are two causes, and one that may be a third as well stands by itself.
     pair = [
-        SimpleNamespace(name=name, decided=False, look_alikes=alike, what=name, gain=None)
+        SimpleNamespace(
+            name=name, decided=False, look_alikes=alike, what=name, gain=None, outweighed=False
+        )
         for name, alike in (("run_in", ("backlash",)), ("backlash", ("run_in",)))
     ]
     both = sentence("ambiguous", (unsure, other, *pair), None, (), "")
@@ -49,13 +66,11 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
         "ambiguous", (unsure,), None, (), ""
     )
     alone = SimpleNamespace(
-        name="run_in", decided=False, look_alikes=(), what="a change", gain=None
+        name="run_in", decided=False, look_alikes=(), what="a change", gain=None, outweighed=True
     )
-    taken = sentence(
-        "ambiguous", (sure, alone), None, (Unexplained("effort", 0.4),), "", outweighed={"run_in"}
-    )
+    taken = sentence("ambiguous", (sure, alone), None, (Unexplained("effort", 0.4),), "")
     assert "perhaps run_in" in taken
-    assert "still depends on effort (40 %). It is worth more than half of what run_in" in taken
+    assert "still depends on effort (40 %). What has no name there is worth more than" in taken
     worse = sentence("missing_effect", (sure,), Gain(-0.1, (-0.2, 0.1)), (), "")
     assert worse.startswith("By the rows that decide, and by no others, the simulation lacks")
     assert "Adding it makes the held-out rows worse." in worse

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence, Set
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
@@ -243,7 +243,6 @@ class Conclusion:
         unseen: Sequence[str] = ()
         verdict: Verdict
         unexplained: tuple[Unexplained, ...] = ()
-        little: Set[str] = frozenset()
         if self.brief:
             # What was not looked for any more is not claimed, and neither is that nothing is left.
             decided = all(cause.decided for cause in causes)
@@ -256,7 +255,10 @@ class Conclusion:
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
             causes = [doubted(cause, unexplained, of_names) for cause in causes]
             little = outweighed(selection, unexplained)
-            causes = [replace(c, decided=c.decided and c.name not in little) for c in causes]
+            causes = [
+                replace(cause, decided=False, outweighed=True) if cause.name in little else cause
+                for cause in causes
+            ]
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
             if left and not unexplained:
@@ -279,13 +281,7 @@ class Conclusion:
             sentence=_opening(self.interrupted, bool(causes))
             + ("" if better is None else f"{better.words(own_law, bool(causes))} ")
             + sentence(
-                verdict,
-                causes,
-                gain,
-                unexplained,
-                reason,
-                slight=_slight(selection, self.rests[1]),
-                outweighed=little,
+                verdict, causes, gain, unexplained, reason, slight=_slight(selection, self.rests[1])
             )
             + no_machine(
                 max(left, lost_on_test(test, len(causes), null)),
@@ -296,7 +292,7 @@ class Conclusion:
             plant=extended.plant,
             effects=tuple(causes),
             gain=gain,
-            candidates=in_order(selection.rows.values(), selection.choices, little),
+            candidates=in_order(selection.rows.values(), causes),
             laws=law_rows(
                 self.rivals,
                 len(self.decided.models),

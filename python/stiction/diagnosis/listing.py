@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
 from .candidates import Candidate
 from .choose import Choice
 from .decide import Trial
-from .result import CandidateRow
+from .result import CandidateRow, Cause
 from .screen import Score
 
-__all__ = ["OUTWEIGHED", "in_order", "screened", "stopped", "tried", "unscreened"]
+__all__ = ["in_order", "screened", "stopped", "tried", "unscreened"]
 
 IMITATED: Final = 0.1
 """Share of a signature beside the base below which the base is what hides it."""
@@ -65,14 +65,10 @@ def stopped(score: Score, trials: Sequence[Trial]) -> CandidateRow:
     return row if trial.reason else replace(row, reason=f"passes, and not decided: {STOPPED}")
 
 
-def in_order(
-    rows: Iterable[CandidateRow], choices: Sequence[Choice], outweighed: Set[str] = frozenset()
-) -> tuple[CandidateRow, ...]:
-    """Every effect: accepted ones in their order, then by score.
-
-    Of those that are ``outweighed`` by what is left without a name their rows tell it.
-    """
-    accepted: Mapping[str, int] = {c.winner.name: k for k, c in enumerate(choices)}
+def in_order(rows: Iterable[CandidateRow], causes: Sequence[Cause]) -> tuple[CandidateRow, ...]:
+    """Every effect: causes in their order, with what outweighs them, then the others by score."""
+    accepted: Mapping[str, int] = {cause.name: k for k, cause in enumerate(causes)}
+    outweighed = {cause.name for cause in causes if cause.outweighed}
     told = (
         replace(row, reason=f"{row.reason}, but {OUTWEIGHED}") if row.name in outweighed else row
         for row in rows

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
@@ -120,13 +120,8 @@ def sentence(
     reason: str,
     *,
     slight: bool = False,
-    outweighed: Collection[str] = (),
 ) -> str:
-    """The verdict in words.
-
-    ``slight`` where more is left than noise, and too little to count; ``outweighed`` are names that
-    took less than twice what is left without one.
-    """
+    """The verdict in words; ``slight`` where more is left than noise, and too little to count."""
     if verdict in ("data_fault", "not_testable"):
         return reason
     named = _causes(effects)
@@ -161,9 +156,11 @@ def sentence(
         )
     # Most of what is left may be more than noise and yet little beside what was named.
     more = any(left.coordinate == NO_COORDINATE for left in unexplained)
+    outweighed = [cause.name for cause in effects if cause.outweighed]
     left = f" What is left {_depends(unexplained)}." if more or outweighed else ""
     if outweighed:
-        left += f" It is worth more than half of what {joined(sorted(outweighed))} took."
+        took = joined(outweighed)
+        left += f" What has no name there is worth more than half of what {took} took."
     return f"{lacks} {named}.{gained}{_unconfirmed(effects)}{left}"
 
 

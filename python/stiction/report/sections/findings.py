@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ...catalogue import EffectRecord, effects
 from ...diagnosis.directions import found
-from ...diagnosis.listing import OUTWEIGHED
 from ...diagnosis.orders import order_words
 from ...diagnosis.words import joined
 from ..drawings import cause_name
@@ -85,10 +84,7 @@ def _cause(cause: Cause, record: EffectRecord | None, diagnosis: Diagnosis) -> d
         "name": cause.name,
         "title": plain(cause.name),
         "decided": cause.decided,
-        "outweighed": any(
-            row.name == cause.name and row.reason.endswith(OUTWEIGHED)
-            for row in diagnosis.candidates
-        ),
+        "outweighed": cause.outweighed,
         "doubtful": cause.doubtful,
         "look_alikes": [plain(name) for name in cause.look_alikes],
         "what": f"{summary}{_how_often(effect, plant, cause)}",

@@ -64,8 +64,8 @@ def _title(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unexplained" and diagnosis.effects:
         several = len(diagnosis.effects) > 1
         return NAMED_IN_PART.format("known effects" if several else "a known effect")
-    open_ = any(effect.look_alikes for effect in diagnosis.effects)
-    if diagnosis.verdict == "ambiguous" and not open_:
+    alike = any(effect.look_alikes for effect in diagnosis.effects)
+    if diagnosis.verdict == "ambiguous" and not alike:
         return UNSURE
     if diagnosis.verdict == "missing_effect" and len(diagnosis.effects) > 1:
         return SEVERAL
