@@ -120,7 +120,13 @@ class Screening:
         """A candidate refitted together with a model, and judged."""
         _logger.info("refitting with %s", score.candidate.name)
         model = _refit(self.evidence, base, self.signatures, score)
-        return self.judged(base, score, model, self.contributed(score, model))
+        explained = self.contributed(score, model)
+        trial = self.judged(base, score, model, explained)
+        if trial.freed and score.candidate.free:
+            there = self._where_it_came_to(base, score, model)
+            if there.score > score.score:
+                return self.judged(base, there, model, explained)
+        return trial
 
     def judged(self, base: Model, score: Score, model: Model, explained: FloatArray) -> Trial:
         """A model with a candidate, judged; ``explained`` is what that does, shape (n,)."""
@@ -133,6 +139,21 @@ class Screening:
             or told_by_noise(base, model, trial.gain)
         )
         return replace(trial, reason=reason)
+
+    def _where_it_came_to(self, base: Model, score: Score, model: Model) -> Score:
+        """The score with what the signature explains at the shape that a refit came to.
+
+        A grid ends somewhere, and between its points a refit finds what its signatures only hint
+        at: that is the effect's own gain, and no base was freed.
+        """
+        candidate = score.candidate
+        effect = next(each for each in model.plant.effects if each.name == candidate.name)
+        shape = {name: effect.parameters[candidate.own(name)].value for name in candidate.shape}
+        there = Signatures.of(
+            self.evidence, base.plant, base.nuisances, [replace(candidate, shape=shape)]
+        )
+        (found,) = self.with_signatures(there).scores(base)
+        return replace(score, score=found.score)
 
     def encompasses(self, one: Trial, other: Trial) -> bool:
         """Whether one candidate explains all that another does, and much that that does not.
