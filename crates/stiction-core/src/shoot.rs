@@ -9,6 +9,10 @@ use crate::track::Track;
 /// ω·h above which a sample of a window is divided: the phase error of the ring is then 0.4 % of the
 /// phase, and of a ring that fast the weights of a window keep nothing.
 const COARSE_PHASE: f64 = 0.3;
+/// Parts of a sample above which a window is refused: what swings a hundred times between two samples,
+/// or calms down in the five hundredth part of one, no reading can tell from what is rigid, and a trial
+/// of a fit that strays there would take minutes.
+const MOST_SHOT_PARTS: f64 = 2e3;
 
 /// Windows of equal length along a motion, evenly spaced, and what is read off each of them.
 #[derive(Debug, Clone, Copy)]
@@ -73,6 +77,7 @@ impl<S: Scalar> Running<S> {
             let track = Track::new(positions, actual, start);
             let mut shot = self.clone();
             shot.longest_phase = shot.longest_phase.max(COARSE_PHASE);
+            shot.most_parts = shot.most_parts.min(MOST_SHOT_PARTS);
             shot.run.position = track.position();
             shot.run.velocity = track.velocity(&dt);
             shot.run.second_position = shot.run.position;

@@ -12,11 +12,11 @@ use crate::integrate::{
 use crate::model::CHUNK;
 use crate::scalar::Scalar;
 
-fn whole_parts(parts: f64, dt: f64) -> Result<u32> {
-    if parts <= MOST_PARTS {
+fn whole_parts(parts: f64, most: f64, dt: f64) -> Result<u32> {
+    if parts <= most {
         return Ok(parts as u32);
     }
-    Err(Error::TooLong { given: dt, longest: dt * MOST_PARTS / parts })
+    Err(Error::TooLong { given: dt, longest: dt * most / parts })
 }
 
 /// A motor over some number type, with its running state.
@@ -36,6 +36,8 @@ pub struct Running<S: Scalar> {
     pub integrator: Integrator,
     /// ω·h above which it divides a sample.
     pub longest_phase: f64,
+    /// Parts of a sample above which it refuses to go on.
+    pub most_parts: f64,
 }
 
 impl<S: Scalar> Running<S> {
@@ -55,7 +57,16 @@ impl<S: Scalar> Running<S> {
         let any = delay.is_some() || slowness.is_some() || lag.is_some();
         let way = any.then(|| Way::new(delay, slowness, lag));
         let integrator = spec.integrator;
-        Self { machine, law, state, run, way, integrator, longest_phase: LONGEST_PHASE }
+        Self {
+            machine,
+            law,
+            state,
+            run,
+            way,
+            integrator,
+            longest_phase: LONGEST_PHASE,
+            most_parts: MOST_PARTS,
+        }
     }
 
     /// Goes on from where another motor is; its state depends on no parameter of this one.
@@ -73,7 +84,8 @@ impl<S: Scalar> Running<S> {
     #[inline]
     pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<()> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
-            let parts = whole_parts(parts(&self.machine, law, dt, self.longest_phase), dt)?;
+            let parts = parts(&self.machine, law, dt, self.longest_phase);
+            let parts = whole_parts(parts, self.most_parts, dt)?;
             state.make_room(parts as usize + CHUNK / 4);
             let before = self.run;
             let arrived = arriving(&mut self.way.as_mut(), input, dt);
@@ -155,8 +167,8 @@ impl<S: Scalar> Running<S> {
             while index < inputs.len() {
                 let dt_now = dt.at(index);
                 if dt_now != known {
-                    divided =
-                        whole_parts(parts(&self.machine, law, dt_now, self.longest_phase), dt_now)?;
+                    let parts = parts(&self.machine, law, dt_now, self.longest_phase);
+                    divided = whole_parts(parts, self.most_parts, dt_now)?;
                     known = dt_now;
                 }
                 self.run.temperature = around.temperature_at(index);
