@@ -10,7 +10,7 @@ import numpy as np
 from ._native import Motion
 from .errors import InputError
 from .motion import count_of
-from .recording.checks.signal import without_spikes
+from .recording.checks import without_failures, without_spikes
 from .trajectory import FloatArray, Trajectory
 from .weak_form import Start, WeakForm
 from .wording import NO_POSITION
@@ -177,6 +177,7 @@ def effort_residual(
     InputError
         No position, no input, or too short for the kernel.
     """
+    (recording,) = without_failures([recording])
     form = WeakForm(plant, recording, support=support)
     measured, model = form.efforts(plant)
     return EffortResidual(form.time, measured, model, form.kernel.support, form.effort_unit)
@@ -204,6 +205,7 @@ def free_run(plant: Plant, recording: Recording, start: Start = None) -> FreeRun
         No position or no input; a plant without inertia or of prescribed motion.
     """
     position, source = _needed(recording)
+    (recording,) = without_failures([recording])
     # A reading that failed for a sample is no motion that a simulation could miss.
     position = without_spikes(position)
     if recording.input is None:

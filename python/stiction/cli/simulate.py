@@ -12,7 +12,7 @@ from .. import closed_loop, residual, session
 from ..errors import InputError
 from ..plant import Plant
 from ..recording import Recording
-from ..recording.checks import check
+from ..recording.checks import check, impulse_checks
 from .answer import answer, folder, written
 
 __all__ = ["simulate"]
@@ -110,7 +110,8 @@ def _one(plant: Plant, recording: Recording, where: Path, support: float | None)
     stem = recording.path.stem if recording.path is not None else "recording"
     lines = [f"{stem}: {len(recording)} rows over {recording.duration:.6g} s"]
     lines += [f"  {note}" for note in recording.notes]
-    remarks = [check.what for check in check(recording) if check.verdict != "fine"]
+    checks = [*check(recording), *(own for _, own in impulse_checks([recording]))]
+    remarks = [each.what for each in checks if each.verdict != "fine"]
     lines += [f"  {remark}" for remark in remarks]
     result: dict[str, Any] = {
         "recording": stem,

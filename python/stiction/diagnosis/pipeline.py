@@ -14,7 +14,7 @@ from ..fitting.forms import told as residual_told
 from ..given import instance, whole
 from ..plant import Plant
 from ..recording import Check, Recording
-from ..recording.checks import DOUBTED
+from ..recording.checks import DOUBTED, without_failures
 from ..recording.names import names_of
 from ..recording.recording import recordings_of
 from ..recording.session_clock import remaining
@@ -170,15 +170,16 @@ def _repairs(session: Session) -> list[tuple[str, Check]]:
 def _usable(checks: Sequence[tuple[str, Check]], session: Session) -> tuple[Session | None, str]:
     """The recordings without a fault, None where too few are left, and in words what is wrong."""
     kept, told = usable(session.recordings, checks)
-    if kept is None or len(kept) == len(session):
-        return None if kept is None else session, told
+    recordings = without_failures(session.recordings)
+    if kept is None:
+        return None, told
     places = {k: j for j, k in enumerate(kept)}
     repeats = {
         places[k]: places[of]
         for k, of in session.replicates.items()
         if k in places and of in places
     }
-    return Session(remaining(session.recordings, kept), session.plant, repeats), told
+    return Session(remaining(recordings, kept), session.plant, repeats), told
 
 
 def _testable(

@@ -14,6 +14,7 @@ from ..given import instance, whole
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
+from ..recording.checks import without_failures
 from ..recording.names import names_of
 from ..recording.recording import recordings_of
 from ..recording.session_clock import remaining
@@ -183,6 +184,7 @@ def _without_faults(recordings: list[Recording]) -> tuple[list[Recording], list[
     Where too few are left, all of them: a fit says how well it does, whatever it is given.
     """
     kept, fault = usable(recordings, checks_of(recordings))
+    recordings = without_failures(recordings)
     if kept is None:
         return recordings, [fault.replace("cannot be used", "are fitted, though they have a fault")]
     return remaining(recordings, kept), [fault] if fault else []

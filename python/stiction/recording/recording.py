@@ -216,6 +216,20 @@ class Recording:
         object.__setattr__(again, "cold", True)
         return again
 
+    def with_input(self, values: FloatArray) -> Recording:
+        """The same recording with another input.
+
+        Parameters
+        ----------
+        values : numpy.ndarray, shape (rows,)
+            In the unit of the input; copied.
+        """
+        again = copy(self)
+        given = values.copy()
+        given.flags.writeable = False
+        object.__setattr__(again, "input", given)
+        return again
+
     def _fill(
         self,
         values: Mapping[str, FloatArray],

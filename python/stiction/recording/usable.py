@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .checks import Check, check, starts
+from .checks import Check, check, impulse_checks, starts
 from .names import names_of
 from .recording import Recording
 
@@ -15,7 +15,7 @@ def checks_of(recordings: Sequence[Recording]) -> list[tuple[str, Check]]:
     """What was found in each recording, by its name."""
     named = zip(names_of(recordings), recordings, strict=True)
     own = [(name, c) for name, recording in named for c in check(recording)]
-    return own + starts(recordings)
+    return own + impulse_checks(recordings) + starts(recordings)
 
 
 def usable(

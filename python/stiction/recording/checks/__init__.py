@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..recording import Recording
 from . import clock, readings
 from .finding import Check, Verdict
+from .impulses import impulse_checks, without_failures
 from .noise import Stretches, noise, noise_levels
 from .signal import spike_rows, without_spikes
 from .starts import DOUBTED, starts
@@ -15,9 +16,11 @@ __all__ = [
     "Stretches",
     "Verdict",
     "check",
+    "impulse_checks",
     "noise_levels",
     "spike_rows",
     "starts",
+    "without_failures",
     "without_spikes",
 ]
 

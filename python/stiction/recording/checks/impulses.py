@@ -1,0 +1,261 @@
+"""Inputs that leave their neighbours for up to three samples: whether the machine got them.
+
+What a logger makes up the machine never got: taken at its word a fit is torn towards it, and a
+diagnosis finds a drive that holds large inputs back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ...motion import FEWEST_SAMPLES, SUPPORTS_S, Kernel, evenly, held
+from ...wording import counted
+from ..names import names_of
+from ..recording import Recording
+from ..units import FloatArray
+from .finding import Check
+from .signal import SPIKE_TIMES, IntArray, runs, without_spikes
+
+__all__ = ["Impulses", "impulse_checks", "impulses", "without_failures"]
+
+NAME: Final = "impulses of the input"
+LONGEST: Final = 3
+"""Samples that an impulse lasts at most: a telegram or three that were lost."""
+AROUND: Final = 2 * LONGEST + 1
+"""Samples whose median is what the input would be without it."""
+STEP_TIMES: Final = 5.0
+"""Both edges of an impulse are so many times the usual step about it."""
+BESIDE: Final = 0.1
+"""Share of the height of an impulse that belongs to it."""
+LEAST_SHARE: Final = 1e-3
+"""And this share of the range of the input."""
+GOALS: Final = ("rad", "m")
+"""Units of an input that is a place to go to, and no effort."""
+LATE_S: Final = (0.0, 0.004, 0.008, 0.016, 0.032)
+"""By so much an impulse may come late and still be one that the machine got."""
+MOVING: Final = 0.2
+"""Share of the rms speed above which friction does not hold an impulse back."""
+HALF: Final = 0.5
+"""Share of an impulse that a machine shows at least that got it."""
+SURE: Final = 4.0
+"""Standard errors by which it shows more or less than that."""
+
+
+@dataclass(frozen=True)
+class Impulses:
+    """Rows in which the input leaves its neighbours and comes back.
+
+    Attributes
+    ----------
+    rows : numpy.ndarray of int, shape (impulses,)
+    got : bool or None
+        Whether the machine got them; None where its motion does not tell.
+    """
+
+    rows: IntArray
+    got: bool | None
+
+
+def impulses(recordings: Sequence[Recording]) -> list[Impulses]:
+    """Rows of each input that stand apart, and whether the machine got them.
+
+    An input may go there and back within a sample where it is commanded to; a reading that failed
+    does so as well. A machine that got an impulse is faster by its area over the inertia after it.
+    While it moves
+
+        K''∗x = c·K∗u + c′·K∗d + friction,
+
+    u the input without impulses and d these alone: c′ is c where the machine got them and 0 where
+    it did not, whatever its inertia. Friction is taken to be that of sliding, Coulomb and viscous,
+    beside a part that goes with the position. Where the motion of one recording does not tell, that
+    of the others does, if they agree.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        Of one session. An input that is a goal has no impulses.
+
+    Returns
+    -------
+    list of Impulses
+        One for each recording.
+    """
+    found = [_impulses(recording) for recording in recordings]
+    told = {each.got for each in found if each.got is not None}
+    if len(told) != 1:
+        return found
+    (got,) = told
+    return [replace(each, got=got) if len(each.rows) else each for each in found]
+
+
+def without_failures(recordings: Sequence[Recording]) -> list[Recording]:
+    """The recordings, with what no machine got replaced by what the input was before and after."""
+    return [
+        recording.with_input(_without(recording.input, each.rows))
+        if each.got is False and recording.input is not None
+        else recording
+        for recording, each in zip(recordings, impulses(recordings), strict=True)
+    ]
+
+
+def impulse_checks(recordings: Sequence[Recording]) -> list[tuple[str, Check]]:
+    """What is told of inputs that stand apart for a few rows, by recording."""
+    found = []
+    for name, recording, each in zip(
+        names_of(recordings), recordings, impulses(recordings), strict=True
+    ):
+        if not len(each.rows) or recording.input is None:
+            continue
+        row = each.rows[0]
+        what = (
+            f"input leaves its neighbours and comes back within {LONGEST} samples, in "
+            f"{counted(len(each.rows), 'row')}, first at {recording.time[row]:.6g} s to "
+            f"{recording.input[row]:.4g}"
+        )
+        if each.got:
+            found.append((name, Check(NAME, "fine", f"{what}; the machine answers")))
+            continue
+        means = "whether the machine got that, its motion does not tell; it is taken to have"
+        if each.got is False:
+            means = (
+                "the machine does not answer, so a reading failed; fits and diagnoses take a "
+                "line between its neighbours"
+            )
+        remedy = "check how the input is logged"
+        found.append((name, Check(NAME, "note", what, means, remedy)))
+    return found
+
+
+def _impulses(recording: Recording) -> Impulses:
+    """Those of one recording, by its own motion."""
+    values = recording.input
+    none = np.zeros(0, dtype=np.int64)
+    goal = recording.units.get("input") in GOALS or "proportional" in recording.settings
+    if values is None or goal or not np.all(np.isfinite(values)):
+        return Impulses(none, None)
+    rows = _apart(values)
+    position = recording.position
+    if not len(rows) or position is None or not np.all(np.isfinite(position)):
+        return Impulses(rows, None)
+    return Impulses(rows, _got(recording, values, rows, position))
+
+
+def _apart(values: FloatArray) -> IntArray:
+    """Rows where values leave their neighbours for a few samples, as ``spike_rows`` for one."""
+    none = np.zeros(0, dtype=np.int64)
+    steps = np.diff(values)
+    bend = np.abs(np.diff(steps))
+    least = SPIKE_TIMES * _most(bend)
+    if len(values) < AROUND or float(np.max(bend)) <= least:
+        return none
+    span = float(np.ptp(np.quantile(values, (0.01, 0.99))))
+    least = max(least, LEAST_SHARE * span)
+
+    def jumps(first: int, last: int) -> bool:
+        edges = min(abs(steps[first - 1]), abs(steps[last - 1]))
+        about = np.abs(steps[max(first - 1 - AROUND, 0) : last + AROUND])
+        return bool(edges > max(least, STEP_TIMES * float(np.median(about))))
+
+    away = np.abs(values - np.median(_windows(values), axis=1))
+    # Beside an impulse the median is off by a little, and a corner is off its own, but nothing
+    # jumps there.
+    far = away > np.maximum(least, BESIDE * np.max(_windows(away), axis=1))
+    found = [
+        np.arange(first, last)
+        for first, last in runs(far)
+        if first > 0 and last < len(values) and jumps(first, last)
+    ]
+    return np.concatenate(found) if found else none
+
+
+def _windows(values: FloatArray) -> FloatArray:
+    """What lies about each value; shape (n, 7)."""
+    padded = np.pad(values, AROUND // 2, "edge")
+    return np.lib.stride_tricks.sliding_window_view(padded, AROUND)
+
+
+def _most(values: FloatArray) -> float:
+    """What four of five values stay below."""
+    place = (4 * len(values)) // 5
+    return float(np.partition(values, place)[place])
+
+
+def _without(values: FloatArray, rows: IntArray) -> FloatArray:
+    """Values with a line through these rows between what comes before and after them."""
+    kept = np.ones(len(values), dtype=np.bool_)
+    kept[rows] = False
+    places = np.arange(len(values))
+    return np.interp(places, places[kept], values[kept])
+
+
+def _got(
+    recording: Recording, values: FloatArray, rows: IntArray, position: FloatArray
+) -> bool | None:
+    """Whether the motion answers to these rows of the input; None where it does not tell."""
+    stamps, time, dt = evenly(recording.time)
+    support = max(SUPPORTS_S[0], FEWEST_SAMPLES * dt)
+    if len(time) * dt < 4.0 * support:
+        return None
+    kernel = Kernel(support, dt)
+    x = np.interp(time, stamps, without_spikes(position))
+    usual = held(time, stamps, _without(values, rows))
+    apart = held(time, stamps, values) - usual
+    speed = kernel.mean(np.gradient(x, dt)[1:])
+    moving = np.abs(speed) > MOVING * float(np.sqrt(np.mean(speed**2)))
+    columns = [np.ones_like(speed), np.sign(speed), speed, kernel.mean(x[1:])]
+    columns = [kernel.mean(_in_between(usual)), *columns]
+    acceleration = kernel.second_derivative(x[1:])
+    told = []
+    for late in LATE_S:
+        impulse = kernel.mean(_in_between(_late(apart, round(late / dt))))
+        told.append(_answer(acceleration, columns, impulse, moving, len(kernel.weights)))
+    if any(share - SURE * error > HALF for share, error in told):
+        return True
+    return False if all(share + SURE * error < HALF for share, error in told) else None
+
+
+def _answer(
+    acceleration: FloatArray,
+    others: list[FloatArray],
+    impulse: FloatArray,
+    moving: npt.NDArray[np.bool_],
+    together: int,
+) -> tuple[float, float]:
+    """Share of impulses that a motion shows, and its standard error; shapes (n,).
+
+    The first of ``others`` is the usual input; ``together`` rows share their noise.
+    """
+    unknown = (0.0, np.inf)
+    columns = np.column_stack([*others, impulse])[moving]
+    size = np.linalg.norm(columns, axis=0)
+    if len(columns) < together or np.any(size[[0, -1]] == 0.0):
+        return unknown
+    size = np.maximum(size, 1e-300)
+    found = np.linalg.lstsq(columns / size, acceleration[moving], rcond=None)[0] / size
+    by_input, by_impulse = float(found[0]), float(found[-1])
+    left = acceleration[moving] - columns @ found
+    even = np.sqrt(together * np.mean(left**2)) / size
+    if by_input <= SURE * even[0]:
+        return unknown
+    # One impulse, one piece of evidence: what rows under it leave adds up.
+    group = np.cumsum(np.diff((impulse != 0.0).astype(np.int8), prepend=0) == 1)[moving]
+    own = columns[:, -1]
+    error = float(np.linalg.norm(np.bincount(group, own * left))) / size[-1] ** 2
+    return by_impulse / by_input, max(error, even[-1]) / by_input
+
+
+def _late(values: FloatArray, samples: int) -> FloatArray:
+    """Values that come so many samples later."""
+    if samples == 0:
+        return values
+    return np.concatenate([np.zeros(samples), values[:-samples]])
+
+
+def _in_between(values: FloatArray) -> FloatArray:
+    """What held about each stamp but the first: half of it before, half after."""
+    return 0.5 * (values[:-1] + values[1:])
