@@ -6,9 +6,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from tests.blind.score import as_plant, as_session
+from tests.reference.session_reference import make_session
 
+import stiction as st
 from stiction.diagnosis.confirmed import confirmed
 from stiction.diagnosis.evidence import Plan
+from stiction.diagnosis.gains import gain_to_expect
 
 BLOCKS, ROWS = 40, 200
 FITTED = np.repeat(np.arange(BLOCKS) < 28, ROWS)
@@ -89,3 +93,26 @@ def test_few_blocks_are_enough_for_a_gain_that_was_known_beforehand(
 def test_rows_held_out_by_turns_confirm_nothing() -> None:
     cause = 3.0 * acting(*MANY, 33)
     assert not asked(cause, cause, folds=True)
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.0, 0.0), (0.1, 0.01 / 1.01), (1.0, 0.5)])
+def test_no_more_can_be_gained_than_what_a_cause_does_there(share: float, expected: float) -> None:
+    # White and of unit size, as the noise is, in every block.
+    cause = acting(*range(BLOCKS)) * np.where(FITTED, 1.0, share)
+    noise = np.random.default_rng(2).standard_normal(len(cause))
+    evidence = SimpleNamespace(plans=[Plan(FITTED, ~FITTED)], fitted=FITTED)
+    columns = np.ones((len(cause), 1))
+    base = SimpleNamespace(evidence=evidence, columns=columns, residual=cause + noise)
+    assert gain_to_expect(base, cause) == pytest.approx(expected, rel=0.1, abs=1e-3)
+
+
+def test_what_shows_where_it_was_fitted_alone_is_not_testable() -> None:
+    """A limit that the rows that decide hardly reach; creep that follows it a little was named."""
+    hidden = (("drive_saturation", 0.014685),)
+    made = make_session(10820020, hidden=hidden)
+    found = st.diagnose(as_plant(made), as_session(made))
+    assert found.verdict == "not_testable"
+    assert found.effects == ()
+    assert "drive_saturation" in found.sentence
+    reasons = {row.name: row.reason for row in found.candidates}
+    assert reasons["drive_saturation"].endswith("which hardly excite it")

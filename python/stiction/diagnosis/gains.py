@@ -11,9 +11,11 @@ from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .influence import limited
 from .model import Model
+from .regression import refitted
 
 __all__ = [
     "TOUCHED",
+    "gain_to_expect",
     "gained_again",
     "heldout_gain",
     "log_gain",
@@ -35,6 +37,19 @@ def gained_again(base: Model, model: Model) -> float:
     before, after = limited(base.blocks[0], model.blocks[0])
     total = float(before.sum())
     return 1.0 - float(after.sum()) / total if total > 0.0 else 0.0
+
+
+def gain_to_expect(base: Model, contributed: FloatArray) -> float:
+    """Share of the power held out that a contribution, shape (n,), can remove at most.
+
+    What it does there beyond what the base makes up for, over all that the base leaves.
+    """
+    held = np.zeros(len(contributed), dtype=bool)
+    for plan in base.evidence.plans:
+        held |= plan.held
+    own = refitted(base.columns, contributed, base.evidence.fitted)[held]
+    power = float(np.sum(base.residual[held] ** 2))
+    return float(own @ own) / power if power > 0.0 else 0.0
 
 
 def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tuple[float, float]:
