@@ -101,8 +101,8 @@ class Trial:
     partly : bool
         Its gain would have to be whole and is not: the curve that is found is another cause's.
     doubtless : bool
-        Refused because it acts in none of the blocks held out, or in one recording of them, while
-        what was fitted leaves no doubt of it.
+        Refused because blocks held out hardly excite it, in one recording alone, or gain too
+        unevenly, while what was fitted leaves no doubt of it.
     """
 
     score: Score
@@ -214,10 +214,9 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     uneven = unevenness(base, model, contributed) if open_ else 0.0
     partly = partly_lost(score.candidate, model, strength)
     beyond = partly or out_of_its_range(score.candidate, model)
-    # What many fitted blocks leave no doubt of, and what decides can say nothing about.
-    untold = (unseen and by_blocks) or lone
+    # What many fitted blocks leave no doubt of, and what decides cannot judge.
     doubtless = (
-        untold
+        (by_blocks or lone)
         and strength >= SURE
         and gain >= 0.0
         and not beyond

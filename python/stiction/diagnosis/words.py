@@ -175,7 +175,7 @@ def unseen_words(unseen: Sequence[str], rows: Mapping[str, CandidateRow]) -> str
     return (
         "These data cannot decide whether anything is missing: of what is left where the plant "
         f"was fitted {joined(told)}, and the recordings that decide hardly excite {them}, or in "
-        f"one of them alone: they neither bear {them} out nor refute {them}."
+        f"one of them alone, or gain too unevenly: they neither bear {them} out nor refute {them}."
     )
 
 
