@@ -8,6 +8,7 @@ from typing import Final
 from ..catalogue import EffectRecord, effects
 from ..plant import Plant
 from ..recording import Check
+from .by_recording import GAIN, INERTIA
 from .passing import MOMENTS
 from .remedies import recorded
 from .result import Advice, Cause, Unexplained
@@ -85,6 +86,13 @@ BY_COORDINATE: Final = {
 }
 """An experiment of `stiction plan`, and what matters in it, that shows more of what depends on a
 coordinate."""
+APART: Final = {
+    INERTIA.name: "say what was changed between the recordings: state payload_kg of each where "
+    "something else hung on the machine, or diagnose those before and after apart",
+    GAIN.name: "look for what scales the input in some recordings alone, as a supply, a setting of "
+    "the drive or of the logger, or diagnose those before and after apart",
+}
+"""What to do where each recording by itself is explained, and no plant explains all of them."""
 
 
 def advise(
@@ -130,6 +138,9 @@ def advise(
         reason = f"recordings that decide cannot judge {name}, which shows in those that train"
         add(record.plan, record.experiment, reason, (name,))
     for left in unexplained[:2]:
+        if left.coordinate in APART:
+            reason = f"what is left goes with the {left.coordinate}"
+            advice.setdefault(left.coordinate, Advice(APART[left.coordinate], reason, ()))
         if left.coordinate in BY_COORDINATE:
             reason = f"what is left depends on {left.coordinate}, and more of it shows how"
             add(*BY_COORDINATE[left.coordinate], reason)

@@ -105,6 +105,8 @@ class Coordinate:
         What depends on it may do so in a narrow place.
     tails : bool
         Few rows lie far out, and what depends on it may do so there.
+    descriptive : bool
+        It tells what is left by, and is no sign of itself that anything is.
     """
 
     name: str
@@ -119,6 +121,7 @@ class Coordinate:
     rows: str = ""
     fine: bool = False
     tails: bool = False
+    descriptive: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
         # A finding that is copied or sent elsewhere keeps what its figures say of the coordinate;

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
+from .by_recording import BY_RECORDING, by_recording_view
 from .coordinates import COORDINATES, Look
 from .evidence import Evidence
 from .passing import drift_view, moments_view, settled
@@ -34,13 +35,23 @@ class Rest:
 
         Of a coordinate and one that refines it only one: the finer where it shows much more.
         """
-        shown = {view.coordinate.name: view for view in self.views if view.flagged(least)}
+        shown = {
+            view.coordinate.name: view
+            for view in self.views
+            if view.flagged(least) and not view.coordinate.descriptive
+        }
         for fine in list(shown.values()):
             wide = shown.get(fine.coordinate.refines)
             if wide is not None:
                 lesser = wide if fine.share > MUCH_MORE * wide.share else fine
                 del shown[lesser.coordinate.name]
         return tuple(shown.values())
+
+    @property
+    def described(self) -> tuple[View, ...]:
+        """What it goes with where something is left, largest share first."""
+        views = (view for view in self.views if view.coordinate.descriptive)
+        return tuple(view for view in views if view.flagged())
 
 
 def rest(
@@ -93,10 +104,21 @@ def rest(
     sliding = stacked(evidence, [look.slides.sliding for look in seen])
     steady = stacked(evidence, [settled(look) for look in seen])
     cells, weights = evidence.cells, evidence.weights
+    apart = (
+        by_recording_view(
+            coordinate,
+            cells,
+            stacked(evidence, [coordinate.values(look) for look in seen]),
+            both,
+            weights,
+            friction,
+        )
+        for coordinate in BY_RECORDING
+    )
     with_time = (
         drift_view(cells, clock, velocity, sliding, both, weights, friction),
         moments_view(cells, clock, steady, both, weights, friction),
         frequency_view(cells, spacing, both, weights, friction),
     )
-    views += [view for view in with_time if view is not None]
+    views += [view for view in (*apart, *with_time) if view is not None]
     return Rest(tuple(sorted(views, key=lambda view: -view.share)))

@@ -99,7 +99,20 @@ def unnamed(
     # One recording stands first where it leaves most; beside a coordinate, in which the others
     # show the same, several of them only make a list longer.
     most = 1 if alone and (not told or alone[0].share > told[0].share) else 0
-    return (*alone[:most], *told, *alone[most:])
+    return _described(left, (*alone[:most], *told, *alone[most:]))
+
+
+def _described(left: Rest, told: tuple[Unexplained, ...]) -> tuple[Unexplained, ...]:
+    """What is told, behind what describes it better than any coordinate that it shows in."""
+    excess = max((each.share for each in told if each.coordinate == NO_COORDINATE), default=0.0)
+    places = [each.share for each in told if each.coordinate != NO_COORDINATE]
+    better = [v for v in left.described[:1] if v.share > max([WORTH_SHARE * excess, *places])]
+    if not told or not better:
+        return told
+    (view,) = better
+    if view.share > 0.5 * excess:
+        told = tuple(each for each in told if each.coordinate != NO_COORDINATE)
+    return (Unexplained(view.coordinate.name, view.share), *told)
 
 
 def verdict_of(selection: Search, left: Sequence[Unexplained], decided: bool) -> Verdict:

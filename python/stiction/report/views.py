@@ -25,6 +25,10 @@ HINTS: Final = {
     "order over position, times effort": "the drive's gain over position: magnets, commutation",
     "acceleration": "inertia, or a part that moves by itself",
     "response to the effort": "a delay, a filter of the drive, or a shaft that gives",
+    "acceleration, recording by recording": "an inertia that is not the same in all recordings: a "
+    "payload, a tool, a mounting",
+    "effort, recording by recording": "a drive whose gain is not the same in all recordings: warm "
+    "magnets, a supply, a scale of the log",
     "frequency": "the mains, a fan, a neighbouring machine",
     "single moments in time": "something nearby: another machine, a cable that catches, a person",
     "effort": "the drive: gain, saturation, dead zone",
@@ -48,6 +52,10 @@ MOVED: Final = {
     "rate of the effort": "effort and position that are not stamped alike",
     "order over position, times effort": "the calibration of the sensor of "
     "the effort over position",
+    "acceleration, recording by recording": "a mass between the specimen and the sensor of the "
+    "effort that is not the same in all recordings",
+    "effort, recording by recording": "a specimen or a calibration that is not the same in all "
+    "recordings",
 }
 """The same where a rig moves a specimen: there is no drive that could be the cause."""
 
