@@ -116,3 +116,13 @@ def test_what_shows_where_it_was_fitted_alone_is_not_testable() -> None:
     assert "drive_saturation" in found.sentence
     reasons = {row.name: row.reason for row in found.candidates}
     assert reasons["drive_saturation"].endswith("which hardly excite it")
+
+
+def test_it_is_told_beside_a_name_as_well() -> None:
+    """What resembles it beyond its own range was asked in its place, and refused for that."""
+    hidden = (("drive_saturation", 0.021924), ("frictional_lag", 0.014924))
+    made = make_session(10910000, base="coulomb", hidden=hidden)
+    found = st.diagnose(as_plant(made), as_session(made))
+    assert [cause.name for cause in found.effects] == ["frictional_lag"]
+    assert "drive_saturation (the drive holds large inputs back) would explain" in found.sentence
+    assert any("drive_saturation" in each.separates for each in found.advice)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 from stiction.diagnosis.gain import Gain
-from stiction.diagnosis.result import CandidateRow, Unexplained
+from stiction.diagnosis.result import Unexplained
 from stiction.diagnosis.words import joined, sentence, unseen_words
 
 
@@ -78,10 +78,10 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
 
 
 def test_what_cannot_be_judged_is_told_by_name() -> None:
-    rows = {
-        "stribeck": CandidateRow("stribeck", 0.25, 0.01, 0.0, "the rows held out hardly excite it")
-    }
-    said = unseen_words(["stribeck"], rows)
+    said = unseen_words({"stribeck": 0.25}, beside=False)
+    assert said.startswith("These data cannot decide")
     assert "stribeck (" in said
     assert "would explain 25 %" in said
+    assert unseen_words({"stribeck": 0.25}, beside=True).startswith(" Of what is left")
+    assert unseen_words({}, beside=True) == ""
     assert "neither bear it out nor refute it" in said

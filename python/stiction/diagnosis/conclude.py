@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
@@ -240,7 +240,8 @@ class Conclusion:
             gain = gain_of(test, 0, len(causes), found.seed)
         left = lost(evidence, final, null)
         event = None
-        unseen: Sequence[str] = ()
+        unseen: Mapping[str, float] = {}
+        beside = ""
         verdict: Verdict
         unexplained: tuple[Unexplained, ...] = ()
         if self.brief:
@@ -269,9 +270,10 @@ class Conclusion:
                 "seen."
             )
             event = None if causes else lone_event(evidence, final, test, 0)
-            if verdict == "nothing_missing" and event is None and selection.unseen:
-                unseen = selection.unseen
-                verdict, reason = "not_testable", unseen_words(unseen, selection.rows)
+            unseen = selection.unseen if event is None else {}
+            beside = unseen_words(unseen, verdict != "nothing_missing")
+            if unseen and verdict == "nothing_missing":
+                verdict, reason, beside = "not_testable", beside, ""
         if event is not None and better is None:
             followed = event_words(self.rivals, base, event) if event.fitted else ""
             verdict, reason, unexplained = "not_testable", event.words() + followed, ()
@@ -283,6 +285,7 @@ class Conclusion:
             + sentence(
                 verdict, causes, gain, unexplained, reason, slight=_slight(selection, self.rests[1])
             )
+            + beside
             + no_machine(
                 max(left, lost_on_test(test, len(causes), null)),
                 bool(causes),
@@ -312,7 +315,7 @@ class Conclusion:
                     selection.blind,
                     self.checks,
                     final.plant,
-                    unseen=unseen,
+                    unseen=tuple(unseen),
                 ),
             ),
             better_law="" if better is None else better.law,

@@ -183,7 +183,7 @@ def _round(
     trials: list[Trial] = []
     asked = [s for s in scores if _is_asked(screening, s) and s not in passing[:REFITTED]]
     try:
-        return *_refitted(screening, found, passing, asked, trials), trials
+        return *_refitted(screening, found, scores, passing, asked, trials), trials
     except KeyboardInterrupt:
         if not found.choices:
             # Nothing was decided among these; what the screening says of others holds.
@@ -195,6 +195,7 @@ def _round(
 def _refitted(
     screening: Screening,
     found: Search,
+    scores: Sequence[Score],
     passing: Sequence[Score],
     asked: Sequence[Score],
     trials: list[Trial],
@@ -212,6 +213,7 @@ def _refitted(
     if waiting and choose(trials) is None:
         # There will be no next round.
         trials += [_trial(screening, found, score) for score in waiting]
+    trials += [_trial(screening, found, score) for score in _imitated(scores, trials)]
     tried = {trial.name for trial in trials}
     for score in passing:
         if score.candidate.name not in tried:
@@ -223,7 +225,9 @@ def _refitted(
         or pass_together(screening, found.models[-1], trials, found.families)
     )
     doubtless = [t for t in trials if t.doubtless and choice is None]
-    found.unseen = [t.name for t in sorted(doubtless, key=lambda t: -t.worth)]
+    found.unseen = {
+        t.name: 1.0 - t.model.power / base.power for t in sorted(doubtless, key=lambda t: -t.worth)
+    }
     strange = [t for t in trials if t.imitates and choice is None]
     strange = [t for t in strange if not any(covers(other, t) for other in doubtless)]
     found.imitated = max((t.gain for t in strange), default=0.0)
@@ -232,6 +236,20 @@ def _refitted(
             found.rows[trial.name] = listing.tried(trial, choice)
     freed = sorted((trial for trial in trials if trial.freed), key=lambda t: -t.worth)[:1]
     return choice, freed if choice is None else [*freed, choice.winner]
+
+
+def _imitated(scores: Sequence[Score], trials: Sequence[Trial]) -> list[Score]:
+    """What explains more than one that imitates something, and was not asked: it may be that.
+
+    A limit that acts in a few blocks does harm in others as long as the base stands where it has
+    driven it, and what resembles it beyond its own range is asked in its place.
+    """
+    if choose(trials) is not None:
+        return []
+    least = min((t.score.score for t in trials if t.imitates), default=np.inf)
+    tried = {trial.name for trial in trials}
+    more = [s for s in scores if s.candidate.name not in tried and s.score > s.threshold]
+    return [score for score in more if score.testable and score.score > least]
 
 
 def _trial(screening: Screening, found: Search, score: Score) -> Trial:

@@ -29,9 +29,9 @@ class Search:
     imitated : float
         Held-out gain of the best of those that were refused last because they imitate something
         else: so much is left that has no name.
-    unseen : list of str
-        Effects of which what was fitted leaves no doubt and what decides tells nothing, for it
-        hardly excites them; likeliest first.
+    unseen : dict of str to float
+        Effects of which what was fitted leaves no doubt and what decides tells nothing, with the
+        share that they explain of what is left there; likeliest first.
     interrupted : bool
     lesser : list of (Model, str, Model)
         Models, an effect of each, and the model fitted without it.
@@ -42,7 +42,7 @@ class Search:
     rows: dict[str, CandidateRow] = field(default_factory=dict)
     blind: list[EffectRecord] = field(default_factory=list)
     imitated: float = 0.0
-    unseen: list[str] = field(default_factory=list)
+    unseen: dict[str, float] = field(default_factory=dict)
     interrupted: bool = False
     lesser: list[tuple[Model, str, Model]] = field(default_factory=list)
 
@@ -60,4 +60,4 @@ class Search:
         choices = self.choices[:-1]
         models = self.models[: len(choices) + 1]
         # What was told beside it was told of another model.
-        return replace(self, models=models, choices=choices, rows=rows, unseen=[])
+        return replace(self, models=models, choices=choices, rows=rows, unseen={})

@@ -21,7 +21,7 @@ from .orders import order_words
 if TYPE_CHECKING:
     from ..recording import Check
     from .gain import Gain
-    from .result import CandidateRow, Cause, Diagnosis, Unexplained, Verdict
+    from .result import Cause, Diagnosis, Unexplained, Verdict
 
 __all__ = [
     "INTERRUPTED",
@@ -164,19 +164,27 @@ def sentence(
     return f"{lacks} {named}.{gained}{_unconfirmed(effects)}{left}"
 
 
-def unseen_words(unseen: Sequence[str], rows: Mapping[str, CandidateRow]) -> str:
-    """What shows in recordings that train and cannot be judged by those that decide."""
+def unseen_words(unseen: Mapping[str, float], beside: bool) -> str:
+    """What shows in recordings that train and cannot be judged by those that decide.
+
+    ``unseen`` are shares of what is left there; ``beside`` something else that was found.
+    """
+    if not unseen:
+        return ""
     summaries = {record.name: record.summary for record in catalogue()}
     told = [
-        f"{name} ({summaries[name]}) would explain {100 * (rows[name].score or 0.0):.0f} %"
-        for name in unseen
+        f"{name} ({summaries[name]}) would explain {100 * share:.0f} %"
+        for name, share in unseen.items()
     ]
     them = "it" if len(unseen) == 1 else "them"
-    return (
-        "These data cannot decide whether anything is missing: of what is left where the plant "
-        f"was fitted {joined(told)}, and the recordings that decide hardly excite {them}, or in "
-        f"one of them alone, or gain too unevenly: they neither bear {them} out nor refute {them}."
+    judged = (
+        f"of what is left where the plant was fitted {joined(told)}, and the recordings that "
+        f"decide hardly excite {them}, or in one of them alone, or gain too unevenly: they neither "
+        f"bear {them} out nor refute {them}."
     )
+    if beside:
+        return f" O{judged[1:]}"
+    return f"These data cannot decide whether anything is missing: {judged}"
 
 
 def no_machine(left: float, named: bool, verdict: Verdict, by: Compared = EFFORT) -> str:
