@@ -40,8 +40,8 @@ def seen(slopes: np.ndarray, noise: float = 0.3) -> View:
 def test_slopes_that_differ_by_recording_show() -> None:
     slopes = np.repeat([-0.4, 0.4], RECORDINGS // 2)
     view = seen(slopes)
-    # .16 of slopes beside .09 of noise.
-    assert view.share == pytest.approx(0.16 / 0.25, abs=0.05)
+    # .16 of slopes beside .09 of noise; one of eight is not counted.
+    assert view.share == pytest.approx(7.0 / 8.0 * 0.16 / 0.25, abs=0.05)
     assert view.flagged()
     assert view.at.tolist() == list(range(1, RECORDINGS + 1))
     assert view.mean == pytest.approx(slopes, abs=0.05)
@@ -50,6 +50,23 @@ def test_slopes_that_differ_by_recording_show() -> None:
 def test_noise_and_one_recording_alone_do_not() -> None:
     assert not seen(np.zeros(RECORDINGS)).flagged()
     assert not seen(np.where(np.arange(RECORDINGS) == 3, 1.0, 0.0)).flagged()
+
+
+def test_a_slope_that_all_have_in_common_does_not() -> None:
+    assert not seen(np.full(RECORDINGS, 0.4)).flagged()
+    both = seen(0.4 + np.repeat([-0.4, 0.4], RECORDINGS // 2))
+    # Beyond that it is a share of all that is left.
+    assert both.share == pytest.approx(7.0 / 8.0 * 0.16 / (0.16 + 0.16 + 0.09), abs=0.06)
+
+
+def test_a_half_at_rest_tells_the_other_half_nothing() -> None:
+    source = np.random.default_rng(4)
+    moving = CELLS.block % 2 == 0
+    values = np.where(moving, 1.0, 1e-9) * source.standard_normal(len(CELLS.block))
+    both = source.standard_normal((len(values), 41))
+    view = by_recording_view(INERTIA, CELLS, values, both, np.ones(len(values)), friction=1.0)
+    assert view is not None
+    assert abs(view.share) < 0.02
 
 
 def test_a_single_recording_has_no_others() -> None:
@@ -82,7 +99,14 @@ def test_it_describes_what_is_left(
 ) -> None:
     given = tuple(Unexplained(*each) for each in told)
     assert rest(share).flagged() == ()
-    assert [each.coordinate for each in verdict._described(rest(share), given)] == expected
+    described = verdict._described(rest(share), given, named=False)
+    assert [each.coordinate for each in described] == expected
+
+
+def test_beside_names_it_hides_nothing_that_counts_against_them() -> None:
+    given = (Unexplained(NO_COORDINATE, 0.9),)
+    described = verdict._described(rest(0.6), given, named=True)
+    assert [each.coordinate for each in described] == [INERTIA.name, NO_COORDINATE]
 
 
 def test_a_gain_that_changed_in_mid_session_is_told_as_that() -> None:

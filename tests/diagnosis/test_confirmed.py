@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from tests.reference.session_reference import make_session
 import stiction as st
 from stiction.diagnosis.confirmed import confirmed
 from stiction.diagnosis.evidence import Plan
-from stiction.diagnosis.gains import gain_to_expect
+from stiction.diagnosis.gains import hardly_excited
 
 BLOCKS, ROWS = 40, 200
 FITTED = np.repeat(np.arange(BLOCKS) < 28, ROWS)
@@ -95,15 +96,25 @@ def test_rows_held_out_by_turns_confirm_nothing() -> None:
     assert not asked(cause, cause, folds=True)
 
 
-@pytest.mark.parametrize(("share", "expected"), [(0.0, 0.0), (0.1, 0.01 / 1.01), (1.0, 0.5)])
-def test_no_more_can_be_gained_than_what_a_cause_does_there(share: float, expected: float) -> None:
-    # White and of unit size, as the noise is, in every block.
-    cause = acting(*range(BLOCKS)) * np.where(FITTED, 1.0, share)
+@pytest.mark.parametrize(
+    ("size", "share", "hardly"),
+    [(1.0, 0.0, True), (1.0, 0.1, True), (1.0, 0.3, False), (0.1, 1.0, False), (0.1, 0.3, True)],
+)
+def test_what_does_little_where_it_is_to_be_confirmed_is_hardly_excited_there(
+    size: float, share: float, hardly: bool
+) -> None:
+    """Less than a name needs, and less than where it was fitted: a small cause is small there."""
+    cause = size * acting(*range(BLOCKS)) * np.where(FITTED, 1.0, share)
     noise = np.random.default_rng(2).standard_normal(len(cause))
-    evidence = SimpleNamespace(plans=[Plan(FITTED, ~FITTED)], fitted=FITTED)
-    columns = np.ones((len(cause), 1))
-    base = SimpleNamespace(evidence=evidence, columns=columns, residual=cause + noise)
-    assert gain_to_expect(base, cause) == pytest.approx(expected, rel=0.1, abs=1e-3)
+    columns, left = np.ones((len(cause), 1)), cause + noise
+
+    def base(folds: bool) -> Any:
+        plans = [Plan(FITTED, ~FITTED, FITTED if folds else None)]
+        evidence = SimpleNamespace(plans=plans, cells=SimpleNamespace(block=BLOCK))
+        return SimpleNamespace(evidence=evidence, columns=columns, residual=left)
+
+    assert hardly_excited(base(False), cause, 0.025) == hardly
+    assert not hardly_excited(base(True), cause, 0.025)
 
 
 def test_what_shows_where_it_was_fitted_alone_is_not_testable() -> None:

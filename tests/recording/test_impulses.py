@@ -73,11 +73,31 @@ def test_what_the_machine_got_stays_and_what_it_did_not_goes(
     assert said.verdict == "fine"
 
 
-def test_an_impulse_that_comes_late_is_one_all_the_same() -> None:
+@pytest.mark.parametrize("samples", [10, 50, 90])
+def test_an_impulse_that_comes_late_is_one_all_the_same(samples: int) -> None:
     effort = driven()
     logged = bursts(effort, 20, 1, 5.0)
-    late = np.concatenate([np.zeros(10), logged[:-10]])
-    assert impulses([recording(logged, moved(late))])[0].got is True
+    late = np.concatenate([np.zeros(samples), logged[:-samples]])
+    assert impulses([recording(logged, moved(late))])[0].got is not False
+
+
+def test_what_a_limit_leaves_of_an_impulse_is_no_failed_reading() -> None:
+    effort = driven()
+    logged = bursts(effort, 20, 3, 5.0)
+    most = 1.2 * float(np.max(np.abs(effort)))
+    (one,) = impulses([recording(logged, moved(np.clip(logged, -most, most)))])
+    assert (one.got, one.answers) == (None, True)
+    ((_, said),) = impulse_checks([recording(logged, moved(np.clip(logged, -most, most)))])
+    assert "answers to a part of that" in said.means
+
+
+def test_no_other_recording_takes_taps_away_that_moved_the_machine() -> None:
+    """Between taps there is no usual input, against which they could be told to be whole."""
+    taps = bursts(np.full(ROWS, 1e-3), 80, 3, 8000.0)
+    moving = recording(taps, moved(taps))
+    failed = recording(bursts(driven(), 20, 1, 5.0), moved(driven()))
+    assert [each.got for each in impulses([moving, failed])] == [None, False]
+    assert without_failures([moving, failed])[0] is moving
 
 
 def test_at_rest_the_other_recordings_of_a_session_tell() -> None:

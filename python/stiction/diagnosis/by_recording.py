@@ -34,6 +34,8 @@ GAIN: Final = Coordinate(
 BY_RECORDING: Final = (INERTIA, GAIN)
 """Their values are what the residual grows with. What is left is not judged by them: the curve of
 any law misses in another way in another kind of recording. They tell what it goes with."""
+LITTLE: Final = 0.1
+"""A half that holds less of the power than this share of the other one tells it little."""
 FEWEST: Final = 4
 """Recordings from which on the one that shows most is not counted."""
 
@@ -46,7 +48,9 @@ def by_recording_view(
     weights: FloatArray,
     friction: float,
 ) -> View | None:
-    """What the odd blocks of a recording tell of its even ones by one slope, and these of those.
+    """What odd blocks of a recording tell of its even ones by its own slope, and these of those.
+
+    That is a share of all that is left, beyond the slope that all recordings have in common.
 
     Parameters
     ----------
@@ -64,7 +68,7 @@ def by_recording_view(
     -------
     View or None
         Its places are numbers of recordings, its curve is what their slopes make of the rms of the
-        coordinate. None for a single recording.
+        coordinate. None for a single recording, and where the coordinate is 0.
     """
     recordings, place = np.unique(cells.recording, return_inverse=True)
     if len(recordings) < 2:
@@ -72,21 +76,28 @@ def by_recording_view(
     half = 2 * place + cells.block % 2
     number = 2 * len(recordings)
     grows = values * weights
+    whole = np.maximum(np.sum(both**2, axis=0), 1e-300)
+    # What most recordings have in common is no matter of single ones, nor does one of them move it.
+    power = np.bincount(place, grows**2)
+    asked = power > LITTLE * np.median(power)
+    if not np.any(asked):
+        return None
+    slopes = _sums(place, both * grows[:, None], len(recordings))[asked] / power[asked, None]
+    both = both - grows[:, None] * np.median(slopes, axis=0)
     square = np.bincount(half, grows**2, number)[:, None]
     product = _sums(half, both * grows[:, None], number)
-    total = _sums(place, both**2, len(recordings))
     # Each half is told by the other one.
     other = np.arange(number) ^ 1
-    slope = product[other] / np.maximum(square[other], 1e-300)
+    slope = product[other] / np.maximum(square[other] + LITTLE * square, 1e-300)
     removed = (
         (2.0 * slope * product - slope**2 * square).reshape(len(recordings), 2, -1).sum(axis=1)
     )
     if len(recordings) >= FEWEST:
         best = np.argmax(removed, axis=0), np.arange(removed.shape[1])
-        removed[best] = total[best] = 0.0
+        removed[best] = 0.0
     gain = removed.sum(axis=0)
-    shares = gain / np.maximum(total.sum(axis=0), 1e-300)
-    own = np.bincount(place, grows**2)[:, None]
+    shares = gain / whole
+    own = power[:, None]
     usual = np.sqrt(np.bincount(place, values**2) / np.bincount(place))[:, None]
     shown = _sums(place, both * grows[:, None], len(recordings)) / np.maximum(own, 1e-300) * usual
     low, high = np.quantile(shown[:, 1:], [0.025, 0.975], axis=1)

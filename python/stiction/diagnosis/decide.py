@@ -14,8 +14,8 @@ from .confirmed import confirmed as is_confirmed
 from .confirmed import in_few_blocks
 from .gains import (
     TOUCHED,
-    gain_to_expect,
     gained_again,
+    hardly_excited,
     heldout_gain,
     log_gain,
     recordings_acted_in,
@@ -189,7 +189,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         reason = "does not help on rows held out"
     elif gain <= LEAST_GAIN:
         reason = f"gains {100 * gain:.2f} % on rows held out, below {100 * LEAST_GAIN:.2f} %"
-        if strength >= SURE and gain_to_expect(base, contributed) <= LEAST_GAIN:
+        if strength >= SURE and hardly_excited(base, contributed, LEAST_GAIN):
             reason = f"{reason}, which hardly excite it"
             unseen, by_blocks = True, size >= LEAST_SIZE
     elif gain > MOST_AGAIN * (again := max(explained, gained_again(base, model))):

@@ -15,8 +15,8 @@ from .regression import refitted
 
 __all__ = [
     "TOUCHED",
-    "gain_to_expect",
     "gained_again",
+    "hardly_excited",
     "heldout_gain",
     "log_gain",
     "recordings_acted_in",
@@ -39,17 +39,27 @@ def gained_again(base: Model, model: Model) -> float:
     return 1.0 - float(after.sum()) / total if total > 0.0 else 0.0
 
 
-def gain_to_expect(base: Model, contributed: FloatArray) -> float:
-    """Share of the power held out that a contribution, shape (n,), can remove at most.
+def hardly_excited(base: Model, contributed: FloatArray, least: float) -> bool:
+    """Whether blocks held out can gain less than a share by a contribution that fitted ones show.
 
-    What it does there beyond what the base makes up for, over all that the base leaves.
+    What it does in a block, shape (n,), beyond what the base makes up for, is the most that can be
+    gained there; a block that holds far more than others counts as in ``heldout_gain``. Where rows
+    are held out by turns they are the fitted ones.
     """
-    held = np.zeros(len(contributed), dtype=bool)
-    for plan in base.evidence.plans:
-        held |= plan.held
-    own = refitted(base.columns, contributed, base.evidence.fitted)[held]
-    power = float(np.sum(base.residual[held] ** 2))
-    return float(own @ own) / power if power > 0.0 else 0.0
+    plan = base.evidence.plans[0]
+    if plan.whole is not None:
+        return False
+    own = refitted(base.columns, contributed, plan.fit)
+    block = base.evidence.cells.block
+    shares = []
+    for rows in (plan.held, plan.fit):
+        power, done = (
+            np.bincount(block[rows], each[rows] ** 2).astype(np.float64)
+            for each in (base.residual, own)
+        )
+        before, after = limited(power, np.maximum(power - done, 0.0))
+        shares.append(1.0 - float(after.sum()) / max(float(before.sum()), 1e-300))
+    return shares[0] < min(least, 0.5 * shares[1])
 
 
 def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tuple[float, float]:

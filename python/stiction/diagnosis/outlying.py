@@ -12,11 +12,10 @@ from .evidence import Cells, Evidence
 from .gain import HeldOut
 from .model import Model
 from .result import Unexplained
+from .words import ALONE
 
-__all__ = ["ALONE", "MOST_TIMES", "outlying", "outlying_in_test"]
+__all__ = ["MOST_TIMES", "outlying", "outlying_in_test"]
 
-ALONE: Final = " alone"
-"""What stands behind the name of a recording in the place of a coordinate."""
 MOST_TIMES: Final = 8.0
 """Power left over what noise leaves from which on a recording stands out, in its median block.
 

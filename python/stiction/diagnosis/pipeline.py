@@ -170,16 +170,16 @@ def _repairs(session: Session) -> list[tuple[str, Check]]:
 def _usable(checks: Sequence[tuple[str, Check]], session: Session) -> tuple[Session | None, str]:
     """The recordings without a fault, None where too few are left, and in words what is wrong."""
     kept, told = usable(session.recordings, checks)
-    recordings = without_failures(session.recordings)
     if kept is None:
         return None, told
+    recordings = without_failures(remaining(session.recordings, kept))
     places = {k: j for j, k in enumerate(kept)}
     repeats = {
         places[k]: places[of]
         for k, of in session.replicates.items()
         if k in places and of in places
     }
-    return Session(remaining(recordings, kept), session.plant, repeats), told
+    return Session(recordings, session.plant, repeats), told
 
 
 def _testable(

@@ -61,6 +61,11 @@ SWINGS: Final = "second mass"
 RELATED: Final = 0.2
 """Cosine from which on one member of a family may be a part of another; waves of different orders
 have next to none."""
+CARRIED_OVER: Final = 0.3
+"""A cause beside others that gains more than this on rows held out..."""
+SURELY: Final = 4.0
+"""... by so many standard errors is no rest of their forms: what followed these came to .17 and
+3.5."""
 MIMIC: Final = 5.0
 """What keeps less than one part in so many of its gain beside a later effect was its mimic; what
 explains less than that of a relative that was found may be the rest of it."""
@@ -257,6 +262,8 @@ def _trial(screening: Screening, found: Search, score: Score) -> Trial:
     trial = screening.trial(found.models[-1], score)
     trial = beside_a_second(screening, found.models[-1], trial)
     if trial.reason or stands_out(screening.evidence, score, found.families):
+        return trial
+    if trial.gain > CARRIED_OVER and trial.z > SURELY:
         return trial
     reason = (
         f"scores {100 * score.score:.1f} % of what the causes before it leave; below "

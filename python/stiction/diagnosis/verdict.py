@@ -14,13 +14,13 @@ from .evidence import Evidence
 from .gains import heldout_gain
 from .model import Model
 from .omnibus import Rest
-from .outlying import ALONE, outlying
+from .outlying import outlying
 from .passing import MOMENTS
 from .periodic import FREQUENCY
 from .result import Unexplained, Verdict
 from .selection import Search
 from .view import LEAST_SIZE
-from .words import NO_COORDINATE
+from .words import ALONE, NO_COORDINATE
 
 __all__ = ["left_beside", "outweighed", "relatives", "unnamed", "verdict_of"]
 
@@ -99,27 +99,38 @@ def unnamed(
     # One recording stands first where it leaves most; beside a coordinate, in which the others
     # show the same, several of them only make a list longer.
     most = 1 if alone and (not told or alone[0].share > told[0].share) else 0
-    return _described(left, (*alone[:most], *told, *alone[most:]))
+    told = (*alone[:most], *told, *alone[most:])
+    return _described(left, told, named=bool(selection.choices))
 
 
-def _described(left: Rest, told: tuple[Unexplained, ...]) -> tuple[Unexplained, ...]:
-    """What is told, behind what describes it better than any coordinate that it shows in."""
+def _described(
+    left: Rest, told: tuple[Unexplained, ...], *, named: bool
+) -> tuple[Unexplained, ...]:
+    """What is told, behind what describes it better than any coordinate that it shows in.
+
+    Where nothing is named it takes the place of no coordinate; beside names what noise does not
+    explain counts against them whole.
+    """
     excess = max((each.share for each in told if each.coordinate == NO_COORDINATE), default=0.0)
     places = [each.share for each in told if each.coordinate != NO_COORDINATE]
     better = [v for v in left.described[:1] if v.share > max([WORTH_SHARE * excess, *places])]
     if not told or not better:
         return told
     (view,) = better
-    if view.share > 0.5 * excess:
+    if view.share > 0.5 * excess and not named:
         told = tuple(each for each in told if each.coordinate != NO_COORDINATE)
     return (Unexplained(view.coordinate.name, view.share), *told)
 
 
 def verdict_of(selection: Search, left: Sequence[Unexplained], decided: bool) -> Verdict:
-    """The verdict by precedence; ``decided`` says whether every cause is."""
+    """The verdict by precedence; ``decided`` says whether every cause is.
+
+    A recording that stands apart says nothing against names that explain all others.
+    """
     if not selection.choices and selection.rows and len(selection.blind) == len(selection.rows):
         return "not_testable"
-    if _outweighs(selection, left):
+    of_all = [each for each in left if not each.coordinate.endswith(ALONE)]
+    if _outweighs(selection, of_all if selection.choices else left):
         return "unexplained"
     if not decided:
         return "ambiguous"

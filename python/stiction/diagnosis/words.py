@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .result import Cause, Diagnosis, Unexplained, Verdict
 
 __all__ = [
+    "ALONE",
     "INTERRUPTED",
     "MORE_MAY_BE",
     "NO_COORDINATE",
@@ -44,6 +45,8 @@ __all__ = [
 
 NO_COORDINATE = "nothing that was looked at"
 """Where more is left than noise and it shows in no coordinate."""
+ALONE = " alone"
+"""What stands behind the name of a recording in the place of a coordinate."""
 INTERRUPTED = "Interrupted: this is the best so far"
 """How the sentence of a diagnosis begins that Ctrl-C ended."""
 DOUBTFUL = (
@@ -155,7 +158,9 @@ def sentence(
             f"{_unconfirmed(effects)}"
         )
     # Most of what is left may be more than noise and yet little beside what was named.
-    more = any(left.coordinate == NO_COORDINATE for left in unexplained)
+    more = any(
+        left.coordinate == NO_COORDINATE or left.coordinate.endswith(ALONE) for left in unexplained
+    )
     outweighed = [cause.name for cause in effects if cause.outweighed]
     left = f" What is left {_depends(unexplained)}." if more or outweighed else ""
     if outweighed:
@@ -178,9 +183,9 @@ def unseen_words(unseen: Mapping[str, float], beside: bool) -> str:
     ]
     them = "it" if len(unseen) == 1 else "them"
     judged = (
-        f"of what is left where the plant was fitted {joined(told)}, and the recordings that "
-        f"decide hardly excite {them}, or in one of them alone, or gain too unevenly: they neither "
-        f"bear {them} out nor refute {them}."
+        f"of what is left where the plant was fitted {joined(told)}. In the recordings that decide "
+        f"too little of {them} shows, or too unevenly: they neither bear {them} out nor refute "
+        f"{them}."
     )
     if beside:
         return f" O{judged[1:]}"

@@ -184,10 +184,10 @@ def _without_faults(recordings: list[Recording]) -> tuple[list[Recording], list[
     Where too few are left, all of them: a fit says how well it does, whatever it is given.
     """
     kept, fault = usable(recordings, checks_of(recordings))
-    recordings = without_failures(recordings)
     if kept is None:
-        return recordings, [fault.replace("cannot be used", "are fitted, though they have a fault")]
-    return remaining(recordings, kept), [fault] if fault else []
+        told = fault.replace("cannot be used", "are fitted, though they have a fault")
+        return without_failures(recordings), [told]
+    return without_failures(remaining(recordings, kept)), [fault] if fault else []
 
 
 def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:

@@ -36,8 +36,11 @@ LEAST_SHARE: Final = 1e-3
 """And this share of the range of the input."""
 GOALS: Final = ("rad", "m")
 """Units of an input that is a place to go to, and no effort."""
-LATE_S: Final = (0.0, 0.004, 0.008, 0.016, 0.032)
-"""By so much an impulse may come late and still be one that the machine got."""
+LATE_S: Final = (
+    *(0.0, 0.004, 0.008, 0.016, 0.024, 0.032, 0.048, 0.064, 0.08, 0.096, 0.12, 0.15),
+    *(0.2, 0.25, 0.3, 0.4, 0.5),
+)
+"""By so much an impulse may come late, or spread, and still be one that the machine got."""
 MOVING: Final = 0.2
 """Share of the rms speed above which friction does not hold an impulse back."""
 HALF: Final = 0.5
@@ -55,10 +58,13 @@ class Impulses:
     rows : numpy.ndarray of int, shape (impulses,)
     got : bool or None
         Whether the machine got them; None where its motion does not tell.
+    answers : bool
+        It answers to them, be it to a part of them, or late.
     """
 
     rows: IntArray
     got: bool | None
+    answers: bool = False
 
 
 def impulses(recordings: Sequence[Recording]) -> list[Impulses]:
@@ -72,7 +78,8 @@ def impulses(recordings: Sequence[Recording]) -> list[Impulses]:
 
     u the input without impulses and d these alone: c′ is c where the machine got them and 0 where
     it did not, whatever its inertia. Friction is taken to be that of sliding, Coulomb and viscous,
-    beside a part that goes with the position. Where the motion of one recording does not tell, that
+    beside a part that goes with the position. Where c′ is above 0 by any delay the machine got
+    something, be it what a limit left of it. Where the motion of one recording tells nothing, that
     of the others does, if they agree.
 
     Parameters
@@ -90,7 +97,8 @@ def impulses(recordings: Sequence[Recording]) -> list[Impulses]:
     if len(told) != 1:
         return found
     (got,) = told
-    return [replace(each, got=got) if len(each.rows) else each for each in found]
+    open_ = [len(each.rows) > 0 and (got or not each.answers) for each in found]
+    return [replace(each, got=got) if o else each for each, o in zip(found, open_, strict=True)]
 
 
 def without_failures(recordings: Sequence[Recording]) -> list[Recording]:
@@ -120,7 +128,9 @@ def impulse_checks(recordings: Sequence[Recording]) -> list[tuple[str, Check]]:
         if each.got:
             found.append((name, Check(NAME, "fine", f"{what}; the machine answers")))
             continue
-        means = "whether the machine got that, its motion does not tell; it is taken to have"
+        means = "whether the machine got that, its motion does not tell; these samples are kept"
+        if each.answers:
+            means = "the machine answers to a part of that, or late; these samples are kept"
         if each.got is False:
             means = (
                 "the machine does not answer, so a reading failed; fits and diagnoses take a "
@@ -142,7 +152,7 @@ def _impulses(recording: Recording) -> Impulses:
     position = recording.position
     if not len(rows) or position is None or not np.all(np.isfinite(position)):
         return Impulses(rows, None)
-    return Impulses(rows, _got(recording, values, rows, position))
+    return Impulses(rows, *_got(recording, values, rows, position))
 
 
 def _apart(values: FloatArray) -> IntArray:
@@ -195,12 +205,12 @@ def _without(values: FloatArray, rows: IntArray) -> FloatArray:
 
 def _got(
     recording: Recording, values: FloatArray, rows: IntArray, position: FloatArray
-) -> bool | None:
-    """Whether the motion answers to these rows of the input; None where it does not tell."""
+) -> tuple[bool | None, bool]:
+    """Whether the machine got these rows of the input, and whether it answers to them at all."""
     stamps, time, dt = evenly(recording.time)
     support = max(SUPPORTS_S[0], FEWEST_SAMPLES * dt)
     if len(time) * dt < 4.0 * support:
-        return None
+        return None, False
     kernel = Kernel(support, dt)
     x = np.interp(time, stamps, without_spikes(position))
     usual = held(time, stamps, _without(values, rows))
@@ -212,11 +222,24 @@ def _got(
     acceleration = kernel.second_derivative(x[1:])
     told = []
     for late in LATE_S:
-        impulse = kernel.mean(_in_between(_late(apart, round(late / dt))))
-        told.append(_answer(acceleration, columns, impulse, moving, len(kernel.weights)))
-    if any(share - SURE * error > HALF for share, error in told):
-        return True
-    return False if all(share + SURE * error < HALF for share, error in told) else None
+        samples = round(late / dt)
+        if samples < len(apart):
+            impulse = kernel.mean(_in_between(_late(apart, samples)))
+            told.append(_answer(acceleration, columns, impulse, moving, len(kernel.weights)))
+    answers = any(each.answers for each in told)
+    if any(each.share - SURE * each.error > HALF for each in told):
+        return True, True
+    quiet = not answers and all(each.share + SURE * each.error < HALF for each in told)
+    return (False if quiet else None), answers
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """Share of impulses that a motion shows, its standard error, and whether it shows any."""
+
+    share: float = 0.0
+    error: float = np.inf
+    answers: bool = False
 
 
 def _answer(
@@ -225,28 +248,29 @@ def _answer(
     impulse: FloatArray,
     moving: npt.NDArray[np.bool_],
     together: int,
-) -> tuple[float, float]:
-    """Share of impulses that a motion shows, and its standard error; shapes (n,).
+) -> _Answer:
+    """What a motion shows of impulses; shapes (n,).
 
     The first of ``others`` is the usual input; ``together`` rows share their noise.
     """
-    unknown = (0.0, np.inf)
     columns = np.column_stack([*others, impulse])[moving]
     size = np.linalg.norm(columns, axis=0)
-    if len(columns) < together or np.any(size[[0, -1]] == 0.0):
-        return unknown
+    if len(columns) < together or size[-1] == 0.0:
+        return _Answer()
     size = np.maximum(size, 1e-300)
     found = np.linalg.lstsq(columns / size, acceleration[moving], rcond=None)[0] / size
     by_input, by_impulse = float(found[0]), float(found[-1])
     left = acceleration[moving] - columns @ found
     even = np.sqrt(together * np.mean(left**2)) / size
-    if by_input <= SURE * even[0]:
-        return unknown
     # One impulse, one piece of evidence: what rows under it leave adds up.
     group = np.cumsum(np.diff((impulse != 0.0).astype(np.int8), prepend=0) == 1)[moving]
     own = columns[:, -1]
     error = float(np.linalg.norm(np.bincount(group, own * left))) / size[-1] ** 2
-    return by_impulse / by_input, max(error, even[-1]) / by_input
+    error = max(error, float(even[-1]))
+    answers = by_impulse > SURE * error
+    if by_input <= SURE * even[0]:
+        return _Answer(answers=answers)
+    return _Answer(by_impulse / by_input, error / by_input, answers)
 
 
 def _late(values: FloatArray, samples: int) -> FloatArray:
