@@ -64,7 +64,7 @@ have next to none."""
 CARRIED_OVER: Final = 0.3
 """A cause beside others that gains more than this on rows held out..."""
 SURELY: Final = 4.0
-"""... by so many standard errors is no rest of their forms: what followed these came to .17 and
+"""... by so many standard errors is no rest of their forms: what followed these came to .2 and
 3.5."""
 MIMIC: Final = 5.0
 """What keeps less than one part in so many of its gain beside a later effect was its mimic; what
