@@ -29,8 +29,10 @@ def trial(
     family: str = "",
     by_blocks: bool = False,
     contributed: Any = (1.0, 0.0),
+    wave: bool = False,
 ) -> Trial:
-    record = SimpleNamespace(family=family or name, name=name, shapes=(), late=False, second=())
+    shapes = (SimpleNamespace(scale="order"),) if wave else ()
+    record = SimpleNamespace(family=family or name, name=name, shapes=shapes, late=False, second=())
     candidate: Any = SimpleNamespace(name=name, parameters=1, record=record)
     score: Any = SimpleNamespace(
         signature=np.asarray(contributed, dtype=float),
@@ -169,20 +171,23 @@ def test_what_explains_less_than_another_is_no_first_of_two() -> None:
 
 
 @pytest.mark.parametrize(
-    ("family", "worth", "along", "kept"),
+    ("family", "worth", "along", "wave", "kept"),
     [
-        ("contact", 0.15, (1.0, 0.5), False),
+        ("contact", 0.15, (1.0, 0.5), False, False),
+        ("contact", 0.15, (1.0, 0.5), True, False),
+        # What a form leaves need not resemble it.
+        ("contact", 0.15, (0.1, 1.0), False, False),
         # Large enough to be a cause of its own, of another kind, or a wave of another order.
-        ("contact", 0.25, (1.0, 0.5), True),
-        ("other", 0.15, (1.0, 0.5), True),
-        ("contact", 0.15, (0.1, 1.0), True),
+        ("contact", 0.25, (1.0, 0.5), False, True),
+        ("other", 0.15, (1.0, 0.5), False, True),
+        ("contact", 0.15, (0.1, 1.0), True, True),
     ],
 )
 def test_a_small_relative_of_a_named_cause_may_be_its_rest(
-    family: str, worth: float, along: tuple[float, float], kept: bool
+    family: str, worth: float, along: tuple[float, float], wave: bool, kept: bool
 ) -> None:
     named = trial("a", 1.0, family="contact")
-    later = trial("b", worth, family=family, contributed=along)
+    later = trial("b", worth, family=family, contributed=along, wave=wave)
     row = CandidateRow("b", 0.3, 0.05, 0.2, "accepted")
     models: list[Any] = ["base", "with a", "with both"]
     found = Search(models, [Choice(named, ()), Choice(later, ())], {"b": row})

@@ -343,12 +343,19 @@ def _take_back(screening: Screening, found: Search) -> set[str]:
 
 
 def _may_be_the_rest(screening: Screening, latest: Trial, other: Trial) -> bool:
-    """Whether one looks like a relative that was found before it, and is small beside that."""
-    if other.candidate.record.family != latest.candidate.record.family:
+    """Whether one looks like a relative that was found before it, and is small beside that.
+
+    Waves of different orders are different things. Of others what a form leaves need not resemble
+    it: the refit took away what does.
+    """
+    record = latest.candidate.record
+    if other.candidate.record.family != record.family or latest.worth >= other.worth / MIMIC:
         return False
+    if all(shape.scale != "order" for shape in record.shapes):
+        return True
     explained = screening.contributed(latest.score, latest.model)
     before = screening.contributed(other.score, other.model)
-    return latest.worth < other.worth / MIMIC and parallel(explained, before) > RELATED
+    return parallel(explained, before) > RELATED
 
 
 def _doubt_single_waves(screening: Screening, found: Search, trials: Sequence[Trial]) -> None:
