@@ -45,6 +45,8 @@ MOVING: Final = 0.2
 """Share of the rms speed above which friction does not hold an impulse back."""
 HALF: Final = 0.5
 """Share of an impulse that a machine shows at least that got it."""
+NOTHING: Final = 1e-12
+"""Share of what impulses do that must not go with the rest."""
 SURE: Final = 4.0
 """Standard errors by which it shows more or less than that."""
 
@@ -217,15 +219,19 @@ def _got(
     apart = held(time, stamps, values) - usual
     speed = kernel.mean(np.gradient(x, dt)[1:])
     moving = np.abs(speed) > MOVING * float(np.sqrt(np.mean(speed**2)))
-    columns = [np.ones_like(speed), np.sign(speed), speed, kernel.mean(x[1:])]
-    columns = [kernel.mean(_in_between(usual)), *columns]
-    acceleration = kernel.second_derivative(x[1:])
-    told = []
-    for late in LATE_S:
-        samples = round(late / dt)
-        if samples < len(apart):
-            impulse = kernel.mean(_in_between(_late(apart, samples)))
-            told.append(_answer(acceleration, columns, impulse, moving, len(kernel.weights)))
+    if np.count_nonzero(moving) < len(kernel.weights):
+        return None, False
+    columns = [kernel.mean(_in_between(usual)), np.ones_like(speed), np.sign(speed), speed]
+    columns.append(kernel.mean(x[1:]))
+    usually = _Usually(np.column_stack(columns), kernel.second_derivative(x[1:]), moving)
+    # A kernel that goes over what comes late is one that went over it before.
+    impulse = kernel.mean(_in_between(apart))
+    lates = (round(late / dt) for late in LATE_S)
+    told = [
+        usually.answer(_late(impulse, late), len(kernel.weights))
+        for late in lates
+        if late < len(impulse)
+    ]
     answers = any(each.answers for each in told)
     if any(each.share - SURE * each.error > HALF for each in told):
         return True, True
@@ -242,35 +248,54 @@ class _Answer:
     answers: bool = False
 
 
-def _answer(
-    acceleration: FloatArray,
-    others: list[FloatArray],
-    impulse: FloatArray,
-    moving: npt.NDArray[np.bool_],
-    together: int,
-) -> _Answer:
-    """What a motion shows of impulses; shapes (n,).
+class _Usually:
+    """Accelerations while a machine moves, and what they depend on beside impulses.
 
-    The first of ``others`` is the usual input; ``together`` rows share their noise.
+    Parameters
+    ----------
+    columns : numpy.ndarray, shape (n, k)
+        The first one is the usual input.
+    acceleration : numpy.ndarray, shape (n,)
+    moving : numpy.ndarray of bool, shape (n,)
     """
-    columns = np.column_stack([*others, impulse])[moving]
-    size = np.linalg.norm(columns, axis=0)
-    if len(columns) < together or size[-1] == 0.0:
-        return _Answer()
-    size = np.maximum(size, 1e-300)
-    found = np.linalg.lstsq(columns / size, acceleration[moving], rcond=None)[0] / size
-    by_input, by_impulse = float(found[0]), float(found[-1])
-    left = acceleration[moving] - columns @ found
-    even = np.sqrt(together * np.mean(left**2)) / size
-    # One impulse, one piece of evidence: what rows under it leave adds up.
-    group = np.cumsum(np.diff((impulse != 0.0).astype(np.int8), prepend=0) == 1)[moving]
-    own = columns[:, -1]
-    error = float(np.linalg.norm(np.bincount(group, own * left))) / size[-1] ** 2
-    error = max(error, float(even[-1]))
-    answers = by_impulse > SURE * error
-    if by_input <= SURE * even[0]:
-        return _Answer(answers=answers)
-    return _Answer(by_impulse / by_input, error / by_input, answers)
+
+    def __init__(
+        self, columns: FloatArray, acceleration: FloatArray, moving: npt.NDArray[np.bool_]
+    ) -> None:
+        self._moving, self._acceleration = moving, acceleration[moving]
+        self._size = np.maximum(np.linalg.norm(columns[moving], axis=0), 1e-300)
+        # Once for all delays: only the impulses come later each time.
+        span, sizes, ways = np.linalg.svd(columns[moving] / self._size, full_matrices=False)
+        told = sizes > NOTHING**0.5 * sizes[0]
+        self._span = span[:, told]
+        self._first = ways[told, 0] / sizes[told]
+        self._left = self._off(self._acceleration)
+
+    def _off(self, values: FloatArray) -> FloatArray:
+        """Values less what goes with the columns; shape (moving,)."""
+        left: FloatArray = values - self._span @ (self._span.T @ values)
+        return left
+
+    def answer(self, impulse: FloatArray, together: int) -> _Answer:
+        """What the motion shows of impulses, shape (n,); ``together`` rows share their noise."""
+        whole = impulse[self._moving]
+        own = self._off(whole)
+        square = float(own @ own)
+        if square <= NOTHING * float(whole @ whole):
+            return _Answer()
+        by_impulse = float(own @ self._left) / square
+        left = self._left - by_impulse * own
+        beside = self._span.T @ (self._acceleration - by_impulse * whole)
+        by_input = float(self._first @ beside) / self._size[0]
+        noise = np.sqrt(together * np.mean(left**2))
+        # One impulse, one piece of evidence: what rows under it leave adds up.
+        group = np.cumsum(np.diff((impulse != 0.0).astype(np.int8), prepend=0) == 1)[self._moving]
+        error = float(np.linalg.norm(np.bincount(group, own * left))) / square
+        error = max(error, float(noise / np.sqrt(square)))
+        answers = by_impulse > SURE * error
+        if by_input <= SURE * float(noise) / self._size[0]:
+            return _Answer(answers=answers)
+        return _Answer(by_impulse / by_input, error / by_input, answers)
 
 
 def _late(values: FloatArray, samples: int) -> FloatArray:
