@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.advice import BY_COORDINATE
+from stiction.diagnosis.advice import APART, BY_COORDINATE
+from stiction.diagnosis.by_recording import BY_RECORDING
 from stiction.diagnosis.contact import slides_of
 from stiction.diagnosis.coordinates import COORDINATES, UNJUDGED, Coordinate
 from stiction.diagnosis.omnibus import Rest, View
@@ -44,8 +45,11 @@ def test_no_coordinate_belongs_to_an_effect_that_is_not_there() -> None:
 def test_every_coordinate_has_a_hint_and_an_experiment() -> None:
     names = {each.name for each in (*COORDINATES, *ORDERS, *COUPLED, RESPONSE, FREQUENCY)}
     names |= {MOMENTS.name, DRIFT.name}
-    assert set(HINTS) == names
+    differ = {each.name for each in BY_RECORDING}
+    assert set(HINTS) == names | differ
     assert set(BY_COORDINATE) == names
+    # No experiment tells what was changed between recordings.
+    assert set(APART) == differ
 
 
 @pytest.mark.parametrize(

@@ -89,7 +89,7 @@ def test_names_that_explain_less_than_one_coordinate_shows_imitate(
     none = np.zeros(0)
 
     def view(name: str, share: float) -> View:
-        coordinate: Any = SimpleNamespace(name=name, refines="")
+        coordinate: Any = SimpleNamespace(name=name, refines="", descriptive=False)
         return View(coordinate, none, none, none, none, share, 0.02, 0.01)
 
     monkeypatch.setattr(verdict, "heldout_gain", lambda *_: (0.1, 5.0))
