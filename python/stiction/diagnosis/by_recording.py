@@ -13,7 +13,7 @@ import numpy as np
 from ..trajectory import FloatArray
 from .coordinates import Coordinate
 from .evidence import Cells
-from .view import View, limit
+from .view import View, limit, sums
 
 __all__ = ["BY_RECORDING", "GAIN", "INERTIA", "by_recording_view"]
 
@@ -82,10 +82,10 @@ def by_recording_view(
     asked = power > LITTLE * np.median(power)
     if not np.any(asked):
         return None
-    slopes = _sums(place, both * grows[:, None], len(recordings))[asked] / power[asked, None]
+    slopes = sums(place, both * grows[:, None], len(recordings))[asked] / power[asked, None]
     both = both - grows[:, None] * np.median(slopes, axis=0)
     square = np.bincount(half, grows**2, number)[:, None]
-    product = _sums(half, both * grows[:, None], number)
+    product = sums(half, both * grows[:, None], number)
     # Each half is told by the other one.
     other = np.arange(number) ^ 1
     slope = product[other] / np.maximum(square[other] + LITTLE * square, 1e-300)
@@ -99,15 +99,10 @@ def by_recording_view(
     shares = gain / whole
     own = power[:, None]
     usual = np.sqrt(np.bincount(place, values**2) / np.bincount(place))[:, None]
-    shown = _sums(place, both * grows[:, None], len(recordings)) / np.maximum(own, 1e-300) * usual
+    shown = sums(place, both * grows[:, None], len(recordings)) / np.maximum(own, 1e-300) * usual
     low, high = np.quantile(shown[:, 1:], [0.025, 0.975], axis=1)
     size = float(np.sqrt(max(gain[0], 0.0) / len(values))) / max(friction, 1e-300)
     numbers = 1.0 + recordings
     return View(
         coordinate, numbers, shown[:, 0], low, high, float(shares[0]), limit(shares[1:]), size
     )
-
-
-def _sums(place: np.ndarray, columns: FloatArray, number: int) -> FloatArray:
-    """Sum of each column in each place; shape (number, k)."""
-    return np.column_stack([np.bincount(place, column, number) for column in columns.T])

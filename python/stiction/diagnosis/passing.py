@@ -15,7 +15,7 @@ from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .coordinates import Coordinate, Look
 from .evidence import Cells
-from .view import FEWEST_ROWS, View, limit, means
+from .view import FEWEST_ROWS, View, limit, means, sums
 
 __all__ = ["DRIFT", "MOMENTS", "drift_view", "moments_view", "settled"]
 
@@ -92,10 +92,10 @@ def drift_view(
     both, weights = both[sliding], weights[sliding]
     place, starts = _windows(cells, clock, SPAN_S)
     recording = _of(cells.recording, place, len(starts))
-    total = _sums(place, both**2, len(starts))
+    total = sums(place, both**2, len(starts))
     both = _less_velocity(velocity, both)
     rows = np.bincount(place, minlength=len(starts))
-    own = _sums(place, both, len(starts)) / rows[:, None]
+    own = sums(place, both, len(starts)) / rows[:, None]
     full = rows >= WHOLE * np.max(rows)
     # Of each pair of stretches that touch, within one recording.
     touch = full[:-1] & full[1:] & (np.diff(starts) < 1.5 * SPAN_S)
@@ -110,7 +110,7 @@ def drift_view(
     removed = rows[:, None] * (2.0 * own - told) * told
     gained, whole = _by_recording(recording, removed), _by_recording(recording, total)
     usual = np.median(gained / np.maximum(whole, 1e-300), axis=0)
-    shown = _sums(place, both / weights[:, None], len(starts)) / rows[:, None]
+    shown = sums(place, both / weights[:, None], len(starts)) / rows[:, None]
     low, high = np.quantile(shown[:, 1:], [0.025, 0.975], axis=1)
     curve = (starts + 0.5 * SPAN_S, shown[:, 0], low, high)
     view = _view(DRIFT, curve, gained, whole, len(place), friction)
@@ -156,7 +156,7 @@ def moments_view(
     if np.sum(whole) < FEWEST_WINDOWS:
         return None
     rows = np.bincount(place, minlength=len(starts))
-    power = _sums(place, both**2, len(starts)) * whole[:, None]
+    power = sums(place, both**2, len(starts)) * whole[:, None]
     beyond = np.zeros_like(power)
     for index in np.unique(recording):
         asked = np.flatnonzero(whole & (recording == index))
@@ -172,7 +172,7 @@ def moments_view(
     beyond *= np.sum(beyond > 0.0, axis=0) < FEW * np.sum(whole)
     few = np.sort(beyond, axis=0)[max(len(beyond) - CHANCES, 0)]
     beyond = np.where(beyond < few, beyond, 0.0)
-    physical = _sums(place, (both / weights[:, None]) ** 2, len(starts)) / rows[:, None]
+    physical = sums(place, (both / weights[:, None]) ** 2, len(starts)) / rows[:, None]
     shown = np.sqrt(physical)[whole]
     low, high = np.quantile(shown[:, 1:], [0.025, 0.975], axis=1)
     curve = (starts[whole] + 0.5 * WINDOW_S, shown[:, 0], low, high)
@@ -205,7 +205,7 @@ def _view(
 def _by_recording(recording: np.ndarray, columns: FloatArray) -> FloatArray:
     """Sums over the windows of each recording; shape (recordings, k)."""
     _, index = np.unique(recording, return_inverse=True)
-    return _sums(index, columns, int(index[-1]) + 1)
+    return sums(index, columns, int(index[-1]) + 1)
 
 
 def _windows(cells: Cells, clock: FloatArray, length: float) -> tuple[np.ndarray, FloatArray]:
@@ -223,11 +223,6 @@ def _windows(cells: Cells, clock: FloatArray, length: float) -> tuple[np.ndarray
         starts.append(first + number * length)
         known += len(number)
     return place, np.concatenate(starts)
-
-
-def _sums(place: np.ndarray, columns: FloatArray, number: int) -> FloatArray:
-    """Sum of each column in each window; shape (number, k)."""
-    return np.column_stack([np.bincount(place, column, number) for column in columns.T])
 
 
 def _of(values: np.ndarray, place: np.ndarray, number: int) -> np.ndarray:

@@ -39,6 +39,8 @@ OUTWEIGHED: Final = 0.5
 """What is left without a name counts against one name where it is worth this share of what that one
 took: right names came to 0.4 but for one, and what was named of a contact whose law has another
 form to 0.6 and more."""
+HALF: Final = 0.5
+"""Of what goes with no coordinate, from which on a description stands for it."""
 WINDOW_S: Final = 0.2
 """Length of the windows in which single moments are looked for."""
 FEW_WINDOWS: Final = 0.35
@@ -113,11 +115,10 @@ def _described(
     """
     excess = max((each.share for each in told if each.coordinate == NO_COORDINATE), default=0.0)
     places = [each.share for each in told if each.coordinate != NO_COORDINATE]
-    better = [v for v in left.described[:1] if v.share > max([WORTH_SHARE * excess, *places])]
-    if not told or not better:
+    view = next(iter(left.described), None)
+    if not told or view is None or view.share <= max([WORTH_SHARE * excess, *places]):
         return told
-    (view,) = better
-    if view.share > 0.5 * excess and not named:
+    if view.share > HALF * excess and not named:
         told = tuple(each for each in told if each.coordinate != NO_COORDINATE)
     return (Unexplained(view.coordinate.name, view.share), *told)
 

@@ -10,7 +10,7 @@ import numpy as np
 from ..trajectory import FloatArray
 from .coordinates import Coordinate
 
-__all__ = ["FLAG_ABOVE", "LEAST_SIZE", "View", "limit", "means"]
+__all__ = ["FLAG_ABOVE", "LEAST_SIZE", "View", "limit", "means", "sums"]
 
 FEWEST_ROWS: Final = 8
 """Rows that a stretch needs to have a mean."""
@@ -65,11 +65,17 @@ def limit(at_null: FloatArray) -> float:
     return max(FLAG_TIMES * usual, usual + FLAG_ABOVE, FLAG_ABOVE)
 
 
+def sums(index: np.ndarray, columns: FloatArray, bins: int) -> FloatArray:
+    """Sum of each column in each stretch; shape (bins, k)."""
+    return np.column_stack([np.bincount(index, column, bins) for column in columns.T])
+
+
 def means(index: np.ndarray, columns: FloatArray, bins: int) -> FloatArray:
     """Mean of each column in each stretch, 0 where there are too few rows; shape (bins, k)."""
     counts = np.bincount(index, minlength=bins)
-    sums = np.column_stack([np.bincount(index, column, bins) for column in columns.T])
     found: FloatArray = np.where(
-        counts[:, None] >= FEWEST_ROWS, sums / np.maximum(counts, 1)[:, None], 0.0
+        counts[:, None] >= FEWEST_ROWS,
+        sums(index, columns, bins) / np.maximum(counts, 1)[:, None],
+        0.0,
     )
     return found

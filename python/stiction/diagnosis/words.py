@@ -188,7 +188,7 @@ def unseen_words(unseen: Mapping[str, float], beside: bool) -> str:
         f"{them}."
     )
     if beside:
-        return f" O{judged[1:]}"
+        return f" {judged[0].upper()}{judged[1:]}"
     return f"These data cannot decide whether anything is missing: {judged}"
 
 
