@@ -11,12 +11,12 @@ import pytest
 
 from stiction.catalogue import effects
 from stiction.diagnosis import decide, gains, rounds, together
+from stiction.diagnosis.beside import left_by_forms, stands_out
 from stiction.diagnosis.choose import Choice
 from stiction.diagnosis.decide import Trial
 from stiction.diagnosis.exact_forms import doubted
 from stiction.diagnosis.result import CandidateRow, Cause, Unexplained
 from stiction.diagnosis.selection import Search
-from stiction.diagnosis.trials import stands_out
 
 BLOCKS = np.ones(30), np.ones(30)
 
@@ -330,7 +330,15 @@ def test_beside_a_name_a_further_one_has_to_stand_out(
         score=times * 0.01, threshold=0.01, candidate=SimpleNamespace(record=record)
     )
     evidence: Any = SimpleNamespace(loop=loop)
-    assert stands_out(evidence, score, {"waves"} if named else set()) == passes
+    families = {"waves"} if named else set()
+    assert stands_out(evidence, score, families) == passes
+    # So does what a refit gains beyond doubt on rows held out.
+    for gain, z in ((0.2, 9.0), (0.5, 3.0), (0.5, 9.0)):
+        tried: Any = SimpleNamespace(score=score, reason="", gain=gain, z=z)
+        surely = gain > 0.3 and z > 4.0
+        assert (left_by_forms(evidence, tried, families) == "") == (passes or surely)
+    refused: Any = SimpleNamespace(score=score, reason="another one", gain=0.2, z=9.0)
+    assert left_by_forms(evidence, refused, families) == ""
 
 
 @pytest.mark.parametrize(("explained", "refused"), [(0.03, True), (0.1, False)])

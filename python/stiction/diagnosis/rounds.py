@@ -13,6 +13,7 @@ from ..catalogue import EffectRecord, effects
 from ..plant import Plant
 from ..trajectory import FloatArray
 from . import listing
+from .beside import left_by_forms
 from .candidates import Candidate, candidates, present, scales_of
 from .choose import ALIKE, Choice, choose, covers, parallel
 from .decide import LEAST_GAIN, LEAST_STRENGTH, Trial
@@ -26,15 +27,7 @@ from .screen import Score, Signatures
 from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
 from .together import pass_together, passes_beside
-from .trials import (
-    BESIDE_NAMES,
-    Screening,
-    compared_fit,
-    promises,
-    stands_out,
-    unstuck,
-    whole_fit,
-)
+from .trials import Screening, compared_fit, promises, unstuck, whole_fit
 
 __all__ = ["MOST_EFFECTS", "friction_of", "search"]
 
@@ -61,11 +54,6 @@ SWINGS: Final = "second mass"
 RELATED: Final = 0.2
 """Cosine from which on one member of a family may be a part of another; waves of different orders
 have next to none."""
-CARRIED_OVER: Final = 0.3
-"""A cause beside others that gains more than this on rows held out..."""
-SURELY: Final = 4.0
-"""... by so many standard errors is no rest of their forms: what followed these came to .2 and
-3.5."""
 MIMIC: Final = 5.0
 """What keeps less than one part in so many of its gain beside a later effect was its mimic; what
 explains less than that of a relative that was found may be the rest of it."""
@@ -261,15 +249,8 @@ def _trial(screening: Screening, found: Search, score: Score) -> Trial:
     """A candidate refitted beside what was found; refused where that may have left it."""
     trial = screening.trial(found.models[-1], score)
     trial = beside_a_second(screening, found.models[-1], trial)
-    if trial.reason or stands_out(screening.evidence, score, found.families):
-        return trial
-    if trial.gain > CARRIED_OVER and trial.z > SURELY:
-        return trial
-    reason = (
-        f"scores {100 * score.score:.1f} % of what the causes before it leave; below "
-        f"{100 * BESIDE_NAMES * score.threshold:.1f} % their forms may leave that"
-    )
-    return replace(trial, reason=reason)
+    left = left_by_forms(screening.evidence, trial, found.families)
+    return replace(trial, reason=left) if left else trial
 
 
 def _outstanding(scores: Sequence[Score]) -> Score | None:

@@ -7,10 +7,11 @@ from collections.abc import Sequence, Set
 from dataclasses import replace
 from typing import Final
 
+from .beside import stands_out
 from .choose import Choice, choose, strangers
 from .decide import Trial
 from .model import Model, without_effect
-from .trials import Screening, promises, stands_out, whole_fit
+from .trials import Screening, promises, whole_fit
 
 __all__ = ["pass_together", "passes_beside"]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Set
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -21,11 +20,9 @@ from .noisy_motion import told_by_noise
 from .screen import Problem, Score, Signatures, screen
 
 __all__ = [
-    "BESIDE_NAMES",
     "Screening",
     "compared_fit",
     "promises",
-    "stands_out",
     "unstuck",
     "whole_fit",
 ]
@@ -50,9 +47,6 @@ MANY_TIMES: Final = 5.0
 ENCOMPASSING: Final = 10.0
 """So many times what noise reaches: where the other form of a cause stood before it, it came to 2,
 4 and 4, and once, where blocks had told them apart as well, to 20."""
-BESIDE_NAMES: Final = 2.0
-"""So many times its threshold a further cause scores: second ones that were hidden came to 2.2 and
-more, what followed the rest of a first one's form to 1.1, 2.1 and 3.2."""
 WORTH_MOVING: Final = 1e-3
 """Share of the power that makes another minimum a better one."""
 LEAST_OF_NOISE: Final = 0.01
@@ -74,20 +68,6 @@ def promises(score: Score) -> bool:
         # By more than a sample the slope at no delay tells that something is late, not by how much.
         return True
     return score.heldout > 0.0 or score.score > max(MUCH, MANY_TIMES * score.threshold)
-
-
-def stands_out(evidence: Evidence, score: Score, families: Set[str]) -> bool:
-    """Whether a candidate beside causes of these families explains more than their forms may leave.
-
-    What noise reaches is known for a model that is right. The form of an effect is its author's: a
-    machine's own leaves a rest of it, which something else follows a little. Relatives pass all the
-    same: what one of several waves leaves speaks against it. Of what is late a slope tells too
-    little, and so it does of all causes where a loop is simulated, which bends itself far.
-    """
-    record = score.candidate.record
-    if not families or record.family in families or record.late or evidence.loop:
-        return True
-    return score.score > BESIDE_NAMES * score.threshold
 
 
 @dataclass(frozen=True)
