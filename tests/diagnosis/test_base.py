@@ -50,6 +50,7 @@ def test_both_leave_out_a_recording_with_a_fault_and_say_so() -> None:
     _, base = based(plant("coulomb"), [*good[:2], recorded(9, role="test")], threads=1)
     assert base.plant == fitted.plant
     assert "1 recording is left out: recording 3" in fitted.split
+    assert "test: recording 4" in fitted.split
 
 
 def replace_position(recording: st.Recording, position: np.ndarray) -> st.Recording:

@@ -104,6 +104,9 @@ class Evidence:
         Rows under one kernel.
     split : Split
     names : list of str
+        As in the session that the recordings belong to.
+    places : numpy.ndarray of int, shape (recordings,)
+        There, from 0.
     shown : list of Rows
         Fitted on or decided on: all that may be looked at before the last decision.
     fitted : numpy.ndarray of bool, shape (n,)
@@ -135,6 +138,9 @@ class Evidence:
         self.recordings = list(recordings)
         self.threads = threads
         self.names = names_of(self.recordings)
+        self.places = np.array(
+            [k if r.entry is None else r.entry[0] for k, r in enumerate(self.recordings)]
+        )
         self.forms = forms_of(plant, self.recordings, self.each, through)
         self.support = max(form.kernel.support for form in self.forms)
         self.overlap = max(f.kernel.support / (f.dt * f.stride) for f in self.forms)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -104,10 +104,12 @@ def rest(
     sliding = stacked(evidence, [look.slides.sliding for look in seen])
     steady = stacked(evidence, [settled(look) for look in seen])
     cells, weights = evidence.cells, evidence.weights
+    # Numbers are those of the session, also where some of its recordings are left out.
+    entered = replace(cells, recording=evidence.places[cells.recording])
     apart = (
         by_recording_view(
             coordinate,
-            cells,
+            entered,
             stacked(evidence, [coordinate.values(look) for look in seen]),
             both,
             weights,

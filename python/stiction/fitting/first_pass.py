@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..plant import Plant
+from ..recording.names import names_of
 from ..weak_form import WeakForm
 from .forms import (
     LEAST_LEFT,
@@ -244,9 +245,10 @@ def _simulated(
             found = _kept(found, fitted)
     lost = None if found.interrupted else _lost(found, seen.train)
     if lost is not None:
+        named = names_of(seen.watch.recordings)[lost]
         raise InputError(
             f"{plant.source}: simulated with what was fitted, the plant runs away from every start "
-            f"that the data give, in recording {lost + 1}; state starting values in [friction] "
+            f"that the data give, in {named}; state starting values in [friction] "
             "nearer to the machine, or bounds for them"
         )
     return FirstPass(seen, found, start)

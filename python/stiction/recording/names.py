@@ -17,7 +17,8 @@ def names_of(recordings: Sequence[Recording]) -> list[str]:
     """A name for each recording that no other one has.
 
     The file, with as many of its folders as tell it from others; the number, counted from 1, of a
-    recording without a file, and behind the name of one of which even the folders are alike.
+    recording without a file, and behind the name of one of which even the folders are alike. What
+    was taken out of a session keeps the name that it has there.
 
     Parameters
     ----------
@@ -30,6 +31,9 @@ def names_of(recordings: Sequence[Recording]) -> list[str]:
     paths = [recording.path for recording in recordings]
     depth = [1] * len(paths)
     names = [_named(path, 1, index) for index, path in enumerate(paths)]
+    for index, recording in enumerate(recordings):
+        if recording.entry is not None:
+            paths[index], names[index] = None, recording.entry[1]
     while alike := _alike(names):
         grown = False
         for index in alike:

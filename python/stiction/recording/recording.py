@@ -216,6 +216,24 @@ class Recording:
         object.__setattr__(again, "cold", True)
         return again
 
+    @property
+    def entry(self) -> tuple[int, str] | None:
+        """Place and name in the session that it was taken out of, where others were left out."""
+        return self.__dict__.get("_entry")
+
+    def entered(self, place: int, name: str) -> Recording:
+        """The same recording, called as it is in its session whatever is left of that.
+
+        Parameters
+        ----------
+        place : int
+            In the session, from 0.
+        name : str
+        """
+        again = copy(self)
+        object.__setattr__(again, "_entry", (place, name))
+        return again
+
     def with_input(self, values: FloatArray) -> Recording:
         """The same recording with another input.
 

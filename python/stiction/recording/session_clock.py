@@ -81,18 +81,22 @@ def ages_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
 
 
 def remaining(recordings: Sequence[Recording], places: Sequence[int]) -> list[Recording]:
-    """Some of the recordings; what follows one from cold that is not among them begins cold itself.
+    """Some of the recordings, each called as among all of them.
+
+    What follows one from cold that is not among them begins cold itself.
 
     Raises
     ------
     InputError
         As `starts_of`.
     """
-    starts, kept = starts_of(recordings), {}
+    starts, names, kept = starts_of(recordings), names_of(recordings), {}
     lost = False
     for k in sorted(range(len(recordings)), key=lambda k: starts[k]):
         cold = recordings[k].cold or lost
         if k in places:
             kept[k] = recordings[k].from_cold() if cold else recordings[k]
+            if len(places) < len(recordings):
+                kept[k] = kept[k].entered(k, names[k])
         lost = cold and k not in places
     return [kept[k] for k in places]
