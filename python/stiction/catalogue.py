@@ -139,6 +139,14 @@ class EffectRecord:
         """Whether it lets the effort follow the input late."""
         return not {"input delay", "input lag"}.isdisjoint(self.hooks)
 
+    @property
+    def swings(self) -> bool:
+        """Whether a mass swings behind it at a frequency that its gain sets.
+
+        The slope at no gain, where nothing swings, tells how stiff it is and no more.
+        """
+        return "second mass" in self.hooks and "inertia_share" not in self.gains
+
     def impossible(self, motion: str, *, servo: bool) -> str:
         """Why such a machine cannot have it, "" where it can.
 

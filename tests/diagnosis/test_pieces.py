@@ -18,7 +18,7 @@ from stiction.cli import run
 from stiction.diagnosis import listing
 from stiction.diagnosis.candidates import Scales, candidates, left_out, present, scales_of
 from stiction.diagnosis.choose import Choice, choose, strangers
-from stiction.diagnosis.decide import Trial
+from stiction.diagnosis.decide import OUT_OF_RANGE, Trial
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import HeldOut, gain_of
 from stiction.diagnosis.model import LEAST_GIVEN, Model, fitted, with_effect
@@ -338,7 +338,7 @@ def test_no_stranger_is_named_where_what_explains_most_imitates() -> None:
     assert strangers([imitates, stranger, relative], stranger) == [imitates]
     assert strangers([imitates, stranger, relative], relative) == []
     # What a relative of the winner explains as well, in another form, is no stranger.
-    form = tried(0.95, 1, "imitates something else", family="angle", uneven=1.0)
+    form = tried(0.95, 1, "imitates something else", family="angle", uneven=OUT_OF_RANGE)
     assert strangers([imitates, stranger, form], stranger) == []
     chosen = choose([imitates, relative])
     assert chosen is not None
@@ -355,7 +355,7 @@ def test_rows_that_do_not_excite_an_effect_do_not_tell_it_from_the_winner() -> N
     assert chosen is not None
     assert (chosen.winner, chosen.rivals) == (winner, (relative,))
     # Whose gain would have to be whole and is not is the winner in another form.
-    chosen = choose([winner, replace(tried(0.95, 2, "partly"), uneven=1.0, partly=True)])
+    chosen = choose([winner, replace(tried(0.95, 2, "partly"), uneven=OUT_OF_RANGE, partly=True)])
     assert chosen is not None
     assert chosen.decided
     # What the rows held out do speak about and against is no rival.

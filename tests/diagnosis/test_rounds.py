@@ -32,7 +32,8 @@ def trial(
     wave: bool = False,
 ) -> Trial:
     shapes = (SimpleNamespace(scale="order"),) if wave else ()
-    record = SimpleNamespace(family=family or name, name=name, shapes=shapes, late=False, second=())
+    record = SimpleNamespace(family=family or name, name=name, shapes=shapes, second=())
+    record.late = record.swings = False
     candidate: Any = SimpleNamespace(name=name, parameters=1, record=record)
     score: Any = SimpleNamespace(
         signature=np.asarray(contributed, dtype=float),
@@ -79,6 +80,8 @@ SPREAD = "its held-out gain is 1.96 standard errors, below 2.00"
         # By kind of recording as well as over blocks, but a shape out of its range passes nowhere.
         (0.4, "", "", True),
         (0.4, "", SPREAD, False),
+        # However uneven they make each other.
+        (1.5, "", "", True),
         (decide.OUT_OF_RANGE, "", "", False),
     ],
 )

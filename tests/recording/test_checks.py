@@ -274,6 +274,16 @@ def test_an_input_of_steps_is_at_its_limits_by_intent() -> None:
     assert verdict(data, "input refresh") == "note"
 
 
+def test_an_input_that_goes_one_way_rests_at_0_by_intent() -> None:
+    data = machine()
+    data["input"] = np.minimum(data["input"], 0.0)
+    assert verdict(data, "input saturation") == "fine"
+    data["input"] = np.maximum(data["input"], -0.3)
+    (told,) = found(data, "input saturation")
+    assert told.verdict == "note"
+    assert "at its limit -0.3 in 21 %" in told.what
+
+
 def test_cells_that_were_filled_are_noted() -> None:
     data = machine()
     data["position"][7] = np.nan

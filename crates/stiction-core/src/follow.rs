@@ -214,6 +214,7 @@ where
         let mean = located.then_some(zero);
         let friction = run.friction;
         let mut efforts = Efforts { driven: zero, ambient: zero, friction, mean, ahead: zero };
+        let mut held = false;
         for (passed, k) in samples.enumerate() {
             if passed % CHUNK == 0 {
                 state.make_room(CHUNK + CHUNK / 4);
@@ -275,8 +276,12 @@ where
             }
             if misreads || !beyond.is_empty() {
                 efforts.ahead = if misreads { at.position - track.reading() } else { zero };
+                // Between two counts of a slow motion nobody knows what moves: no mass rings there.
+                let stopped = stops.is_some_and(|stop| stop.left < 1.0 && stop.sure);
+                // A stop inside the sample shows in the acceleration at its end.
+                held = (held || stopped) && track.rests_next();
                 for mass in &mut *beyond {
-                    efforts.ahead += mass.advance(track.acceleration(&dt), duration);
+                    efforts.ahead += mass.advance(track.acceleration(&dt), duration, held);
                 }
             }
             row.see(k, &efforts, &Whereabouts { machine: &*machine, at: &at, input, load });

@@ -27,6 +27,8 @@ pub struct Stop {
     pub left: f64,
     /// Way that the velocity at its start would make in a whole sample.
     pub way: f64,
+    /// Whether it moved in every sample that may tell.
+    pub sure: bool,
 }
 
 impl<'a, S: Scalar> Track<'a, S> {
@@ -205,7 +207,7 @@ impl<'a, S: Scalar> Track<'a, S> {
             if (turn..sample).any(|before| self.read(before) != 0.0) {
                 return None;
             }
-            let Some((ago, bend, forward)) = self.turn(turn) else { continue };
+            let Some((ago, bend, forward, told)) = self.turn(turn) else { continue };
             let mut left = -ago - back as f64;
             if back < 0 {
                 // The sample has a way, be it ever so short: a stop before it is one at its start.
@@ -216,18 +218,20 @@ impl<'a, S: Scalar> Track<'a, S> {
             }
             let goes_back = self.read(sample) * forward < 0.0;
             let left = if goes_back { left.min(1.0) } else { left };
-            return Some(Stop { left, way: 2.0 * bend * left * forward });
+            let sure = told == TELLING;
+            return Some(Stop { left, way: 2.0 * bend * left * forward, sure });
         }
         None
     }
 
     /// How many samples before a stamp a machine stopped (below 0 for after it) that goes forward until
-    /// then and no further; half its deceleration, way per sample squared; and which way it went.
+    /// then and no further; half its deceleration, way per sample squared; which way it went; and how
+    /// many stamps tell that.
     ///
     /// A dry contact slows a machine down faster than it lets it speed up again: the way to the stop
     /// tells best when it was. The root of the way that is left falls in a straight line, by which
     /// the stamps before are weighted with that way: their readings err by the same.
-    fn turn(&self, stamp: usize) -> Option<(f64, f64, f64)> {
+    fn turn(&self, stamp: usize) -> Option<(f64, f64, f64, usize)> {
         let last = self.read(stamp.wrapping_sub(1));
         if last == 0.0 || last * self.read(stamp) > 0.0 || !self.goes_no_further(stamp, last) {
             return None;
@@ -251,7 +255,7 @@ impl<'a, S: Scalar> Track<'a, S> {
         let slope = (one * product - first * root) / spread;
         let ago = (slope * first - root) / (slope * one);
         // One stamp has no slope, and what does not slow down does not stop by itself.
-        (told > 1 && slope > 0.0).then(|| (ago, slope * slope, last.signum()))
+        (told > 1 && slope > 0.0).then(|| (ago, slope * slope, last.signum(), told))
     }
 
     /// Displacement that was read in a sample; 0 beyond the ends.
@@ -260,6 +264,12 @@ impl<'a, S: Scalar> Track<'a, S> {
             [from, to, ..] => to - from,
             _ => 0.0,
         })
+    }
+
+    /// Whether the machine rests in the sample that begins at the present stamp.
+    #[inline]
+    pub fn rests_next(&self) -> bool {
+        self.rests(self.stamp)
     }
 
     /// Whether the machine rests in a sample: nothing moves in it, nor in one beside it. In slow
@@ -295,9 +305,10 @@ mod tests {
             let track = Track::<f64>::new(&readings, None, 0);
             let found: Vec<(usize, Stop)> =
                 (0..11).filter_map(|k| track.stop(k).map(|stop| (k, stop))).collect();
-            let [(sample, Stop { left, way })] = found[..] else { panic!("{found:?}") };
+            let [(sample, Stop { left, way, sure })] = found[..] else { panic!("{found:?}") };
             assert!((sample as f64 + left - stop).abs() < 1e-9, "{stop}: {sample} {left}");
             assert!((way - 2.0 * half * left).abs() < 1e-9 * half);
+            assert!(sure);
         }
     }
 

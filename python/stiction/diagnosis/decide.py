@@ -61,8 +61,8 @@ to."""
 MOST_UNEVEN: Final = 0.3
 """What strengths of their own by kind of recording may add, as a share of a gain: with more
 the effect imitates something else."""
-OUT_OF_RANGE: Final = 1.0
-"""Stands for that where its shape says that it is something else."""
+OUT_OF_RANGE: Final = float("inf")
+"""Stands for that where its shape says that it is something else; no strengths add as much."""
 LEAST_SIZE: Final = 0.001
 """Contribution, as a share of the friction, below which an effect is of no relevance."""
 

@@ -135,6 +135,12 @@ class Signatures:
         over_fitted = np.compress(evidence.fitted, finite(columns), axis=1)
         return cls(tuple(candidates), columns.T, tuple(slices), over_fitted.T)
 
+    @classmethod
+    def single(cls, evidence: Evidence, candidate: Candidate, column: FloatArray) -> Signatures:
+        """What a candidate of one gain explains by a column of its own, shape (n,)."""
+        columns = column[:, None]
+        return cls((candidate,), columns, (slice(0, 1),), columns[evidence.fitted])
+
     def second_of(self, effect: Effect) -> Signatures:
         """Second waves of an effect: at zero amplitude they look like first ones.
 

@@ -9,13 +9,23 @@ from typing import Final
 import numpy as np
 
 from ..catalogue import effects
+from ..finite import finite
 from ..fitting.minimise import from_elsewhere
 from ..fitting.rows import Nuisances
 from ..plant import Plant
 from ..trajectory import FloatArray
+from .candidates import Candidate
 from .decide import Trial, judge
 from .evidence import Evidence
-from .model import REFIT_CONVERGED, Model, fitted, power_of, stepped, with_effect
+from .model import (
+    REFIT_CONVERGED,
+    Model,
+    fitted,
+    power_of,
+    stepped,
+    with_effect,
+    without_effect,
+)
 from .noisy_motion import told_by_noise
 from .screen import Problem, Score, Signatures, screen
 
@@ -64,7 +74,8 @@ def promises(score: Score) -> bool:
     """
     if not score.testable or score.score <= score.threshold:
         return False
-    if score.candidate.record.late:
+    record = score.candidate.record
+    if record.late or record.swings:
         # By more than a sample the slope at no delay tells that something is late, not by how much.
         return True
     return score.heldout > 0.0 or score.score > max(MUCH, MANY_TIMES * score.threshold)
@@ -128,10 +139,15 @@ class Screening:
         """
         candidate = score.candidate
         effect = next(each for each in model.plant.effects if each.name == candidate.name)
-        shape = {name: effect.parameters[candidate.own(name)].value for name in candidate.shape}
-        there = Signatures.of(
-            self.evidence, base.plant, base.nuisances, [replace(candidate, shape=shape)]
-        )
+        if candidate.record.swings:
+            plant = replace(base.plant, effects=(*base.plant.effects, effect))
+            column = _taken_off(self.evidence, plant, candidate.name, base.nuisances)
+            there = Signatures.single(self.evidence, candidate, column)
+        else:
+            shape = {name: effect.parameters[candidate.own(name)].value for name in candidate.shape}
+            there = Signatures.of(
+                self.evidence, base.plant, base.nuisances, [replace(candidate, shape=shape)]
+            )
         (found,) = self.with_signatures(there).scores(base)
         return replace(score, score=found.score)
 
@@ -159,6 +175,8 @@ class Screening:
 
     def contributed(self, score: Score, model: Model) -> FloatArray:
         """What an effect explains of every row after its refit; shape (n,)."""
+        if score.candidate.record.swings:
+            return _taken_off(self.evidence, model.plant, score.candidate.name, model.nuisances)
         index = self.signatures.candidates.index(score.candidate)
         gains = model.gains(score.candidate)
         explained: FloatArray = self.signatures.columns[:, self.signatures.slices[index]] @ gains
@@ -176,6 +194,12 @@ class Screening:
         )
 
 
+def _taken_off(evidence: Evidence, plant: Plant, name: str, nuisances: Nuisances) -> FloatArray:
+    """What an effect of a plant takes off the residual, the rest of the plant as it is."""
+    whole = finite(evidence.residual(plant, nuisances))
+    return finite(evidence.residual(without_effect(plant, name), nuisances)) - whole
+
+
 def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score) -> Model:
     """The base with an effect, fitted from where the screening says; from near 0 if that fails."""
     index = signatures.candidates.index(score.candidate)
@@ -185,12 +209,13 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
         gains = np.array([typical[name] for name in score.candidate.record.gains])
     explained = signatures.columns[:, signatures.slices[index]] @ score.gains
 
-    def begun(share: float) -> Plant:
-        plant = stepped(base, share * explained)
-        return with_effect(plant, score.candidate, (share * gains).tolist())
+    def begun(share: float, like: Candidate, gains: FloatArray) -> Plant:
+        return with_effect(stepped(base, share * explained), like, (share * gains).tolist())
 
     # A contact breaks away or does not: slopes tell little of what a whole gain does.
-    plants = [begun(share) for share in (SHARES if evidence.simulated else FEW_SHARES)]
+    shares = SHARES if evidence.simulated else FEW_SHARES
+    alike = _alike(signatures, index, gains)
+    plants = [begun(share, *like) for like in alike for share in shares]
     start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
     model = compared_fit(evidence, start, base.nuisances)
     if model.power < (1.0 - KEPT * score.score) * base.power:
@@ -207,6 +232,26 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
         if alone.power < base.power:
             break
     return unstuck(min(tried, key=lambda each: each.power))
+
+
+def _alike(
+    signatures: Signatures, index: int, gains: FloatArray
+) -> list[tuple[Candidate, FloatArray]]:
+    """A candidate with its gains; where it swings also those of which slopes do not tell it.
+
+    Their signatures are multiples of each other, and from one frequency no fit finds another.
+    """
+    candidate = signatures.candidates[index]
+    found = [(candidate, gains)]
+    if not candidate.record.swings:
+        return found
+    own = signatures.over_fitted[:, signatures.slices[index]]
+    for other, place in zip(signatures.candidates, signatures.slices, strict=True):
+        if other.name == candidate.name and other is not candidate:
+            column = signatures.over_fitted[:, place]
+            times = float(np.sum(own * column)) / max(float(np.sum(column**2)), 1e-300)
+            found.append((other, times * gains))
+    return found
 
 
 def unstuck(model: Model) -> Model:

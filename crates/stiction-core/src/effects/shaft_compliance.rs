@@ -20,8 +20,8 @@ parameters! {
 /// A share of the inertia behind a spring and damper: what the motor turns at once is the rest.
 ///
 /// J·(1 − s)·x'' = u − F − T, J·s·y'' = T, T = (x − y)/c + d·(x' − y'). Seen from the motor with a stiff
-/// shaft that is an effort −c·(s·J)²·x'''': only c·s² is told by data far below the resonance, so the
-/// share stays as stated in a diagnosis.
+/// shaft that is an effort −c·(s·J)²·x'''': data far below the resonance tell c·s² alone, and those that
+/// reach it c·s as well.
 ///
 /// Neutral: c = 0.
 /// Source: two-mass system, Ellis, Lorenz, Resonant load control methods, IEEE IAS (2000).
@@ -44,8 +44,8 @@ impl<S: Scalar> Effect<S> for ShaftCompliance<S> {
         plan: "chirp",
         gains: &["compliance"],
         shapes: &[
-            Shape { parameter: "inertia_share", scale: Scale::One, grid: &[0.5], fitted: false },
-            Shape { parameter: "damping_ratio", scale: Scale::One, grid: &[0.04], fitted: false },
+            Shape { parameter: "inertia_share", scale: Scale::One, grid: &[0.2, 0.3, 0.4, 0.5, 0.65, 0.8], fitted: true },
+            Shape { parameter: "damping_ratio", scale: Scale::One, grid: &[0.08], fitted: true },
         ],
         second: &[],
         law_terms: &[],

@@ -67,8 +67,23 @@ impl<S: Scalar> Shaft<S> {
 }
 
 /// A second mass seen from a measured motion of the motor.
+///
+/// While a rigid contact rests it holds what a shaft pulls at the motor, and what the mass does then is
+/// nobody's effort: its centre of mass counts as going on as it went when the motor stopped. The end
+/// of a gap knocks harder than a contact holds: then the motor moves, and does not rest.
 #[derive(Debug, Clone, Copy)]
-pub enum Beyond<S> {
+pub struct Beyond<S> {
+    share: S,
+    mass: Far<S>,
+    /// How far the centre of mass is ahead, without what it did at rest.
+    ahead: S,
+    /// What of its rate was held at rests.
+    held: S,
+}
+
+/// A mass behind the motor.
+#[derive(Debug, Clone, Copy)]
+enum Far<S> {
     /// On a shaft.
     Shaft(Twist<S>),
     /// In a gap.
@@ -78,20 +93,47 @@ pub enum Beyond<S> {
 impl<S: Scalar> Beyond<S> {
     /// At rest.
     pub fn new(mass: &SecondMass<S>, inertia: S) -> Self {
-        match mass.coupling {
+        let zero = S::constant(0.0);
+        let far = match mass.coupling {
             Coupling::Shaft { compliance, damping_ratio } => {
-                Self::Shaft(Twist::new(mass.share, compliance, damping_ratio, inertia))
+                Far::Shaft(Twist::new(mass.share, compliance, damping_ratio, inertia))
             }
-            Coupling::Gap { width } => Self::Gap(Flight::new(mass.share, width)),
-        }
+            Coupling::Gap { width } => Far::Gap(Flight::new(width)),
+        };
+        Self { share: mass.share, mass: far, ahead: zero, held: zero }
     }
 
-    /// Goes through a sample at whose end the motor has this acceleration; gives how far the centre
-    /// of mass is then ahead of the motor.
-    pub fn advance(&mut self, acceleration: S, span: f64) -> S {
+    /// Goes through a sample at whose end the motor has this acceleration, and a rigid contact has
+    /// `held` the motor or not; gives how far the centre of mass is then ahead of the motor.
+    pub fn advance(&mut self, acceleration: S, span: f64, held: bool) -> S {
+        let (before, speed) = self.mass.state();
+        self.mass.advance(acceleration, span);
+        let (after, left) = self.mass.state();
+        if held && matches!(self.mass, Far::Shaft(_)) {
+            self.ahead += (self.share * speed + self.held) * span;
+            self.held += self.share * (speed - left);
+        } else {
+            self.ahead += self.share * (after - before) + self.held * span;
+        }
+        self.ahead
+    }
+}
+
+impl<S: Scalar> Far<S> {
+    #[inline]
+    fn advance(&mut self, acceleration: S, span: f64) {
         match self {
             Self::Shaft(twist) => twist.advance(acceleration, span),
             Self::Gap(flight) => flight.advance(acceleration, span),
+        }
+    }
+
+    /// How far it is ahead, and how fast it gets there.
+    #[inline]
+    fn state(&self) -> (S, S) {
+        match self {
+            Self::Shaft(twist) => (twist.ahead, twist.rate),
+            Self::Gap(flight) => (flight.ahead, flight.rate),
         }
     }
 }
@@ -101,8 +143,7 @@ impl<S: Scalar> Beyond<S> {
 /// e'' = −x'' inside, with an acceleration that changes linearly over a sample; at an end it stays
 /// until the motor leaves it behind.
 #[derive(Debug, Clone, Copy)]
-pub struct Flight<S> {
-    share: S,
+struct Flight<S> {
     play: S,
     ahead: S,
     rate: S,
@@ -111,13 +152,13 @@ pub struct Flight<S> {
 
 impl<S: Scalar> Flight<S> {
     /// In the middle of the gap.
-    pub fn new(share: S, width: S) -> Self {
+    fn new(width: S) -> Self {
         let zero = S::constant(0.0);
-        Self { share, play: width * 0.5, ahead: zero, rate: zero, before: zero }
+        Self { play: width * 0.5, ahead: zero, rate: zero, before: zero }
     }
 
-    /// As [`Beyond::advance`].
-    pub fn advance(&mut self, acceleration: S, span: f64) -> S {
+    /// Goes through a sample at whose end the motor has this acceleration.
+    fn advance(&mut self, acceleration: S, span: f64) {
         let (from, to) = (self.before, acceleration);
         self.before = to;
         let bent = (from * 2.0 + to) * (span * span / 6.0);
@@ -130,7 +171,6 @@ impl<S: Scalar> Flight<S> {
                 self.rate = S::constant(0.0);
             }
         }
-        self.share * self.ahead
     }
 }
 
@@ -140,8 +180,7 @@ impl<S: Scalar> Flight<S> {
 /// changes linearly over a sample. As μ → 0 that goes over into e = −μ·x'' without a seam, which is
 /// what its derivative at a rigid shaft is taken from.
 #[derive(Debug, Clone, Copy)]
-pub struct Twist<S> {
-    share: S,
+struct Twist<S> {
     /// Compliance times the inertia beyond the shaft, 1/ω².
     square: S,
     /// ζ of the far mass on a shaft that is held.
@@ -153,10 +192,9 @@ pub struct Twist<S> {
 
 impl<S: Scalar> Twist<S> {
     /// A shaft at rest.
-    pub fn new(share: S, compliance: S, damping_ratio: S, inertia: S) -> Self {
+    fn new(share: S, compliance: S, damping_ratio: S, inertia: S) -> Self {
         let zero = S::constant(0.0);
         Self {
-            share,
             square: compliance * share * inertia,
             ratio: damping_ratio * (-(share - 1.0)).sqrt(),
             ahead: zero,
@@ -165,13 +203,13 @@ impl<S: Scalar> Twist<S> {
         }
     }
 
-    /// As [`Beyond::advance`].
-    pub fn advance(&mut self, acceleration: S, span: f64) -> S {
+    /// As [`Flight::advance`].
+    fn advance(&mut self, acceleration: S, span: f64) {
         let (from, to) = (self.before, acceleration);
         self.before = to;
         if self.square.re() <= 0.0 {
             self.ahead = -(self.square * to);
-            return self.share * self.ahead;
+            return;
         }
         let omega = S::constant(1.0) / self.square.sqrt();
         let slope = (to - from) / span;
@@ -187,7 +225,6 @@ impl<S: Scalar> Twist<S> {
         self.ahead = following(to) + left * (distance * cosine + (speed + decay * distance) * sine);
         self.rate =
             drift + left * (speed * cosine - (decay * speed + omega * omega * distance) * sine);
-        self.share * self.ahead
     }
 }
 
@@ -208,18 +245,18 @@ mod tests {
     fn a_free_mass_crosses_its_gap_in_the_time_that_the_motor_leaves_it_behind() {
         // The motor brakes evenly from rest against the front end: e = a·t²/2 until the other end.
         let (gap, braking, dt) = (2e-3, 40.0, 1e-4);
-        let mut flight = Flight::new(SHARE, gap);
+        let mut flight = Flight::new(gap);
         for _ in 0..500 {
             flight.advance(braking, dt);
         }
         assert_eq!(flight.ahead, -0.5 * gap);
         flight.advance(-braking, dt);
         for k in 1..200 {
-            let ahead = flight.advance(-braking, dt);
+            flight.advance(-braking, dt);
             // Half a sample late: the acceleration turns round over the first one.
             let t = f64::from(k) * dt;
             let exact = (-0.5 * gap + 0.5 * braking * t * t).min(0.5 * gap);
-            assert!((ahead - SHARE * exact).abs() < SHARE * braking * dt * (t + dt), "{k}");
+            assert!((flight.ahead - exact).abs() < braking * dt * (t + dt), "{k}");
         }
         assert_eq!(flight.ahead, 0.5 * gap);
     }
@@ -249,10 +286,10 @@ mod tests {
             let mut worst: f64 = 0.0;
             for k in 1..60_000 {
                 let t = f64::from(k) * dt;
-                let ahead = shaft.advance(-w * w * (w * t).sin(), dt);
-                let exact = SHARE * size * (a * (w * t).sin() - b * (w * t).cos());
+                shaft.advance(-w * w * (w * t).sin(), dt);
+                let exact = size * (a * (w * t).sin() - b * (w * t).cos());
                 if t > 5.0 {
-                    worst = worst.max((ahead - exact).abs() / (SHARE * size * a.hypot(b)));
+                    worst = worst.max((shaft.ahead - exact).abs() / (size * a.hypot(b)));
                 }
             }
             assert!(worst < 2e-3, "{frequency} Hz: {worst}");
@@ -266,12 +303,50 @@ mod tests {
         let mut soft = twist(small);
         for k in 1..2000 {
             let acceleration = (f64::from(k) * 0.02).sin();
-            let exact = rigid.advance(Dual::constant(acceleration), 1e-3);
-            let chord = soft.advance(acceleration, 1e-3) / small;
+            rigid.advance(Dual::constant(acceleration), 1e-3);
+            soft.advance(acceleration, 1e-3);
+            let (exact, chord) = (rigid.ahead, soft.ahead / small);
             assert_eq!(exact.re(), 0.0);
-            let gone = -SHARE * SHARE * INERTIA;
+            let gone = -SHARE * INERTIA;
             assert!((Scalar::partial(exact, 0) - gone * acceleration).abs() < 1e-15);
             assert!((chord - gone * acceleration).abs() < 2e-2 * gone.abs(), "{k}");
         }
+    }
+
+    #[test]
+    fn what_a_mass_does_behind_a_motor_at_rest_is_nobodys_effort() {
+        // Evenly braked, then held: the shaft rings on, and its centre of mass counts as going on
+        // as it went. Off again, it goes with the shaft as if there had been no rest.
+        let (dt, braking) = (1e-3, -3.0);
+        let mass = SecondMass {
+            share: SHARE,
+            coupling: Coupling::Shaft { compliance: 1e-3, damping_ratio: 0.05 },
+        };
+        let mut beyond = Beyond::new(&mass, INERTIA);
+        let mut bare = twist(1e-3);
+        let mut both = |acceleration, held| {
+            bare.advance(acceleration, dt);
+            (beyond.advance(acceleration, dt, held), SHARE * bare.ahead, SHARE * bare.rate)
+        };
+        let mut steady = (0.0, 0.0, 0.0);
+        for _ in 0..2000 {
+            steady = both(braking, false);
+        }
+        // e = −μ·x''
+        assert!((steady.0 - 1e-3 * SHARE * SHARE * INERTIA * -braking).abs() < 1e-9);
+        let mut rests = steady;
+        for _ in 0..30 {
+            rests = both(0.0, true);
+            assert!((rests.0 - steady.0).abs() < 1e-9);
+        }
+        let (from, rate) = (rests.1, rests.2);
+        let mut rang = 0.0_f64;
+        for k in 1..100 {
+            let (ahead, there, _) = both(2.0, false);
+            let expected = there - from - rate * f64::from(k) * dt;
+            assert!((ahead - rests.0 - expected).abs() < 1e-9, "{k}: {ahead} {expected}");
+            rang = rang.max(expected.abs());
+        }
+        assert!(rang > 1e-6);
     }
 }

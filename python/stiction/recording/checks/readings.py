@@ -370,7 +370,7 @@ def saturation(
     """Whether the input rests at its limits.
 
     An input that moves in steps anyway is at an extreme by intent and passes; so is the goal of a
-    servo.
+    servo. Nor is 0 a limit: an input that goes one way alone rests there where it asks for nothing.
 
     Parameters
     ----------
@@ -388,19 +388,21 @@ def saturation(
         return Check(name, "fine", "there is no changing input to look at")
     if recording.units.get("input") in ("rad", "m") or "proportional" in recording.settings:
         return Check(name, "fine", "the input is a goal, which has no limits of its own")
-    at_limit = np.zeros(len(values), dtype=np.bool_)
+    resting = np.zeros(len(values), dtype=np.bool_)
     for extreme in (values.min(), values.max()):
         for start, stop in runs(values == extreme):
             if stop - start >= fewest:
-                at_limit[start:stop] = True
+                resting[start:stop] = True
+    at_limit = resting & (values != 0.0)
     changes = np.diff(values) != 0.0
-    free = ~at_limit[1:]
+    free = ~resting[1:]
     number = int(at_limit.sum())
     stepped = not free.any() or changes[free].mean() < 0.5
     if stepped or number <= share * len(values):
         return Check(name, "fine", "the input does not rest at its limits")
+    limits = [f"{extreme:.4g}" for extreme in np.unique(values[at_limit])]
     what = (
-        f"the input rests at its limits {values.min():.4g} and {values.max():.4g} in "
+        f"the input rests at its limit{'s' * (len(limits) > 1)} {' and '.join(limits)} in "
         f"{100 * number / len(values):.3g} % of the rows"
     )
     return Check(
