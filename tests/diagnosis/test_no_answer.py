@@ -152,13 +152,36 @@ def test_a_name_needs_a_plant_that_describes_the_machine(
     held = np.arange(900) % 3 == 0
     evidence: Any = SimpleNamespace(plans=[SimpleNamespace(held=held)], stack=lambda _: one)
     selection = selected("first")
-    models: list[Any] = [SimpleNamespace(residual=size * one, plant=None) for size in sizes]
+    models = [modelled(size * one) for size in sizes]
     # Noise alone leaves as little everywhere.
     null = np.repeat(0.1 * one[:, None], 4, axis=1)
     found = described(replace(selection, models=models), evidence, null)
     assert found.rows["first"].reason == reason
     assert len(found.choices) == (reason == "accepted")
     assert len(found.models) == 1 + len(found.choices)
+
+
+def modelled(residual: np.ndarray) -> Any:
+    powers = np.sum(residual.reshape(-1, 30) ** 2, axis=1)
+    return SimpleNamespace(residual=residual, plant=None, blocks=(powers, powers))
+
+
+def test_one_block_takes_no_name_away() -> None:
+    source = np.random.default_rng(0)
+    before = source.standard_normal(900)
+    after = 0.5 * before
+    # One break-away that comes too early leaves more than all that was gained elsewhere.
+    after[:30] += 8.0
+    assert np.sum(after**2) > np.sum(before**2)
+    held = np.ones(900, dtype=bool)
+    evidence: Any = SimpleNamespace(
+        plans=[SimpleNamespace(held=held)], stack=lambda _: np.full(900, 30.0)
+    )
+    selection = replace(selected("first"), models=[modelled(before), modelled(after)])
+    null = np.repeat(0.1 * before[:, None], 4, axis=1)
+    assert described(selection, evidence, null).choices
+    astray = replace(selection, models=[modelled(before), modelled(1.2 * before)])
+    assert not described(astray, evidence, null).choices
 
 
 def alone(*, bias: float, follows: bool) -> st.Diagnosis:

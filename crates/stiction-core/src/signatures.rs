@@ -339,7 +339,7 @@ fn samples_along(
                 enabled: at.enabled,
             },
             passage,
-            by: std::array::from_fn(|k| mean.partial(k)),
+            by: [mean.partial(0), mean.partial(1), mean.partial(2)],
             command,
             gain: if at.enabled { drive.slope(command, at.velocity.re()) } else { 0.0 },
         });

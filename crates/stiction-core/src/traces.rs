@@ -164,7 +164,11 @@ impl Wide for Across<'_, '_> {
     #[inline(always)]
     fn run<V: Vector>(self) {
         for (half, rows) in self.rows.chunks_mut(ROW).enumerate() {
-            let across = V::across(self.slopes.each_ref().map(|of| &of.as_chunks().0[half]));
+            let mut halves = [&[0.0; ROW]; ROW];
+            for (place, of) in halves.iter_mut().zip(self.slopes) {
+                *place = &of.as_chunks().0[half];
+            }
+            let across = V::across(halves);
             for (row, across) in rows.iter_mut().zip(across) {
                 if let Some(places) = row[self.first..].first_chunk_mut() {
                     for (chunk, vector) in across.iter().enumerate().take(V::CHUNKS) {

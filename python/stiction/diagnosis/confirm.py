@@ -13,6 +13,7 @@ from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .evidence import Evidence
 from .gain import HeldOut, gain_of
+from .gains import heldout_gain
 from .model import Model
 from .selection import Search
 
@@ -35,7 +36,8 @@ def described(selection: Search, evidence: Evidence, null: FloatArray) -> Search
     """The selection without any cause where the plant describes no machine, causes and all.
 
     Beside a model that leaves most of the effort, anything that bends a little helps a little, and
-    what helped at first may have led the whole plant astray.
+    what helped at first may have led the whole plant astray. A block in which a contact breaks away
+    a moment too early says no more of that than it does of each cause.
 
     Parameters
     ----------
@@ -46,11 +48,10 @@ def described(selection: Search, evidence: Evidence, null: FloatArray) -> Search
     """
     if not selection.choices:
         return selection
-    held = _deciding(evidence)
-    first, last = (float(np.sum(m.residual[held] ** 2)) for m in _ends(selection))
+    gain, _ = heldout_gain(*_ends(selection))
     if lost(evidence, selection.models[-1], null):
         reason = NO_MACHINE
-    elif last > first:
+    elif gain < 0.0:
         reason = NO_BETTER
     else:
         return selection
