@@ -44,7 +44,12 @@ impl<S: Scalar> Effect<S> for ShaftCompliance<S> {
         plan: "chirp",
         gains: &["compliance"],
         shapes: &[
-            Shape { parameter: "inertia_share", scale: Scale::One, grid: &[0.2, 0.3, 0.4, 0.5, 0.65, 0.8], fitted: true },
+            Shape {
+                parameter: "inertia_share",
+                scale: Scale::One,
+                grid: &[0.2, 0.3, 0.4, 0.5, 0.65, 0.8],
+                fitted: true,
+            },
             Shape { parameter: "damping_ratio", scale: Scale::One, grid: &[0.08], fitted: true },
         ],
         second: &[],
