@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 import stiction as st
-from stiction.recording.names import names_of
+from stiction.recording.names import names_of, places_in_session
 
 ROWS = "\n".join(f"{k * 0.001},{np.sin(0.01 * k)},{np.sin(0.01 * k)}" for k in range(300))
 
@@ -42,6 +42,8 @@ def test_what_is_left_of_a_session_is_called_as_in_the_session(tmp_path: Path) -
     made = [st.Recording(days[0].time, days[0].input, days[0].position) for _ in range(4)]
     left = remaining([*made, *days], [0, 2, 3, 5])
     assert names_of(left) == ["recording 1", "recording 3", "recording 4", "tuesday/run.csv"]
-    assert names_of(remaining(left, [1, 3])) == ["recording 3", "tuesday/run.csv"]
+    again = remaining(left, [1, 3])
+    assert names_of(again) == ["recording 3", "tuesday/run.csv"]
+    assert places_in_session(again) == [2, 5]
     # Beside one of another session the name may be taken.
     assert len(set(names_of([made[1], *left, made[1], made[1]]))) == 7

@@ -18,7 +18,7 @@ from ..fitting.pushes import Watch
 from ..fitting.rows import Mask, Nuisances, Rows, rows_of
 from ..plant import Plant
 from ..recording import Part, Recording
-from ..recording.names import names_of
+from ..recording.names import names_of, places_in_session
 from ..recording.split import BLOCK_S, Split, split
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
@@ -138,9 +138,7 @@ class Evidence:
         self.recordings = list(recordings)
         self.threads = threads
         self.names = names_of(self.recordings)
-        self.places = np.array(
-            [k if r.entry is None else r.entry[0] for k, r in enumerate(self.recordings)]
-        )
+        self.places = np.array(places_in_session(self.recordings))
         self.forms = forms_of(plant, self.recordings, self.each, through)
         self.support = max(form.kernel.support for form in self.forms)
         self.overlap = max(f.kernel.support / (f.dt * f.stride) for f in self.forms)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .recording import Recording
 
-__all__ = ["names_of"]
+__all__ = ["names_of", "places_in_session"]
 
 
 def names_of(recordings: Sequence[Recording]) -> list[str]:
@@ -47,6 +47,16 @@ def names_of(recordings: Sequence[Recording]) -> list[str]:
                 names[index] = f"{names[index]} ({index + 1})"
             break
     return names
+
+
+def places_in_session(recordings: Sequence[Recording]) -> list[int]:
+    """Place of each recording, from 0, in the session that it was taken out of; else among these.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    """
+    return [k if each.entry is None else each.entry[0] for k, each in enumerate(recordings)]
 
 
 def _alike(names: Sequence[str]) -> list[int]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from ..errors import InputError
-from .names import names_of
+from .names import names_of, places_in_session
 from .recording import Recording
 
 __all__ = ["ages_of", "origin_of", "remaining", "starts_of"]
@@ -90,13 +90,14 @@ def remaining(recordings: Sequence[Recording], places: Sequence[int]) -> list[Re
     InputError
         As `starts_of`.
     """
-    starts, names, kept = starts_of(recordings), names_of(recordings), {}
+    starts, kept = starts_of(recordings), {}
+    names, own = names_of(recordings), places_in_session(recordings)
     lost = False
     for k in sorted(range(len(recordings)), key=lambda k: starts[k]):
         cold = recordings[k].cold or lost
         if k in places:
             kept[k] = recordings[k].from_cold() if cold else recordings[k]
             if len(places) < len(recordings):
-                kept[k] = kept[k].entered(k, names[k])
+                kept[k] = kept[k].entered(own[k], names[k])
         lost = cold and k not in places
     return [kept[k] for k in places]
