@@ -40,6 +40,9 @@ OF_A_LAW: Final = frozenset({"breakaway", "creep", "memory"})
 """Families of effects that say how friction goes with speed, time and reversals, as laws do."""
 WORTH_A_TERM: Final = 0.95
 """Share of the power that an optional term of a law may leave at most to stay in a comparison."""
+HOPELESS: Final = 100.0
+"""Times the power left with all effects: a law that nobody asked for is given up where it leaves
+more after the first steps from all of its starts."""
 WORTH_MORE: Final = 0.1
 """Share of what is left with all effects that another law alone must remove to be the likelier
 cause."""
@@ -142,7 +145,7 @@ def rivals_of(selection: Search, wanted: Sequence[str]) -> list[Rival]:
         names.append(YIELDING)
     rivals = []
     for law in names:
-        model = _fitted(base, law)
+        model = _fitted(base, law, math.inf if law in wanted else HOPELESS * final.power)
         if model is not None and model.solution.interrupted:
             # Half a fit is no fair comparison: what is known of the effects stays.
             selection.interrupted = True
@@ -187,18 +190,20 @@ def better_law(rivals: Sequence[Rival]) -> Rival | None:
     return max(better, key=lambda rival: rival.beside) if better else None
 
 
-def _fitted(base: Model, law: str) -> Model | None:
+def _fitted(base: Model, law: str, hopeless: float) -> Model | None:
     """The plant with another law, fitted with the same weights; None where it cannot be.
+
+    Nor where it leaves more than ``hopeless``, a power, after a few steps.
 
     Terms of the law that a fit leaves alone and no effect would offer, such as the compliance of a
     rig, are tried as well, and stay where they leave less.
     """
     _logger.info("fitting law %s", law)
     more = _left_alone(law)
-    plain = _launched(base, Friction(law))
+    plain = _launched(base, Friction(law), hopeless)
     if not more or plain is None or plain.solution.interrupted:
         return plain
-    full = _launched(base, Friction(law, {**plain.plant.friction.parameters, **more}))
+    full = _launched(base, Friction(law, {**plain.plant.friction.parameters, **more}), hopeless)
     if full is None:
         return plain
     if full.solution.interrupted:
@@ -217,7 +222,7 @@ def _left_alone(law: str) -> dict[str, Parameter]:
     }
 
 
-def _launched(base: Model, friction: Friction) -> Model | None:
+def _launched(base: Model, friction: Friction, hopeless: float) -> Model | None:
     evidence = base.evidence
     try:
         bare = replace(base.plant, friction=friction)
@@ -226,8 +231,9 @@ def _launched(base: Model, friction: Friction) -> Model | None:
             evidence.train,
             most=MOST_EVALUATIONS,
             within=lambda start: followable(start, evidence.forms),
+            hopeless=hopeless,
         )
-        return Model(evidence, found)
+        return None if found.power > hopeless and not found.interrupted else Model(evidence, found)
     except InputError as error:
         _logger.info("%s: %s", friction.law, error)
         return None

@@ -13,6 +13,7 @@ from ..errors import InputError, NotEnoughData
 from ..fitting.forms import told as residual_told
 from ..given import instance, whole
 from ..plant import Plant
+from ..products import on_one_thread
 from ..recording import Check, Recording
 from ..recording.checks import DOUBTED, without_failures
 from ..recording.names import names_of
@@ -49,6 +50,7 @@ TRAIN_IS_FITTED: Final = (
 _logger = logging.getLogger(__name__)
 
 
+@on_one_thread
 def diagnose(
     plant: Plant | None,
     session: Session | Sequence[Recording] | Recording,

@@ -171,8 +171,8 @@ def _round(
             found.rows[score.candidate.name] = listing.screened(score)
             if not score.testable:
                 found.blind.append(score.candidate.record)
-    outstanding = _outstanding(scores)
-    passing = [score for score in scores if promises(score) or score is outstanding]
+    outstanding = {score.candidate.name for score in _outstanding(scores)}
+    passing = [s for s in scores if promises(s) or s.candidate.name in outstanding]
     trials: list[Trial] = []
     asked = [s for s in scores if _is_asked(screening, s) and s not in passing[:REFITTED]]
     try:
@@ -253,18 +253,19 @@ def _trial(screening: Screening, found: Search, score: Score) -> Trial:
     return replace(trial, reason=left) if left else trial
 
 
-def _outstanding(scores: Sequence[Score]) -> Score | None:
-    """The candidate that explains many times what any other family does, if it beats noise.
+def _outstanding(scores: Sequence[Score]) -> list[Score]:
+    """What explains many times what any other family does, if it beats noise, the best first.
 
     Held out it may do harm as long as the base stands where the cause has driven it: what is so
-    much likelier than all others is refitted all the same.
+    much likelier than all others is refitted all the same, and its relatives with it.
     """
-    best = max((s for s in scores if s.testable), key=lambda s: s.score, default=None)
-    if best is None or best.score <= best.threshold:
-        return None
-    family = best.candidate.record.family
-    others = [s.score for s in scores if s.testable and s.candidate.record.family != family]
-    return best if best.score > OUTSTANDING * max(others, default=0.0) else None
+    testable = sorted((s for s in scores if s.testable), key=lambda s: -s.score)
+    if not testable:
+        return []
+    family = testable[0].candidate.record.family
+    others = [s.score for s in testable if s.candidate.record.family != family]
+    least = OUTSTANDING * max(others, default=0.0)
+    return [s for s in testable if s.score > max(least, s.threshold)]
 
 
 def _is_asked(screening: Screening, score: Score) -> bool:

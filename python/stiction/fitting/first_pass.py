@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Generic, Protocol, TypeVar
@@ -149,6 +150,7 @@ def launched(
     *,
     most: int,
     within: Callable[[Plant], Plant] = lambda start: start,
+    hopeless: float = math.inf,
 ) -> tuple[Plant, Solution]:
     """Fit a plant to rows from what the data give to start from.
 
@@ -165,6 +167,8 @@ def launched(
         Evaluations of the residual at most, of each start.
     within : callable
         What a start must be made to be followed.
+    hopeless : float
+        Where all starts leave more power than this after a few steps, that is the end.
 
     Returns
     -------
@@ -175,8 +179,8 @@ def launched(
     forms = [each.form for each in rows]
     starts = complete(plant, forms)
     begun = [within(start) for start in starts]
-    found = launch(begun, free_paths(begun[0]), rows, most=most)
-    if found.interrupted:
+    found = launch(begun, free_paths(begun[0]), rows, most=most, hopeless=hopeless)
+    if found.interrupted or found.power > hopeless:
         return starts[0], found
     try:
         others = [within(start) for start in clinging(plant, starts, forms)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -186,11 +187,17 @@ def started(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisanc
 
 
 def launch(
-    plants: Sequence[Plant], paths: Sequence[str], rows: Sequence[Rows], *, most: int
+    plants: Sequence[Plant],
+    paths: Sequence[str],
+    rows: Sequence[Rows],
+    *,
+    most: int,
+    hopeless: float = math.inf,
 ) -> Solution:
     """Minimise from each of several starts for a while, then on from the best of them.
 
-    After a few steps the better half of them goes on.
+    After a few steps the better half of them goes on; none does where all are above ``hopeless``,
+    a power.
     """
     first = []
     for plant in plants:
@@ -205,6 +212,9 @@ def launch(
         if first[-1].interrupted:
             break
     spent = sum(solution.evaluations for solution in first)
+    best = min(first, key=lambda solution: solution.power)
+    if best.power > hopeless:
+        return replace(best, evaluations=spent)
     if len(first) > LEFT and not any(solution.interrupted for solution in first):
         first = sorted(first, key=lambda solution: solution.power)[:LEFT]
         for k, solution in enumerate(first):

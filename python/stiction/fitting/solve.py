@@ -12,6 +12,7 @@ from ..drive import assumed_gain
 from ..errors import InputError, NotEnoughData
 from ..given import instance, whole
 from ..plant import Plant
+from ..products import on_one_thread
 from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.checks import without_failures
@@ -99,6 +100,7 @@ class _Seen:
             raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
 
 
+@on_one_thread
 def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) -> FitResult:
     """Fit a plant to the recordings of a session.
 
