@@ -75,8 +75,8 @@ def test_a_fit_of_a_law_that_was_interrupted_is_not_compared(
 ) -> None:
     whole = laws._fitted
 
-    def stopped(base: Model, law: str) -> Model | None:
-        model = whole(base, law)
+    def stopped(base: Model, law: str, hopeless: float) -> Model | None:
+        model = whole(base, law, hopeless)
         assert model is not None
         return replace(model, solution=replace(model.solution, interrupted=True))
 
@@ -86,6 +86,31 @@ def test_a_fit_of_a_law_that_was_interrupted_is_not_compared(
     assert found.message.startswith("interrupted")
     assert found.laws == ()
     assert found.verdict == "nothing_missing"
+
+
+@pytest.mark.parametrize("asked", [False, True])
+def test_a_law_that_leads_nowhere_is_fitted_to_its_end_only_where_it_was_asked_for(
+    asked: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # A dry contact rests, and one that yields follows no rest whose effort changes.
+    hidden = (("torque_bias", 0.02),)
+    session = {"seed": 32, "seconds": SECONDS, "base": "coulomb", "hidden": hidden}
+    machine = make_sessions([session])[0]
+    seen: list[laws.Rival] = []
+    whole = laws.rivals_of
+
+    def looks(*given: Any) -> list[laws.Rival]:
+        seen.extend(whole(*given))
+        return seen
+
+    monkeypatch.setattr("stiction.diagnosis.conclude.rivals_of", looks)
+    names = ("maxwell_slip",) if asked else ()
+    found = st.diagnose(as_plant(machine), as_session(machine), surrogates=6, laws=names)
+    assert found.effects
+    (law,) = seen
+    assert (law.law, law.asked, law.model is not None) == ("maxwell_slip", asked, asked)
+    assert len(found.laws) == asked
+    assert found.better_law == ""
 
 
 def rival(law: str, power: float, **terms: float) -> laws.Rival:
