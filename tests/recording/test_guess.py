@@ -84,10 +84,22 @@ def test_every_column_says_why() -> None:
     why = {one.column: one.reason for one in found.columns if one.role is None}
     assert why == {
         "blue": "no word of its name is known",
-        "enable": "'enable' is neither a motion nor an effort",
+        "enable": "it is 1 in every row: the drive was always on",
     }
     assert found.motion_reason
     assert found.drive_reason
+
+
+@pytest.mark.parametrize("name", ["enable", "torque_enable", "DriveEnabled"])
+def test_where_the_drive_is_off_is_known_by_what_it_is_enabled_by(name: str) -> None:
+    real = machine()
+    columns = {"t": real["time"], "q": real["position"], "i": real["effort"]}
+    off = np.where(real["time"] < 1.0, 1.0, 0.0)
+    assert roles(guess([table({**columns, name: off})]))["enabled"] == (name, "1")
+    for other in (2.0 * off, 0.0 * off):
+        found = guess([table({**columns, name: other})])
+        why = {one.column: one.reason for one in found.columns if one.role is None}
+        assert why == {name: "what says whether a drive is on is 0 or 1"}
 
 
 def test_the_order_of_the_columns_does_not_matter() -> None:
@@ -357,10 +369,10 @@ REAL = {
     # Their input is a goal; supply voltage, raw load and unsigned torque do not stand for it.
     "xl330": ("*.json", "rotary", None,
               {"time": "timestamp", "position": "position", "velocity": "speed",
-               "temperature": "temp", "reference": "goal_position"}),
+               "temperature": "temp", "reference": "goal_position", "enabled": "torque_enable"}),
     "sts3215": ("*.json", "rotary", None,
                 {"time": "timestamp", "position": "position", "velocity": "speed",
-                 "temperature": "temp", "reference": "goal_position"}),
+                 "temperature": "temp", "reference": "goal_position", "enabled": "torque_enable"}),
 }  # fmt: skip
 UNITS = {"dist": "mm", "y": "mm", "qm": "m", "Displ(microns)": "um", "position": "rad"}
 
@@ -372,6 +384,10 @@ def test_real_recordings_are_understood(shared_data: Path, folder: str) -> None:
     for chosen in (paths, paths[:1], paths[-1:]):
         found = guess([read_table(path) for path in chosen])
         assert (found.motion, found.drive) == (motion, drive)
-        assert {role: one.column for role, one in found.by_role.items()} == expected
+        known = {role: one.column for role, one in found.by_role.items()}
+        # A single log in which a servo is never switched off tells of no drive that is.
+        assert known.pop("enabled", expected.get("enabled")) == expected.get("enabled")
+        assert chosen != paths or found.by_role.keys() == expected.keys()
+        assert known == {role: name for role, name in expected.items() if role != "enabled"}
         assert found.by_role["position"].unit == UNITS[expected["position"]]
         assert found.complete == (drive is not None)

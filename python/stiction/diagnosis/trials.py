@@ -24,7 +24,7 @@ from .model import (
     power_of,
     stepped,
     with_effect,
-    without_effect,
+    without_candidate,
 )
 from .noisy_motion import told_by_noise
 from .screen import Problem, Score, Signatures, screen
@@ -142,7 +142,7 @@ class Screening:
         effect = next(each for each in model.plant.effects if each.name == candidate.name)
         if candidate.record.swings:
             plant = replace(base.plant, effects=(*base.plant.effects, effect))
-            column = _taken_off(self.evidence, plant, candidate.name, base.nuisances)
+            column = base.residual - finite(self.evidence.residual(plant, base.nuisances))
             there = Signatures.single(self.evidence, candidate, column)
         else:
             shape = {name: effect.parameters[candidate.own(name)].value for name in candidate.shape}
@@ -175,13 +175,9 @@ class Screening:
         return replace(self, signatures=signatures)
 
     def contributed(self, score: Score, model: Model) -> FloatArray:
-        """What an effect explains of every row after its refit; shape (n,)."""
-        if score.candidate.record.swings:
-            return _taken_off(self.evidence, model.plant, score.candidate.name, model.nuisances)
-        index = self.signatures.candidates.index(score.candidate)
-        gains = model.gains(score.candidate)
-        explained: FloatArray = self.signatures.columns[:, self.signatures.slices[index]] @ gains
-        return explained
+        """What an effect takes off the residual of every row after its refit; shape (n,)."""
+        less = without_candidate(model.plant, score.candidate)
+        return finite(self.evidence.residual(less, model.nuisances)) - model.residual
 
     def _left_by(self, model: Model) -> Problem:
         evidence = self.evidence
@@ -193,12 +189,6 @@ class Screening:
             evidence.fitted,
             evidence.plans,
         )
-
-
-def _taken_off(evidence: Evidence, plant: Plant, name: str, nuisances: Nuisances) -> FloatArray:
-    """What an effect of a plant takes off the residual, the rest of the plant as it is."""
-    whole = finite(evidence.residual(plant, nuisances))
-    return finite(evidence.residual(without_effect(plant, name), nuisances)) - whole
 
 
 def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score) -> Model:

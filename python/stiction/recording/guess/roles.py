@@ -85,6 +85,7 @@ class _Guesser:
         drive = self._drive(motion, position, referenced)
         for kind in ("temperature", "normal_force", "friction_coefficient", "load"):
             self._other(kind, motion)
+        self._enabled()
         drive = self._sliding_test(drive, referenced)
         per_rev = 0
         if position is not None and motion == "rotary":
@@ -380,6 +381,19 @@ class _Guesser:
             self.refused[column.name] = f"a load in {unit.unit} is none of a {motion} machine"
             return
         self._give(column, kind, unit, _by_name(column))
+
+    def _enabled(self) -> None:
+        """Where a drive is off it gives nothing, whatever it is commanded."""
+        column = self._pick("enabled")
+        if column is None:
+            return
+        values = {float(value) for array in column.arrays for value in np.unique(array)}
+        if values == {0.0, 1.0}:
+            self._give(column, "enabled", UnitGuess("1", 1.0, "1: on, 0: off"), _by_name(column))
+        elif values == {1.0}:
+            self.refused[column.name] = "it is 1 in every row: the drive was always on"
+        else:
+            self.refused[column.name] = "what says whether a drive is on is 0 or 1"
 
     def _counts(self, position: Column, factor: float) -> int:
         if self.given[position.name].unit != "count":

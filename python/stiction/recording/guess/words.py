@@ -114,7 +114,8 @@ WORDS: Final[dict[str, Word]] = {
     **_words("temp temperature temperatur celsius", "temperature"),
     **_words("normal preload fn", "normal_force"),
     **_words("friction mu cof", "friction_coefficient"),
-    **_words("enable enabled flag mode status valid error err acc acceleration accel", "flag"),
+    **_words("enable enabled", "enabled"),
+    **_words("flag mode status valid error err acc acceleration accel", "flag"),
     **_words("index row sample seq", "index"),
 }
 """Words of column names, in small letters."""
@@ -134,7 +135,17 @@ MEASURED: Final = _set("meas measured actual sensor cell loadcell feedback fb is
 # the load_torque a load, the current_position no current. Single letters count after words, the
 # first of them before the others: i_q is a current.
 _ORDER: Final = (
-    *("flag", "temperature", "normal_force", "velocity", "reference", "position", "load", "drive"),
+    *(
+        "enabled",
+        "flag",
+        "temperature",
+        "normal_force",
+        "velocity",
+        "reference",
+        "position",
+        "load",
+        "drive",
+    ),
     *("friction_coefficient", "time", "index"),
 )
 
