@@ -402,6 +402,29 @@ def test_a_refused_effect_that_scored_as_high_is_named_beside_the_cause(tmp_path
     assert "cogging scored" not in text
 
 
+def test_what_is_refused_before_a_later_cause_is_found_is_no_rival_of_that(tmp_path: Path) -> None:
+    whole = undrawn("missing_effect")
+    later = replace(whole.effects[0], name="run_in", look_alikes=())
+    rows = (
+        CandidateRow("run_in", 0.01, 0.005, 0.3, "accepted"),
+        CandidateRow("direction_asymmetry", 0.02, 0.01, 0.3, "its gain is uncertain"),
+    )
+    found = replace(whole, effects=(*whole.effects, later), candidates=(*whole.candidates, *rows))
+    text = Page(write(found, tmp_path).read_text("utf-8")).text
+    assert "scored as high" not in text
+
+
+def test_a_cause_that_held_out_rows_speak_against_is_told_so(tmp_path: Path) -> None:
+    whole = undrawn("missing_effect")
+    lost = Gain(-1.76, (-3.16, -0.74))
+    cause = replace(whole.effects[0], gain=lost)
+    found = replace(whole, gain=lost, effects=(cause, *whole.effects[1:]))
+    text = Page(write(found, tmp_path).read_text("utf-8")).text
+    assert "these rows speak against it" in text
+    assert "The whole interval is below 0" in text
+    assert "reaches 0" not in text
+
+
 def test_what_lost_to_another_cause_is_no_rival_of_this_one(tmp_path: Path) -> None:
     whole = undrawn("missing_effect")
     other = replace(whole.effects[0], name="frictional_lag", look_alikes=())

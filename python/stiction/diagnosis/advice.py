@@ -112,7 +112,7 @@ def advise(
         Undecided ones are told apart by the experiments of their effects.
     unexplained : sequence of Unexplained
     blind : sequence of EffectRecord
-        Effects that these data could not show.
+        Effects that these data could not show before the causes were there.
     checks : sequence of (str, Check)
         Recording and what was found in it.
     plant : Plant
@@ -146,7 +146,8 @@ def advise(
             add(*BY_COORDINATE[left.coordinate], reason)
     # A channel that nobody recorded, a load or a temperature, may well not be there: that is told
     # among the candidates, and is nothing to ask of everybody.
-    for record in (each for each in blind if not each.channels):
+    told = {cause.name for cause in causes}
+    for record in (each for each in blind if not each.channels and each.name not in told):
         reason = f"these data cannot show {record.name}"
         add(record.plan, record.experiment, reason, (record.name,))
     remedies = []

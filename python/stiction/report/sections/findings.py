@@ -36,7 +36,8 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
     causes = [
         {
             **_cause(cause, records.get(cause.name), diagnosis),
-            "rivals": _rivals(diagnosis, cause),
+            # Scores are those of the first round, in which later causes stood beside this one.
+            "rivals": _rivals(diagnosis, cause) if index == 0 else [],
             "picture": drawings.get(cause_name(index, cause.name)),
         }
         for index, cause in enumerate(diagnosis.effects)
@@ -93,6 +94,7 @@ def _cause(cause: Cause, record: EffectRecord | None, diagnosis: Diagnosis) -> d
         "gain": None if gain is None else percent(gain.value),
         "interval": None if gain is None else percent_between(*gain.ci95),
         "uncertain": gain is not None and gain.ci95[0] <= 0.0,
+        "worse": gain is not None and gain.ci95[1] < 0.0,
         "parameters": rows,
     }
 

@@ -87,6 +87,7 @@ def _gain(gain: Gain) -> dict[str, Any]:
         "bar": {"low": along(low), "high": along(high), "at": along(gain.value)},
         "zero": along(0.0),
         "uncertain": low <= 0.0,
+        "worse": high < 0.0,
     }
 
 
