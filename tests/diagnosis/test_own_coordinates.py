@@ -12,6 +12,7 @@ from stiction.diagnosis.advice import APART, BY_COORDINATE
 from stiction.diagnosis.by_recording import BY_RECORDING
 from stiction.diagnosis.contact import slides_of
 from stiction.diagnosis.coordinates import COORDINATES, UNJUDGED, Coordinate
+from stiction.diagnosis.held_numbers import HELD
 from stiction.diagnosis.omnibus import Rest, View
 from stiction.diagnosis.own import OWN, Wave, own_coordinate
 from stiction.diagnosis.passing import DRIFT, MOMENTS
@@ -46,7 +47,7 @@ def test_every_coordinate_has_a_hint_and_an_experiment() -> None:
     names = {each.name for each in (*COORDINATES, *ORDERS, *COUPLED, RESPONSE, FREQUENCY)}
     names |= {MOMENTS.name, DRIFT.name}
     differ = {each.name for each in BY_RECORDING}
-    assert set(HINTS) == names | differ
+    assert set(HINTS) == names | differ | set(HELD.values())
     assert set(BY_COORDINATE) == names
     # No experiment tells what was changed between recordings.
     assert set(APART) == differ

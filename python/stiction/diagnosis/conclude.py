@@ -26,6 +26,7 @@ from .coordinates import Look, looks
 from .evidence import Evidence
 from .exact_forms import doubted, rests_of
 from .gain import HeldOut, gain_of, residuals_of
+from .held_numbers import Held, held_numbers, held_words
 from .holds import holds_of
 from .laws import THE_LAW, Rival, better_law, event_words, law_rows, rivals_of
 from .listing import in_order
@@ -129,6 +130,8 @@ class Conclusion:
         found = with_pushes(found, self.evidence)
         names, number = self.evidence.names, len(self.confirmed.choices)
         found = with_checks(found, holds_of(self.evidence.shown, final, names))
+        held = () if self.brief else self.held
+        found = with_checks(found, [each.check for each in held], held_words(held))
         apart = outlying_in_test(self.evidence, final, self.test, number)
         found = with_checks(found, apart, apart_words(apart))
         return replayed(replace(found, ceiling=ceiling), self.evidence, self.base, final)
@@ -223,6 +226,11 @@ class Conclusion:
 
         return unnamed(self.evidence, self.confirmed, *self.rests, self.null, null_of_last)
 
+    @cached_property
+    def held(self) -> Sequence[Held]:
+        """Numbers of the plant file that the data do not agree with."""
+        return held_numbers(self.confirmed)
+
     def _told(self, found: Diagnosis) -> Diagnosis:
         """Verdict and words, from everything that was measured."""
         evidence, selection, test, null = self.evidence, self.confirmed, self.test, self.null
@@ -250,11 +258,16 @@ class Conclusion:
             verdict = ("missing_effect" if decided else "ambiguous") if causes else "not_testable"
             reason = NOTHING_YET
         else:
-            unexplained = self.unexplained
+            unexplained = (*(left for each in self.held for left in each.left), *self.unexplained)
             shown = {each.coordinate for each in unexplained}
             of_names = rests_of(causes, self.rests[1], left_beside(selection))
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
             causes = [doubted(cause, unexplained, of_names) for cause in causes]
+            replaced = {name for each in self.held for name in each.instead}
+            causes = [
+                replace(cause, decided=False) if cause.name in replaced else cause
+                for cause in causes
+            ]
             little = outweighed(selection, unexplained)
             causes = [
                 replace(cause, decided=False, outweighed=True) if cause.name in little else cause
@@ -307,6 +320,7 @@ class Conclusion:
             extended=extended,
             unexplained=unexplained,
             advice=(
+                *(each.advice for each in (() if self.brief else self.held)),
                 *([] if better is None else [better.advice()]),
                 *([] if event is None else [event.advice()]),
                 *advise(

@@ -25,6 +25,10 @@ HINTS: Final = {
     "order over position, times effort": "the drive's gain over position: magnets, commutation",
     "acceleration": "inertia, or a part that moves by itself",
     "response to the effort": "a delay, a filter of the drive, or a shaft that gives",
+    "the inertia that is held fixed": "a number in the plant file, or the scale of the effort",
+    "the gravity that is held fixed": "a number in the plant file, or the scale of the effort",
+    "the direction of gravity that is held fixed": "a number in the plant file, or an offset",
+    "the weight that is held fixed": "a number in the plant file, or an offset",
     "acceleration, recording by recording": "an inertia that is not the same in all recordings: a "
     "payload, a tool, a mounting",
     "effort, recording by recording": "a drive whose gain is not the same in all recordings: warm "
