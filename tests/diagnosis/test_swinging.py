@@ -8,6 +8,7 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
+from stiction.diagnosis.candidates import Scales, candidates
 from stiction.residual import effort_residual
 
 SHAFT = (("shaft_compliance", 0.013),)
@@ -85,3 +86,27 @@ def test_counts_of_a_slow_motion_shake_no_mass(made):
     late = with_it.time > 1.0
     moved = np.mean((with_it.residual - without.residual)[late])
     assert abs(moved) < 1e-3 * level
+
+
+@pytest.mark.parametrize(("seed", "size"), [(42, 0.1), (41, 0.25), (43, 0.25), (42, 0.25)])
+def test_a_shaft_that_swings_as_slowly_as_the_machine_moves_is_found(seed, size):
+    """From 50 Hz down to 18: the slope at no compliance knows nothing of these."""
+    hidden = (("shaft_compliance", size),)
+    session = make_session(seed, base="maxwell_slip", hidden=hidden, seconds=72.0)
+    found = st.diagnose(as_plant(session), as_session(session), surrogates=6, threads=1)
+    assert found.effects[0].name == "shaft_compliance"
+    assert found.effects[0].decided
+    (true,) = session.effects
+    values = {path.rpartition(".")[2]: p.value for path, p in found.effects[0].parameters.items()}
+    assert values["compliance"] == pytest.approx(true.amplitude, rel=0.1)
+    assert values["inertia_share"] == pytest.approx(true.shape["inertia_share"], abs=0.05)
+
+
+def test_what_swings_is_looked_at_at_resonances_that_samples_show():
+    (record,) = [each for each in st.effects() if each.name == "shaft_compliance"]
+    units = {"one": 1.0}
+    for rate, highest in ((1000.0, 270.0), (200.0, 48.0), (20.0, 0.0)):
+        scales = Scales((0.1, 1.0), (1.0,), True, units, rate=rate)
+        found = candidates(record, scales)
+        assert max(each.resonance for each in found) == highest
+        assert sum(each.resonance == 0.0 for each in found) == 6

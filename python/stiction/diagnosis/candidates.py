@@ -34,6 +34,12 @@ RESTING_SHARES: Final = (1e-3, 1e-4)
 """Of the range of motion: a rest of a contact without a spring, which has no length of its own."""
 FEWEST_COUNTS: Final = 3.0
 """A rest is no shorter than this many counts of the sensor."""
+RESONANCES: Final = (12.0, 17.0, 24.0, 34.0, 48.0, 68.0, 96.0, 136.0, 190.0, 270.0)
+"""Hz: of what swings at one of these a fit finds its own frequency."""
+MOST_SHARES: Final = 2
+"""Points of the grid of its shapes that are looked at at each of them."""
+SAMPLED: Final = 0.3
+"""Share of the rate of the samples up to which they show a resonance."""
 ORDER_STEP: Final = 0.5
 """Spacing of orders where the machine does not turn fully, in periods over its range."""
 
@@ -56,6 +62,8 @@ class Scales:
     finer : float
         Factor to a second, smaller pre-sliding length that is tried where the contact has none; 1
         where it has one.
+    rate : float
+        Samples a second.
     """
 
     speeds: tuple[float, float]
@@ -63,6 +71,7 @@ class Scales:
     whole_turns: bool
     units: dict[str, float]
     finer: float = 1.0
+    rate: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -80,6 +89,8 @@ class Candidate:
         Least and greatest value of those, where the data give one.
     second : bool
         It is a second wave of an effect that the plant has.
+    resonance : float
+        Hz at which what swings is looked at; 0 where a slope at no gain tells.
     """
 
     record: EffectRecord
@@ -87,6 +98,7 @@ class Candidate:
     free: tuple[str, ...]
     limits: dict[str, tuple[float, float]] = field(default_factory=dict)
     second: bool = False
+    resonance: float = 0.0
 
     @property
     def name(self) -> str:
@@ -129,7 +141,8 @@ def scales_of(evidence: Evidence, plant: Plant) -> Scales:
         orders = (1.0,)
     usual = (float(low), float(max(high, low * 1.01)))
     units, finer = _units(evidence, plant, span)
-    return Scales(usual, orders, whole, units, finer)
+    rate = 1.0 / max(rows.form.dt for rows in evidence.shown)
+    return Scales(usual, orders, whole, units, finer, rate)
 
 
 def _units(evidence: Evidence, plant: Plant, span: float) -> tuple[dict[str, float], float]:
@@ -184,6 +197,14 @@ def left_out(without: Sequence[str]) -> tuple[str, ...]:
 def candidates(record: EffectRecord, scales: Scales) -> list[Candidate]:
     """An effect at every point of the grid of its shapes."""
     found = list(_grid(record, scales))
+    if record.swings:
+        # Where its mass swings it resembles nothing that a slope at no gain shows.
+        found += [
+            replace(each, resonance=resonance)
+            for resonance in RESONANCES
+            if resonance < SAMPLED * scales.rate
+            for each in found[:: max(len(found) // MOST_SHARES, 1)]
+        ]
     # What a fit may vary finds its own length; what it may not has to be given the right one.
     held = any(s.scale == "presliding" and not s.fitted for s in record.shapes)
     if held and scales.finer < 1.0:

@@ -133,7 +133,9 @@ def _candidates(
         if reason:
             found.rows[record.name] = CandidateRow(record.name, None, None, None, reason)
         else:
-            tried += candidates(record, scales)
+            found_at = candidates(record, scales)
+            # Where rows are simulated a mass that swings bends the motion itself.
+            tried += [each for each in found_at if not evidence.simulated or not each.resonance]
     return tried
 
 

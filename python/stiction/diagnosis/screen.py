@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,6 +20,7 @@ from ..trajectory import FloatArray
 from .candidates import Candidate
 from .evidence import Evidence, Plan
 from .influence import limited
+from .model import with_effect
 from .regression import project
 
 __all__ = ["NULL_DEVIATIONS", "NULL_TIMES", "Problem", "Score", "Signatures", "screen"]
@@ -111,22 +113,33 @@ class Signatures:
         nuisances: Nuisances,
         candidates: Sequence[Candidate],
     ) -> Signatures:
-        """Signatures along the measured motion of every recording."""
-        wanted = [(each.name, dict(each.shape)) for each in candidates]
+        """Signatures along the measured motion of every recording; what swings comes last."""
+        swinging = [each for each in candidates if each.resonance > 0.0]
+        sloping = [each for each in candidates if each.resonance == 0.0]
+        candidates = [*sloping, *swinging]
+        wanted = [(each.name, dict(each.shape)) for each in sloping]
         slices, at = [], 0
         for each in candidates:
             slices.append(slice(at, at + len(each.record.gains)))
             at += len(each.record.gains)
+        at_most = sum(len(each.record.gains) for each in sloping)
         # Hundreds of columns: each is written once, in one piece, and never copied whole.
         columns = np.empty((at, len(evidence.weights)))
+        if swinging:
+            still = finite(evidence.residual(plant, nuisances))
+        for place, each in enumerate(swinging, at_most):
+            size = _gain_at(each, plant.inertia)
+            swung = finite(evidence.residual(with_effect(plant, each, [size]), nuisances))
+            columns[place] = (still - swung) / size
 
         def fill(place: tuple[Rows, slice]) -> None:
             rows, own = place
             found = rows.form.signatures(plant, wanted, nuisances.start(rows.index))
             at = own.start
+            sloped = columns[:at_most, :]
             for first, last in runs(rows.mask):
                 end = at + last - first
-                np.multiply(found.T[:, first:last], -rows.weight, out=columns[:, at:end])
+                np.multiply(found.T[:, first:last], -rows.weight, out=sloped[:, at:end])
                 at = end
 
         ends = np.cumsum([np.count_nonzero(rows.mask) for rows in evidence.shown]).tolist()
@@ -162,6 +175,12 @@ class Signatures:
             tuple(slice(each.start - first, each.stop - first) for each in slices),
             self.over_fitted[:, first:end],
         )
+
+
+def _gain_at(candidate: Candidate, inertia: float) -> float:
+    """The compliance at which a mass behind a shaft swings at the resonance of a candidate."""
+    share = candidate.shape["inertia_share"]
+    return 1.0 / ((2.0 * math.pi * candidate.resonance) ** 2 * share * (1.0 - share) * inertia)
 
 
 def _same_order(candidate: Candidate, effect: Effect) -> bool:

@@ -231,14 +231,16 @@ def _alike(
     """A candidate with its gains; where it swings also those of which slopes do not tell it.
 
     Their signatures are multiples of each other, and from one frequency no fit finds another.
+    What was looked at where it swings starts there.
     """
     candidate = signatures.candidates[index]
     found = [(candidate, gains)]
-    if not candidate.record.swings:
+    if not candidate.record.swings or candidate.resonance > 0.0:
         return found
     own = signatures.over_fitted[:, signatures.slices[index]]
     for other, place in zip(signatures.candidates, signatures.slices, strict=True):
-        if other.name == candidate.name and other is not candidate:
+        alike = other.name == candidate.name and other.resonance == 0.0
+        if alike and other is not candidate:
             column = signatures.over_fitted[:, place]
             times = float(np.sum(own * column)) / max(float(np.sum(column**2)), 1e-300)
             found.append((other, times * gains))
