@@ -13,7 +13,7 @@ from tests.reference.session_reference import make_session
 import stiction as st
 from stiction.diagnosis import verdict
 from stiction.diagnosis.passing import MOMENTS
-from stiction.diagnosis.result import Unexplained
+from stiction.diagnosis.result import Cause, Unexplained
 from stiction.diagnosis.words import NO_COORDINATE
 
 
@@ -58,3 +58,20 @@ def test_a_name_that_took_less_than_twice_what_is_left_is_not_decided(
     selection: Any = SimpleNamespace(models=models, choices=names)
     assert verdict.outweighed(selection, [Unexplained(coordinate, share)]) == little
     assert verdict.outweighed(selection, []) == set()
+
+
+def test_a_further_name_of_which_no_number_is_known_is_not_decided() -> None:
+    def cause(name: str, *intervals: tuple[float, float]) -> Cause:
+        numbers: Any = {
+            f"effects.{name}.{k}": SimpleNamespace(ci95=ci95) for k, ci95 in enumerate(intervals)
+        }
+        return Cause(name, "family", True, (), numbers, None, "", "", "", "")
+
+    open_, known = (-1.0, 2.0), (1.0, 2.0)
+    first = cause("creep_hardening", open_, open_)
+    second = cause("torque_bias", known)
+    third = cause("drive_deadband", open_)
+    fourth = cause("cogging", open_, known)
+    found = verdict.known_by_themselves([first, second, third, fourth])
+    assert [each.decided for each in found] == [True, True, False, True]
+    assert verdict.known_by_themselves([third])[0].decided

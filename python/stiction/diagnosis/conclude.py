@@ -46,7 +46,7 @@ from .replay import centre, shared, surrogate_residuals
 from .result import Cause, Diagnosis, ModelSummary, Unexplained, Verdict
 from .rounds import friction_of
 from .selection import Search
-from .verdict import left_beside, outweighed, relatives, unnamed, verdict_of
+from .verdict import known_by_themselves, left_beside, outweighed, relatives, unnamed, verdict_of
 from .view import View
 from .words import (
     INTERRUPTED,
@@ -263,6 +263,7 @@ class Conclusion:
             of_names = rests_of(causes, self.rests[1], left_beside(selection))
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
             causes = [doubted(cause, unexplained, of_names) for cause in causes]
+            causes = known_by_themselves(causes)
             replaced = {name for each in self.held for name in each.instead}
             causes = [
                 replace(cause, decided=False) if cause.name in replaced else cause
