@@ -72,6 +72,10 @@ def test_a_further_name_of_which_no_number_is_known_is_not_decided() -> None:
     second = cause("torque_bias", known)
     third = cause("drive_deadband", open_)
     fourth = cause("cogging", open_, known)
-    found = verdict.known_by_themselves([first, second, third, fourth])
-    assert [each.decided for each in found] == [True, True, False, True]
-    assert verdict.known_by_themselves([third])[0].decided
+    causes = [first, second, third, fourth, cause("warm_up", open_, open_)]
+    strengths = {"drive_deadband": 5.0, "warm_up": 60.0}
+    model = SimpleNamespace(strength=lambda candidate: strengths[candidate])
+    choices = [SimpleNamespace(winner=SimpleNamespace(candidate=each.name)) for each in causes]
+    selection: Any = SimpleNamespace(models=[model], choices=choices)
+    found = verdict.known_by_themselves(selection, causes)
+    assert [each.decided for each in found] == [True, True, False, True, True]

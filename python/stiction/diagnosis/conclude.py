@@ -263,7 +263,7 @@ class Conclusion:
             of_names = rests_of(causes, self.rests[1], left_beside(selection))
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
             causes = [doubted(cause, unexplained, of_names) for cause in causes]
-            causes = known_by_themselves(causes)
+            causes = known_by_themselves(selection, causes)
             replaced = {name for each in self.held for name in each.instead}
             causes = [
                 replace(cause, decided=False) if cause.name in replaced else cause

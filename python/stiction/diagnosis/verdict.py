@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
-from .decide import LEAST_GAIN
+from .decide import LEAST_GAIN, SURE
 from .evidence import Evidence
 from .gains import heldout_gain
 from .model import Model
@@ -206,16 +206,19 @@ def outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
     }
 
 
-def known_by_themselves(causes: Sequence[Cause]) -> list[Cause]:
+def known_by_themselves(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
     """Causes, those beside the first undecided where every one of their numbers may be 0.
 
     All of its numbers together may help beyond doubt, and they may help to mend what the form of a
-    first cause leaves: of eight wrong second and third names every number of seven reached 0.
+    first cause leaves: of eight wrong second and third names every number of seven reached 0, at
+    strengths of 9 at most where these were asked. What blocks leave no doubt of needs no number.
     """
-    return [
-        replace(cause, decided=False) if place and cause.doubtful else cause
-        for place, cause in enumerate(causes)
-    ]
+    final = selection.models[-1]
+    found = list(causes)
+    for place, (choice, cause) in enumerate(zip(selection.choices, causes, strict=True)):
+        if place and cause.doubtful and final.strength(choice.winner.candidate) < SURE:
+            found[place] = replace(cause, decided=False)
+    return found
 
 
 def left_beside(selection: Search) -> float:
