@@ -34,8 +34,8 @@ RESTING_SHARES: Final = (1e-3, 1e-4)
 """Of the range of motion: a rest of a contact without a spring, which has no length of its own."""
 FEWEST_COUNTS: Final = 3.0
 """A rest is no shorter than this many counts of the sensor."""
-RESONANCES: Final = (12.0, 17.0, 24.0, 34.0, 48.0, 68.0, 96.0, 136.0, 190.0, 270.0)
-"""Hz: of what swings at one of these a fit finds its own frequency."""
+RESONANCES: Final = (12.0, 17.0, 24.0, 34.0, 48.0, 68.0, 96.0)
+"""Hz: of what swings at one of these a fit finds its own frequency; above them slopes tell."""
 MOST_SHARES: Final = 2
 """Points of the grid of its shapes that are looked at at each of them."""
 SAMPLED: Final = 0.3
