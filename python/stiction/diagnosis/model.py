@@ -35,7 +35,6 @@ __all__ = [
     "power_of",
     "stepped",
     "with_effect",
-    "without_candidate",
     "without_effect",
 ]
 
@@ -317,19 +316,6 @@ def stepped(model: Model, explained: FloatArray) -> Plant:
 def without_effect(plant: Plant, name: str) -> Plant:
     """The plant without an effect."""
     return replace(plant, effects=tuple(each for each in plant.effects if each.name != name))
-
-
-def without_candidate(plant: Plant, candidate: Candidate) -> Plant:
-    """The plant without an effect; of a second wave, with the first one alone."""
-    if not candidate.second:
-        return without_effect(plant, candidate.name)
-    own = {*candidate.gains, *(candidate.own(name) for name in candidate.shape)}
-
-    def single(effect: Effect) -> Effect:
-        kept = {name: each for name, each in effect.parameters.items() if name not in own}
-        return Effect(effect.name, kept) if effect.name == candidate.name else effect
-
-    return replace(plant, effects=tuple(single(each) for each in plant.effects))
 
 
 def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> Plant:

@@ -135,7 +135,8 @@ def _candidates(
         else:
             found_at = candidates(record, scales)
             # Where rows are simulated a mass that swings bends the motion itself.
-            tried += [each for each in found_at if not evidence.simulated or not each.resonance]
+            swings = base.plant.inertia > 0.0 and not evidence.simulated
+            tried += [each for each in found_at if swings or not each.resonance]
     return tried
 
 

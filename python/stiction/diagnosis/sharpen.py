@@ -56,24 +56,28 @@ def beside_a_second(screening: Screening, base: Model, trial: Trial) -> Trial:
     found = _second(screening, trial)
     if found is None:
         return trial
-    both = screening.judged(base, score, found.model, screening.contributed(score, found.model))
+    second, other = found
+    explained = screening.contributed(score, other.model) + second.contributed(
+        other.score, other.model
+    )
+    both = screening.judged(base, score, other.model, explained)
     if both.reason:
         return trial
     _logger.info("%s passes with a second wave", trial.name)
-    return replace(both, worth=both.worth - PENALTY * found.candidate.parameters)
+    return replace(both, worth=both.worth - PENALTY * other.candidate.parameters)
 
 
 def _second_wave(screening: Screening, winner: Trial) -> Model | None:
     """The winner with a second wave; None where that does not pass."""
     found = _second(screening, winner)
-    if found is None or found.reason:
+    if found is None or found[1].reason:
         return None
     _logger.info("%s has a second wave", winner.name)
-    return found.model
+    return found[1].model
 
 
-def _second(screening: Screening, trial: Trial) -> Trial | None:
-    """A second wave refitted beside the first one."""
+def _second(screening: Screening, trial: Trial) -> tuple[Screening, Trial] | None:
+    """A second wave refitted beside the first one, and what it was screened with."""
     record = trial.candidate.record
     if not record.second:
         return None
@@ -85,7 +89,7 @@ def _second(screening: Screening, trial: Trial) -> Trial | None:
         return None
     second = screening.with_signatures(own)
     (score,) = second.scores(trial.model)
-    return second.trial(trial.model, score) if promises(score) else None
+    return (second, second.trial(trial.model, score)) if promises(score) else None
 
 
 def _freed(screening: Screening, winner: Trial) -> Model | None:

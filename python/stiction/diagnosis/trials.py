@@ -24,7 +24,7 @@ from .model import (
     power_of,
     stepped,
     with_effect,
-    without_candidate,
+    without_effect,
 )
 from .noisy_motion import told_by_noise
 from .screen import Problem, Score, Signatures, screen
@@ -175,9 +175,14 @@ class Screening:
         return replace(self, signatures=signatures)
 
     def contributed(self, score: Score, model: Model) -> FloatArray:
-        """What an effect takes off the residual of every row after its refit; shape (n,)."""
-        less = without_candidate(model.plant, score.candidate)
-        return finite(self.evidence.residual(less, model.nuisances)) - model.residual
+        """What an effect explains of every row after its refit; shape (n,)."""
+        if score.candidate.record.swings:
+            less = without_effect(model.plant, score.candidate.name)
+            return finite(self.evidence.residual(less, model.nuisances)) - model.residual
+        index = self.signatures.candidates.index(score.candidate)
+        gains = model.gains(score.candidate)
+        explained: FloatArray = self.signatures.columns[:, self.signatures.slices[index]] @ gains
+        return explained
 
     def _left_by(self, model: Model) -> Problem:
         evidence = self.evidence
