@@ -25,6 +25,7 @@ KINDS = {
     "same": CONTACTS["same"],
     "spring damper": CONTACTS["spring damper"],
 }
+TURNS = ["turned", "turned_again"]
 QUANTITIES = {law.name: [quantity.name for quantity in law.start] for law in st.laws()}
 
 
@@ -50,8 +51,9 @@ def needed(motor, start, path):
 
 def test_laws_say_what_a_contact_may_bring_along():
     assert QUANTITIES["coulomb"] == []
-    assert QUANTITIES["maxwell_slip"] == ["force"]
-    assert QUANTITIES["hsieh_pan"] == ["force", "hardening"]
+    assert QUANTITIES["dahl"] == ["force"]
+    assert QUANTITIES["maxwell_slip"] == ["force", *TURNS]
+    assert QUANTITIES["hsieh_pan"] == ["force", "hardening", *TURNS]
     for law in st.laws():
         for quantity in law.start:
             assert quantity.default == quantity.neutral == 0.0
@@ -122,7 +124,7 @@ def test_derivatives_by_the_start_equal_differences(kind, direction, force, hard
     law = KINDS[kind][0]
     motor, path = machine(kind), motion(direction)
     start = {"force": force, "hardening": hardening}
-    start = {name: start[name] for name in QUANTITIES[law]}
+    start = {name: start[name] for name in QUANTITIES[law] if name in start}
     paths = [f"start.{name}" for name in start]
     kept = motor.copy()
     exact, driven, _ = motor.follow_sensitivity(
@@ -199,3 +201,118 @@ def test_signatures_begin_with_the_start_too():
     needed_rows, _, _ = motor.signatures(st.Motion(path, np.zeros(SAMPLES), DT), level, start=start)
     assert needed_rows[0, 0] == pytest.approx(0.2, rel=0.2)
     assert abs(motor.signatures(st.Motion(path, np.zeros(SAMPLES), DT), level)[0][0, 0]) < 0.05
+
+
+REMEMBERING = [law for law, quantities in QUANTITIES.items() if "turned" in quantities]
+
+
+def bent(law):
+    """A contact of this law, the force at which its turns are told, and its first slope."""
+    parameters = {
+        "hsieh_pan": ILLUSTRATIVE | {"breakaway": 0.6, "coulomb": 0.5, "creep_rate": 0.0},
+        "leuven": {"coulomb": 0.5, "breakaway": 0.6, "initial_stiffness": 3000.0},
+    }.get(law, {"coulomb": 0.6, "initial_stiffness": 3000.0})
+    known = st.Motor(inertia=INERTIA, friction=st.FrictionModel(law)).parameters
+    own = {name: value for name, value in parameters.items() if f"friction.{name}" in known}
+    motor = st.Motor(inertia=INERTIA, friction=st.FrictionModel(law, **own))
+    return motor, motor.parameters.get("friction.breakaway", 0.6), 3000.0
+
+
+def test_laws_with_a_spring_that_remembers_tell_of_turns():
+    assert REMEMBERING == [
+        "dahl_with_memory",
+        "futami",
+        "hsieh_pan",
+        "leuven",
+        "maxwell_slip",
+        "preisach",
+    ]
+
+
+@pytest.mark.parametrize("law", REMEMBERING)
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("turns", [(0.6, 0.0), (0.6, -0.3), (0.7, 0.2)])
+def test_a_contact_that_turned_round_is_one_that_was_moved_there(law, way, turns):
+    motor, level, stiffness = bent(law)
+    reach = 0.2 * level / stiffness
+    path = way * reach * np.concatenate([np.linspace(0.0, 3.0, 400), np.linspace(3.0, -6.0, 400)])
+    force = way * 0.25 * level
+    start = {"force": force, "turned": way * turns[0], "turned_again": way * turns[1]}
+
+    # Moved by hand: there, back, and to the force at which the recording begins.
+    def after(target, position, friction, step):
+        for _ in range(20000):
+            if (friction - target) * np.sign(step) >= 0.0:
+                return position, friction
+            position += step
+            friction = contact.step(step / DT, DT)
+        raise AssertionError(f"{law} never comes to {target}")
+
+    contact = motor.friction
+    contact.reset()
+    fine = way * 1e-3 * level / stiffness
+    at, reached = after(way * turns[0] * level, 0.0, 0.0, fine)
+    if turns[1]:
+        at, reached = after(way * turns[1] * level, at, reached, -fine)
+        at, reached = after(force, at, reached, fine)
+    else:
+        at, reached = after(force, at, reached, -fine)
+    moved = np.array([contact.step(step / DT, DT) for step in np.diff(path)])
+    got = motor.follow(st.Motion(path, np.zeros(len(path) - 1), DT), start=start)[2]
+    # A step too far at each turn.
+    wrong = np.abs(got - moved).max()
+    assert wrong < 0.005 * level
+    plain = motor.follow(st.Motion(path, np.zeros(len(path) - 1), DT), start={"force": force})[2]
+    assert np.abs(plain - moved).max() > 4.0 * wrong
+
+
+@pytest.mark.parametrize("law", REMEMBERING)
+@pytest.mark.parametrize("start", [(0.1, 0.6, 0.0), (-0.1, 0.6, -0.3), (0.1, -0.7, 0.25)])
+def test_derivatives_by_the_turns_equal_differences(law, start):
+    motor, level, stiffness = bent(law)
+    path = motion() * 0.1 * level / (3000.0 * 3e-5) * 3000.0 / stiffness
+    values = dict(zip(("force", *TURNS), (start[0] * level, *start[1:]), strict=True))
+    seen = st.Motion(path, np.zeros(SAMPLES), DT)
+    names = ["force", "turned", *(["turned_again"] if start[2] else [])]
+    exact = motor.follow_sensitivity(seen, [f"start.{name}" for name in names], start=values)[0]
+
+    for row, name in zip(exact, names, strict=True):
+
+        def chord(width, name=name):
+            ends = (values | {name: values[name] + s * width} for s in (1.0, -1.0))
+            high, low = (motor.follow(seen, start=end)[2] for end in ends)
+            return (high - low) / (2.0 * width)
+
+        near, wide = chord(1e-5), chord(2e-5)
+        scale = np.abs(row).max()
+        assert scale > 0.0
+        smooth = np.abs(near - wide) <= 1e-5 * scale
+        assert smooth.mean() > 0.95
+        assert np.abs(row - (4.0 * near - wide) / 3.0)[smooth].max() <= 1e-5 * scale
+
+
+@pytest.mark.parametrize("law", REMEMBERING)
+def test_turns_that_no_contact_can_have_are_forgotten_or_level_off(law):
+    motor, level, _ = bent(law)
+    seen = st.Motion(motion(), np.zeros(SAMPLES), DT)
+
+    def needs(**start):
+        return motor.follow(seen, start=start)[2]
+
+    force = 0.3 * level
+    # The force went past the turn; the second turn lies beyond the first.
+    assert np.array_equal(needs(force=force, turned=0.2), needs(force=force))
+    assert np.array_equal(
+        needs(force=force, turned=0.5, turned_again=-0.8), needs(force=force, turned=0.5)
+    )
+    for turned in (1.0, -1.0):
+        assert np.isfinite(needs(force=force, turned=turned, turned_again=-0.99 * turned)).all()
+
+
+def test_a_contact_that_never_breaks_away_may_have_turned_round():
+    motor = machine("sticking")
+    assert not np.isfinite(motor.parameters["friction.breakaway"])
+    seen = st.Motion(motion(), np.zeros(SAMPLES), DT)
+    found = [motor.follow(seen, start={"force": 0.05, "turned": t})[2] for t in (0.0, 0.8, 1.0)]
+    assert np.isfinite(found).all()
+    assert np.abs(found[1] - found[0]).max() > 1e-3

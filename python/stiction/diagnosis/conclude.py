@@ -24,11 +24,12 @@ from .ceiling import Ceiling, ceiling_of
 from .confirm import confirmed, described, lost, lost_on_test
 from .coordinates import Look, looks
 from .evidence import Evidence
-from .exact_forms import doubted, rests_of
+from .exact_forms import rests_of
 from .gain import HeldOut, gain_of, residuals_of
 from .held_numbers import Held, held_numbers, held_words
 from .holds import holds_of
 from .laws import THE_LAW, Rival, better_law, event_words, law_rows, rivals_of
+from .left_open import left_open
 from .listing import in_order
 from .lone import lone_event
 from .loop import borne_out, replayed
@@ -46,7 +47,7 @@ from .replay import centre, shared, surrogate_residuals
 from .result import Cause, Diagnosis, ModelSummary, Unexplained, Verdict
 from .rounds import friction_of
 from .selection import Search
-from .verdict import known_by_themselves, left_beside, outweighed, relatives, unnamed, verdict_of
+from .verdict import left_beside, relatives, unnamed, verdict_of
 from .view import View
 from .words import (
     INTERRUPTED,
@@ -262,18 +263,8 @@ class Conclusion:
             shown = {each.coordinate for each in unexplained}
             of_names = rests_of(causes, self.rests[1], left_beside(selection))
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
-            causes = [doubted(cause, unexplained, of_names) for cause in causes]
-            causes = known_by_themselves(selection, causes)
             replaced = {name for each in self.held for name in each.instead}
-            causes = [
-                replace(cause, decided=False) if cause.name in replaced else cause
-                for cause in causes
-            ]
-            little = outweighed(selection, unexplained)
-            causes = [
-                replace(cause, decided=False, outweighed=True) if cause.name in little else cause
-                for cause in causes
-            ]
+            causes = left_open(selection, causes, unexplained, of_names, replaced)
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
             if left and not unexplained:

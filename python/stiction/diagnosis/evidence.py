@@ -13,9 +13,9 @@ import numpy as np
 
 from ..errors import NotEnoughData
 from ..fitting.forms import KERNELS, Through, forms_of, set_clocks
-from ..fitting.minimise import started
 from ..fitting.pushes import Watch
 from ..fitting.rows import Mask, Nuisances, Rows, rows_of
+from ..fitting.starts import started
 from ..plant import Plant
 from ..recording import Part, Recording
 from ..recording.names import names_of, places_in_session

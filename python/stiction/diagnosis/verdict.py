@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence, Set
-from dataclasses import replace
-from itertools import pairwise
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
 
 from ..trajectory import FloatArray
-from .decide import LEAST_GAIN, SURE
+from .decide import LEAST_GAIN
 from .evidence import Evidence
 from .gains import heldout_gain
 from .model import Model
@@ -18,12 +16,12 @@ from .omnibus import Rest
 from .outlying import outlying
 from .passing import MOMENTS
 from .periodic import FREQUENCY
-from .result import Cause, Unexplained, Verdict
+from .result import Unexplained, Verdict
 from .selection import Search
 from .view import LEAST_SIZE
 from .words import ALONE, NO_COORDINATE
 
-__all__ = ["known_by_themselves", "left_beside", "outweighed", "relatives", "unnamed", "verdict_of"]
+__all__ = ["left_beside", "relatives", "unnamed", "verdict_of"]
 
 WORTH_SHARE: Final = 0.25
 """What is left counts against the names where it is worth this share of what they gained."""
@@ -36,10 +34,6 @@ noise failed to explain a third of it at most."""
 LEAST_EXCESS: Final = -3.0
 """Where noise alone would leave four times the power that is left, nothing of it is unexplained:
 the replays have lost the machine, as where a dry contact sticks and slips at random."""
-OUTWEIGHED: Final = 0.5
-"""What is left without a name counts against one name where it is worth this share of what that one
-took: right names came to 0.4 but for one, and what was named of a contact whose law has another
-form to 0.6 and more."""
 HALF: Final = 0.5
 """Of what goes with no coordinate, from which on a description stands for it."""
 WINDOW_S: Final = 0.2
@@ -185,40 +179,6 @@ def _outweighs(selection: Search, left: Sequence[Unexplained]) -> bool:
     if not left:
         return False
     return max(each.share for each in left) * left_beside(selection) > WORTH_SHARE
-
-
-def outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
-    """Which names took little beside what is left and has none.
-
-    All names together may outweigh that by far: the first one takes most, and later ones follow
-    what the law or the first one leaves. Recordings and moments that stand out tell nothing of
-    what acts in all others.
-    """
-    places = {each.coordinate: each.share for each in left if each.coordinate != MOMENTS.name}
-    everywhere = [share for name, share in places.items() if not name.endswith(ALONE)]
-    powers = [float(model.blocks[1].sum()) for model in selection.models]
-    unnamed = max(everywhere, default=0.0) * powers[-1]
-    names = (choice.winner.name for choice in selection.choices)
-    return {
-        name
-        for name, (before, after) in zip(names, pairwise(powers), strict=True)
-        if unnamed > OUTWEIGHED * max(before - after, 0.0)
-    }
-
-
-def known_by_themselves(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
-    """Causes, those beside the first undecided where every one of their numbers may be 0.
-
-    All of its numbers together may help beyond doubt, and they may help to mend what the form of a
-    first cause leaves: of eight wrong second and third names every number of seven reached 0, at
-    strengths of 9 at most where these were asked. What blocks leave no doubt of needs no number.
-    """
-    final = selection.models[-1]
-    found = list(causes)
-    for place, (choice, cause) in enumerate(zip(selection.choices, causes, strict=True)):
-        if place and cause.doubtful and final.strength(choice.winner.candidate) < SURE:
-            found[place] = replace(cause, decided=False)
-    return found
 
 
 def left_beside(selection: Search) -> float:

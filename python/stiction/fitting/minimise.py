@@ -22,11 +22,11 @@ from .variables import Variables, records
 __all__ = [
     "MOST_EVALUATIONS",
     "Solution",
+    "alone",
     "from_elsewhere",
     "launch",
     "minimise",
     "or_from",
-    "started",
     "stopped",
 ]
 
@@ -57,8 +57,6 @@ SHRINKING: Final = 10.0
 """Rows that a factor e of a shape parameter away from its neutral value weighs as much as, or a
 start of the usual size: about a single independent piece of evidence, for neighbouring rows share
 a kernel."""
-START_EVALUATIONS: Final = 6
-"""A start alone is one or two numbers, on which rows depend nearly in a straight line."""
 START_CONVERGED: Final = 1e-4
 """Of the power that it leaves: neighbouring rows share a kernel, so far less than they know."""
 START_TIMES: Final = 2.0
@@ -144,46 +142,27 @@ def minimise(
     return _Minimiser(plant, paths, rows, most, nuisances, converged).run(escapes)
 
 
-def started(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisances:
-    """Nuisances with the start of each of these recordings, fitted to its own rows alone.
-
-    What a contact brings along belongs to a recording and not to the machine: where a recording was
-    held out of the fit nothing else tells it. That it was never moved is a guess, of whose error a
-    spring with memory keeps a part for as long as it does not slide.
+def alone(plant: Plant, rows: Rows, nuisances: Nuisances, *, most: int) -> Solution:
+    """The start of one recording, fitted to its own rows; plant and timing stay.
 
     Parameters
     ----------
     plant : Plant
-        Stays as it is.
-    rows : sequence of Rows
-        One of each recording.
+    rows : Rows
     nuisances : Nuisances
-        Where the starts are looked for from; those of other recordings and the timing stay.
-
-    Returns
-    -------
-    Nuisances
-        Empty starts where the rows tell of none.
+        With the start of this recording, from which it is looked for, and no other.
+    most : int
+        Evaluations of the residual at most.
 
     Raises
     ------
     KeyboardInterrupt
     """
-    found = dict(nuisances.starts)
-    for each in rows if start_quantities(plant) else ():
-        known = found.get(each.index)
-        own = primed(plant, [each]).starts.get(each.index, {}) if known is None else known
-        if own:
-            begin = Nuisances(nuisances.timing, {each.index: own})
-            only = _Minimiser(
-                plant, [], [each], START_EVALUATIONS, begin, START_CONVERGED, timed=False
-            )
-            solution = only.run(0)
-            if solution.interrupted:
-                raise KeyboardInterrupt
-            own = solution.nuisances.starts[each.index]
-        found[each.index] = own
-    return Nuisances(nuisances.timing, found)
+    own = _Minimiser(plant, [], [rows], most, nuisances, START_CONVERGED, timed=False)
+    solution = own.run(0)
+    if solution.interrupted:
+        raise KeyboardInterrupt
+    return solution
 
 
 def launch(

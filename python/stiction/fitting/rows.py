@@ -17,6 +17,7 @@ from ..weak_form import WeakForm
 from .statistics import CORRELATED_S
 
 __all__ = [
+    "TURNS",
     "Mask",
     "Nuisances",
     "Push",
@@ -33,6 +34,9 @@ WARM_UP_S: Final = 0.2
 """Left out at the start of a recording: what the fitted start does not tell is forgotten then."""
 TIMING_SHARE: Final = 0.5
 """Bound of the timing offset in samples: more than this is a delay of the machine."""
+TURNS: Final = ("turned", "turned_again")
+"""Start quantities of springs with memory: where the contact turned round before. No row tells of
+them beside a contact that never did; see `turned` of the starts."""
 TOLD: Final = 0.01
 """A start quantity is fitted where it changes any row by this share of the residual."""
 
@@ -206,6 +210,7 @@ def primed(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances | None = Non
     for index, name in told_starts(plant, rows):
         known = new[index] | (before.start(index) or {})
         starts.setdefault(index, {})[name] = known[name]
+        starts[index] |= {turn: known[turn] for turn in TURNS if known.get(turn)}
     return Nuisances(before.timing, starts)
 
 

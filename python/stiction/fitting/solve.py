@@ -24,13 +24,14 @@ from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from .first_pass import first_pass
 from .forms import KERNELS, Through, as_stated, forms_of, set_clocks
-from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, started, stopped
+from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stopped
 from .pushes import Watch
 from .pushes import told as pushes_told
 from .result import FitParameter, FitResult
 from .rows import Nuisances, Rows, primed, rows_of
 from .slopes import slopes
 from .start import complete, free_paths
+from .starts import started, turned
 from .statistics import (
     correlations,
     covariance,
@@ -201,13 +202,14 @@ def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
     if first.interrupted:
         return first
     try:
-        reweighted(rows, first.plant, first.nuisances)
+        known = turned(first.plant, rows, first.nuisances)
+        reweighted(rows, first.plant, known)
         second = minimise(
             first.plant,
             first.variables.paths,
             rows,
             most=most,
-            nuisances=primed(first.plant, rows, first.nuisances),
+            nuisances=primed(first.plant, rows, known),
         )
     except KeyboardInterrupt:
         # Before the second pass had anything to keep.

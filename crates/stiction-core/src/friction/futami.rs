@@ -32,6 +32,10 @@ parameters! {
     pub struct FutamiStart {
         force: Effort, "force of the spring at the start, on the first loading curve; levels off from 98 % of F_c on, below F_c",
             default Value(0.0), neutral Some(0.0), typical 0.1, bounds -1e9, 1e9;
+        turned: One, "where the contact turned round before, on the first loading curve, as a share of F_c; 0 where it never did, and forgotten where the force is beyond it",
+            default Value(0.0), neutral Some(0.0), typical 0.5, bounds -1.0, 1.0;
+        turned_again: One, "where it turned round after that, as a share of F_c; 0 where it did not, and forgotten where it is beyond the first turn or passed by the force",
+            default Value(0.0), neutral Some(0.0), typical 0.3, bounds -1.0, 1.0;
     }
 }
 
@@ -214,9 +218,13 @@ impl<S: Scalar> FrictionLaw<S> for Futami<S> {
     }
 
     fn primed(&self, values: &[S]) -> FutamiState<S> {
-        let force = reachable(FutamiStart::from_values(values).force, self.parameters.coulomb);
+        let (start, greatest) = (FutamiStart::from_values(values), self.parameters.coulomb);
+        let [turned, again, force] =
+            [start.turned * greatest, start.turned_again * greatest, start.force]
+                .map(|force| reachable(force, greatest));
         let mut state = self.initial();
-        state.spring.place(&self.curve, self.curve.inverse(force), force);
+        let inverse = |force| self.curve.inverse(force);
+        state.spring.come_back(&self.curve, inverse, [turned, again], force);
         state
     }
 

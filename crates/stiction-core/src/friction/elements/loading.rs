@@ -94,6 +94,11 @@ impl<S: Scalar> Curve<S> {
         [self.final_stiffness, self.fading, self.decay_distance].map(Scalar::re)
     }
 
+    /// Force of what gives way, (k_0 − k_inf)·d_0.
+    pub fn yielding(&self) -> S {
+        self.fading * self.decay_distance
+    }
+
     /// Share of d_0 that a displacement in this direction is on this branch.
     #[inline(always)]
     pub fn per_displacement(&self, branch: &Branch, direction: f64) -> S {
@@ -152,6 +157,39 @@ pub fn virgin_inverse<S: Scalar>(curve: &impl Loading<S>, force: S) -> S {
     let r = curve.virgin(x);
     x += (force * s - r.force) / r.slope;
     x * s
+}
+
+/// The distance d ≥ 0 from a reverse point at which the branch from there has risen by this force.
+///
+/// It is looked for up to `reach`, where the loop closes, and beyond that where it never does. By
+/// halving, for a branch need not be concave; a last pass of Newton's carries the derivatives.
+pub fn branch_inverse<S: Scalar>(
+    curve: &impl Loading<S>,
+    anchor: S,
+    direction: f64,
+    force: S,
+    reach: f64,
+) -> S {
+    let risen = |d: f64| curve.branch_from(anchor, direction, S::constant(d));
+    let target = force.re();
+    let (mut low, mut high) = (0.0, reach);
+    if !curve.closes_at_mirror() {
+        for _ in 0..100 {
+            if risen(high).force.re() >= target {
+                break;
+            }
+            (low, high) = (high, 2.0 * high);
+        }
+    }
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if risen(middle).force.re() < target { low = middle } else { high = middle }
+    }
+    let r = risen(high);
+    (force - r.force) / r.slope + high
 }
 
 impl<S: Scalar> Loading<S> for Curve<S> {

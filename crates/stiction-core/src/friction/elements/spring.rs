@@ -6,7 +6,7 @@
 //! loop: both its points are forgotten and motion goes on along the older branch (property ii).
 
 use super::branch::{Branch, Here, SYNCHRONISED};
-use super::loading::{Curve, Loading, Response};
+use super::loading::{Curve, Loading, Response, branch_inverse};
 use super::memory::{ReverseMemory, ReversePoint};
 use crate::error::{Error, Result};
 use crate::friction::{Entry, EntryReader, Statistics};
@@ -76,6 +76,41 @@ impl<S: Scalar> SpringState<S> {
         self.direction = sign(force.re());
         self.steps = 0;
         self.memory.clear();
+    }
+
+    /// At this force after the first loading went to the first of two turns and back to the second.
+    ///
+    /// `inverse` is the elongation of the virgin curve at a force. Turns that a later force went past
+    /// are forgotten, and so are those at 0: then the spring is on its virgin curve.
+    pub fn come_back(
+        &mut self,
+        curve: &impl Loading<S>,
+        inverse: impl Fn(S) -> S,
+        turns: [S; 2],
+        force: S,
+    ) {
+        let ([first, second], end) = (turns.map(|turn| turn.re()), force.re());
+        let within = (end - first) * (end - second) < 0.0;
+        if end.abs() >= first.abs() {
+            return self.place(curve, inverse(force), force);
+        }
+        self.place(curve, inverse(turns[0]), turns[0]);
+        let from = self.position.re();
+        if second != 0.0 && second.abs() < first.abs() && within {
+            self.go_back(curve, turns[1], 2.0 * from.abs());
+            self.go_back(curve, force, (from - self.position.re()).abs());
+        } else {
+            self.go_back(curve, force, 2.0 * from.abs());
+        }
+    }
+
+    /// Turns round and goes to a force that lies within this distance.
+    fn go_back(&mut self, curve: &impl Loading<S>, force: S, reach: f64) {
+        let direction = -self.direction;
+        let rise = (force - self.force) * direction;
+        let d = branch_inverse(curve, self.position, direction, rise, reach);
+        let walk = self.walk_to(curve, self.position + d * direction, direction);
+        self.accept(&walk);
     }
 
     /// Slope with which the spring would start to move in this direction.
@@ -353,6 +388,35 @@ mod tests {
             assert!((forces[5] - forces[0]).abs() < 1e-15);
             assert!((forces[6] - c.virgin(5e-4).force).abs() < 1e-15);
             assert!(spring.memory.points().is_empty());
+        }
+    }
+
+    #[test]
+    fn coming_back_is_going_there() {
+        for virgin in [VirginCurve::Masing, VirginCurve::Same] {
+            let c = curve(virgin);
+            let back = |first: f64, second: f64, force: f64| {
+                let mut spring = SpringState::relaxed(&c);
+                spring.come_back(&c, |f| c.virgin_inverse(f), [first, second], force);
+                spring
+            };
+            let (there, forces) = drive(&c, &[-4e-4, 1e-4, -2e-4]);
+            let at = back(forces[0], forces[1], forces[2]);
+            assert!((at.position - there.position).abs() < 1e-15);
+            assert!((at.force - there.force).abs() < 1e-13);
+            assert_eq!(at.direction, there.direction);
+            for (one, other) in at.memory.points().iter().zip(there.memory.points()) {
+                assert!((one.position - other.position).abs() < 1e-15);
+            }
+            assert_eq!(at.memory.points().len(), 2);
+            // What a later force went past is forgotten, and so is a turn at 0.
+            assert_eq!(back(forces[0], forces[1], 1.5 * forces[1]).memory.points().len(), 1);
+            assert_eq!(back(forces[0], 0.0, forces[2]).memory.points().len(), 1);
+            for (first, force) in [(0.0, 0.1), (0.1, -0.2), (-0.1, -0.2)] {
+                let virgin = back(first, 0.5 * first, force);
+                assert!(virgin.memory.points().is_empty());
+                assert!((c.virgin(virgin.position).force - force).abs() < 1e-15);
+            }
         }
     }
 

@@ -186,9 +186,15 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
 
     fn primed(&self, values: &[S]) -> HsiehPanState<S> {
         let start = HsiehPanStart::from_values(values);
-        let force = reachable(start.force, self.parameters.breakaway);
+        let greatest = self.parameters.breakaway;
+        // Where it never breaks away the spring gives way by so much.
+        let level = if greatest.re().is_finite() { greatest } else { self.curve.yielding() };
+        let [turned, again, force] =
+            [start.turned * level, start.turned_again * level, start.force]
+                .map(|force| reachable(force, greatest));
         let mut state = self.initial();
-        state.spring.place_on_virgin(&self.curve, force);
+        let inverse = |force| self.curve.virgin_inverse(force);
+        state.spring.come_back(&self.curve, inverse, [turned, again], force);
         state.series = force;
         // As after a long time at this force: its loading rate is 0.
         state.filtered = force;

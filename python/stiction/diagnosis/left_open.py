@@ -1,0 +1,90 @@
+"""Names that are told and left open: what speaks against each of them once all is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence, Set
+from dataclasses import replace
+from itertools import pairwise
+from typing import Final
+
+from .decide import SURE
+from .exact_forms import doubted
+from .passing import MOMENTS
+from .result import Cause, Unexplained
+from .selection import Search
+from .words import ALONE
+
+__all__ = ["left_open"]
+
+OUTWEIGHED: Final = 0.5
+"""What is left without a name counts against one name where it is worth this share of what that one
+took: right names came to 0.4 but for one, and what was named of a contact whose law has another
+form to 0.6 and more."""
+
+
+def left_open(
+    selection: Search,
+    causes: Sequence[Cause],
+    left: Sequence[Unexplained],
+    rests: Sequence[Unexplained],
+    replaced: Collection[str],
+) -> list[Cause]:
+    """Causes, undecided where what is left, or how they came in, leaves doubt of their names.
+
+    Parameters
+    ----------
+    selection : Search
+    causes : sequence of Cause
+        In the order of the choices of ``selection``.
+    left : sequence of Unexplained
+        What has no name.
+    rests : sequence of Unexplained
+        What is left where names leave nothing, as ``rests_of`` tells.
+    replaced : collection of str
+        Names that a number of the plant file, were it free, explains as well.
+    """
+    found = [doubted(cause, left, rests) for cause in causes]
+    found = _known_by_themselves(selection, found)
+    little = _outweighed(selection, left)
+    return [
+        replace(
+            cause,
+            decided=cause.decided and cause.name not in {*replaced, *little},
+            outweighed=cause.outweighed or cause.name in little,
+        )
+        for cause in found
+    ]
+
+
+def _outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
+    """Which names took little beside what is left and has none.
+
+    All names together may outweigh that by far: the first one takes most, and later ones follow
+    what the law or the first one leaves. Recordings and moments that stand out tell nothing of
+    what acts in all others.
+    """
+    places = {each.coordinate: each.share for each in left if each.coordinate != MOMENTS.name}
+    everywhere = [share for name, share in places.items() if not name.endswith(ALONE)]
+    powers = [float(model.blocks[1].sum()) for model in selection.models]
+    unnamed = max(everywhere, default=0.0) * powers[-1]
+    names = (choice.winner.name for choice in selection.choices)
+    return {
+        name
+        for name, (before, after) in zip(names, pairwise(powers), strict=True)
+        if unnamed > OUTWEIGHED * max(before - after, 0.0)
+    }
+
+
+def _known_by_themselves(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
+    """Causes, those beside the first undecided where every one of their numbers may be 0.
+
+    All of its numbers together may help beyond doubt, and they may help to mend what the form of a
+    first cause leaves: of eight wrong second and third names every number of seven reached 0, at
+    strengths of 9 at most where these were asked. What blocks leave no doubt of needs no number.
+    """
+    final = selection.models[-1]
+    found = list(causes)
+    for place, (choice, cause) in enumerate(zip(selection.choices, causes, strict=True)):
+        if place and cause.doubtful and final.strength(choice.winner.candidate) < SURE:
+            found[place] = replace(cause, decided=False)
+    return found
