@@ -300,19 +300,45 @@ def test_turns_that_no_contact_can_have_are_forgotten_or_level_off(law):
         return motor.follow(seen, start=start)[2]
 
     force = 0.3 * level
-    # The force went past the turn; the second turn lies beyond the first.
+    # The force went past the turn; the second turn went past the first.
     assert np.array_equal(needs(force=force, turned=0.2), needs(force=force))
     assert np.array_equal(
-        needs(force=force, turned=0.5, turned_again=-0.8), needs(force=force, turned=0.5)
+        needs(force=force, turned=0.5, turned_again=-0.8), needs(force=force, turned=-0.8)
     )
-    for turned in (1.0, -1.0):
+    assert np.array_equal(needs(force=force, turned_again=-0.8), needs(force=force, turned=-0.8))
+    for turned in (0.999, -0.999):
         assert np.isfinite(needs(force=force, turned=turned, turned_again=-0.99 * turned)).all()
+    with pytest.raises(st.InputError, match="turned"):
+        needs(force=force, turned=1.5)
+
+
+@pytest.mark.parametrize("law", REMEMBERING)
+def test_a_turn_at_the_force_itself_leaves_a_state_that_can_be_set(law):
+    motor, level, _ = bent(law)
+    seen = st.Motion(motion(), np.zeros(SAMPLES), DT)
+    for again in np.linspace(-0.55, 0.55, 45):
+        for force in (np.nextafter(again * level, 1.0), again * level):
+            start = {"force": float(force), "turned": 0.6, "turned_again": float(again)}
+            motor.follow(seen, start=start)
+            motor.state = dict(motor.state)
+
+
+def test_a_branch_that_never_closes_forgets_nothing_on_the_other_side():
+    motor = machine("same")
+    seen = st.Motion(motion(), np.zeros(SAMPLES), DT)
+    level = 0.3 * motor.parameters["friction.breakaway"]
+    if not np.isfinite(level):
+        level = 0.1
+    near = [
+        motor.follow(seen, start={"force": -s * level, "turned": 0.3})[2] for s in (0.999, 1.001)
+    ]
+    assert np.abs(near[1] - near[0]).max() < 0.01 * level
 
 
 def test_a_contact_that_never_breaks_away_may_have_turned_round():
     motor = machine("sticking")
     assert not np.isfinite(motor.parameters["friction.breakaway"])
     seen = st.Motion(motion(), np.zeros(SAMPLES), DT)
-    found = [motor.follow(seen, start={"force": 0.05, "turned": t})[2] for t in (0.0, 0.8, 1.0)]
+    found = [motor.follow(seen, start={"force": 0.05, "turned": t})[2] for t in (0.0, 0.8, 0.999)]
     assert np.isfinite(found).all()
     assert np.abs(found[1] - found[0]).max() > 1e-3

@@ -11,7 +11,7 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis import verdict
+from stiction.diagnosis import left_open
 from stiction.diagnosis.passing import MOMENTS
 from stiction.diagnosis.result import Cause, Unexplained
 from stiction.diagnosis.words import NO_COORDINATE
@@ -56,8 +56,8 @@ def test_a_name_that_took_less_than_twice_what_is_left_is_not_decided(
     models = [SimpleNamespace(blocks=(None, np.full(4, p))) for p in (25.0, 5.0, 3.0)]
     names = [SimpleNamespace(winner=SimpleNamespace(name=each)) for each in ("first", "second")]
     selection: Any = SimpleNamespace(models=models, choices=names)
-    assert verdict.outweighed(selection, [Unexplained(coordinate, share)]) == little
-    assert verdict.outweighed(selection, []) == set()
+    assert left_open.outweighed(selection, [Unexplained(coordinate, share)]) == little
+    assert left_open.outweighed(selection, []) == set()
 
 
 def test_a_further_name_of_which_no_number_is_known_is_not_decided() -> None:
@@ -77,5 +77,5 @@ def test_a_further_name_of_which_no_number_is_known_is_not_decided() -> None:
     model = SimpleNamespace(strength=lambda candidate: strengths[candidate])
     choices = [SimpleNamespace(winner=SimpleNamespace(candidate=each.name)) for each in causes]
     selection: Any = SimpleNamespace(models=[model], choices=choices)
-    found = verdict.known_by_themselves(selection, causes)
+    found = left_open.known_by_themselves(selection, causes)
     assert [each.decided for each in found] == [True, True, False, True, True]

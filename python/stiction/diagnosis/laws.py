@@ -16,6 +16,7 @@ from ..errors import InputError
 from ..fitting.first_pass import launched
 from ..fitting.forms import followable
 from ..fitting.minimise import MOST_EVALUATIONS
+from ..fitting.starts import with_turns
 from ..parameter import Parameter
 from ..stated import Friction
 from ..wording import did_you_mean, listed
@@ -233,7 +234,9 @@ def _launched(base: Model, friction: Friction, hopeless: float) -> Model | None:
             within=lambda start: followable(start, evidence.forms),
             hopeless=hopeless,
         )
-        return None if found.power > hopeless and not found.interrupted else Model(evidence, found)
+        if found.power > hopeless and not found.interrupted:
+            return None
+        return Model(evidence, with_turns(found, evidence.train, most=MOST_EVALUATIONS))
     except InputError as error:
         _logger.info("%s: %s", friction.law, error)
         return None

@@ -14,7 +14,7 @@ from .result import Cause, Unexplained
 from .selection import Search
 from .words import ALONE
 
-__all__ = ["left_open"]
+__all__ = ["known_by_themselves", "left_open", "outweighed"]
 
 OUTWEIGHED: Final = 0.5
 """What is left without a name counts against one name where it is worth this share of what that one
@@ -44,8 +44,8 @@ def left_open(
         Names that a number of the plant file, were it free, explains as well.
     """
     found = [doubted(cause, left, rests) for cause in causes]
-    found = _known_by_themselves(selection, found)
-    little = _outweighed(selection, left)
+    found = known_by_themselves(selection, found)
+    little = outweighed(selection, left)
     return [
         replace(
             cause,
@@ -56,7 +56,7 @@ def left_open(
     ]
 
 
-def _outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
+def outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
     """Which names took little beside what is left and has none.
 
     All names together may outweigh that by far: the first one takes most, and later ones follow
@@ -75,7 +75,7 @@ def _outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
     }
 
 
-def _known_by_themselves(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
+def known_by_themselves(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
     """Causes, those beside the first undecided where every one of their numbers may be 0.
 
     All of its numbers together may help beyond doubt, and they may help to mend what the form of a

@@ -10,15 +10,15 @@ import numpy as np
 
 from ..plant import Plant
 from ..trajectory import FloatArray
-from .minimise import alone
+from .minimise import Solution, alone, minimise, stopped
 from .rows import TURNS, Nuisances, Rows, Start, primed, start_quantities
 
-__all__ = ["started", "turned"]
+__all__ = ["started", "turned", "with_turns"]
 
 EVALUATIONS: Final = 6
 """A force alone is a number on which rows depend nearly in a straight line."""
 TURN_EVALUATIONS: Final = 12
-"""Where a contact turned round is none."""
+"""On where a contact turned round they do not."""
 FIRST: Final = (0.9, -0.9, 0.5, -0.5)
 """Shares of the sliding friction from which a turn is looked for. At 0 no row tells of it."""
 SECOND: Final = (-0.8, -0.4)
@@ -94,11 +94,34 @@ def turned(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisance
     return Nuisances(nuisances.timing, found)
 
 
-def _turned(plant: Plant, rows: Rows, own: Start, nuisances: Nuisances) -> Start:
+def with_turns(found: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
+    """A solution, fitted on from the turns of its contacts where there were any.
+
+    Parameters
+    ----------
+    found : Solution
+        That knows of none; one that was interrupted stays as it is.
+    rows : sequence of Rows
+    most : int
+        Evaluations of the residual at most.
+    """
+    if found.interrupted:
+        return found
+    try:
+        known = turned(found.plant, rows, found.nuisances)
+        if known.starts == found.nuisances.starts:
+            return found
+        begun = primed(found.plant, rows, known)
+        return minimise(found.plant, found.variables.paths, rows, most=most, nuisances=begun)
+    except KeyboardInterrupt:
+        return stopped(found)
+
+
+def _turned(plant: Plant, rows: Rows, known: Start, nuisances: Nuisances) -> Start:
     """The start of one recording with the turns that explain its rows; as it is without any."""
     first, second = TURNS
-    if first not in start_quantities(plant) or first in own or "force" not in own:
-        return own
+    if first not in start_quantities(plant) or first in known or "force" not in known:
+        return known
 
     def nuisances_of(start: Start) -> Nuisances:
         return Nuisances(nuisances.timing, {rows.index: start})
@@ -113,15 +136,19 @@ def _turned(plant: Plant, rows: Rows, own: Start, nuisances: Nuisances) -> Start
         found = alone(plant, rows, nuisances_of(start), most=TURN_EVALUATIONS)
         return found.nuisances.starts[rows.index]
 
-    # From a force of 0, for one beyond the turn would forget it.
-    let_go = {**own, "force": 0.0}
-    never, least = left(let_go), TELLS * power(own)
-    begun = [{**let_go, first: share} for share in FIRST]
-    telling = [start for start in begun if np.sum((left(start) - never) ** 2) > least]
-    once = _better(own, [fitted(start) for start in telling], power)
+    # What the force alone may do is no merit of a turn.
+    own = fitted(known)
+    least, forces = TELLS * power(own), (0.0, own["force"])
+    begun = []
+    for force in forces:
+        # A force beyond the turn forgets it; then nothing changes, and it is not looked for.
+        let_go = {**own, "force": force}
+        never = left(let_go)
+        bent = [{**let_go, first: share} for share in FIRST]
+        begun += [start for start in bent if np.sum((left(start) - never) ** 2) > least]
+    once = _better(own, [fitted(start) for start in begun], power)
     if once is None:
-        return own
-    forces = (0.0, own["force"])
+        return known
     begun = [
         {**once, "force": force, second: share * once[first]}
         for force, share in product(forces, SECOND)

@@ -28,9 +28,9 @@ parameters! {
         force: Effort, "force at the start, on the first loading curve; levels off from 98 % of F_c on, below F_c",
             default Value(0.0), neutral Some(0.0), typical 0.1, bounds -1e9, 1e9;
         turned: One, "where the contact turned round before, on the first loading curve, as a share of F_c; 0 where it never did, and forgotten where the force is beyond it",
-            default Value(0.0), neutral Some(0.0), typical 0.5, bounds -1.0, 1.0;
-        turned_again: One, "where it turned round after that, as a share of F_c; 0 where it did not, and forgotten where it is beyond the first turn or passed by the force",
-            default Value(0.0), neutral Some(0.0), typical 0.3, bounds -1.0, 1.0;
+            default Value(0.0), neutral Some(0.0), typical 0.5, bounds -0.999, 0.999;
+        turned_again: One, "where it turned round after that, as a share of F_c; 0 where it did not; forgotten where the force is beyond it, and the first turn where this one is beyond that",
+            default Value(0.0), neutral Some(0.0), typical 0.3, bounds -0.999, 0.999;
     }
 }
 

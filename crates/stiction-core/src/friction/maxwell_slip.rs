@@ -43,9 +43,9 @@ parameters! {
         force: Effort, "force of the elements at the start, on the first loading curve; levels off from 98 % of F_c on, below F_c",
             default Value(0.0), neutral Some(0.0), typical 0.1, bounds -1e9, 1e9;
         turned: One, "where the contact turned round before, on the first loading curve, as a share of F_c; 0 where it never did, and forgotten where the force is beyond it",
-            default Value(0.0), neutral Some(0.0), typical 0.5, bounds -1.0, 1.0;
-        turned_again: One, "where it turned round after that, as a share of F_c; 0 where it did not, and forgotten where it is beyond the first turn or passed by the force",
-            default Value(0.0), neutral Some(0.0), typical 0.3, bounds -1.0, 1.0;
+            default Value(0.0), neutral Some(0.0), typical 0.5, bounds -0.999, 0.999;
+        turned_again: One, "where it turned round after that, as a share of F_c; 0 where it did not; forgotten where the force is beyond it, and the first turn where this one is beyond that",
+            default Value(0.0), neutral Some(0.0), typical 0.3, bounds -0.999, 0.999;
     }
 }
 
@@ -161,15 +161,11 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
 
     fn primed(&self, values: &[S]) -> MaxwellSlipState<S> {
         let start = MaxwellSlipStart::from_values(values);
-        let [turned, again, force] = [
-            start.turned * self.parameters.coulomb,
-            start.turned_again * self.parameters.coulomb,
-            start.force,
-        ]
-        .map(|force| self.curve.reachable(force));
+        let turns = [start.turned, start.turned_again].map(|share| share * self.parameters.coulomb);
+        let force = self.curve.reachable(start.force);
         let mut state = self.initial();
         let inverse = |force| self.curve.virgin_inverse(force);
-        state.spring.come_back(&self.curve, inverse, [turned, again], force);
+        state.spring.come_back(&self.curve, inverse, turns, force);
         state
     }
 

@@ -122,15 +122,23 @@ impl<S: Scalar> Curve<S> {
         let root = (linear * linear + 2.0 * rest * share).sqrt();
         let u = if linear > 0.0 { 2.0 * share / (linear + root) } else { (root - linear) / rest };
         let mut x = u * distance / twice;
-        for _ in 0..60 {
+        let mut settled = false;
+        for _ in 0..20 {
             let r = self.virgin(S::constant(x));
             let (slope, bend) = (r.slope.re(), (last - r.slope.re()) * twice / distance);
             let step = (target - r.force.re()) / slope;
             let moved = step / (1.0 + 0.5 * step * bend / slope);
             x += moved;
-            if moved.abs() <= 1e-3 * x {
+            settled = moved.abs() <= 1e-3 * x;
+            if settled {
                 break;
             }
+        }
+        if !settled {
+            // About the knee of a curve that hardly rises behind it the iteration may go in circles;
+            // no force is further off than where its last slope alone would come to it.
+            let risen = |x: f64| self.virgin(S::constant(x)).force.re();
+            x = halved(|x| risen(x) >= target, 0.0, target / last);
         }
         let r = self.virgin(S::constant(x));
         ((force * s - r.force) / r.slope + x) * s
@@ -181,15 +189,23 @@ pub fn branch_inverse<S: Scalar>(
             (low, high) = (high, 2.0 * high);
         }
     }
-    for _ in 0..100 {
+    let d = halved(|d| risen(d).force.re() >= target, low, high);
+    let r = risen(d);
+    let end = (force - r.force) / r.slope + d;
+    // A rise that is rounding alone, or less, must not lead behind the reverse point.
+    if end.re() < 0.0 { end - end.re() } else { end }
+}
+
+/// The least number between two at which something holds that holds from there on.
+fn halved(holds: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
+    for _ in 0..200 {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
             break;
         }
-        if risen(middle).force.re() < target { low = middle } else { high = middle }
+        if holds(middle) { high = middle } else { low = middle }
     }
-    let r = risen(high);
-    (force - r.force) / r.slope + high
+    high
 }
 
 impl<S: Scalar> Loading<S> for Curve<S> {

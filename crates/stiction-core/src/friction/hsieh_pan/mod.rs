@@ -189,12 +189,11 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         let greatest = self.parameters.breakaway;
         // Where it never breaks away the spring gives way by so much.
         let level = if greatest.re().is_finite() { greatest } else { self.curve.yielding() };
-        let [turned, again, force] =
-            [start.turned * level, start.turned_again * level, start.force]
-                .map(|force| reachable(force, greatest));
+        let turns = [start.turned, start.turned_again].map(|share| share * level);
+        let force = reachable(start.force, greatest);
         let mut state = self.initial();
         let inverse = |force| self.curve.virgin_inverse(force);
-        state.spring.come_back(&self.curve, inverse, [turned, again], force);
+        state.spring.come_back(&self.curve, inverse, turns, force);
         state.series = force;
         // As after a long time at this force: its loading rate is 0.
         state.filtered = force;

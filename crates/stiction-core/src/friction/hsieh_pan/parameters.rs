@@ -55,9 +55,9 @@ parameters! {
         hardening: Position, "work hardening at the start, h_0",
             default Value(0.0), neutral Some(0.0), typical 5e-5, bounds 0.0, 1e6;
         turned: One, "where the contact turned round before, on the first loading curve, as a share of F_s (of (k_0 − k_inf)·d_0 where it never breaks away); 0 where it never did, and forgotten where the force is beyond it",
-            default Value(0.0), neutral Some(0.0), typical 0.5, bounds -1.0, 1.0;
-        turned_again: One, "where it turned round after that, as a share of F_s; 0 where it did not, and forgotten where it is beyond the first turn or passed by the force",
-            default Value(0.0), neutral Some(0.0), typical 0.3, bounds -1.0, 1.0;
+            default Value(0.0), neutral Some(0.0), typical 0.5, bounds -0.999, 0.999;
+        turned_again: One, "where it turned round after that, as a share of F_s; 0 where it did not; forgotten where the force is beyond it, and the first turn where this one is beyond that",
+            default Value(0.0), neutral Some(0.0), typical 0.3, bounds -0.999, 0.999;
     }
 }
 
