@@ -6,7 +6,7 @@ import numpy as np
 from tests.reference.ladder_spring import LadderSpring
 
 import stiction as st
-from stiction.fitting.rows import Nuisances, Rows
+from stiction.fitting.rows import WARM_UP_S, Nuisances, Rows
 from stiction.fitting.starts import started
 from stiction.weak_form import WeakForm
 
@@ -149,14 +149,38 @@ def test_a_contact_that_was_never_moved_has_no_turn() -> None:
 
 
 def test_a_second_turn_is_kept_where_it_explains_more() -> None:
-    fitted = st.fit(PLANT, session("test")).plant
+    slid = bent(61, "train", *SLID_BACK)
+    fitted = st.fit(PLANT, machine(slid, bent(62, "test", *RANG))).plant
     form = WeakForm(PLANT, bent(60, "test", *RANG))
-    rows = Rows(PLANT, form, 0, np.ones(len(form), dtype=bool))
+    rows = Rows(PLANT, form, 0, form.time > WARM_UP_S)
     start = started(fitted, [rows], Nuisances()).starts[0]
-    left = rows.residual(fitted, Nuisances(0.0, {0: start}))
+    left = rows.residual(fitted, Nuisances(0.0, {0: start}))[rows.mask]
     assert np.sqrt(np.mean(left**2)) < NOISE
     assert start["turned"] < -0.9
     assert 0.4 < start["turned_again"] < 0.7
     # What it is fitted from afterwards stays: a plant that hardly differs does not lose it.
     again = started(fitted, [rows], Nuisances(0.0, {0: start})).starts[0]
     assert set(again) == set(start)
+
+
+def test_an_offset_is_no_turn() -> None:
+    # In loops that never slide both are a constant, which is the machine's.
+    own = machine(*(bent(70 + k, role) for k, role in enumerate(("train", "select", "test"))))
+    pulled = st.Session(
+        [
+            st.Recording(
+                each.time,
+                None,
+                each.position,
+                effort=each.effort + 3.0,
+                role=each.role,
+                kind=each.kind,
+            )
+            for each in own
+        ]
+    )
+    found = st.diagnose(PLANT, pulled, surrogates=6)
+    assert [cause.name for cause in found.effects] == ["torque_bias"], found.sentence
+    (bias,) = found.effects[0].parameters.values()
+    # As an effort beside the drive it pulls against what is measured.
+    assert abs(bias.value + 3.0) < 0.15

@@ -27,7 +27,8 @@ TELLS: Final = 0.1
 """Of the power that is left in the recording, by which a turn must change its rows to be looked
 for: a contact that soon slides forgets all of it."""
 WORTH: Final = 0.9
-"""Of the power that a force alone leaves in the recording, below which there was a turn."""
+"""Of the power that a force alone leaves in the recording beside a constant, below which there was
+a turn."""
 
 
 def started(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisances:
@@ -130,7 +131,7 @@ def _turned(plant: Plant, rows: Rows, known: Start, nuisances: Nuisances) -> Sta
         return rows.residual(plant, nuisances_of(start))[rows.mask]
 
     def power(start: Start) -> float:
-        return float(np.sum(left(start) ** 2))
+        return _beside_constant(left(start))
 
     def fitted(start: Start) -> Start:
         found = alone(plant, rows, nuisances_of(start), most=TURN_EVALUATIONS)
@@ -145,15 +146,27 @@ def _turned(plant: Plant, rows: Rows, known: Start, nuisances: Nuisances) -> Sta
         let_go = {**own, "force": force}
         never = left(let_go)
         bent = [{**let_go, first: share} for share in FIRST]
-        begun += [start for start in bent if np.sum((left(start) - never) ** 2) > least]
-    once = _better(own, [fitted(start) for start in begun], power)
-    if once is None:
+        begun += [start for start in bent if _beside_constant(left(start) - never) > least]
+    if not begun:
         return known
+    once = _better(own, [fitted(start) for start in begun], power)
+    # One turn alone may explain nothing where there were two.
+    firsts = [{**own, first: share} for share in FIRST[:2]] if once is None else [once]
     begun = [
-        {**once, "force": force, second: share * once[first]}
-        for force, share in product(forces, SECOND)
+        {**start, "force": force, second: share * start[first]}
+        for start, force, share in product(firsts, forces, SECOND)
     ]
-    return _better(once, [fitted(start) for start in begun], power) or once
+    twice = _better(once or own, [fitted(start) for start in begun], power)
+    return twice or once or known
+
+
+def _beside_constant(left: FloatArray) -> float:
+    """Power of what is left beside a constant.
+
+    A contact that keeps for long what it brought along would hide an offset, which is the
+    machine's: the gas of a damper, of which recordings without a slide know nothing else.
+    """
+    return float(np.sum((left - np.mean(left)) ** 2))
 
 
 def _better(known: Start, others: Sequence[Start], power: Callable[[Start], float]) -> Start | None:
