@@ -83,21 +83,22 @@ def residuals_of(
         own = evidence.each(lambda e: e.weight * e.residual(plant, nuisances)[e.mask], rows)
         return np.nan_to_num(np.concatenate(own), nan=1e6)
 
-    # What a contact brought along into these recordings is no part of a plant.
-    begun = tuple(
-        evidence.started(
-            plant,
-            nuisances,
-            [e for e in rows if e.index not in evidence.trained | nuisances.starts.keys()],
-        )
-        for plant, nuisances in models
-    )
+    # What a contact brought along into these recordings is no part of a plant. Of each law the
+    # first model tells where it is looked for, and the others go on from there.
+    known: dict[str, Nuisances] = {}
+    begun = []
+    for plant, nuisances in models:
+        new = [e for e in rows if e.index not in evidence.trained | nuisances.starts.keys()]
+        law = plant.friction.law
+        near = known.get(law, Nuisances()).of({e.index for e in new})
+        begun.append(evidence.started(plant, nuisances.joined(near), new))
+        known.setdefault(law, begun[-1])
     plants = [plant for plant, _ in models]
     residuals = tuple(left(*each) for each in zip(plants, begun, strict=True))
     weights = np.concatenate([np.full(int(e.mask.sum()), e.weight) for e in rows])
     base = models[0][0]
     effort = np.concatenate([e.weight * e.form.whole(base)[e.mask] for e in rows])
-    return HeldOut(residuals, weights, effort, evidence.cells_of(rows), tuple(rows), begun)
+    return HeldOut(residuals, weights, effort, evidence.cells_of(rows), tuple(rows), tuple(begun))
 
 
 def gain_of(test: HeldOut, before: int, after: int, seed: int) -> Gain:

@@ -23,6 +23,8 @@ FIRST: Final = (0.9, -0.9, 0.5, -0.5)
 """Shares of the sliding friction from which a turn is looked for. At 0 no row tells of it."""
 SECOND: Final = (-0.8, -0.4)
 """Shares of the first turn from which a second one is: what is let go swings back, and rings."""
+LIKELIEST: Final = 2
+"""Second turns from which it is fitted, of those that are tried."""
 TELLS: Final = 0.1
 """Of the power that is left in the recording, by which a turn must change its rows to be looked
 for: a contact that soon slides forgets all of it."""
@@ -140,23 +142,30 @@ def _turned(plant: Plant, rows: Rows, known: Start, nuisances: Nuisances) -> Sta
     # What the force alone may do is no merit of a turn.
     own = fitted(known)
     least, forces = TELLS * power(own), (0.0, own["force"])
-    begun = []
+    begun: dict[float, list[Start]] = {}
     for force in forces:
         # A force beyond the turn forgets it; then nothing changes, and it is not looked for.
         let_go = {**own, "force": force}
         never = left(let_go)
-        bent = [{**let_go, first: share} for share in FIRST]
-        begun += [start for start in bent if _beside_constant(left(start) - never) > least]
+        for share in FIRST:
+            start = {**let_go, first: share}
+            if _beside_constant(left(start) - never) > least:
+                begun.setdefault(np.sign(share), []).append(start)
     if not begun:
         return known
-    once = _better(own, [fitted(start) for start in begun], power)
+    # Either way from the likeliest start: most of the others end in the same valley.
+    once = _better(own, [fitted(min(each, key=power)) for each in begun.values()], power)
     # One turn alone may explain nothing where there were two.
     firsts = [{**own, first: share} for share in FIRST[:2]] if once is None else [once]
-    begun = [
-        {**start, "force": force, second: share * start[first]}
-        for start, force, share in product(firsts, forces, SECOND)
+    again = [
+        min(
+            ({**start, "force": force, second: share * start[first]} for start in firsts),
+            key=power,
+        )
+        for force, share in product(forces, SECOND)
     ]
-    twice = _better(once or own, [fitted(start) for start in begun], power)
+    likeliest = sorted(again, key=power)[:LIKELIEST]
+    twice = _better(once or own, [fitted(start) for start in likeliest], power)
     return twice or once or known
 
 
