@@ -41,6 +41,7 @@ PAIRS = (
     {"torque_constant_ripple", "position_dependent_friction"},
 )
 """Declared to be alike on ordinary data: between them only the class is asked for."""
+COGGING, UNBALANCE = "cogging", "gravity_unbalance"
 
 
 # --- what a session says
@@ -137,6 +138,7 @@ def _sized(rows, low, high):
 
 def report(rows):
     """Everything that was counted, as Markdown."""
+    rows = [_rightly_named(row) for row in rows]
     kinds = {kind: [row for row in rows if row["kind"] == kind] for kind in _kinds(rows)}
     single = kinds.get("single", [])
     forms = {
@@ -149,6 +151,22 @@ def report(rows):
             parts += [f"Single effects in the {form} form, by clair:", _by_clair(some)]
     parts += [_by_effect(single), _foreign(kinds.get("foreign", [])), _errors(rows)]
     return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def _rightly_named(row):
+    """A row under the names of what was hidden: a plain wave of one period a turn is an unbalance.
+
+    Both are a cos(x - phase), whatever they were drawn as, and no recording tells them apart.
+    """
+    names = [
+        UNBALANCE if each["name"] == COGGING and _is_plain_turn(each) else name
+        for name, each in zip(row["names"], row["hidden"], strict=True)
+    ]
+    return {**row, "names": names}
+
+
+def _is_plain_turn(hidden):
+    return hidden["form"] == "library" and hidden["shape"]["order"] == 1.0
 
 
 def _kinds(rows):
