@@ -322,7 +322,7 @@ def tried(
     candidate = SimpleNamespace(
         name=f"{worth}",
         parameters=parameters,
-        record=SimpleNamespace(family=family, name=f"{worth}", shapes=()),
+        record=SimpleNamespace(family=family, name=f"{worth}", shapes=(), gains=()),
     )
     score = SimpleNamespace(
         signature=np.ones(5), candidate=candidate, score=0.1, threshold=0.05, heldout=0.1

@@ -18,7 +18,7 @@ from ..presliding import presliding
 from ..wording import did_you_mean, listed
 from .evidence import Evidence
 
-__all__ = ["Candidate", "Scales", "candidates", "left_out", "present", "scales_of"]
+__all__ = ["LOWEST", "Candidate", "Scales", "candidates", "left_out", "present", "scales_of"]
 
 FEWEST_SPEEDS: Final = (0.02, 0.90)
 """Quantiles of the moving speeds that bound the grid of a speed."""
@@ -40,8 +40,13 @@ MOST_SHARES: Final = 2
 """Points of the grid of its shapes that are looked at at each of them."""
 SAMPLED: Final = 0.3
 """Share of the rate of the samples up to which they show a resonance."""
+FALL: Final = "fall"
+"""Shape that says how much of a fall of friction with speed is meant: such a gain is positive, as
+that of ``stribeck`` is, or a rise of friction from rest that no machine has would be found."""
 ORDER_STEP: Final = 0.5
 """Spacing of orders where the machine does not turn fully, in periods over its range."""
+LOWEST: Final = 0.5
+"""Lowest order that a refit may go to, in units of the lowest one that is tried."""
 
 
 @dataclass(frozen=True)
@@ -109,6 +114,14 @@ class Candidate:
     def gains(self) -> tuple[str, ...]:
         """Its gains, by the names that they have in a plant."""
         return tuple(self.own(name) for name in self.record.gains)
+
+    @property
+    def bounds(self) -> tuple[tuple[float, float], ...]:
+        """Least and greatest value of each gain: with its fall, friction falls with speed."""
+        known = {p.name: p.bounds for p in self.record.parameters}
+        if self.shape.get(FALL, 0.0) > 0.0:
+            return tuple((max(known[name][0], 0.0), known[name][1]) for name in self.gains)
+        return tuple(known[name] for name in self.gains)
 
     def own(self, name: str) -> str:
         """The name that a gain or a shape parameter has in a plant."""
@@ -256,7 +269,7 @@ def _neighbours(order: float, scales: Scales) -> tuple[float, float]:
     Below half the lowest one a wave turns into an offset and a slope, of any size.
     """
     step = scales.orders[0]
-    return max(0.5 * step, order - 1.5 * step), order + 1.5 * step
+    return max(LOWEST * step, order - 1.5 * step), order + 1.5 * step
 
 
 def _axis(scale: str, grid: Sequence[float], scales: Scales) -> tuple[Sequence[float], bool]:

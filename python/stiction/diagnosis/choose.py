@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
+from .chance import by_chance
 from .decide import OUT_OF_RANGE, Trial
-from .gains import z_of
-from .influence import limited
+from .gains import paired_z
 
 __all__ = ["ALIKE", "DECIDED_Z", "Choice", "choose", "covers", "parallel", "strangers"]
 
@@ -87,6 +87,7 @@ def choose(trials: Sequence[Trial], encompasses: Encompasses | None = None) -> C
     ]
     head = _head(winner, rivals)
     others = [trial for trial in (winner, *rivals) if trial is not head]
+    others = [trial for trial in others if not by_chance(head, trial)]
     if winner.uneven > UNEVEN_IN_FAMILY:
         # Who stands for a family stands for its twin as well.
         return Choice(head, tuple(others))
@@ -181,11 +182,7 @@ def _told(winner: Trial, other: Trial, encompasses: Encompasses | None) -> bool:
     """Whether the data tell the winner from another candidate."""
     if other.worth >= (1.0 - TOO_NEAR) * winner.worth:
         return False
-    difference = np.zeros(len(winner.model.blocks[0]))
-    for worse, better in zip(other.model.blocks, winner.model.blocks, strict=True):
-        after, before = limited(worse, better)
-        difference += after - before
     least = CERTAIN_Z if other.worth >= (1.0 - NEAR) * winner.worth else DECIDED_Z
-    if z_of(difference[difference != 0.0]) >= least:
+    if paired_z(other.model, winner.model) >= least:
         return True
     return encompasses is not None and encompasses(winner, other)

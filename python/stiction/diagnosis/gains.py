@@ -19,6 +19,7 @@ __all__ = [
     "hardly_excited",
     "heldout_gain",
     "log_gain",
+    "paired_z",
     "recordings_acted_in",
     "without_the_best",
     "z_of",
@@ -99,6 +100,15 @@ def without_the_best(base: Model, model: Model, contributed: FloatArray) -> floa
     # As it may find the machine again in one, it may lose it in another.
     kept = in_order[1:-1] if len(in_order) >= FEWEST_RECORDINGS else in_order[:-1]
     return float(1.0 - left[kept].sum() / whole[kept].sum())
+
+
+def paired_z(worse: Model, better: Model) -> float:
+    """What one model leaves more than another, over its standard error over blocks of 1 s."""
+    difference = np.zeros(len(better.blocks[0]))
+    for more, less in zip(worse.blocks, better.blocks, strict=True):
+        after, before = limited(more, less)
+        difference += after - before
+    return z_of(difference[difference != 0.0])
 
 
 def recordings_acted_in(base: Model, contributed: FloatArray) -> int:

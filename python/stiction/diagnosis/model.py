@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -159,6 +160,18 @@ class Model:
         Its shape is taken as it is: a gain and the time over which it comes are told apart by few
         recordings, and still there may be no doubt that something comes.
         """
+        spread = self.spread(candidate)
+        if spread is None:
+            return 0.0
+        gains = self.gains(candidate)
+        squared = float(gains @ np.linalg.pinv(spread, hermitian=True) @ gains)
+        return math.sqrt(max(squared, 0.0))
+
+    def spread(self, candidate: Candidate) -> FloatArray | None:
+        """Covariance of the gains of an effect over blocks of 1 s, its shape as it is.
+
+        Shape (q, q); None where the rows that were fitted tell nothing of one of them.
+        """
         paths = list(self.solution.variables.paths)
         own = [paths.index(f"effects.{candidate.name}.{name}") for name in candidate.gains]
         fit, block = self.evidence.fitted, self.evidence.cells.block
@@ -178,10 +191,9 @@ class Model:
         spread = bread @ pushes.T @ pushes @ bread
         places = [int(np.flatnonzero(live == k)[0]) for k in own if k in live]
         if len(places) < len(own):
-            return 0.0
-        gains = self.gains(candidate) * scale[own]
-        matrix = spread[np.ix_(places, places)]
-        return float(np.sqrt(max(gains @ np.linalg.pinv(matrix, hermitian=True) @ gains, 0.0)))
+            return None
+        found: FloatArray = spread[np.ix_(places, places)] / np.outer(scale[own], scale[own])
+        return found
 
     def _shape_of(self, candidate: Candidate) -> list[int]:
         """Where what is fitted of an effect's shape stands among all that is fitted."""
@@ -325,10 +337,10 @@ def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> P
     gain, or an estimate for a second wave, which may be less large than a first one.
     """
     bounds = {p.name: p.bounds for p in candidate.record.parameters}
-    parameters = {
-        name: Parameter(float(np.clip(np.nan_to_num(value), *bounds[name])))
-        for name, value in zip(candidate.gains, gains, strict=True)
-    }
+    parameters = {}
+    for name, value, reach in zip(candidate.gains, gains, candidate.bounds, strict=True):
+        narrower = reach if reach != bounds[name] else (None, None)
+        parameters[name] = Parameter(float(np.clip(np.nan_to_num(value), *reach)), *narrower)
     for name, value in candidate.shape.items():
         low, high = candidate.limits.get(name, (None, None))
         fixed = name not in candidate.free

@@ -11,7 +11,7 @@ from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .evidence import Plan
 
-__all__ = ["Base", "Projected", "project", "refitted", "step"]
+__all__ = ["FLAT", "Base", "Projected", "project", "refitted", "step"]
 
 FLAT: Final = 1e-8
 """Directions of the base with less than this share of the strongest one are dropped."""

@@ -417,8 +417,7 @@ def _threshold(noise: FloatArray, turned: FloatArray) -> float:
 
 def _bounds(candidate: Candidate) -> tuple[list[float], list[float]]:
     """Bounds of the gains: a delay is not negative."""
-    bounds = {p.name: p.bounds for p in candidate.record.parameters}
-    low, high = zip(*(bounds[name] for name in candidate.gains), strict=True)
+    low, high = zip(*candidate.bounds, strict=True)
     return list(low), list(high)
 
 

@@ -1,0 +1,136 @@
+"""What would resemble a simpler cause by chance alone: in one of very many phases or orders.
+
+Where a machine does not turn round, a wave over the angle near its top is about a constant, and
+cogging or a weight off the axis explain what a constant effort does; and cogging whose order comes
+out as 1 explains what a weight does. A wave may have any phase, and cogging any order: one that has
+to stand within some degrees of the top, or at that order, and gains nothing by it, is so much less
+likely than what is simpler. What blocks say against it, where they are not certain, comes on top.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from ..trajectory import FloatArray
+from .candidates import LOWEST, scales_of
+from .decide import Trial
+from .gains import paired_z
+from .regression import FLAT
+
+__all__ = ["by_chance", "share_of_phases"]
+
+WAVE: Final = ("cosine", "sine")
+ENOUGH: Final = 3.0
+"""Logarithm of the odds, 20 to 1, from which the wave is left aside."""
+DEVIATIONS: Final = 2.0
+"""Standard errors of a phase or an order that are added on both sides."""
+ORDER: Final = "order"
+SMALLEST: Final = 1e-9
+
+
+def by_chance(simple: Trial, other: Trial) -> bool:
+    """Whether a wave resembles a cause with fewer parameters in few of its phases or orders.
+
+    Parameters
+    ----------
+    simple : Trial
+        The cause that the wave is not told from.
+    other : Trial
+        Refitted beside the same base. False where it is no wave, or explains more.
+    """
+    if other.candidate.record.gains != WAVE or other.worth > simple.worth:
+        return False
+    if simple.candidate.record.gains == WAVE:
+        share = _share_of_orders(simple, other)
+    elif len(simple.candidate.gains) == 1:
+        share = _share_of_phases(simple, other) * _share_of_low_orders(other)
+    else:
+        return False
+    apart = max(paired_z(other.model, simple.model), 0.0)
+    return 0.5 * apart**2 - math.log(max(share, SMALLEST)) >= ENOUGH
+
+
+def _share_of_orders(simple: Trial, other: Trial) -> float:
+    """Share of all orders, logarithmic, that are as near to one wave a turn; at most 1."""
+    if simple.candidate.record.shapes or other.candidate.free != (ORDER,):
+        return 1.0
+    order = other.model.told.parameters[f"effects.{other.name}.{other.candidate.own(ORDER)}"]
+    if not math.isfinite(order.stderr):
+        return 1.0
+    least, most = _orders(other)
+    away = abs(math.log(order.value)) + DEVIATIONS * order.stderr / order.value
+    return min(2.0 * away / math.log(most / least), 1.0)
+
+
+def _share_of_low_orders(other: Trial) -> float:
+    """Share of all orders, logarithmic, that show no more of a period; 1 where it was given."""
+    if other.candidate.free != (ORDER,):
+        return 1.0
+    effect = next(each for each in other.model.plant.effects if each.name == other.name)
+    least, most = _orders(other)
+    # The least one stands for all below it, an octave of them.
+    below = 0.5 * least
+    order = effect.parameters[other.candidate.own(ORDER)].value
+    return math.log(order / below) / math.log(most / below)
+
+
+def _orders(other: Trial) -> tuple[float, float]:
+    """Least and greatest order that a fit may come to."""
+    asked = scales_of(other.model.evidence, other.model.plant).orders
+    return LOWEST * asked[0], asked[-1]
+
+
+def _share_of_phases(simple: Trial, other: Trial) -> float:
+    """The same of phases, beside the phase in which the wave resembles the cause most."""
+    spread = other.model.spread(other.candidate)
+    if spread is None:
+        return 1.0
+    return share_of_phases(other.model.gains(other.candidate), spread, _most_alike(simple, other))
+
+
+def share_of_phases(wave: FloatArray, spread: FloatArray, most: FloatArray) -> float:
+    """Share of all phases in which a wave is as near to another one, of either sign.
+
+    Parameters
+    ----------
+    wave, most : numpy.ndarray, shape (2,)
+        Cosine and sine, of what was found and of what it is compared with.
+    spread : numpy.ndarray, shape (2, 2)
+        Covariance of the former.
+
+    Returns
+    -------
+    float
+        At most 1.
+    """
+    size = float(np.hypot(*wave))
+    if size == 0.0:
+        return 1.0
+    away = math.remainder(math.atan2(wave[1], wave[0]) - math.atan2(most[1], most[0]), math.pi)
+    across = np.array([-wave[1], wave[0]]) / size
+    uncertain = math.sqrt(max(float(across @ spread @ across), 0.0)) / size
+    return min(2.0 / math.pi * (abs(away) + DEVIATIONS * uncertain), 1.0)
+
+
+def _most_alike(simple: Trial, other: Trial) -> FloatArray:
+    """Cosine and sine of the wave that resembles a cause with one gain most, beside the base."""
+    own, base = _columns(other)
+    alone, _ = _columns(simple)
+    regressors = np.hstack([own, base])
+    scale = np.sqrt(np.sum(regressors**2, axis=0))
+    live = scale > 0.0
+    found = np.zeros(len(scale))
+    scaled = regressors[:, live] / scale[live]
+    found[live] = np.linalg.lstsq(scaled, alone[:, 0], rcond=FLAT)[0] / scale[live]
+    return found[: own.shape[1]]
+
+
+def _columns(trial: Trial) -> tuple[FloatArray, FloatArray]:
+    """Slopes of the fitted rows by the gains of a cause, and by all but its own parameters."""
+    columns, paths = trial.model.fitted_columns, list(trial.model.solution.variables.paths)
+    gains = [paths.index(f"effects.{trial.name}.{name}") for name in trial.candidate.gains]
+    own = [k for k, path in enumerate(paths) if path.startswith(f"effects.{trial.name}.")]
+    return columns[:, gains], np.delete(columns, own, axis=1)

@@ -1,0 +1,73 @@
+"""Machines that do not turn round: a constant, a weight and cogging are much the same there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.blind.score import as_plant, as_session
+from tests.reference.session_reference import make_session
+
+import stiction as st
+from stiction.diagnosis.chance import share_of_phases
+
+SPAN = 4.0
+"""rad that a machine moves over once it is geared down."""
+
+
+def geared(seed: int, base: str, **hidden: Any) -> tuple[st.Plant, st.Session]:
+    """A reference session seen behind a gear that leaves it less than a turn.
+
+    ``hidden`` are effects with the number of their periods a turn behind the gear, None for a
+    constant.
+    """
+    bare = as_session(make_session(seed, base=base))
+    ratio = SPAN / float(np.ptp(np.concatenate([r.position for r in bare.recordings])))
+    entries = tuple(
+        (name, 0.012) if order is None else (name, 0.012, {"order": order * ratio})
+        for name, order in hidden.items()
+    )
+    made = make_session(seed, base=base, hidden=entries)
+    slower = [
+        st.Recording(
+            r.time, r.input, ratio * r.position, role=r.role, kind=r.kind, start_s=r.start_s
+        )
+        for r in as_session(made).recordings
+    ]
+    counts = round(made.spec.counts_per_rev / ratio)
+    table = as_plant(made).to_dict() | {"sensor": {"counts_per_rev": counts}}
+    return st.Plant.from_dict(table), st.Session(slower)
+
+
+@pytest.mark.parametrize(
+    ("seed", "base", "hidden", "name"),
+    [
+        (31, "maxwell_slip", {"torque_bias": None}, "torque_bias"),
+        (31, "coulomb", {"cogging": 1.0}, "gravity_unbalance"),
+        (31, "maxwell_slip", {"cogging": 1.5}, "cogging"),
+    ],
+)
+def test_what_only_few_waves_would_do_is_told_by_its_simpler_name(
+    seed: int, base: str, hidden: dict[str, Any], name: str
+) -> None:
+    """All but the last were left open beside ``cogging``, of any order and phase."""
+    found = st.diagnose(*geared(seed, base, **hidden))
+    assert [(cause.name, cause.decided) for cause in found.effects] == [(name, True)]
+
+
+@pytest.mark.parametrize("turned", [0.0, np.pi])
+def test_a_phase_that_is_known_and_at_the_top_is_one_of_few(turned: float) -> None:
+    def share(away: float, deviation: float) -> float:
+        wave = np.array([np.cos(turned + away), np.sin(turned + away)])
+        return share_of_phases(3.0 * wave, 9.0 * deviation**2 * np.eye(2), np.array([0.7, 0.0]))
+
+    assert share(0.0, 0.0) == pytest.approx(0.0, abs=1e-12)
+    assert share(0.1, 0.05) == pytest.approx(2.0 / np.pi * 0.2)
+    assert share(-0.1, 0.05) == pytest.approx(share(0.1, 0.05))
+    assert share(0.5 * np.pi, 0.0) == pytest.approx(1.0)
+    assert share(0.0, 2.0) == 1.0
+
+
+def test_of_a_wave_without_size_nothing_is_known() -> None:
+    assert share_of_phases(np.zeros(2), np.eye(2), np.array([1.0, 0.0])) == 1.0
