@@ -41,7 +41,7 @@ def test_a_base_at_a_kink_keeps_no_cause_from_being_found() -> None:
 
 def test_a_shape_far_from_every_signature_is_no_freed_base() -> None:
     """Signatures of a lag end at usual speeds; of this one they explain a fifth of what it does."""
-    hidden = (("frictional_lag", 0.013034),)
+    hidden = (("frictional_lag", 0.013034, {"fall": 0.0}),)
     (made,) = make_sessions([{"seed": 10520001, "base": "coulomb", "hidden": hidden}])
     found = st.diagnose(as_plant(made), as_session(made))
     assert [cause.name for cause in found.effects] == ["frictional_lag"]

@@ -131,7 +131,7 @@ def test_what_shows_where_it_was_fitted_alone_is_not_testable() -> None:
 
 def test_it_is_told_beside_a_name_as_well() -> None:
     """What resembles it beyond its own range was asked in its place, and refused for that."""
-    hidden = (("drive_saturation", 0.021924), ("frictional_lag", 0.014924))
+    hidden = (("drive_saturation", 0.021924), ("frictional_lag", 0.014924, {"fall": 0.0}))
     made = make_session(10910000, base="coulomb", hidden=hidden)
     found = st.diagnose(as_plant(made), as_session(made))
     assert [cause.name for cause in found.effects] == ["frictional_lag"]

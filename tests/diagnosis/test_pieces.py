@@ -322,6 +322,7 @@ def tried(
     candidate = SimpleNamespace(
         name=f"{worth}",
         parameters=parameters,
+        shape={},
         record=SimpleNamespace(family=family, name=f"{worth}", shapes=(), gains=()),
     )
     score = SimpleNamespace(

@@ -91,14 +91,18 @@ def test_a_dry_contact_is_turned_round_where_others_make_loops_below_break_away(
     assert said("hsieh_pan", "creep_hardening") == "loops: nested loops"
 
 
-def test_what_comes_late_is_told_by_its_sign() -> None:
-    def lags(excess: float) -> str:
-        effect = {"name": "frictional_lag", "excess": excess}
-        moved = plant("linear", moved=True).to_dict() | {"effects": [effect]}
-        return meant(EFFECTS["frictional_lag"], st.Plant.from_dict(moved))[0]
+def test_what_comes_late_is_told_by_its_sign_and_with_its_fall() -> None:
+    def lags(excess: float, fall: float = 0.0, *, moved: bool = False) -> str:
+        effect = {"name": "frictional_lag", "excess": excess, "fall": fall}
+        table = plant("linear", moved=moved).to_dict() | {"effects": [effect]}
+        return meant(EFFECTS["frictional_lag"], st.Plant.from_dict(table))[0]
 
-    assert "higher while speeding up" in lags(0.3)
-    assert "lower while speeding up" in lags(-0.7)
+    for moved in (False, True):
+        assert "higher while speeding up" in lags(0.3, moved=moved)
+        assert "lower while speeding up" in lags(-0.7, moved=moved)
+        assert "rises with speed, and late" in lags(-0.7, 1.0, moved=moved)
+    assert "it falls late" in lags(0.3, 1.0)
+    assert "stick-slip" not in lags(0.3, 1.0, moved=True)
 
 
 @pytest.mark.parametrize(

@@ -235,9 +235,10 @@ class CurrentLoopLag(Effect):
 
 
 class FrictionalLag(Effect):
-    """Level 1 + a (g(v_f) - g(v)), g(v) = exp(-(v/v_s)²), v_f' = (v - v_f) / T.
+    """Level 1 + a (g(v_f) - (1 - fall) g(v)), g(v) = exp(-(v/v_s)²), v_f' = (v - v_f) / T.
 
-    Friction that falls with speed does so late. Foreign: v_f is v of the time T before.
+    Friction that falls with speed does so late; hidden is the lag alone, or the fall with it.
+    Foreign: v_f is v of the time T before.
     """
 
     forms = ("library", "foreign")
@@ -251,6 +252,7 @@ class FrictionalLag(Effect):
             "velocity": log_uniform(rng, 0.1, 1.0),
             "time": log_uniform(rng, 5e-3, 5e-2),
             "pure": float(form == "foreign"),
+            "fall": float(rng.integers(2)),
         }
 
     @staticmethod
@@ -265,8 +267,8 @@ class FrictionalLag(Effect):
     def share(self, s):
         v = s.v[self.lanes]
         late = self._delayed(s, v) if np.all(self.pure) else self._filtered(s, v)
-        fall = np.exp(-((late / self.velocity) ** 2)) - np.exp(-((v / self.velocity) ** 2))
-        return self.amplitude * fall
+        now, then = (np.exp(-((w / self.velocity) ** 2)) for w in (v, late))
+        return self.amplitude * (then - (1.0 - self.fall) * now)
 
     def _filtered(self, s, v):
         half = 0.5 * s.step / self.time

@@ -21,10 +21,12 @@ def one_lane(name, amplitude, shape):
     return EFFECTS[name](np.array([amplitude]), shape, setting)
 
 
+@pytest.mark.parametrize("fall", [0.0, 1.0])
 @pytest.mark.parametrize("pure", [0.0, 1.0])
-def test_friction_follows_a_growing_speed_late(pure):
+def test_friction_follows_a_growing_speed_late(pure, fall):
     a, velocity, time, rate = 0.2, 0.3, 0.0123, 5.0
-    effect = one_lane("frictional_lag", a, {"velocity": velocity, "time": time, "pure": pure})
+    shape = {"velocity": velocity, "time": time, "pure": pure, "fall": fall}
+    effect = one_lane("frictional_lag", a, shape)
     s = Situation(step=1e-4, sample_time=1e-3, substeps=10)
     for n in range(2000):
         t = n * s.step
@@ -32,7 +34,8 @@ def test_friction_follows_a_growing_speed_late(pure):
         share = effect.share(s)[0]
         v = rate * t
         late = rate * max(t - time, 0.0) if pure else rate * (t + time * math.expm1(-t / time))
-        expected = a * (math.exp(-((late / velocity) ** 2)) - math.exp(-((v / velocity) ** 2)))
+        then, now = (math.exp(-((w / velocity) ** 2)) for w in (late, v))
+        expected = a * (then - (1.0 - fall) * now)
         assert share == pytest.approx(expected, abs=1e-5)
 
 

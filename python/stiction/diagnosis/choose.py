@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
+from .candidates import FALL
 from .chance import by_chance
 from .decide import OUT_OF_RANGE, Trial
 from .gains import paired_z
@@ -128,6 +129,15 @@ def _outdoes(other: Trial, winner: Trial) -> bool:
     return (1.0 - NEAR) * other.worth > winner.worth
 
 
+def _may_be(winner: Trial, other: Trial) -> bool:
+    """Whether a winner has the form that comes near to all of its family: a fall that is late.
+
+    Over at slow speeds it is a break-away that fades, whatever that grows and fades with.
+    """
+    same = winner.candidate.record.family == other.candidate.record.family
+    return same and winner.candidate.shape.get(FALL, 0.0) > 0.0
+
+
 def _head(winner: Trial, rivals: Sequence[Trial]) -> Trial:
     """Under whose name a cause stands that is not told from others: the simplest of the best.
 
@@ -182,7 +192,7 @@ def _told(winner: Trial, other: Trial, encompasses: Encompasses | None) -> bool:
     """Whether the data tell the winner from another candidate."""
     if other.worth >= (1.0 - TOO_NEAR) * winner.worth:
         return False
-    least = CERTAIN_Z if other.worth >= (1.0 - NEAR) * winner.worth else DECIDED_Z
-    if paired_z(other.model, winner.model) >= least:
+    near = other.worth >= (1.0 - NEAR) * winner.worth or _may_be(winner, other)
+    if paired_z(other.model, winner.model) >= (CERTAIN_Z if near else DECIDED_Z):
         return True
     return encompasses is not None and encompasses(winner, other)

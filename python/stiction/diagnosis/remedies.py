@@ -113,6 +113,12 @@ RISING_LAG: Final = (
     "speeding up than while slowing down"
 )
 """What frictional_lag means where its excess is negative."""
+FALLING_LAG: Final = (
+    "friction that falls with speed makes slow motion jerk, and it falls late: it is higher while "
+    "speeding up than while slowing down, which steadies stick-slip and fools a compensation by "
+    "speed"
+)
+"""What it means where the fall itself comes with it."""
 MOTIONS: Final = {
     "ramps": "constant speeds over three decades, both ways, without rests",
     "turns": "slow full strokes or turns both ways, twice",
@@ -152,10 +158,14 @@ def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
     elif plant.motion == "linear":
         usual = LINEAR.get(record.name, usual)
     effect = next((each for each in plant.effects if each.name == record.name), None)
-    excess = None if effect is None else effect.parameters.get("excess")
-    if record.name == "frictional_lag" and excess is not None and excess.value < 0.0:
+    if record.name != "frictional_lag" or effect is None:
+        return usual
+    excess, fall = (effect.parameters.get(name) for name in ("excess", "fall"))
+    if excess is not None and excess.value < 0.0:
         # What comes late is a rise of friction with speed, and its loop runs the other way round.
         return RISING_LAG, usual[1]
+    if fall is not None and fall.value > 0.5 and not plant.prescribed_motion:
+        return FALLING_LAG, usual[1]
     return usual
 
 

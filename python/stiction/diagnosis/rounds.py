@@ -16,10 +16,10 @@ from . import listing
 from .beside import left_by_forms
 from .candidates import Candidate, candidates, present, scales_of
 from .choose import ALIKE, Choice, choose, covers, parallel
-from .decide import LEAST_GAIN, LEAST_STRENGTH, Trial
+from .decide import Trial
 from .evidence import Evidence
 from .exact_forms import several
-from .gains import heldout_gain
+from .fewer import MIMIC, chained, dropped_by_the_latest, join, without
 from .model import Model, without_effect
 from .replay import centre, shared
 from .result import CandidateRow
@@ -54,9 +54,6 @@ SWINGS: Final = "second mass"
 RELATED: Final = 0.2
 """Cosine from which on one member of a family may be a part of another; waves of different orders
 have next to none."""
-MIMIC: Final = 5.0
-"""What keeps less than one part in so many of its gain beside a later effect was its mimic; what
-explains less than that of a relative that was found may be the rest of it."""
 
 _logger = logging.getLogger(__name__)
 
@@ -102,7 +99,8 @@ def search(
             _logger.info("found %s", choice.winner.name)
             found.choices[-1] = sharpened(screening, found.choices[-1])
             found.models[-1] = unstuck(_settled(found.choices[-1].winner.model))
-            dropped |= _drop(evidence, found)
+            dropped |= dropped_by_the_latest(evidence, found)
+            join(screening, found)
             rests |= _take_back(screening, found)
         for place in range(len(found.choices) - 1):
             _swap(screening, found, place)
@@ -379,55 +377,6 @@ def _renew(evidence: Evidence, found: Search, lead: Trial) -> bool:
     return True
 
 
-def _drop(evidence: Evidence, found: Search) -> set[str]:
-    """Takes out earlier effects that are not needed beside the latest one.
-
-    What explains a part of the residual first may be a mimic of what explains the whole of it.
-    """
-    dropped = set()
-    for choice in found.choices[:-1]:
-        whole = found.models[-1]
-        name = choice.winner.name
-        weak = whole.strength(choice.winner.candidate) < LEAST_STRENGTH
-        if not weak and choice.winner.gain <= MIMIC * LEAST_GAIN:
-            continue
-        less = _less(evidence, found, name)
-        left = heldout_gain(less, whole)[0]
-        # Of what it was taken for, a mimic keeps next to nothing beside its cause.
-        if left > LEAST_GAIN or not (weak or left < choice.winner.gain / MIMIC):
-            continue
-        latest = found.choices[-1].winner.name
-        _logger.info("%s is not needed beside %s", name, latest)
-        row = found.rows[name]
-        found.rows[name] = replace(row, reason=f"not needed beside {latest}")
-        kept = [each for each in found.choices if each is not choice]
-        found.models[:] = _chain(evidence, found.models[0], kept, less)
-        found.choices[:] = kept
-        dropped.add(name)
-    return dropped
-
-
-def _less(evidence: Evidence, found: Search, name: str) -> Model:
-    """The last model fitted without one of its effects; kept, for drops and swaps ask for it."""
-    whole = found.models[-1]
-    for model, left_out, less in found.lesser:
-        if model is whole and left_out == name:
-            return less
-    plant = without_effect(whole.plant, name)
-    less = compared_fit(evidence, plant, whole.nuisances)
-    found.lesser.append((whole, name, less))
-    return less
-
-
-def _chain(evidence: Evidence, base: Model, choices: Sequence[Choice], last: Model) -> list[Model]:
-    """The models behind some choices, made anew: each entry is measured beside those before it."""
-    plants = [last.plant]
-    for later in reversed(choices[1:]):
-        plants.append(without_effect(plants[-1], later.winner.name))
-    between = [whole_fit(evidence, plant, last.nuisances) for plant in reversed(plants[1:])]
-    return [base, *between, last]
-
-
 def _swap(screening: Screening, found: Search, place: int) -> None:
     """Asks again whether an early choice or a relative of it stands better beside the later ones.
 
@@ -446,7 +395,7 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
     if len(kin) < 2 or is_sharpened(effect, record):
         return
     evidence = screening.evidence
-    less = _less(evidence, found, record.name)
+    less = without(evidence, found, record.name)
     trials = [
         _as_it_is(screening, less, score, whole) or screening.trial(less, score)
         for score in screening.scores(less)
@@ -459,7 +408,7 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
     choices = [*found.choices[:place], again, *found.choices[place + 1 :]]
     if again.winner.name != record.name:
         _logger.info("%s stands better than %s", again.winner.name, record.name)
-        found.models[:] = _chain(evidence, found.models[0], choices, again.winner.model)
+        found.models[:] = chained(evidence, found.models[0], choices, again.winner.model)
     found.choices[:] = choices
     for trial in trials:
         found.rows[trial.name] = listing.tried(trial, again)

@@ -95,7 +95,7 @@ def gain_words(gain: Gain | None) -> str:
 
 
 def what(record: EffectRecord, parameters: Mapping[str, FitParameter], effect: Effect) -> str:
-    """What was found of an effect, with its fitted values, and orders that were chosen.
+    """What was found of an effect, with its fitted values, and those chosen of a grid.
 
     ``parameters`` are those of the whole model.
     """
@@ -104,7 +104,11 @@ def what(record: EffectRecord, parameters: Mapping[str, FitParameter], effect: E
         for path, p in parameters.items()
         if path.startswith(f"effects.{record.name}.")
     ]
-    chosen = [shape.parameter for shape in record.shapes if shape.scale == "order"]
+    chosen = [
+        shape.parameter
+        for shape in record.shapes
+        if shape.scale == "order" or (not shape.fitted and len(shape.grid) > 1)
+    ]
     chosen += [name for name in record.second if name not in record.gains and "order" in name]
     values += [
         f"{name} {effect.parameters[name].value:g}"

@@ -16,14 +16,16 @@ parameters! {
             default Value(0.1), neutral None, typical 0.1, bounds 1e-9, 1e6;
         time: Time, "time constant with which friction follows speed, T",
             default Value(0.05), neutral None, typical 0.05, bounds 1e-6, 1e3;
+        fall: One, "share of the fall itself that comes with its lag: 0 the lag alone, 1 all of it",
+            default Value(0.0), neutral None, typical 1.0, bounds 0.0, 1.0;
     }
 }
 
-/// Level 1 + a·(g(w) − g(v)), g(v) = exp(−(v/v_s)²), w' = (v − w)/T.
+/// Level 1 + a·(g(w) − (1 − f)·g(v)), g(v) = exp(−(v/v_s)²), w' = (v − w)/T.
 ///
 /// What depends on speed follows it late: friction is higher while a machine speeds up and lower while
-/// it slows down, a loop over speed. The fall itself is the Stribeck effect, or a term of the law;
-/// what is added here is its lag alone. Memory: w.
+/// it slows down, a loop over speed. Where the fall itself stands in the law, or beside this as the
+/// Stribeck effect, f = 0 adds its lag alone; f = 1 is a fall that was nowhere yet, and late. Memory: w.
 ///
 /// Neutral: a = 0.
 /// Source: Hess, Soom, J. Tribology 112 (1990): friction at a line contact oscillating in speed lags
@@ -57,6 +59,7 @@ impl<S: Scalar> Effect<S> for FrictionalLag<S> {
                 fitted: true,
             },
             Shape { parameter: "time", scale: Scale::Kernel, grid: &[0.7, 3.0], fitted: true },
+            Shape { parameter: "fall", scale: Scale::One, grid: &[0.0, 1.0], fitted: false },
         ],
         second: &[],
         law_terms: &[],
@@ -69,11 +72,12 @@ impl<S: Scalar> Effect<S> for FrictionalLag<S> {
 
     #[inline(always)]
     fn level(&self, at: &Situation<S>, memory: &Memory<S>) -> LevelChange<S> {
-        let FrictionalLagParameters { excess, velocity, .. } = self.0;
+        let FrictionalLagParameters { excess, velocity, fall: whole, .. } = self.0;
         let two = S::constant(2.0);
         let (late, _) = fall(memory[FOLLOWED], velocity, two);
         let (now, _) = fall(at.velocity, velocity, two);
-        LevelChange { friction: excess * (late - now), viscous: S::constant(0.0) }
+        let steady = now * -(whole - 1.0);
+        LevelChange { friction: excess * (late - steady), viscous: S::constant(0.0) }
     }
 
     #[inline(always)]

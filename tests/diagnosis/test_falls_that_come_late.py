@@ -1,0 +1,53 @@
+"""Friction that falls with speed, and late: one cause, where nothing in the plant falls yet."""
+
+from __future__ import annotations
+
+import pytest
+from tests.blind.score import as_plant, as_session
+from tests.reference.session_reference import make_session
+
+import stiction as st
+from stiction.diagnosis.candidates import candidates, scales_of
+from stiction.diagnosis.evidence import Evidence
+from stiction.diagnosis.model import with_effect
+
+
+@pytest.mark.parametrize(
+    ("seed", "size"),
+    [(12340001, 0.0123), pytest.param(12340019, 0.01235, id="found as a fall and its lag")],
+)
+def test_a_fall_that_comes_late_is_one_cause(seed: int, size: float) -> None:
+    """Beside a fall its lag was a relative, so that neither was sure."""
+    made = make_session(seed, hidden=(("frictional_lag", size, {"fall": 1.0}),))
+    found = st.diagnose(as_plant(made), as_session(made))
+    (cause,) = found.effects
+    assert cause.name == "frictional_lag"
+    assert cause.decided
+    assert "fall 1" in cause.what
+    hidden = made.effects[0]
+    for name, value in {"excess": hidden.amplitude, **hidden.shape}.items():
+        if name in ("excess", "velocity", "time"):
+            low, high = cause.parameters[f"effects.frictional_lag.{name}"].ci95
+            assert low - 0.1 * value < value < high + 0.1 * value, name
+    assert "stribeck" not in found.sentence
+
+
+def test_a_fall_that_is_never_late_is_stribeck() -> None:
+    made = make_session(12340000, hidden=(("stribeck", 0.0125),))
+    found = st.diagnose(as_plant(made), as_session(made))
+    assert [(cause.name, cause.decided) for cause in found.effects] == [("stribeck", True)]
+
+
+def test_no_friction_rises_from_rest_and_late() -> None:
+    """Of another form of a cause a rise at the slowest speeds was left, and named beside it."""
+    plant = st.Plant.from_dict(
+        {"drive": {"input": "torque_nm", "gain": 1.0}, "friction": {"law": "coulomb"}}
+    )
+    record = next(each for each in st.effects() if each.name == "frictional_lag")
+    made = make_session(3, base="coulomb", seconds=9.0)
+    evidence = Evidence(plant, as_session(made).recordings, threads=1)
+    for candidate in candidates(record, scales_of(evidence, plant)):
+        (bounds,) = candidate.bounds
+        stated = with_effect(plant, candidate, [-0.2]).effects[-1].parameters
+        assert (bounds[0] < 0.0) == (candidate.shape["fall"] == 0.0)
+        assert (stated["excess"].value < 0.0) == (candidate.shape["fall"] == 0.0)
