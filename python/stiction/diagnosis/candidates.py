@@ -116,6 +116,11 @@ class Candidate:
         return tuple(self.own(name) for name in self.record.gains)
 
     @property
+    def form(self) -> str:
+        """What is screened by itself: the effect, or one of two that go by the same name."""
+        return f"{self.name} {self.shape[FALL]:g}" if FALL in self.shape else self.name
+
+    @property
     def bounds(self) -> tuple[tuple[float, float], ...]:
         """Least and greatest value of each gain: with its fall, friction falls with speed."""
         known = {p.name: p.bounds for p in self.record.parameters}

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
-from .candidates import FALL
+from .candidates import FALL, scales_of
 from .chance import by_chance
 from .decide import OUT_OF_RANGE, Trial
 from .gains import paired_z
@@ -132,10 +132,15 @@ def _outdoes(other: Trial, winner: Trial) -> bool:
 def _may_be(winner: Trial, other: Trial) -> bool:
     """Whether a winner has the form that comes near to all of its family: a fall that is late.
 
-    Over at slow speeds it is a break-away that fades, whatever that grows and fades with.
+    Over within the pre-sliding it is a break-away that fades, whatever that grows and fades with.
     """
     same = winner.candidate.record.family == other.candidate.record.family
-    return same and winner.candidate.shape.get(FALL, 0.0) > 0.0
+    if not same or winner.candidate.shape.get(FALL, 0.0) == 0.0:
+        return False
+    model = winner.model
+    effect = next(each for each in model.plant.effects if each.name == winner.name)
+    way = effect.parameters["velocity"].value * effect.parameters["time"].value
+    return way < scales_of(model.evidence, model.plant).units["presliding"]
 
 
 def _head(winner: Trial, rivals: Sequence[Trial]) -> Trial:

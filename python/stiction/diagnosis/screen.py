@@ -257,7 +257,7 @@ class Score:
 
 
 def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Score]:
-    """The score of every effect at its best shape, highest first.
+    """The score of every effect at its best shape and in its likelier form, highest first.
 
     With S⊥ = S − QQᵀS (Q spans the base): η = (S⊥ᵀS⊥)⁻¹·S⊥ᵀr, ΔR² = ηᵀS⊥ᵀr/(r⊥ᵀr⊥). The same is
     computed for every surrogate, with its maximum over the grid: shapes mean nothing where the
@@ -272,10 +272,11 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     power = max(float(residual @ residual), 1e-300)
     scan = _Scan.of(signatures, base.share(columns))
     gains, explained = scan.regressed(columns.T @ residual)
+    forms = [candidate.form for candidate in signatures.candidates]
     best: dict[str, int] = {}
-    for index, candidate in enumerate(signatures.candidates):
-        if candidate.name not in best or explained[index] > explained[best[candidate.name]]:
-            best[candidate.name] = index
+    for index, form in enumerate(forms):
+        if form not in best or explained[index] > explained[best[form]]:
+            best[form] = index
     heldout = _heldout(problem, signatures, list(best.values()))
     # What explains most and carries over: taken out for the thresholds of all others.
     carrying = [index for index in best.values() if heldout[index] > 0.0]
@@ -286,26 +287,32 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     null_power = np.maximum(np.sum(null**2, axis=0), 1e-300)
     noise = scan.explained(columns.T @ null) / null_power
     turned = scan.explained(columns.T @ base.off(flips)) / power
-    names = np.array([candidate.name for candidate in signatures.candidates])
-    thresholds = {name: _threshold(noise[names == name], turned[names == name]) for name in best}
-    scores = []
-    for name, index in best.items():
+    own = {form: np.array(forms) == form for form in best}
+    thresholds = {form: _threshold(noise[rows], turned[rows]) for form, rows in own.items()}
+    scores: dict[str, Score] = {}
+    for form, index in best.items():
         total = float(np.sum(columns[:, signatures.slices[index]] ** 2))
         left = float(np.sum(parts[index] ** 2)) / total if total > 0.0 else 0.0
         left = left if left > IMITATED else 0.0
-        scores.append(
-            Score(
-                candidate=signatures.candidates[index],
-                gains=gains[index],
-                score=float(explained[index]) / power,
-                threshold=thresholds[name],
-                heldout=heldout[index],
-                left=left,
-                visible=left * len(residual) * (SEEN_SIZE * friction) ** 2 / power,
-                signature=parts[index] @ gains[index],
-            )
+        score = Score(
+            candidate=signatures.candidates[index],
+            gains=gains[index],
+            score=float(explained[index]) / power,
+            threshold=thresholds[form],
+            heldout=heldout[index],
+            left=left,
+            visible=left * len(residual) * (SEEN_SIZE * friction) ** 2 / power,
+            signature=parts[index] @ gains[index],
         )
-    return sorted(scores, key=lambda s: -s.score)
+        other = scores.get(score.candidate.name)
+        if other is None or _stands(score) > _stands(other):
+            scores[score.candidate.name] = score
+    return sorted(scores.values(), key=lambda s: -s.score)
+
+
+def _stands(score: Score) -> tuple[bool, float]:
+    """Which form of an effect is likelier: one that beats noise, then what explains more."""
+    return score.score > score.threshold, score.score
 
 
 @dataclass(frozen=True)

@@ -109,7 +109,34 @@ class Screening:
         return screen(self._left_by(model), self.signatures, self.friction)
 
     def trial(self, base: Model, score: Score) -> Trial:
-        """A candidate refitted together with a model, and judged."""
+        """A candidate refitted together with a model, and judged; in its other form if it fails."""
+        trial = self._tried(base, score)
+        other = self._other_form(base, score) if trial.reason else None
+        again = None if other is None else self._tried(base, other)
+        return trial if again is None or again.reason else again
+
+    def _other_form(self, base: Model, score: Score) -> Score | None:
+        """The score of a fall that is late without the fall, and the other way round.
+
+        One explains more of what is left, and a refit shows the other to be the cause: it is no
+        point of the same grid that a fit would come to. None where there is no other form, or none
+        that is worth a refit.
+        """
+        kept = [
+            (candidate, place)
+            for candidate, place in zip(
+                self.signatures.candidates, self.signatures.slices, strict=True
+            )
+            if candidate.name == score.candidate.name and candidate.form != score.candidate.form
+        ]
+        if not kept:
+            return None
+        candidates, slices = zip(*kept, strict=True)
+        others = replace(self.signatures, candidates=candidates, slices=slices)
+        (found,) = self.with_signatures(others).scores(base)
+        return found if promises(found) else None
+
+    def _tried(self, base: Model, score: Score) -> Trial:
         _logger.info("refitting with %s", score.candidate.name)
         model = _refit(self.evidence, base, self.signatures, score)
         explained = self.contributed(score, model)
