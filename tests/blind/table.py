@@ -159,14 +159,15 @@ def _rightly_named(row):
     Both are a cos(x - phase), whatever they were drawn as, and no recording tells them apart.
     """
     names = [
-        UNBALANCE if each["name"] == COGGING and _is_plain_turn(each) else name
+        UNBALANCE if _is_plain_turn(each) and COGGING not in confident(row) else name
         for name, each in zip(row["names"], row["hidden"], strict=True)
     ]
     return {**row, "names": names}
 
 
 def _is_plain_turn(hidden):
-    return hidden["form"] == "library" and hidden["shape"]["order"] == 1.0
+    library = hidden["name"] == COGGING and hidden["form"] == "library"
+    return library and hidden["shape"]["order"] == 1.0
 
 
 def _kinds(rows):

@@ -7,9 +7,15 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
+from stiction.diagnosis.base import based
 from stiction.diagnosis.candidates import candidates, scales_of
 from stiction.diagnosis.evidence import Evidence
 from stiction.diagnosis.model import with_effect
+from stiction.diagnosis.rounds import _candidates
+from stiction.diagnosis.selection import Search
+from stiction.diagnosis.sharpen import _held
+
+LAG_ALONE = {"fall": 0.0}
 
 
 @pytest.mark.parametrize(
@@ -51,3 +57,24 @@ def test_no_friction_rises_from_rest_and_late() -> None:
         stated = with_effect(plant, candidate, [-0.2]).effects[-1].parameters
         assert (bounds[0] < 0.0) == (candidate.shape["fall"] == 0.0)
         assert (stated["excess"].value < 0.0) == (candidate.shape["fall"] == 0.0)
+
+
+def test_where_a_fall_is_stated_its_lag_is_found_alone() -> None:
+    """A fall that comes late took over the one that the plant states, and left neither known."""
+    made = make_session(12340003, base="coulomb", hidden=(("frictional_lag", 0.0125, LAG_ALONE),))
+    table = as_plant(made).to_dict()
+    stated = {**table, "effects": [{"name": "stribeck", "excess": 0.1, "velocity": 0.3}]}
+    laws = {**table["friction"], "breakaway": 0.2, "stribeck_velocity": 0.1}
+    for own in (stated, {**table, "friction": laws}):
+        evidence, base = based(st.Plant.from_dict(own), as_session(made).recordings)
+        tried = _candidates(evidence, base, (), Search([base]))
+        assert {c.shape["fall"] for c in tried if c.name == "frictional_lag"} == {0.0}
+    evidence, base = based(as_plant(made), as_session(made).recordings)
+    for without, forms in (((), {0.0, 1.0}), (("stribeck",), {0.0})):
+        tried = _candidates(evidence, base, without, Search([base]))
+        assert {c.shape["fall"] for c in tried if c.name == "frictional_lag"} == forms
+
+
+def test_a_form_is_chosen_and_never_fitted() -> None:
+    record = next(each for each in st.effects() if each.name == "frictional_lag")
+    assert _held(record) == ()

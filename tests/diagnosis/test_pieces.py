@@ -15,6 +15,7 @@ import pytest
 import stiction as st
 from stiction.catalogue import EffectRecord
 from stiction.cli import run
+from stiction.diagnosis import choose as choosing
 from stiction.diagnosis import listing
 from stiction.diagnosis.candidates import Scales, candidates, left_out, present, scales_of
 from stiction.diagnosis.choose import Choice, choose, strangers
@@ -323,6 +324,7 @@ def tried(
         name=f"{worth}",
         parameters=parameters,
         shape={},
+        form=f"{worth}",
         record=SimpleNamespace(family=family, name=f"{worth}", shapes=(), gains=()),
     )
     score = SimpleNamespace(
@@ -389,7 +391,7 @@ def test_a_candidate_encompasses_another_where_only_one_has_something_left_for_t
     one, other = tried(1.0, 1), tried(0.9, 1)
 
     def score(of: Trial, value: float, heldout: float) -> Any:
-        named = SimpleNamespace(name=of.name)
+        named = SimpleNamespace(name=of.name, form=of.name)
         return SimpleNamespace(candidate=named, score=value, threshold=0.02, heldout=heldout)
 
     class Scores:
@@ -397,10 +399,27 @@ def test_a_candidate_encompasses_another_where_only_one_has_something_left_for_t
 
         _score = Screening._score
 
-        def scores(self, model: Any) -> list[Any]:
+        def _forms(self, model: Any) -> list[Any]:
             return [score(one, *left) if model is other.model else score(other, *more)]
 
     assert Screening.encompasses(Scores(), one, other) is told
+
+
+def test_only_what_passed_by_itself_leaves_waves_aside(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a name that was itself refused, or that stands for its family, nothing is left aside."""
+    monkeypatch.setattr(choosing, "by_chance", lambda *_: True)
+    winner, other = tried(1.0, 2, family="wave"), tried(0.97, 2, family="b")
+    chosen = choose([winner, other])
+    assert chosen is not None
+    assert (chosen.decided, chosen.rivals, chosen.aside) == (True, (), (other,))
+    assert "by chance" in listing.tried(other, chosen).reason
+    refused = tried(0.97, 1, "its held-out gain is 1.80 standard errors", by_blocks=True)
+    chosen = choose([winner, refused])
+    assert chosen is not None
+    assert (chosen.winner, chosen.decided) == (refused, False)
+    chosen = choose([replace(winner, uneven=0.2), tried(0.97, 2, family="wave")])
+    assert chosen is not None
+    assert not chosen.decided
 
 
 def test_a_rest_of_a_contact_without_a_spring_is_looked_for_in_two_lengths() -> None:

@@ -32,9 +32,9 @@ def trial(
     wave: bool = False,
 ) -> Trial:
     shapes = (SimpleNamespace(scale="order"),) if wave else ()
-    record = SimpleNamespace(family=family or name, name=name, shapes=shapes, second=())
+    record = SimpleNamespace(family=family or name, name=name, shapes=shapes, second=(), gains=())
     record.late = record.swings = False
-    candidate: Any = SimpleNamespace(name=name, parameters=1, record=record)
+    candidate: Any = SimpleNamespace(name=name, parameters=1, record=record, shape={}, form=name)
     score: Any = SimpleNamespace(
         signature=np.asarray(contributed, dtype=float),
         candidate=candidate,

@@ -4,7 +4,8 @@ Where a machine does not turn round, a wave over the angle near its top is about
 cogging or a weight off the axis explain what a constant effort does; and cogging whose order comes
 out as 1 explains what a weight does. A wave may have any phase, and cogging any order: one that has
 to stand within some degrees of the top, or at that order, and gains nothing by it, is so much less
-likely than what is simpler. What blocks say against it, where they are not certain, comes on top.
+likely than what is simpler. What blocks say, where they are not certain, comes on top if what it
+explains is not nearly the same.
 """
 
 from __future__ import annotations
@@ -20,14 +21,17 @@ from .decide import Trial
 from .gains import paired_z
 from .regression import FLAT
 
-__all__ = ["by_chance", "share_of_phases"]
+__all__ = ["TOO_NEAR", "by_chance", "odds", "share_of_phases", "share_of_waves"]
 
 WAVE: Final = ("cosine", "sine")
+ORDER: Final = "order"
 ENOUGH: Final = 3.0
 """Logarithm of the odds, 20 to 1, from which the wave is left aside."""
 DEVIATIONS: Final = 2.0
 """Standard errors of a phase or an order that are added on both sides."""
-ORDER: Final = "order"
+TOO_NEAR: Final = 0.04
+"""Share of a worth within which another one is about the same: it may be the same cause in another
+form, and what is simpler costs less."""
 SMALLEST: Final = 1e-9
 
 
@@ -39,18 +43,41 @@ def by_chance(simple: Trial, other: Trial) -> bool:
     simple : Trial
         The cause that the wave is not told from.
     other : Trial
-        Refitted beside the same base. False where it is no wave, or explains more.
+        Refitted beside the same base. False where it is no wave, where it is worth more, or where
+        nothing is known of its phase and order.
     """
-    if other.candidate.record.gains != WAVE or other.worth > simple.worth:
+    if (
+        other.candidate.record.gains != WAVE
+        or other.worth > simple.worth
+        or other.candidate.parameters <= simple.candidate.parameters
+    ):
         return False
     if simple.candidate.record.gains == WAVE:
         share = _share_of_orders(simple, other)
     elif len(simple.candidate.gains) == 1:
-        share = _share_of_phases(simple, other) * _share_of_low_orders(other)
+        share = _share_of_phases(simple, other)
     else:
         return False
-    apart = max(paired_z(other.model, simple.model), 0.0)
-    return 0.5 * apart**2 - math.log(max(share, SMALLEST)) >= ENOUGH
+    if share >= 1.0:
+        return False
+    near = other.worth >= (1.0 - TOO_NEAR) * simple.worth
+    return odds(share, paired_z(other.model, simple.model), near=near) >= ENOUGH
+
+
+def odds(share: float, apart: float, *, near: bool) -> float:
+    """Logarithm of the odds that a wave is not the cause.
+
+    Parameters
+    ----------
+    share : float
+        Of waves that resemble the simpler cause as much.
+    apart : float
+        What blocks leave more with the wave, in standard errors; negative where they leave less.
+    near : bool
+        Whether both explain nearly the same: then blocks speak against the simpler cause alone.
+    """
+    spoken = min(apart, 0.0) if near else apart
+    return 0.5 * spoken * abs(spoken) - math.log(max(share, SMALLEST))
 
 
 def _share_of_orders(simple: Trial, other: Trial) -> float:
@@ -65,18 +92,6 @@ def _share_of_orders(simple: Trial, other: Trial) -> float:
     return min(2.0 * away / math.log(most / least), 1.0)
 
 
-def _share_of_low_orders(other: Trial) -> float:
-    """Share of all orders, logarithmic, that show no more of a period; 1 where it was given."""
-    if other.candidate.free != (ORDER,):
-        return 1.0
-    effect = next(each for each in other.model.plant.effects if each.name == other.name)
-    least, most = _orders(other)
-    # The least one stands for all below it, an octave of them.
-    below = 0.5 * least
-    order = effect.parameters[other.candidate.own(ORDER)].value
-    return math.log(order / below) / math.log(most / below)
-
-
 def _orders(other: Trial) -> tuple[float, float]:
     """Least and greatest order that a fit may come to."""
     asked = scales_of(other.model.evidence, other.model.plant).orders
@@ -84,11 +99,36 @@ def _orders(other: Trial) -> tuple[float, float]:
 
 
 def _share_of_phases(simple: Trial, other: Trial) -> float:
-    """The same of phases, beside the phase in which the wave resembles the cause most."""
+    """Share of all waves that are as near to a cause with one gain; at most 1."""
     spread = other.model.spread(other.candidate)
     if spread is None:
         return 1.0
-    return share_of_phases(other.model.gains(other.candidate), spread, _most_alike(simple, other))
+    share = share_of_phases(other.model.gains(other.candidate), spread, _most_alike(simple, other))
+    if other.candidate.free != (ORDER,):
+        return share
+    effect = next(each for each in other.model.plant.effects if each.name == other.name)
+    least, most = _orders(other)
+    # The least one stands for all below it, an octave of them.
+    below = 0.5 * least
+    order = effect.parameters[other.candidate.own(ORDER)].value
+    return share_of_waves(share, order / below, most / below)
+
+
+def share_of_waves(phases: float, order: float, most: float) -> float:
+    """Share of all waves of any order and phase that are as flat over the range.
+
+    A wave of a lower order is as flat in the more of its phases, as many as it is lower.
+
+    Parameters
+    ----------
+    phases : float
+        Share of phases at the order.
+    order, most : float
+        The order and the greatest one, in units of the lowest.
+    """
+    all_flat = min(max(phases * order, 1.0), order)
+    lower = math.log(all_flat) + phases * (order / all_flat - 1.0)
+    return min(lower / math.log(most), 1.0)
 
 
 def share_of_phases(wave: FloatArray, spread: FloatArray, most: FloatArray) -> float:

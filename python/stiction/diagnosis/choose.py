@@ -11,7 +11,7 @@ import numpy as np
 
 from ..trajectory import FloatArray
 from .candidates import FALL, scales_of
-from .chance import by_chance
+from .chance import TOO_NEAR, by_chance
 from .decide import OUT_OF_RANGE, Trial
 from .gains import paired_z
 
@@ -19,9 +19,7 @@ __all__ = ["ALIKE", "DECIDED_Z", "Choice", "choose", "covers", "parallel", "stra
 
 NEAR: Final = 0.15
 """Within this share of the winner's log-gain blocks have to be certain to tell another candidate
-apart..."""
-TOO_NEAR: Final = 0.04
-"""... and within this one nothing does: it may be the same cause in another form."""
+apart, and within ``TOO_NEAR`` nothing does."""
 DECIDED_Z: Final = 2.0
 """Difference to the winner over its standard error that tells two candidates apart."""
 CERTAIN_Z: Final = 3.0
@@ -46,10 +44,13 @@ class Choice:
     winner : Trial
     rivals : tuple of Trial
         Others that explain the same about as well, likeliest first.
+    aside : tuple of Trial
+        Those among them that would do so by chance alone.
     """
 
     winner: Trial
     rivals: tuple[Trial, ...]
+    aside: tuple[Trial, ...] = ()
 
     @property
     def decided(self) -> bool:
@@ -88,11 +89,20 @@ def choose(trials: Sequence[Trial], encompasses: Encompasses | None = None) -> C
     ]
     head = _head(winner, rivals)
     others = [trial for trial in (winner, *rivals) if trial is not head]
-    others = [trial for trial in others if not by_chance(head, trial)]
-    if winner.uneven > UNEVEN_IN_FAMILY:
+    aside = [trial for trial in others if _by_chance(head, trial, winner)]
+    others = [trial for trial in others if not any(trial is each for each in aside)]
+    if winner.uneven <= UNEVEN_IN_FAMILY:
         # Who stands for a family stands for its twin as well.
-        return Choice(head, tuple(others))
-    return Choice(head, tuple(trial for trial in others if not _twins(head, trial)))
+        others = [trial for trial in others if not _twins(head, trial)]
+    return Choice(head, tuple(others), tuple(aside))
+
+
+def _by_chance(head: Trial, other: Trial, winner: Trial) -> bool:
+    """Whether another candidate is left aside; never for a name that was itself refused.
+
+    Nor where a winner stands for its family: what chance would do is asked of its strength.
+    """
+    return not head.reason and not _kin(winner, other) and by_chance(head, other)
 
 
 def strangers(trials: Sequence[Trial], winner: Trial) -> list[Trial]:
@@ -197,7 +207,8 @@ def _told(winner: Trial, other: Trial, encompasses: Encompasses | None) -> bool:
     """Whether the data tell the winner from another candidate."""
     if other.worth >= (1.0 - TOO_NEAR) * winner.worth:
         return False
-    near = other.worth >= (1.0 - NEAR) * winner.worth or _may_be(winner, other)
+    late = _may_be(winner, other)
+    near = late or other.worth >= (1.0 - NEAR) * winner.worth
     if paired_z(other.model, winner.model) >= (CERTAIN_Z if near else DECIDED_Z):
         return True
-    return encompasses is not None and encompasses(winner, other)
+    return not late and encompasses is not None and encompasses(winner, other)

@@ -79,37 +79,42 @@ def chained(evidence: Evidence, base: Model, choices: Sequence[Choice], last: Mo
     return [base, *between, last]
 
 
-def join(screening: Screening, found: Search) -> None:
+def join(screening: Screening, found: Search) -> set[str]:
     """Puts one cause in the place of two that it is: a fall of friction and its lag.
 
     Where the fall was found first, and the lag beside it, a fall that comes late explains with one
-    strength and one speed what the two need two of each for.
+    strength and one speed what the two need two of each for. What it takes the place of need not be
+    looked for again.
     """
     pair = [c for c in found.choices if c.winner.name in TOGETHER]
-    if len(pair) < 2:
-        return
+    if len(pair) < len(TOGETHER):
+        return set()
     evidence, whole = screening.evidence, found.models[-1]
     plant = whole.plant
     for choice in pair:
         plant = without_effect(plant, choice.winner.name)
     less = compared_fit(evidence, plant, whole.nuisances)
     score = next(s for s in screening.scores(less) if s.candidate.name == TOGETHER[-1])
-    if score.candidate.shape[FALL] == 0.0 or score.score <= score.threshold:
-        return
+    if score.score <= score.threshold:
+        return set()
     trial = screening.trial(less, score)
     if (
         trial.reason
+        or trial.candidate.shape[FALL] == 0.0
         or trial.model.power > (1.0 + AS_MUCH) * whole.power
         or heldout_gain(trial.model, whole)[0] > LEAST_GAIN
     ):
-        return
+        return set()
     _logger.info("%s is both", trial.name)
     single = Choice(trial, ())
     kept = [each for each in found.choices if each not in pair]
     settled = whole_fit(evidence, trial.model.plant, trial.model.nuisances)
-    found.choices[:] = [single, *kept]
-    found.models[:] = chained(evidence, found.models[0], found.choices, settled)
+    choices = [single, *kept]
+    found.models[:] = chained(evidence, found.models[0], choices, settled)
+    found.choices[:] = choices
     found.rows[trial.name] = listing.tried(trial, single)
-    for name in TOGETHER[:-1]:
+    replaced = set(TOGETHER[:-1])
+    for name in replaced:
         row = found.rows[name]
         found.rows[name] = replace(row, reason=f"{trial.name} explains it, and what is late of it")
+    return replaced

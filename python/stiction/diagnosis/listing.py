@@ -44,6 +44,8 @@ def tried(trial: Trial, choice: Choice | None) -> CandidateRow:
         reason = trial.reason or "passes, but may imitate one that was refused and explains more"
     elif trial.reason:
         reason = trial.reason
+    elif any(trial is each for each in choice.aside):
+        reason = f"would resemble {choice.winner.name} by chance alone"
     elif trial in choice.rivals:
         reason = f"these data cannot tell it from {choice.winner.name}"
     else:

@@ -163,8 +163,12 @@ class Model:
         spread = self.spread(candidate)
         if spread is None:
             return 0.0
-        gains = self.gains(candidate)
-        squared = float(gains @ np.linalg.pinv(spread, hermitian=True) @ gains)
+        # Gains of a slow machine differ by many powers of ten: each in units of its own error.
+        errors = np.sqrt(np.maximum(np.diag(spread), 0.0))
+        live = errors > 0.0
+        gains = self.gains(candidate)[live] / errors[live]
+        correlated = spread[np.ix_(live, live)] / np.outer(errors[live], errors[live])
+        squared = float(gains @ np.linalg.pinv(correlated, hermitian=True) @ gains)
         return math.sqrt(max(squared, 0.0))
 
     def spread(self, candidate: Candidate) -> FloatArray | None:

@@ -118,7 +118,11 @@ FALLING_LAG: Final = (
     "speeding up than while slowing down, which steadies stick-slip and fools a compensation by "
     "speed"
 )
-"""What it means where the fall itself comes with it."""
+"""What it means where the fall itself comes with it..."""
+MOVED_FALLING_LAG: Final = (
+    "friction falls with speed, and late: it is higher while speeding up than while slowing down"
+)
+"""... and where a rig moves a specimen."""
 MOTIONS: Final = {
     "ramps": "constant speeds over three decades, both ways, without rests",
     "turns": "slow full strokes or turns both ways, twice",
@@ -164,9 +168,9 @@ def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
     if excess is not None and excess.value < 0.0:
         # What comes late is a rise of friction with speed, and its loop runs the other way round.
         return RISING_LAG, usual[1]
-    if fall is not None and fall.value > 0.5 and not plant.prescribed_motion:
-        return FALLING_LAG, usual[1]
-    return usual
+    if fall is None or fall.value == 0.0:
+        return usual
+    return MOVED_FALLING_LAG if plant.prescribed_motion else FALLING_LAG, usual[1]
 
 
 def recorded(plan: str, what: str, plant: Plant, separates: Sequence[str] = ()) -> str:

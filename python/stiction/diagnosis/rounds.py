@@ -14,7 +14,7 @@ from ..plant import Plant
 from ..trajectory import FloatArray
 from . import listing
 from .beside import left_by_forms
-from .candidates import Candidate, candidates, present, scales_of
+from .candidates import FALL, Candidate, candidates, present, scales_of
 from .choose import ALIKE, Choice, choose, covers, parallel
 from .decide import Trial
 from .evidence import Evidence
@@ -49,6 +49,8 @@ WORTH_RENEWING: Final = 0.005
 """Share of its residual's power that makes that worth while."""
 AT_THE_DRIVE: Final = frozenset({"input map", "input delay", "input lag"})
 """Hooks of effects that a machine without a drive cannot have."""
+STRIBECK: Final = "stribeck"
+"""A fall of friction with speed: where there is one, or is not to be looked for, a lag has none."""
 SWINGS: Final = "second mass"
 """Hook of effects whose mass swings faster than the samples of a servo show."""
 RELATED: Final = 0.2
@@ -100,7 +102,7 @@ def search(
             found.choices[-1] = sharpened(screening, found.choices[-1])
             found.models[-1] = unstuck(_settled(found.choices[-1].winner.model))
             dropped |= dropped_by_the_latest(evidence, found)
-            join(screening, found)
+            rests |= join(screening, found)
             rests |= _take_back(screening, found)
         for place in range(len(found.choices) - 1):
             _swap(screening, found, place)
@@ -119,6 +121,8 @@ def _candidates(
     channels = set.intersection(*(set(r.channels) for r in evidence.recordings))
     if all(form.own(base.plant).hangs for form in evidence.forms):
         channels.add("load")
+    # A fall that the plant states and one that comes with its lag would exchange for each other.
+    falls = any(each.name == STRIBECK and present(base.plant, each) for each in effects())
     tried: list[Candidate] = []
     for record in effects():
         if record.name in without:
@@ -132,6 +136,8 @@ def _candidates(
             found.rows[record.name] = CandidateRow(record.name, None, None, None, reason)
         else:
             found_at = candidates(record, scales)
+            if falls or STRIBECK in without:
+                found_at = [each for each in found_at if not each.shape.get(FALL)]
             # Where rows are simulated a mass that swings bends the motion itself.
             swings = base.plant.inertia > 0.0 and not evidence.simulated
             tried += [each for each in found_at if swings or not each.resonance]

@@ -23,7 +23,15 @@ from .influence import limited
 from .model import with_effect
 from .regression import project
 
-__all__ = ["NULL_DEVIATIONS", "NULL_TIMES", "Problem", "Score", "Signatures", "screen"]
+__all__ = [
+    "NULL_DEVIATIONS",
+    "NULL_TIMES",
+    "Problem",
+    "Score",
+    "Signatures",
+    "likelier",
+    "screen",
+]
 
 NULL_TIMES: Final = 1.3
 """A score counts above this many times the greatest one that the surrogates reach."""
@@ -256,8 +264,25 @@ class Score:
         return max(self.score, self.visible) > self.threshold
 
 
+def likelier(scores: Sequence[Score]) -> list[Score]:
+    """The score of every effect in its likelier form, highest first.
+
+    Of two forms one that can be tested, that beats noise, that explains more.
+    """
+    best: dict[str, Score] = {}
+    for score in scores:
+        other = best.get(score.candidate.name)
+        if other is None or _stands(score) > _stands(other):
+            best[score.candidate.name] = score
+    return sorted(best.values(), key=lambda s: -s.score)
+
+
+def _stands(score: Score) -> tuple[bool, bool, float]:
+    return score.testable, score.score > score.threshold, score.score
+
+
 def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Score]:
-    """The score of every effect at its best shape and in its likelier form, highest first.
+    """The score of every form of every effect at its best shape, highest first.
 
     With S⊥ = S − QQᵀS (Q spans the base): η = (S⊥ᵀS⊥)⁻¹·S⊥ᵀr, ΔR² = ηᵀS⊥ᵀr/(r⊥ᵀr⊥). The same is
     computed for every surrogate, with its maximum over the grid: shapes mean nothing where the
@@ -289,30 +314,24 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     turned = scan.explained(columns.T @ base.off(flips)) / power
     own = {form: np.array(forms) == form for form in best}
     thresholds = {form: _threshold(noise[rows], turned[rows]) for form, rows in own.items()}
-    scores: dict[str, Score] = {}
+    scores = []
     for form, index in best.items():
         total = float(np.sum(columns[:, signatures.slices[index]] ** 2))
         left = float(np.sum(parts[index] ** 2)) / total if total > 0.0 else 0.0
         left = left if left > IMITATED else 0.0
-        score = Score(
-            candidate=signatures.candidates[index],
-            gains=gains[index],
-            score=float(explained[index]) / power,
-            threshold=thresholds[form],
-            heldout=heldout[index],
-            left=left,
-            visible=left * len(residual) * (SEEN_SIZE * friction) ** 2 / power,
-            signature=parts[index] @ gains[index],
+        scores.append(
+            Score(
+                candidate=signatures.candidates[index],
+                gains=gains[index],
+                score=float(explained[index]) / power,
+                threshold=thresholds[form],
+                heldout=heldout[index],
+                left=left,
+                visible=left * len(residual) * (SEEN_SIZE * friction) ** 2 / power,
+                signature=parts[index] @ gains[index],
+            )
         )
-        other = scores.get(score.candidate.name)
-        if other is None or _stands(score) > _stands(other):
-            scores[score.candidate.name] = score
-    return sorted(scores.values(), key=lambda s: -s.score)
-
-
-def _stands(score: Score) -> tuple[bool, float]:
-    """Which form of an effect is likelier: one that beats noise, then what explains more."""
-    return score.score > score.threshold, score.score
+    return sorted(scores, key=lambda s: -s.score)
 
 
 @dataclass(frozen=True)

@@ -120,8 +120,10 @@ def _freed(screening: Screening, winner: Trial) -> Model | None:
 
 
 def _held(record: EffectRecord) -> tuple[str, ...]:
-    """Shapes of an effect that its candidates hold, and that a fit may well vary."""
-    return tuple(s.parameter for s in record.shapes if not s.fitted and s.scale == PURE)
+    """Shapes of an effect that its candidates hold at one value, and that a fit may well vary."""
+    return tuple(
+        s.parameter for s in record.shapes if not s.fitted and s.scale == PURE and len(s.grid) == 1
+    )
 
 
 def _effect(plant: Plant, name: str) -> Effect:

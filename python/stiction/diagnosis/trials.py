@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -27,7 +27,7 @@ from .model import (
     without_effect,
 )
 from .noisy_motion import told_by_noise
-from .screen import Problem, Score, Signatures, screen
+from .screen import Problem, Score, Signatures, likelier, screen
 
 __all__ = [
     "Screening",
@@ -43,6 +43,8 @@ COMPARED: Final = 1e-4
 """Of the power, along a measured motion: far less than what tells candidates apart."""
 LATE_SHARE: Final = 0.5
 """Of the kernel's support: a follower that keeps noise from friction is late by less."""
+MOST_KEPT: Final = 4
+"""Models of which scores are kept."""
 SHARES: Final = (0.1, 0.3, 0.6, 1.0, 1.7, 3.0)
 """Shares of the screened gain among which a refit by simulation picks its start."""
 FEW_SHARES: Final = (0.3, 1.0)
@@ -96,6 +98,8 @@ class Screening:
         Their mean, as far as the residual shares it.
     friction : float
         Weighted rms of what the base needs beside inertia.
+    kept : list of (Model, list of Score)
+        Of the last few models that were screened: they are asked for again and again.
     """
 
     evidence: Evidence
@@ -103,38 +107,35 @@ class Screening:
     centred: FloatArray
     bias: FloatArray
     friction: float
+    kept: list[tuple[Model, list[Score]]] = field(default_factory=list)
 
     def scores(self, model: Model) -> list[Score]:
         """Efficient scores of all effects for what a model leaves, the best first."""
-        return screen(self._left_by(model), self.signatures, self.friction)
+        return likelier(self._forms(model))
+
+    def _forms(self, model: Model) -> list[Score]:
+        """The same of every form of each; those of the last few models are kept."""
+        for known, scores in self.kept:
+            if known is model:
+                return scores
+        scores = screen(self._left_by(model), self.signatures, self.friction)
+        self.kept.append((model, scores))
+        del self.kept[:-MOST_KEPT]
+        return scores
 
     def trial(self, base: Model, score: Score) -> Trial:
-        """A candidate refitted together with a model, and judged; in its other form if it fails."""
-        trial = self._tried(base, score)
-        other = self._other_form(base, score) if trial.reason else None
-        again = None if other is None else self._tried(base, other)
-        return trial if again is None or again.reason else again
+        """A candidate refitted together with a model, and judged; in its other form if it fails.
 
-    def _other_form(self, base: Model, score: Score) -> Score | None:
-        """The score of a fall that is late without the fall, and the other way round.
-
-        One explains more of what is left, and a refit shows the other to be the cause: it is no
-        point of the same grid that a fit would come to. None where there is no other form, or none
-        that is worth a refit.
+        What fails over blocks alone may still be the cause, and speaks for its own form.
         """
-        kept = [
-            (candidate, place)
-            for candidate, place in zip(
-                self.signatures.candidates, self.signatures.slices, strict=True
-            )
-            if candidate.name == score.candidate.name and candidate.form != score.candidate.form
-        ]
-        if not kept:
-            return None
-        candidates, slices = zip(*kept, strict=True)
-        others = replace(self.signatures, candidates=candidates, slices=slices)
-        (found,) = self.with_signatures(others).scores(base)
-        return found if promises(found) else None
+        trial = self._tried(base, score)
+        if not trial.reason or trial.by_blocks or trial.doubtless:
+            return trial
+        for other in self._forms(base):
+            if other.candidate.name == trial.name and other.candidate.form != trial.candidate.form:
+                again = self._tried(base, other) if promises(other) else trial
+                return trial if again.reason else again
+        return trial
 
     def _tried(self, base: Model, score: Score) -> Trial:
         _logger.info("refitting with %s", score.candidate.name)
@@ -195,11 +196,12 @@ class Screening:
 
     def _score(self, model: Model, trial: Trial) -> Score:
         """What the candidate of a trial explains of what another model leaves."""
-        return next(each for each in self.scores(model) if each.candidate.name == trial.name)
+        form = trial.candidate.form
+        return next(each for each in self._forms(model) if each.candidate.form == form)
 
     def with_signatures(self, signatures: Signatures) -> Screening:
         """The same for other candidates."""
-        return replace(self, signatures=signatures)
+        return replace(self, signatures=signatures, kept=[])
 
     def contributed(self, score: Score, model: Model) -> FloatArray:
         """What an effect explains of every row after its refit; shape (n,)."""
