@@ -15,9 +15,9 @@ parameters! {
         contact_time: Time, "1/ω of the mass behind the gap on its end, motor held; 0: rigid, no rebound",
             default Value(0.0), neutral None, typical 1e-3, bounds 0.0, 1.0;
         damping_ratio: One, "damping of the masses against each other at an end, share of critical",
-            default Value(0.5), neutral None, typical 0.5, bounds 0.0, 0.9;
+            default Value(0.6), neutral None, typical 0.6, bounds 0.0, 0.9;
         load_damping: Rate, "viscous friction of the mass behind the gap over its inertia",
-            default Value(0.0), neutral None, typical 0.5, bounds 0.0, 1e3;
+            default Value(0.0), neutral None, typical 0.3, bounds 0.0, 1e3;
     }
 }
 
@@ -63,14 +63,10 @@ impl<S: Scalar> Effect<S> for Backlash<S> {
                 grid: &[0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 25.0],
                 fitted: true,
             },
-            Shape { parameter: "contact_time", scale: Scale::One, grid: &[1e-3], fitted: true },
-            Shape { parameter: "damping_ratio", scale: Scale::One, grid: &[0.6], fitted: true },
-            Shape {
-                parameter: "load_damping",
-                scale: Scale::One,
-                grid: &[0.1, 0.3, 1.0],
-                fitted: true,
-            },
+            // Rigid ends and a load without friction first: what more there is shows beside these.
+            Shape { parameter: "contact_time", scale: Scale::One, grid: &[0.0], fitted: false },
+            Shape { parameter: "damping_ratio", scale: Scale::One, grid: &[0.6], fitted: false },
+            Shape { parameter: "load_damping", scale: Scale::One, grid: &[0.0], fitted: false },
         ],
         second: &[],
         law_terms: &[],
