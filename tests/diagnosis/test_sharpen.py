@@ -83,6 +83,33 @@ def test_a_shape_of_its_own_has_to_gain(
         assert not is_sharpened(Effect("stribeck", stated), record)
 
 
+def test_shapes_held_at_nothing_start_from_what_is_typical() -> None:
+    record = next(r for r in st.effects() if r.name == "backlash")
+    held = ("contact_time", "damping_ratio", "load_damping")
+    assert sharpen._held(record) == held
+    values = {"inertia_share": 0.2, "gap": 2e-3, "contact_time": 0.0, "damping_ratio": 0.6}
+    stated = {n: Parameter(v, fixed=n in held) for n, v in values.items()}
+    stated["load_damping"] = Parameter(0.0, fixed=True)
+    drive, friction = {"input": "torque_nm", "gain": 1.0}, {"law": "coulomb"}
+    plant = st.Plant.from_dict({"drive": drive, "body": {"inertia": 0.01}, "friction": friction})
+    plant = replace(plant, effects=(Effect("backlash", stated),))
+    starts = [p.effects[0].parameters for p in sharpen._with_shapes_free(plant, record, held)]
+    assert len(starts) == 9
+    assert len({(s["contact_time"].value, s["load_damping"].value) for s in starts}) == 9
+    for start in starts:
+        assert start["gap"] == stated["gap"]
+        assert start["damping_ratio"] == Parameter(0.6)
+        for name in ("contact_time", "load_damping"):
+            low, value, high = start[name].min, start[name].value, start[name].max
+            assert low is not None
+            assert high is not None
+            assert 0.0 < low < value < high
+            assert not start[name].fixed
+    # A shape that is held at a value of its own starts there.
+    (one,) = sharpen._with_shapes_free(plant, record, ("damping_ratio",))
+    assert one.effects[0].parameters["damping_ratio"] == Parameter(0.6)
+
+
 def test_names_that_explain_less_than_one_coordinate_shows_imitate(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

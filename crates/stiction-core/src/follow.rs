@@ -153,8 +153,10 @@ impl<S: Scalar> Running<S> {
         let behind = |reading: f64| sensor.behind(S::constant(reading));
         let actual: Option<&dyn Fn(f64) -> S> = if misreads { Some(&behind) } else { None };
         let inertia = self.machine.body.inertia;
+        let count = self.machine.sensor.count;
         let masses = self.machine.effects.second_masses().iter();
-        let mut beyond: Vec<Beyond<S>> = masses.map(|mass| Beyond::new(mass, inertia)).collect();
+        let mut beyond: Vec<Beyond<S>> =
+            masses.map(|mass| Beyond::new(mass, inertia, count)).collect();
         let (way, machine, run) = (self.way.as_mut(), &mut self.machine, &mut self.run);
         let beyond = beyond.as_mut_slice();
         let track = Track::new(motion.positions, actual, samples.start);
@@ -281,7 +283,13 @@ where
                 // A stop inside the sample shows in the acceleration at its end.
                 held = (held || stopped) && track.rests_next();
                 for mass in &mut *beyond {
-                    efforts.ahead += mass.advance(track.acceleration(&dt), duration, held);
+                    let speed = at.velocity;
+                    efforts.ahead += mass.advance(track.acceleration(&dt), speed, duration, held);
+                    let dragged = mass.slowing(speed) * machine.body.inertia;
+                    efforts.friction += dragged;
+                    if let Some(mean) = &mut efforts.mean {
+                        *mean += dragged;
+                    }
                 }
             }
             row.see(k, &efforts, &Whereabouts { machine: &*machine, at: &at, input, load });

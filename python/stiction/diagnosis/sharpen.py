@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 from typing import Final
 
 from ..catalogue import EffectRecord
+from ..parameter import Parameter
 from ..plant import Plant
 from ..stated import Effect
 from .choose import Choice
 from .decide import LEAST_GAIN, LEAST_Z, PENALTY, Trial
 from .gains import heldout_gain, log_gain
-from .model import Model
+from .model import Model, power_of
 from .trials import MANY_TIMES, MUCH, Screening, promises, whole_fit
 
 __all__ = ["beside_a_second", "is_sharpened", "sharpened"]
@@ -20,6 +23,11 @@ __all__ = ["beside_a_second", "is_sharpened", "sharpened"]
 PURE: Final = "one"
 """Scale of shapes that are numbers of their own, as an exponent is: what is measured in a length
 or an input of the session may exchange for a gain."""
+
+FROM_NOTHING: Final = (0.3, 1.0, 3.0)
+"""Shares of what is typical from which a shape starts that is held at 0: no slope leads away."""
+WIDER: Final = 20.0
+"""Factor by which such a shape may leave what is typical."""
 
 _logger = logging.getLogger(__name__)
 
@@ -98,17 +106,11 @@ def _freed(screening: Screening, winner: Trial) -> Model | None:
     held = _held(record)
     if not held:
         return None
-    effect = _effect(before.plant, record.name)
-    parameters = {
-        name: replace(each, fixed=False) if name in held else each
-        for name, each in effect.parameters.items()
-    }
-    freed = Effect(effect.name, parameters)
-    plant: Plant = replace(
-        before.plant,
-        effects=tuple(freed if each is effect else each for each in before.plant.effects),
-    )
-    model = whole_fit(screening.evidence, plant, before.nuisances)
+    plants = _with_shapes_free(before.plant, record, held)
+    if len(plants) > 1:
+        evidence, nuisances = screening.evidence, before.nuisances
+        plants.sort(key=lambda plant: power_of(evidence, plant, nuisances))
+    model = whole_fit(screening.evidence, plants[0], before.nuisances)
     gain, z = heldout_gain(before, model)
     if gain <= LEAST_GAIN or z <= LEAST_Z or log_gain(before, model) <= PENALTY * len(held):
         return None
@@ -117,6 +119,27 @@ def _freed(screening: Screening, winner: Trial) -> Model | None:
         return None
     _logger.info("%s has %s of its own", record.name, " and ".join(held))
     return model
+
+
+def _with_shapes_free(plant: Plant, record: EffectRecord, held: Sequence[str]) -> list[Plant]:
+    """A plant whose effect has these shapes free, from every start that they have."""
+    effect = _effect(plant, record.name)
+    typical = {each.name: each.typical for each in record.parameters}
+    starts = []
+    for name in held:
+        own, usual = effect.parameters[name], typical[name]
+        if own.value == 0.0:
+            low, high = usual / WIDER, usual * WIDER
+            starts.append([Parameter(share * usual, low, high) for share in FROM_NOTHING])
+        else:
+            starts.append([replace(own, fixed=False)])
+    plants = []
+    for point in product(*starts):
+        parameters = {**effect.parameters, **dict(zip(held, point, strict=True))}
+        freed = Effect(effect.name, parameters)
+        effects = tuple(freed if each is effect else each for each in plant.effects)
+        plants.append(replace(plant, effects=effects))
+    return plants
 
 
 def _held(record: EffectRecord) -> tuple[str, ...]:

@@ -193,11 +193,12 @@ impl<S: Scalar> Machine<S> {
         let Some(shaft) = self.shaft else { return };
         let half = span * 0.5;
         let pull = self.shaft(start, run.second_position, run.second_velocity);
-        let slowing = -(pull / shaft.inertia);
+        let slowing = -(pull / shaft.inertia + shaft.load_damping * run.second_velocity);
         run.second_position += span * (run.second_velocity + half * slowing);
         let arriving = run.second_velocity + span * slowing;
         let pull_then = self.shaft(end, run.second_position, arriving);
-        run.second_velocity -= half * (pull + pull_then) / shaft.inertia;
+        let dragged = shaft.load_damping * (run.second_velocity + arriving);
+        run.second_velocity -= half * (pull + pull_then) / shaft.inertia + half * dragged;
     }
 
     /// Effort that does not come from input and load.

@@ -8,8 +8,10 @@
 mod adaptive;
 mod clock;
 mod contact;
+mod ends;
 mod events;
 mod fast;
+mod gap;
 mod glide;
 mod machine;
 mod reach;
@@ -185,7 +187,13 @@ mod tests {
         let (share, stiffness, input) = (0.4, 50.0, 0.2);
         let mut machine = machine();
         let inertia = INERTIA * share;
-        machine.shaft = Some(super::shaft::Shaft { inertia, stiffness, damping: 0.0, play: None });
+        machine.shaft = Some(super::shaft::Shaft {
+            inertia,
+            stiffness,
+            damping: 0.0,
+            play: None,
+            load_damping: 0.0,
+        });
         machine.inertia = INERTIA * (1.0 - share);
         machine.lightness = 1.0 / machine.inertia;
         let omega = (stiffness / (INERTIA * share * (1.0 - share))).sqrt();

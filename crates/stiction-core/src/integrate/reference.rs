@@ -54,8 +54,10 @@ impl<S: Scalar> Reference<'_, S> {
         let motion = self.motion(y, span, self.run.friction);
         let (friction, inner) = law.rates(state, &motion, &internal, &channels);
         let zero = S::constant(0.0);
-        let second =
-            machine.shaft.map_or(zero, |shaft| -(machine.shaft(&at, y[2], y[3]) / shaft.inertia));
+        let second = machine.shaft.map_or(zero, |shaft| {
+            let dragged = shaft.load_damping * y[3];
+            -(machine.shaft(&at, y[2], y[3]) / shaft.inertia + dragged)
+        });
         let relaxing = match machine.relaxation {
             Some(module) if !machine.slides(friction) => module.hardening_rate(y[4], friction),
             _ => zero,

@@ -1,5 +1,6 @@
 //! A second mass on a shaft: as part of a simulated machine, and seen from a measured motion.
 
+use super::gap::{Bounce, Flight};
 use crate::effects::{Coupling, SecondMass};
 use crate::scalar::{Scalar, sign};
 
@@ -14,9 +15,11 @@ pub struct Shaft<S> {
     pub damping: S,
     /// How far the second mass is from either end of the gap when it is in the middle.
     pub play: Option<S>,
+    /// Viscous friction of the second mass over its inertia.
+    pub load_damping: S,
 }
 
-/// What stops a mass at the end of a gap swings that fast against both masses, 1/s: fast beside any
+/// What stops a mass at the rigid end of a gap swings that fast against both masses, 1/s: fast beside any
 /// motion of a machine and slow enough to be simulated.
 const STOP: f64 = 2.0 * std::f64::consts::PI * 300.0;
 
@@ -32,15 +35,22 @@ impl<S: Scalar> Shaft<S> {
                 }
                 let stiffness = S::constant(1.0) / compliance;
                 let damping = damping_ratio * 2.0 * (stiffness * reduced).sqrt();
-                Some(Self { inertia: far, stiffness, damping, play: None })
+                let load_damping = S::constant(0.0);
+                Some(Self { inertia: far, stiffness, damping, play: None, load_damping })
             }
-            Coupling::Gap { width } => {
+            Coupling::Gap { width, contact_time, damping_ratio, load_damping } => {
                 if far.re() == 0.0 {
                     return None;
                 }
-                // Critically damped: it does not rebound.
-                let (stiffness, damping) = (reduced * STOP * STOP, reduced * 2.0 * STOP);
-                Some(Self { inertia: far, stiffness, damping, play: Some(width * 0.5) })
+                let (stiffness, damping) = if contact_time.re() > 0.0 {
+                    let stiffness = far / (contact_time * contact_time);
+                    (stiffness, damping_ratio * 2.0 * (stiffness * reduced).sqrt())
+                } else {
+                    // Critically damped: it hardly rebounds.
+                    (reduced * STOP * STOP, reduced * 2.0 * STOP)
+                };
+                let play = Some(width * 0.5);
+                Some(Self { inertia: far, stiffness, damping, play, load_damping })
             }
         }
     }
@@ -71,7 +81,7 @@ impl<S: Scalar> Shaft<S> {
 /// While a rigid contact rests it holds what a shaft pulls at the motor, and what the mass does then is
 /// nobody's effort: its centre of mass counts as going on as it went when the motor stopped. The end
 /// of a gap knocks harder than a contact holds: then the motor moves, and does not rest.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Beyond<S> {
     share: S,
     mass: Far<S>,
@@ -82,32 +92,40 @@ pub struct Beyond<S> {
 }
 
 /// A mass behind the motor.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 enum Far<S> {
     /// On a shaft.
     Shaft(Twist<S>),
-    /// In a gap.
+    /// In a gap with rigid ends.
     Gap(Flight<S>),
+    /// In a gap whose ends yield.
+    Yielding(Bounce<S>),
 }
 
 impl<S: Scalar> Beyond<S> {
-    /// At rest.
-    pub fn new(mass: &SecondMass<S>, inertia: S) -> Self {
+    /// At rest; readings of the motor have counts of this size.
+    pub fn new(mass: &SecondMass<S>, inertia: S, count: f64) -> Self {
         let zero = S::constant(0.0);
         let far = match mass.coupling {
             Coupling::Shaft { compliance, damping_ratio } => {
                 Far::Shaft(Twist::new(mass.share, compliance, damping_ratio, inertia))
             }
-            Coupling::Gap { width } => Far::Gap(Flight::new(width)),
+            Coupling::Gap { width, contact_time, load_damping, .. } if contact_time.re() <= 0.0 => {
+                Far::Gap(Flight::new(width, load_damping))
+            }
+            Coupling::Gap { width, contact_time, damping_ratio, load_damping } => {
+                let numbers = [mass.share, width, contact_time, damping_ratio, load_damping];
+                Far::Yielding(Bounce::new(numbers, count))
+            }
         };
         Self { share: mass.share, mass: far, ahead: zero, held: zero }
     }
 
-    /// Goes through a sample at whose end the motor has this acceleration, and a rigid contact has
-    /// `held` the motor or not; gives how far the centre of mass is then ahead of the motor.
-    pub fn advance(&mut self, acceleration: S, span: f64, held: bool) -> S {
+    /// Goes through a sample at whose end the motor has this acceleration and velocity, and a rigid
+    /// contact has `held` the motor or not; gives how far the centre of mass is then ahead of the motor.
+    pub fn advance(&mut self, acceleration: S, velocity: S, span: f64, held: bool) -> S {
         let (before, speed) = self.mass.state();
-        self.mass.advance(acceleration, span);
+        self.mass.advance(acceleration, velocity, span);
         let (after, left) = self.mass.state();
         if held && matches!(self.mass, Far::Shaft(_)) {
             self.ahead += (self.share * speed + self.held) * span;
@@ -119,12 +137,25 @@ impl<S: Scalar> Beyond<S> {
     }
 }
 
+impl<S: Scalar> Beyond<S> {
+    /// What friction of its own takes from the second mass, per inertia of both.
+    pub fn slowing(&self, velocity: S) -> S {
+        self.share
+            * match &self.mass {
+                Far::Shaft(_) => return S::constant(0.0),
+                Far::Gap(flight) => flight.slowing(velocity),
+                Far::Yielding(bounce) => bounce.slowing(velocity),
+            }
+    }
+}
+
 impl<S: Scalar> Far<S> {
     #[inline]
-    fn advance(&mut self, acceleration: S, span: f64) {
+    fn advance(&mut self, acceleration: S, velocity: S, span: f64) {
         match self {
             Self::Shaft(twist) => twist.advance(acceleration, span),
-            Self::Gap(flight) => flight.advance(acceleration, span),
+            Self::Gap(flight) => flight.advance(acceleration, velocity, span),
+            Self::Yielding(bounce) => bounce.advance(acceleration, velocity, span),
         }
     }
 
@@ -134,42 +165,7 @@ impl<S: Scalar> Far<S> {
         match self {
             Self::Shaft(twist) => (twist.ahead, twist.rate),
             Self::Gap(flight) => (flight.ahead, flight.rate),
-        }
-    }
-}
-
-/// How far a second mass is ahead of a motor whose motion is given, where it flies free in a gap.
-///
-/// e'' = −x'' inside, with an acceleration that changes linearly over a sample; at an end it stays
-/// until the motor leaves it behind.
-#[derive(Debug, Clone, Copy)]
-struct Flight<S> {
-    play: S,
-    ahead: S,
-    rate: S,
-    before: S,
-}
-
-impl<S: Scalar> Flight<S> {
-    /// In the middle of the gap.
-    fn new(width: S) -> Self {
-        let zero = S::constant(0.0);
-        Self { play: width * 0.5, ahead: zero, rate: zero, before: zero }
-    }
-
-    /// Goes through a sample at whose end the motor has this acceleration.
-    fn advance(&mut self, acceleration: S, span: f64) {
-        let (from, to) = (self.before, acceleration);
-        self.before = to;
-        let bent = (from * 2.0 + to) * (span * span / 6.0);
-        self.ahead += self.rate * span - bent;
-        self.rate -= (from + to) * (0.5 * span);
-        let side = sign(self.ahead.re());
-        if (self.ahead * side - self.play).re() >= 0.0 {
-            self.ahead = self.play * side;
-            if self.rate.re() * side > 0.0 {
-                self.rate = S::constant(0.0);
-            }
+            Self::Yielding(bounce) => bounce.state(),
         }
     }
 }
@@ -242,33 +238,27 @@ mod tests {
     }
 
     #[test]
-    fn a_free_mass_crosses_its_gap_in_the_time_that_the_motor_leaves_it_behind() {
-        // The motor brakes evenly from rest against the front end: e = a·t²/2 until the other end.
-        let (gap, braking, dt) = (2e-3, 40.0, 1e-4);
-        let mut flight = Flight::new(gap);
-        for _ in 0..500 {
-            flight.advance(braking, dt);
-        }
-        assert_eq!(flight.ahead, -0.5 * gap);
-        flight.advance(-braking, dt);
-        for k in 1..200 {
-            flight.advance(-braking, dt);
-            // Half a sample late: the acceleration turns round over the first one.
-            let t = f64::from(k) * dt;
-            let exact = (-0.5 * gap + 0.5 * braking * t * t).min(0.5 * gap);
-            assert!((flight.ahead - exact).abs() < braking * dt * (t + dt), "{k}");
-        }
-        assert_eq!(flight.ahead, 0.5 * gap);
-    }
-
-    #[test]
     fn the_end_of_a_gap_pushes_and_never_pulls() {
-        let mass = SecondMass { share: SHARE, coupling: Coupling::Gap { width: 2e-3 } };
+        let coupling =
+            Coupling::Gap { width: 2e-3, contact_time: 0.0, damping_ratio: 0.5, load_damping: 0.0 };
+        let mass = SecondMass { share: SHARE, coupling };
         let stop = Shaft::new(&mass, INERTIA).unwrap();
         assert_eq!(stop.pull(0.9e-3, 5.0), 0.0);
         assert!(stop.pull(1.1e-3, 0.0) > 0.0 && stop.pull(-1.1e-3, 0.0) < 0.0);
         assert_eq!(stop.pull(1.1e-3, -5.0), 0.0);
         assert!(Shaft::new(&SecondMass { share: 0.0, ..mass }, INERTIA).is_none());
+        // T = k·d + c·d' with k = s·J/t² and c = 2·ζ·√(k·s·(1 − s)·J).
+        let (contact_time, damping_ratio) = (1.5e-3, 0.3);
+        let coupling =
+            Coupling::Gap { width: 2e-3, contact_time, damping_ratio, load_damping: 0.4 };
+        let yielding = Shaft::new(&SecondMass { share: SHARE, coupling }, INERTIA).unwrap();
+        let stiffness = SHARE * INERTIA / (contact_time * contact_time);
+        let damping = 2.0 * damping_ratio * (stiffness * SHARE * (1.0 - SHARE) * INERTIA).sqrt();
+        let expected = stiffness * 0.2e-3 + damping * 0.01;
+        assert!((yielding.pull(1.2e-3, 0.01) - expected).abs() < 1e-12 * expected);
+        assert!((yielding.pull(-1.2e-3, -0.01) + expected).abs() < 1e-12 * expected);
+        assert_eq!(yielding.pull(1.2e-3, -1.0), 0.0);
+        assert_eq!(yielding.load_damping, 0.4);
     }
 
     #[test]
@@ -322,11 +312,11 @@ mod tests {
             share: SHARE,
             coupling: Coupling::Shaft { compliance: 1e-3, damping_ratio: 0.05 },
         };
-        let mut beyond = Beyond::new(&mass, INERTIA);
+        let mut beyond = Beyond::new(&mass, INERTIA, 0.0);
         let mut bare = twist(1e-3);
         let mut both = |acceleration, held| {
             bare.advance(acceleration, dt);
-            (beyond.advance(acceleration, dt, held), SHARE * bare.ahead, SHARE * bare.rate)
+            (beyond.advance(acceleration, 0.0, dt, held), SHARE * bare.ahead, SHARE * bare.rate)
         };
         let mut steady = (0.0, 0.0, 0.0);
         for _ in 0..2000 {

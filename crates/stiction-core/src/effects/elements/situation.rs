@@ -125,10 +125,18 @@ pub enum Coupling<S> {
         /// Damping of the two masses swinging against each other, as a share of the critical one.
         damping_ratio: S,
     },
-    /// A gap in which the second mass flies free; its ends stop it without rebound.
+    /// A gap in which the second mass flies free.
     Gap {
         /// Width.
         width: S,
+        /// 1/ω of the second mass on an end of the gap, with the motor held; 0 is rigid: such ends stop
+        /// it without rebound.
+        contact_time: S,
+        /// Damping of the two masses against each other at an end that yields, as a share of the
+        /// critical one.
+        damping_ratio: S,
+        /// Viscous friction of the second mass over its inertia, 1/s.
+        load_damping: S,
     },
 }
 
