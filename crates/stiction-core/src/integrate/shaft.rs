@@ -99,7 +99,7 @@ enum Far<S> {
     /// In a gap with rigid ends.
     Gap(Flight<S>),
     /// In a gap whose ends yield.
-    Yielding(Bounce<S>),
+    Yielding(Box<Bounce<S>>),
 }
 
 impl<S: Scalar> Beyond<S> {
@@ -115,7 +115,7 @@ impl<S: Scalar> Beyond<S> {
             }
             Coupling::Gap { width, contact_time, damping_ratio, load_damping } => {
                 let numbers = [mass.share, width, contact_time, damping_ratio, load_damping];
-                Far::Yielding(Bounce::new(numbers, count))
+                Far::Yielding(Box::new(Bounce::new(numbers, count)))
             }
         };
         Self { share: mass.share, mass: far, ahead: zero, held: zero }
