@@ -19,7 +19,7 @@ use crate::track::{Stop, Track};
 pub struct Efforts<S> {
     /// Effort of the drive for the held input.
     pub driven: S,
-    /// Gravity and added efforts.
+    /// Gravity and added efforts, less what a load behind a gap loses by friction of its own.
     pub ambient: S,
     /// Friction.
     pub friction: S,
@@ -286,10 +286,8 @@ where
                     let speed = at.velocity;
                     efforts.ahead += mass.advance(track.acceleration(&dt), speed, duration, held);
                     let dragged = mass.slowing(speed) * machine.body.inertia;
-                    efforts.friction += dragged;
-                    if let Some(mean) = &mut efforts.mean {
-                        *mean += dragged;
-                    }
+                    // Not the contact's: what remembers that must not see it.
+                    efforts.ambient -= dragged;
                 }
             }
             row.see(k, &efforts, &Whereabouts { machine: &*machine, at: &at, input, load });
