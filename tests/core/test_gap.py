@@ -70,10 +70,13 @@ def test_a_load_may_have_friction_behind_a_rigid_gap_too():
             friction=st.FrictionModel("coulomb", coulomb=0.1),
             effects={"backlash": {"inertia_share": SHARE, "gap": GAP} | numbers},
         )
-        return machine.follow(st.Motion(position, np.zeros(2000), DT))[2]
+        _, ambient, friction, _ = machine.follow(st.Motion(position, np.zeros(2000), DT))
+        return friction - ambient, friction
 
-    plain = needed()
+    plain, contact_alone = needed()
     taken = SHARE * INERTIA * LOAD * 2.0
     for contact in (0.0, CONTACT_TIME):
-        loaded = needed(contact_time=contact, load_damping=LOAD)
+        loaded, friction = needed(contact_time=contact, load_damping=LOAD)
         assert np.mean((loaded - plain)[-200:]) == pytest.approx(taken, rel=1e-2)
+        # What remembers the friction of the contact does not see that of the load.
+        np.testing.assert_array_equal(friction, contact_alone)
