@@ -25,24 +25,29 @@ def passes_beside(screening: Screening, trials: Sequence[Trial]) -> Choice | Non
     """What would pass, had not another trial looked like the cause that it imitates.
 
     Two causes at once make each other's strength uneven: the one that was refused for that is asked
-    again beside the one that passed. If it passes there, both are causes.
+    again beside the one that passed, and a relative that was refused with it. If it passes there,
+    both are causes.
     """
     passed = sorted((t for t in trials if not t.reason), key=lambda t: -t.worth)
-    other = next((t for w in passed[:1] for t in strangers(trials, w) if t.imitates), None)
-    if other is None:
+    found = [t for w in passed[:1] for t in strangers(trials, w) if t.imitates]
+    kin = [t for t in found if t.candidate.record.family == found[0].candidate.record.family]
+    if not kin:
         return None
-    choice = choose([trial for trial in trials if trial is not other], screening.encompasses)
+    left = [trial for trial in trials if not any(trial is each for each in kin)]
+    choice = choose(left, screening.encompasses)
     if choice is None:
         return None
     model = choice.winner.model
-    score = next(each for each in screening.scores(model) if each.candidate.name == other.name)
     families = {choice.winner.candidate.record.family}
-    if not promises(score) or not stands_out(screening.evidence, score, families):
-        return None
-    if screening.trial(model, score).reason:
-        return None
-    _logger.info("%s passes beside %s", other.name, choice.winner.name)
-    return choice
+    scores = {score.candidate.name: score for score in screening.scores(model)}
+    for other in kin:
+        score = scores[other.name]
+        if not promises(score) or not stands_out(screening.evidence, score, families):
+            continue
+        if not screening.trial(model, score).reason:
+            _logger.info("%s passes beside %s", other.name, choice.winner.name)
+            return choice
+    return None
 
 
 def pass_together(
