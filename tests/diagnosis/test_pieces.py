@@ -507,6 +507,17 @@ def test_relatives_named_beside_each_other_are_not_decided() -> None:
     assert [len(relatives(selection, k)) for k in range(3)] == [1, 0, 1]
 
 
+def test_what_may_be_a_relative_instead_leaves_a_name_undecided() -> None:
+    """A weight was told as a constant, or itself, and a sure cogging beside it."""
+    constant, weight, cogging, slow = (
+        tried(worth, 1, family=family)
+        for worth, family in ((1.0, "offset"), (0.9, "wave"), (0.8, "wave"), (0.7, "slow"))
+    )
+    choices = [Choice(constant, (weight,)), Choice(cogging, ()), Choice(slow, ())]
+    selection: Any = SimpleNamespace(choices=choices)
+    assert [relatives(selection, k) for k in range(3)] == [[], ["0.9"], []]
+
+
 def test_an_interrupted_refit_ends_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*given: Any, **named: Any) -> Model:
         model = fitted(*given, **named)

@@ -137,11 +137,20 @@ def relatives(selection: Search, place: int) -> list[str]:
     """Other effects of the same family as one that was accepted.
 
     Two that look alike, named beside each other, together imitate a third more often than they are
-    both there.
+    both there; and so does a name beside one that may be a relative of it: a constant and cogging
+    may be the one weight off the axis.
     """
     records = [choice.winner.candidate.record for choice in selection.choices]
     own = records[place]
-    return [each.name for each in records if each.family == own.family and each is not own]
+    taken = [each.name for each in records]
+    instead = [
+        rival.candidate.record
+        for k, choice in enumerate(selection.choices)
+        for rival in choice.rivals
+        if k != place and rival.name not in taken
+    ]
+    alike = [each for each in (*records, *instead) if each.family == own.family]
+    return list(dict.fromkeys(each.name for each in alike if each is not own))
 
 
 def _told(left: Rest, least: float) -> tuple[Unexplained, ...]:
