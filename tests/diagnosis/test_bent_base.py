@@ -55,8 +55,8 @@ def test_what_nothing_explains_moves_no_base() -> None:
     rows = len(base.residual)
     for path, given in stepped(base, np.zeros(rows)).parameters.items():
         assert given.value == pytest.approx(base.plant.parameters[path].value, rel=1e-12)
-    # What is explained in its place by something else it gives up.
+    # What is explained in its place by something else it gives up, but for what damping keeps.
     column = base.columns[:, list(base.solution.variables.paths).index("friction.viscous")]
     before = base.plant.parameters["friction.viscous"].value
     moved = stepped(base, 0.01 * before * column).parameters["friction.viscous"].value
-    assert moved == pytest.approx(1.01 * before, rel=1e-3)
+    assert 1.005 * before < moved < 1.01 * before

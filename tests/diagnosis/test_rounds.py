@@ -58,7 +58,7 @@ class Bench:
     def scores(self, model: Any) -> list[Any]:
         return [each.score for each in self.after.get(model.name, [])]
 
-    def trial(self, model: Any, score: Any) -> Trial:
+    def trial(self, model: Any, score: Any, others: Any = ()) -> Trial:
         return next(t for t in self.after[model.name] if t.name == score.candidate.name)
 
     def contributed(self, score: Any, model: Any) -> Any:
@@ -127,9 +127,9 @@ class Asked(Bench):
         super().__init__(after)
         self.refitted: list[str] = []
 
-    def trial(self, model: Any, score: Any) -> Trial:
+    def trial(self, model: Any, score: Any, others: Any = ()) -> Trial:
         self.refitted.append(score.candidate.name)
-        return super().trial(model, score)
+        return super().trial(model, score, others)
 
 
 def scored(name: str, score: float, along: tuple[float, float], **kinds: Any) -> Trial:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..catalogue import effects
 from ..finite import finite
+from ..fitting.levenberg import FIRST_DAMPING
 from ..fitting.minimise import Solution, minimise
 from ..fitting.result import FitResult
 from ..fitting.rows import Nuisances, Rows, timing_bound
@@ -305,9 +306,10 @@ def power_of(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
 def stepped(model: Model, explained: FloatArray) -> Plant:
     """The plant of a model, moved to where it is best once something else explains a part.
 
-    One Gauss-Newton step over the fitted rows, in the variables of the fit; a refit that starts
-    there has little left to do. What the model leaves beside that part moves nothing: at a minimum
-    with a kink slopes would lead far away from it.
+    One step over the fitted rows, in the variables of the fit and damped as the first one of a fit
+    is: numbers that exchange for each other would go so far that no slope holds there. A refit that
+    starts from here has little left to do. What the model leaves beside that part moves nothing: at
+    a minimum with a kink slopes would lead far away from it.
 
     Parameters
     ----------
@@ -321,7 +323,9 @@ def stepped(model: Model, explained: FloatArray) -> Plant:
     columns[:, :number] = variables.chain(columns[:, :number], solution.vector)
     scale = np.sqrt(np.sum(columns**2, axis=0))
     scale[scale == 0.0] = 1.0
-    moved = np.linalg.lstsq(columns / scale, explained[fit], rcond=FLAT)[0] / scale
+    columns /= scale
+    normal = columns.T @ columns + FIRST_DAMPING * np.eye(len(scale))
+    moved = np.linalg.solve(normal, columns.T @ explained[fit]) / scale
     way = np.where(
         variables.logarithmic, np.clip(moved[:number], -FARTHEST, FARTHEST), moved[:number]
     )

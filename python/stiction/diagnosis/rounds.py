@@ -27,7 +27,7 @@ from .screen import Score, Signatures
 from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
 from .together import pass_together, passes_beside
-from .trials import Screening, compared_fit, promises, unstuck, whole_fit
+from .trials import LESSER, SLIGHT, Screening, compared_fit, promises, unstuck, whole_fit
 
 __all__ = ["MOST_EFFECTS", "friction_of", "search"]
 
@@ -35,11 +35,6 @@ MOST_EFFECTS: Final = 4
 """Effects added at most: who lacks more than that needs another law."""
 REFITTED: Final = 5
 """Candidates refitted in a round."""
-SLIGHT: Final = 0.1
-"""A candidate that explains less than this share of one that passed is not refitted beside it."""
-LESSER: Final = 0.7
-"""What explains another part of the residual than one that passed, and less than this share of what
-that explains, has its turn in the next round: there it is screened beside that."""
 OUTSTANDING: Final = 3.0
 """A candidate that explains this many times what any other does is refitted whatever it does held
 out."""
@@ -209,7 +204,7 @@ def _refitted(
         if goes_on and score not in asked and _can_wait(score, base, trials):
             waiting.append(score)
         elif not _hopeless(score, trials):
-            trials.append(_trial(screening, found, score))
+            trials.append(_trial(screening, found, score, trials))
     if waiting and choose(trials) is None:
         # There will be no next round.
         trials += [_trial(screening, found, score) for score in waiting]
@@ -252,9 +247,11 @@ def _imitated(scores: Sequence[Score], trials: Sequence[Trial]) -> list[Score]:
     return [score for score in more if score.testable and score.score > least]
 
 
-def _trial(screening: Screening, found: Search, score: Score) -> Trial:
+def _trial(
+    screening: Screening, found: Search, score: Score, others: Sequence[Trial] = ()
+) -> Trial:
     """A candidate refitted beside what was found; refused where that may have left it."""
-    trial = screening.trial(found.models[-1], score)
+    trial = screening.trial(found.models[-1], score, others)
     trial = beside_a_second(screening, found.models[-1], trial)
     left = left_by_forms(screening.evidence, trial, found.families)
     return replace(trial, reason=left) if left else trial
@@ -297,7 +294,10 @@ def _hopeless(score: Score, trials: Sequence[Trial]) -> bool:
 
 
 def _can_wait(score: Score, base: Model, trials: Sequence[Trial]) -> bool:
-    """Whether a candidate explains less than one that passed, and something else."""
+    """Whether a candidate explains less than one that passed, and something else.
+
+    It has its turn in the next round: there it is screened beside that.
+    """
 
     def comes_first(trial: Trial) -> bool:
         explained = 1.0 - trial.model.power / base.power

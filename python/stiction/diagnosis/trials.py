@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
-from ..catalogue import effects
 from ..finite import finite
 from ..fitting.minimise import from_elsewhere
 from ..fitting.rows import Nuisances
@@ -30,6 +30,8 @@ from .noisy_motion import told_by_noise
 from .screen import Problem, Score, Signatures, likelier, screen
 
 __all__ = [
+    "LESSER",
+    "SLIGHT",
     "Screening",
     "compared_fit",
     "promises",
@@ -37,12 +39,8 @@ __all__ = [
     "whole_fit",
 ]
 
-LAG: Final = "frictional_lag"
-"""What noise of the position may look like beside what is late."""
 COMPARED: Final = 1e-4
 """Of the power, along a measured motion: far less than what tells candidates apart."""
-LATE_SHARE: Final = 0.5
-"""Of the kernel's support: a follower that keeps noise from friction is late by less."""
 MOST_KEPT: Final = 4
 """Models of which scores are kept."""
 SHARES: Final = (0.1, 0.3, 0.6, 1.0, 1.7, 3.0)
@@ -53,6 +51,11 @@ KEPT: Final = 0.75
 """Share of what the screening promises that a refit keeps, unless it is caught."""
 CAUTIOUS: Final = 0.1
 """Share of the screened gain to start from where the whole of it leads astray."""
+LESSER: Final = 0.7
+"""What explains less than this share of what another one does is no match for that."""
+SLIGHT: Final = 0.1
+"""A candidate, or its other form, that explains less than this share of one that was refitted, is
+not refitted beside it."""
 MUCH: Final = 0.05
 MANY_TIMES: Final = 5.0
 """A score of this size, and so many times its threshold, is refitted whatever it does held out."""
@@ -123,23 +126,27 @@ class Screening:
         del self.kept[:-MOST_KEPT]
         return scores
 
-    def trial(self, base: Model, score: Score) -> Trial:
+    def trial(self, base: Model, score: Score, others: Sequence[Trial] = ()) -> Trial:
         """A candidate refitted together with a model, and judged; in its other form if it fails.
 
-        What fails over blocks alone may still be the cause, and speaks for its own form.
+        What fails over blocks alone may still be the cause, and speaks for its own form. ``others``
+        were tried before it.
         """
-        trial = self._tried(base, score)
+        passed = [other for other in others if not other.reason]
+        best = max((1.0 - other.model.power / base.power for other in passed), default=0.0)
+        trial = self._tried(base, score, best)
         if not trial.reason or trial.by_blocks or trial.doubtless:
             return trial
         for other in self._forms(base):
             if other.candidate.name == trial.name and other.candidate.form != trial.candidate.form:
-                again = self._tried(base, other) if promises(other) else trial
+                worth_it = promises(other) and other.score >= SLIGHT * trial.score.score
+                again = self._tried(base, other, best) if worth_it else trial
                 return trial if again.reason else again
         return trial
 
-    def _tried(self, base: Model, score: Score) -> Trial:
+    def _tried(self, base: Model, score: Score, best: float) -> Trial:
         _logger.info("refitting with %s", score.candidate.name)
-        model = _refit(self.evidence, base, self.signatures, score)
+        model = _refit(self.evidence, base, self.signatures, score, best)
         explained = self.contributed(score, model)
         trial = self.judged(base, score, model, explained)
         if trial.freed and score.candidate.free:
@@ -155,7 +162,6 @@ class Screening:
         reason = (
             trial.reason
             or _too_good(self.evidence, model)
-            or _friction_is_late(self.evidence, model)
             or told_by_noise(base, model, trial.gain)
         )
         return replace(trial, reason=reason)
@@ -225,8 +231,14 @@ class Screening:
         )
 
 
-def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score) -> Model:
-    """The base with an effect, fitted from where the screening says; from near 0 if that fails."""
+def _refit(
+    evidence: Evidence, base: Model, signatures: Signatures, score: Score, best: float
+) -> Model:
+    """The base with an effect, fitted from where the screening says; from near 0 if that fails.
+
+    Where even what the screening promised would be little beside the ``best`` that another one took
+    off the power, it is not asked again.
+    """
     index = signatures.candidates.index(score.candidate)
     gains = score.gains
     if not np.any(gains):
@@ -243,7 +255,7 @@ def _refit(evidence: Evidence, base: Model, signatures: Signatures, score: Score
     plants = [begun(share, *like) for like in alike for share in shares]
     start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
     model = compared_fit(evidence, start, base.nuisances)
-    if model.power < (1.0 - KEPT * score.score) * base.power:
+    if model.power < (1.0 - KEPT * score.score) * base.power or score.score < LESSER * best:
         return model
     # Short of what the screening promised it is caught: a base that has bent itself towards the
     # effect jumps too far at once, and a contact that all but loses its track has a kink on every
@@ -325,25 +337,3 @@ def _too_good(evidence: Evidence, model: Model) -> str:
     if model.power * model.given >= LEAST_OF_NOISE * evidence.floor:
         return ""
     return "leaves far less than the noise of these data must: it takes away what was measured"
-
-
-def _friction_is_late(evidence: Evidence, model: Model) -> str:
-    """Why a delay may be no delay of the input, "" where it is none or no reason stands against it.
-
-    Where noise is kept from friction, friction turns round late itself, and an input that seems
-    late, or a friction that follows speed late, is what is left of that.
-    """
-    effect = model.plant.effects[-1]
-    record = next(each for each in effects() if each.name == effect.name)
-    if record.late and any(form.followed_late for form in evidence.forms):
-        (gain,) = record.gains
-        within = effect.parameters[gain].value <= LATE_SHARE * evidence.support
-    elif record.name == LAG:
-        # Noise does it in most recordings; counts flicker where a machine rests, and there alone.
-        late = float(np.median([form.lateness for form in evidence.forms]))
-        within = effect.parameters["time"].value <= late
-    else:
-        within = False
-    if not within:
-        return ""
-    return "lies within what noise of the position makes friction late by"
