@@ -19,6 +19,7 @@ __all__ = [
     "adaptively_smoothed",
     "effects",
     "laws",
+    "played",
 ]
 
 __version__: Final[str]
@@ -28,6 +29,7 @@ def effects() -> list[dict[str, Any]]: ...
 def adaptively_smoothed(
     readings: npt.ArrayLike, noise: float, halves: Sequence[int]
 ) -> _Floats: ...
+def played(readings: npt.ArrayLike, width: float) -> _Floats: ...
 
 @final
 class FrictionModel:

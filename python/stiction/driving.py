@@ -6,8 +6,9 @@ from typing import Final
 
 import numpy as np
 
+from ._native import played
 from .adaptive import adaptively_smoothed
-from .motion import Kernel, narrowest, play, rested, smooth
+from .motion import Kernel, narrowest, rested, smooth
 from .trajectory import FloatArray
 
 __all__ = ["Driving"]
@@ -18,8 +19,8 @@ rigid contact is smoothed; below it smoothing would only smear stops into slow m
 SMOOTHING_SHARE: Final = 0.1
 """Support over which it then is, as a share of the kernel's: 3 ms where that has 30 ms."""
 FLICKER_SHARE: Final = 0.2
-"""White noise beyond this share of a count makes readings flicker, and a follower with a backlash
-keeps that out. Where they do not flicker it would only be late by half a count."""
+"""White noise beyond this share of a count makes readings flicker, and a backlash keeps that out.
+Where they do not flicker it would only halve the speed about each turn."""
 TURNING_SHARE: Final = 0.1
 """Noise of the velocity over its usual size above which a machine that is moved seems to turn
 round, or friction of one that does not follows noise: its motion is then smoothed over up to the
@@ -100,7 +101,7 @@ class Driving:
             return adaptively_smoothed(readings, self._dt, self._noise)
         if self.steadied > 0.0:
             return smooth(readings, self._dt, self.steadied, drifts=True)
-        followed = smooth(play(readings, self._backlash), self._dt, self._smoothing)
+        followed = smooth(played(readings, self._backlash), self._dt, self._smoothing)
         if self._prescribed:
             return followed
         if self._backlash > 0.0:
@@ -110,8 +111,8 @@ class Driving:
         return rested(followed, readings, self._window, width, to_and_fro=True)
 
     @property
-    def late(self) -> bool:
-        """Whether friction is driven through a backlash, which turns round late."""
+    def flickers(self) -> bool:
+        """Whether readings flicker, and friction is driven through a backlash."""
         return self._backlash > 0.0
 
     def lateness(self, motion: FloatArray, readings: FloatArray) -> float:
@@ -121,7 +122,7 @@ class Driving:
         """
         if self._springy or self._prescribed:
             return 0.0
-        held = self.late or np.mean(motion != readings) > HELD
+        held = self.flickers or np.mean(motion != readings) > HELD
         return LATE_WINDOWS * self._dt * self._window if held else 0.0
 
     def _turned(self, readings: FloatArray) -> float:

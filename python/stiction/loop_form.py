@@ -68,7 +68,7 @@ class LoopForm(WeakForm):
         )
 
     @property
-    def followed_late(self) -> bool:
+    def flickers(self) -> bool:
         """Never: friction is driven by the simulated motion, which has no noise."""
         return False
 

@@ -18,7 +18,6 @@ __all__ = [
     "held",
     "narrowest",
     "noise_of",
-    "play",
     "rested",
     "smooth",
 ]
@@ -160,23 +159,6 @@ def count_of(position: FloatArray) -> float:
     # Steps above some tens of counts fit anything: only the small ones tell.
     small = whole < 20.0
     return count if small.sum() > 20 and fits[small].mean() > 0.95 else 0.0
-
-
-def play(values: FloatArray, width: float) -> FloatArray:
-    """What a follower with a backlash of ``width`` does: motion inside it does not get through.
-
-    A sensor that flickers between two counts reports motion that never was; a friction law
-    driven by it would lose its force.
-    """
-    if width <= 0.0:
-        return values
-    followed = np.empty_like(values)
-    half = 0.5 * width
-    at = float(values[0])
-    for k, value in enumerate(values.tolist()):
-        at = min(max(at, value - half), value + half)
-        followed[k] = at
-    return followed
 
 
 def rested(

@@ -141,7 +141,7 @@ class WeakForm:
         u = held(time, stamps, driving)
         # Of the readings themselves: between them, on even stamps, there are no steps.
         self.count = plant.count or count_of(recording.position)
-        self.noise = noise = noise_of(x, self.count)
+        noise = noise_of(x, self.count)
         warmth, on = (recording.channels.get(name) for name in ("temperature", "enabled"))
         self.temperature = None if warmth is None else held(time, stamps, warmth)
         self.enabled = None if on is None else held(time, stamps, on)
@@ -164,20 +164,27 @@ class WeakForm:
         self.load = np.zeros_like(x) if load is None else held(time, stamps, load)
         self.effort = driven / plant.gain
         self.springy = plant.friction.springy
+        self.readings = x
+        self.read_with(noise)
+        self.input = np.zeros(len(x) - 1) if self.prescribed else u[:-1]
+        self.clock = self.path = 0.0
+        self.time = self._thin(time[1:][self.kernel.half : -self.kernel.half])
+
+    def read_with(self, noise: float) -> None:
+        """Drives friction by what the readings are without so much noise; forgets what it knew."""
+        for name in _CACHED:
+            self.__dict__.pop(name, None)
+        self.noise = noise
         self._driving = Driving(
-            x,
+            self.readings,
             self.kernel,
             noise=noise,
             count=self.count,
             springy=self.springy,
             prescribed=self.prescribed,
         )
-        self.readings = x
-        self.position = self.driving(x)
-        self.input = np.zeros(len(x) - 1) if self.prescribed else u[:-1]
-        self.clock = self.path = 0.0
-        self.time = self._thin(time[1:][self.kernel.half : -self.kernel.half])
-        self.acceleration = self.accelerations(x, self.position)
+        self.position = self.driving(self.readings)
+        self.acceleration = self.accelerations(self.readings, self.position)
 
     def __len__(self) -> int:
         return len(self.time)
@@ -236,15 +243,20 @@ class WeakForm:
             averaged=not self.prescribed,
         )
 
-    def reread(self, readings: FloatArray, effort: FloatArray) -> Self:
-        """The same recording with other readings and another measured effort, seen alike.
+    def reread(self, readings: FloatArray, acted: FloatArray) -> Self:
+        """The same recording with other readings, seen alike, and with other efforts that acted.
 
-        Both have the shape of the recording.
+        Both have the shape of the recording. What acted is the measured effort of a machine that is
+        moved, and the load of one that its drive moves: the input stays.
         """
         other = copy(self)
         for name in _CACHED:
             other.__dict__.pop(name, None)
-        other.readings, other.effort = readings, effort
+        other.readings = readings
+        if self.prescribed:
+            other.effort = acted
+        else:
+            other.load = acted
         other.position = self.driving(readings)
         other.acceleration = other.accelerations(readings, other.position)
         return other
@@ -275,9 +287,9 @@ class WeakForm:
         return self.springy
 
     @property
-    def followed_late(self) -> bool:
-        """Whether noise had to be kept from friction by a backlash, which turns round late."""
-        return self._driving.late
+    def flickers(self) -> bool:
+        """Whether readings flicker, and noise had to be kept from friction by a backlash."""
+        return self._driving.flickers
 
     @property
     def steadied(self) -> float:

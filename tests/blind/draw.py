@@ -33,16 +33,19 @@ class Case:
     seed: int
     hidden: tuple = ()
     without: tuple = ()
+    flicker: float = 0.0
 
     @property
     def key(self):
         """Tells cases apart; the same for the same draw."""
-        return f"{self.base} {self.seed} {self.kind} {self.hidden}"
+        flickers = f" flicker {self.flicker}" if self.flicker else ""
+        return f"{self.base} {self.seed} {self.kind} {self.hidden}{flickers}"
 
     @property
     def spec(self):
         """For `make_sessions`."""
-        return {"seed": self.seed, "base": self.base, "hidden": self.hidden}
+        own = {"seed": self.seed, "base": self.base, "hidden": self.hidden}
+        return {**own, "flicker": self.flicker}
 
 
 def library(base=None):

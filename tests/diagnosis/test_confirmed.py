@@ -82,6 +82,12 @@ def test_few_blocks_that_were_fitted_leave_doubt(blocks: tuple[int, ...]) -> Non
     assert not asked(cause, cause)
 
 
+def test_few_blocks_are_enough_where_nothing_is_left_of_what_was_never_fitted() -> None:
+    cause = 30.0 * acting(3, 33)
+    assert asked(cause, cause)
+    assert not asked(np.where(FITTED, cause, 0.7 * cause), cause)
+
+
 @pytest.mark.parametrize(("share", "sure"), [(1.0, True), (0.6, False), (1.5, False), (0.0, False)])
 def test_few_blocks_are_enough_for_a_gain_that_was_known_beforehand(
     share: float, sure: bool

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 from stiction.diagnosis.gain import Gain
 from stiction.diagnosis.result import Unexplained
-from stiction.diagnosis.words import joined, sentence, unseen_words
+from stiction.diagnosis.words import OUTWEIGHED, UNREPEATED, joined, sentence, unseen_words
 
 
 def test_words_join_and_say_what_was_not_confirmed() -> None:
@@ -22,7 +22,7 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
         look_alikes=(),
         what="a pull: cosine 1",
         gain=None,
-        outweighed=False,
+        doubt="",
     )
     alike = ("stribeck", "torque_bias")
     unsure = SimpleNamespace(
@@ -31,7 +31,7 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
         look_alikes=alike[:1],
         what="a fall",
         gain=None,
-        outweighed=False,
+        doubt="",
     )
     fall = "friction falls from a level at rest to a lower one as speed rises"
     assert sentence("ambiguous", (sure, unsure), None, (), "").startswith(
@@ -44,7 +44,7 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
         look_alikes=("warm_up",),
         what="a bump",
         gain=None,
-        outweighed=False,
+        doubt="",
     )
     assert sentence("ambiguous", (unsure, sure, other), None, (), "").startswith(
         "The simulation lacks cogging (a pull) and warm_up (a fall) and stribeck (a bump), which "
@@ -52,9 +52,7 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
     )
     # Two such groups are two causes, and one that may be a third as well stands by itself.
     pair = [
-        SimpleNamespace(
-            name=name, decided=False, look_alikes=alike, what=name, gain=None, outweighed=False
-        )
+        SimpleNamespace(name=name, decided=False, look_alikes=alike, what=name, gain=None, doubt="")
         for name, alike in (("run_in", ("backlash",)), ("backlash", ("run_in",)))
     ]
     both = sentence("ambiguous", (unsure, other, *pair), None, (), "")
@@ -66,11 +64,16 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
         "ambiguous", (unsure,), None, (), ""
     )
     alone = SimpleNamespace(
-        name="run_in", decided=False, look_alikes=(), what="a change", gain=None, outweighed=True
+        name="run_in", decided=False, look_alikes=(), what="a change", gain=None, doubt=OUTWEIGHED
     )
     taken = sentence("ambiguous", (sure, alone), None, (Unexplained("effort", 0.4),), "")
     assert "perhaps run_in" in taken
     assert "still depends on effort (40 %). What has no name there is worth more than" in taken
+    alone.doubt = UNREPEATED
+    taken = sentence("ambiguous", (sure, alone), None, (), "")
+    assert taken.endswith(
+        "Of run_in less than one period was travelled, and a spring may look the same."
+    )
     worse = sentence("missing_effect", (sure,), Gain(-0.1, (-0.2, 0.1)), (), "")
     assert worse.startswith("By the rows that decide, and by no others, the simulation lacks")
     assert "Adding it makes the held-out rows worse." in worse

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from stiction import InputError, Plant, Recording
-from stiction.motion import Kernel, count_of, evenly, held, noise_of, play, rested
+from stiction._native import played
+from stiction.motion import Kernel, count_of, evenly, held, noise_of, rested
 from stiction.residual import effort_residual, free_run
 from stiction.weak_form import WeakForm
 
@@ -133,7 +134,7 @@ def test_helpers_of_motion_do_what_they_say() -> None:
     smooth = np.sin(np.arange(5000) * 1e-3)
     assert noise_of(smooth + 1e-4 * rng.standard_normal(5000)) == pytest.approx(1e-4, rel=0.05)
     flicker = 0.1 + 1e-3 * (np.arange(100) % 2)
-    assert np.ptp(play(flicker, 2e-3)) == 0.0
+    assert np.ptp(played(flicker, 2e-3)) == 0.0
     _, even, dt = evenly(np.array([0.0, 0.1, 0.21, 0.3]))
     assert dt == pytest.approx(0.1)
     values = held(even, np.array([0.0, 0.1, 0.201, 0.3]), np.array([1.0, 2.0, 3.0, 4.0]))
@@ -181,7 +182,7 @@ def test_noise_moves_nothing_that_rests() -> None:
     time = np.arange(3000) * 1e-3
     true = np.where(time < 1.0, 0.0, np.where(time < 2.0, 0.3 * (time - 1.0), 0.3))
     readings = true + 2e-6 * rng.standard_normal(len(true))
-    followed = play(readings, 8e-6)
+    followed = played(readings, 8e-6)
     kept = rested(followed, readings, 8, 1.2e-5)
     moved = np.diff(kept) != 0.0
     assert not moved[:999].any()

@@ -42,6 +42,8 @@ def record_more(session, wanted, *, cold=False):
     draft.order = [(w.kind, w.role) for w in wanted]
     draft.excitations = [_excitation(w, length) for w in wanted]
     draft.noise = rng.standard_normal(draft.noise.shape) * (spec.noise * draft.plant["coulomb"])
+    if spec.flicker:
+        draft.flicker = rng.standard_normal(draft.noise.shape) * (spec.flicker * spec.count)
     draft.start_s = np.array([w.start_s for w in wanted])
     draft.effects = [replace(effect, size=None) for effect in session.effects]
     warm = None if cold or last.temperature_c is None else float(last.temperature_c[-1])

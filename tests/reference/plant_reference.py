@@ -59,6 +59,7 @@ class Lanes:
     count: float = TURN / 2**18  # rad of one encoder count; 0 reads exactly
     sample_time: float = 1e-3
     substeps: int = 10
+    flicker: np.ndarray | None = None  # rad, of the reading before it is rounded
     load: np.ndarray | None = None  # N m, external, acts on the body
     temperature: np.ndarray | None = None  # °C
 
@@ -202,6 +203,8 @@ def simulate(batch):
         reading = now
         for e in effects.sensors:
             reading[e.lanes] = e.reads(now[e.lanes])
+        if batch.flicker is not None:
+            reading = reading + batch.flicker[k]
         if batch.count:
             np.round(reading / batch.count, out=reading)
             reading *= batch.count

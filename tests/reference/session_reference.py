@@ -52,9 +52,10 @@ class Spec:
 
     `seconds` is the total of all recordings (default: 8.67 s for each); `rate` that of the
     simulation, Hz; `counts_per_rev` 0 reads exactly; `noise` is the standard deviation of the
-    torque noise as a share of F_c. `lead_in` seconds of decaying torque, not recorded, let each
-    recording start with a contact that is not virgin. With `size_support` sizes are those of
-    the hidden torque seen through a cubic B-spline of so many seconds, not of the raw one; a
+    torque noise as a share of F_c, `flicker` that of a reading before it is rounded, in counts.
+    `lead_in` seconds of decaying torque, not recorded, let each recording start with a contact that
+    is not virgin. With `size_support` sizes are those of the hidden torque seen through a cubic
+    B-spline of so many seconds, not of the raw one; a
     shaft is always sized so (20 ms), because its ringing is beyond what anybody would see.
     `elements` is the number of elasto-slide elements in the contact (default 14, hsieh_pan 28).
     `one_curve` gives maxwell_slip a smooth curve of one shape parameter (64 elements), which a
@@ -71,6 +72,7 @@ class Spec:
     rate: float = 1e4
     counts_per_rev: int = 2**18
     noise: float = 0.02
+    flicker: float = 0.0
     lead_in: float = 0.0
     size_support: float = 0.0
     elements: int | None = None
@@ -91,7 +93,12 @@ class Spec:
     def layout(self):
         """What sessions of one batch must have in common."""
         contact = self.base, self.elements, self.one_curve
-        return *contact, self.samples, self.rate, self.counts_per_rev, self.lead_in
+        return *contact, self.samples, self.rate, self.counts_per_rev, self.lead_in, self.flicker
+
+    @property
+    def count(self):
+        """Step of the readings, rad; 0 for exact ones."""
+        return 2.0 * np.pi / self.counts_per_rev if self.counts_per_rev else 0.0
 
     @property
     def lead_rows(self):
@@ -138,6 +145,10 @@ class Draft:
         self.noise = np.column_stack(
             [stream(seed, "noise", k, r).standard_normal(rows) for k, r in self.order]
         ) * (spec.noise * self.plant["coulomb"])
+        self.flicker = None
+        if spec.flicker:
+            drawn = [stream(seed, "flicker", k, r).standard_normal(rows) for k, r in self.order]
+            self.flicker = np.column_stack(drawn) * (spec.flicker * spec.count)
         lead = np.arange(spec.lead_rows)[:, None] / max(spec.lead_rows, 1)
         turns, phase = place.uniform(2.0, 4.0, (2, len(self.order)))
         wave = np.sin(2.0 * np.pi * (turns * lead + phase)) * (1.0 - lead)
@@ -223,12 +234,13 @@ def lanes_of(drafts, without_effects=False):
         torque=np.concatenate([lead, torque]),
         reference=np.concatenate([np.zeros_like(lead), reference]) + start,
         noise=np.concatenate([d.noise for d in drafts], axis=1),
+        flicker=np.concatenate([d.flicker for d in drafts], axis=1) if spec.flicker else None,
         filter_time=spread([d.controller["filter_time"] for d in drafts]),
         start=start,
         start_s=np.concatenate([d.start_s for d in drafts]) - spec.lead_in,
         start_path=np.concatenate([d.start_path for d in drafts]),
         groups=[] if without_effects else _groups(drafts, first, per),
-        count=2.0 * np.pi / spec.counts_per_rev if spec.counts_per_rev else 0.0,
+        count=spec.count,
         sample_time=SAMPLE_TIME,
         substeps=round(spec.rate * SAMPLE_TIME),
         **gains,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.fitting.forms import set_clocks
+from stiction.fitting.forms import as_session
 from stiction.recording import Recording
 from stiction.recording.checks import starts
 from stiction.recording.session_clock import remaining
@@ -89,10 +89,16 @@ def test_path_and_clock_of_the_effects_begin_anew_from_cold() -> None:
     labels = ({"start_s": 4.0}, {"start_s": 10.0}, {"start_s": 70.0, "cold": True}, {"start_s": 90})
     recordings = [recorded(seed, **each) for seed, each in enumerate(labels)]
     forms = [
-        SimpleNamespace(position=np.array([0.0, 2.0, -1.0]), clock=None, path=None)
+        SimpleNamespace(
+            position=np.array([0.0, 2.0, -1.0]),
+            clock=None,
+            path=None,
+            count=0.0,
+            flickers=False,
+        )
         for _ in recordings
     ]
-    set_clocks(forms, recordings)  # type: ignore[arg-type]
+    as_session(forms, recordings)  # type: ignore[arg-type]
     assert [(form.clock, form.path) for form in forms] == [
         (4.0, 0.0),
         (10.0, 5.0),

@@ -25,6 +25,25 @@ pub fn adaptively_smoothed(readings: &[f64], noise: f64, halves: &[usize]) -> Ve
     Width::widest().run(Smoothing { readings, noise, halves })
 }
 
+/// Positions behind readings that flicker: motion inside a backlash of `width` does not get through.
+///
+/// The mean of what a follower with that backlash does and of what one does that goes back in time: each of
+/// them turns round late in its own time, and where one of them rests the other one moves the right way.
+pub fn played(readings: &[f64], width: f64) -> Vec<f64> {
+    let (Some(first), Some(last)) = (readings.first(), readings.last()) else { return Vec::new() };
+    let half = 0.5 * width;
+    let follow = |at: &mut f64, value: &f64| {
+        *at = at.clamp(value - half, value + half);
+        *at
+    };
+    let (mut forwards, mut backwards) = (*first, *last);
+    let mut found: Vec<f64> = readings.iter().map(|value| follow(&mut forwards, value)).collect();
+    for (value, mean) in readings.iter().zip(&mut found).rev() {
+        *mean = 0.5 * (*mean + follow(&mut backwards, value));
+    }
+    found
+}
+
 /// The middle of a parabola through 2·half + 1 samples as a sum over them (Savitzky, Golay, Anal. Chem. 36
 /// (1964)): weights of the middle and of each pair about it. The sum of their squares is the first.
 fn parabola(half: usize) -> Vec<f64> {
@@ -160,6 +179,19 @@ mod tests {
         let kept = adaptively_smoothed(&jump, 1e-6, &halves);
         assert!(jump.iter().zip(&kept).all(|(a, b)| (a - b).abs() < 1e-5));
         assert!(adaptively_smoothed(&[], noise, &halves).is_empty());
+    }
+
+    #[test]
+    fn what_flickers_rests_and_no_turn_is_late() {
+        let flicker: Vec<f64> = (0..50).map(|k| f64::from(k % 2)).collect();
+        let rests = played(&flicker, 2.0);
+        assert!(rests.windows(2).all(|pair| pair[0] == pair[1]));
+        let triangle: Vec<f64> = (0..101).map(|k| 50.0 - f64::from(k - 50).abs()).collect();
+        let found = played(&triangle, 3.0);
+        let turns = |values: &[f64]| values.windows(2).take_while(|pair| pair[1] > pair[0]).count();
+        assert_eq!(turns(&found[2..]), turns(&triangle[2..]));
+        assert!(triangle.iter().zip(&found).all(|(given, played)| (given - played).abs() <= 1.5));
+        assert!(played(&[], 1.0).is_empty());
     }
 
     #[test]

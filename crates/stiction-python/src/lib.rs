@@ -29,7 +29,7 @@ mod _native {
     #[pymodule_export]
     use super::motor::Motor;
     #[pymodule_export]
-    use super::smoothing::adaptively_smoothed;
+    use super::smoothing::{adaptively_smoothed, played};
 
     #[pymodule_export]
     #[allow(non_upper_case_globals)] // Python's own name for it

@@ -45,3 +45,37 @@ pub fn adaptively_smoothed<'py>(
     let smoothed = py.detach(|| smoothing::adaptively_smoothed(given, noise, &halves));
     Ok(PyArray1::from_vec(py, smoothed))
 }
+
+/// Positions behind readings that flicker, none of whose turns is late.
+///
+/// Parameters
+/// ----------
+/// readings : array_like, shape (n,)
+///     rad or m.
+/// width : float
+///     Of the backlash that keeps flicker out, at least 0; rad or m.
+///
+/// Returns
+/// -------
+/// numpy.ndarray, shape (n,)
+///
+/// Raises
+/// ------
+/// InputError
+///     Readings that are no row of finite numbers, a width that is none.
+#[pyfunction]
+pub fn played<'py>(
+    py: Python<'py>,
+    readings: &Bound<'py, PyAny>,
+    width: f64,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let readings = one_row("readings", readings)?;
+    let width = finite(py, "width", width)?;
+    if width < 0.0 {
+        let wanted = "give the width of a backlash, 0 or more";
+        return Err(input_error(py, format!("width = {width} is out of bounds: {wanted}")));
+    }
+    let given = readings.as_slice()?;
+    let found = py.detach(|| smoothing::played(given, width));
+    Ok(PyArray1::from_vec(py, found))
+}

@@ -30,6 +30,9 @@ LEFT: Final = 0.1
 """Share of the power of the rows held out that is left, where it acts, by a cause that takes all or
 nothing: its gain was known beforehand, so that its blocks may be few. By chance it takes no such
 share of what was never fitted."""
+LEFT_OF_ANY: Final = 0.05
+"""The same of any other cause, of which few blocks tell a strength: all but noise has to go from
+blocks that it was not fitted to."""
 
 
 def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool = False) -> bool:
@@ -60,8 +63,6 @@ def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool
     count = int(block.max()) + 1
     learnt_from = np.bincount(block[fitted], own[fitted] ** 2, count)
     few = _are_few(learnt_from)
-    if few and not whole:
-        return False
     rows = np.maximum(np.bincount(block[held], minlength=count), 1)
     noise = np.bincount(block[held], model.residual[held] ** 2, count) / rows
     power = np.bincount(block[held], own[held] ** 2, count)
@@ -75,7 +76,7 @@ def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool
             float(power @ np.bincount(block[held], each.residual[held] ** 2, count))
             for each in (base, model)
         )
-        return after < LEFT * before
+        return after < (LEFT if whole else LEFT_OF_ANY) * before
     seen, learnt = (_strength(base.residual[rows], own[rows]) for rows in (held, fitted))
     return learnt > 0.0 and AS_EXPECTED[0] < seen / learnt < AS_EXPECTED[1]
 

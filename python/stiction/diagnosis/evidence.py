@@ -12,7 +12,7 @@ from typing import Final, TypeVar
 import numpy as np
 
 from ..errors import NotEnoughData
-from ..fitting.forms import KERNELS, Through, forms_of, set_clocks
+from ..fitting.forms import KERNELS, Through, as_session, forms_of
 from ..fitting.pushes import Watch
 from ..fitting.rows import Mask, Nuisances, Rows, rows_of
 from ..fitting.starts import started
@@ -144,7 +144,7 @@ class Evidence:
         self.overlap = max(f.kernel.support / (f.dt * f.stride) for f in self.forms)
         self.split: Split = split(self.recordings, edge_s=min(self.support, 0.25 * BLOCK_S))
         seen = {part.recording for part in (*self.split.train, *self.split.select)}
-        set_clocks(self.forms, self.recordings, set(range(len(self.forms))) - seen)
+        as_session(self.forms, self.recordings, set(range(len(self.forms))) - seen)
         shown_parts = (*self.split.train, *self.split.select)
         self.watch = watch or Watch(plant, self.forms, self.recordings, shown_parts)
         self.pushes = self.watch.look(shown_parts)

@@ -7,16 +7,20 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
+import numpy as np
+
 from .decide import SURE
 from .exact_forms import doubted
 from .passing import MOMENTS
 from .result import Cause, Unexplained
 from .selection import Search
-from .words import ALONE
+from .words import ALONE, OUTWEIGHED, UNREPEATED
 
 __all__ = ["known_by_themselves", "left_open", "outweighed"]
 
-OUTWEIGHED: Final = 0.5
+WAVE: Final = "cogging"
+"""An effort that repeats with position."""
+MUCH_LEFT: Final = 0.5
 """What is left without a name counts against one name where it is worth this share of what that one
 took: right names came to 0.4 but for one, and what was named of a contact whose law has another
 form to 0.6 and more."""
@@ -45,15 +49,33 @@ def left_open(
     """
     found = [doubted(cause, left, rests) for cause in causes]
     found = known_by_themselves(selection, found)
-    little = outweighed(selection, left)
+    doubts = dict.fromkeys(unrepeated(selection), UNREPEATED)
+    doubts |= dict.fromkeys(outweighed(selection, left), OUTWEIGHED)
     return [
         replace(
             cause,
-            decided=cause.decided and cause.name not in {*replaced, *little},
-            outweighed=cause.outweighed or cause.name in little,
+            decided=cause.decided and cause.name not in {*replaced, *doubts},
+            doubt=doubts.get(cause.name, cause.doubt),
         )
         for cause in found
     ]
+
+
+def unrepeated(selection: Search) -> Set[str]:
+    """Efforts over position of which the machine travelled less than one period.
+
+    A spring, as a cable is, and all else that goes with position look like a part of a wave.
+    """
+    final = selection.models[-1]
+    orders = {
+        effect.name: effect.parameters["order"].value
+        for effect in final.plant.effects
+        if effect.name == WAVE
+    }
+    if not orders:
+        return set()
+    positions = np.concatenate([rows.form.position for rows in final.evidence.shown])
+    return {name for name, order in orders.items() if np.ptp(positions) * order < 2.0 * np.pi}
 
 
 def outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
@@ -71,7 +93,7 @@ def outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
     return {
         name
         for name, (before, after) in zip(names, pairwise(powers), strict=True)
-        if unnamed > OUTWEIGHED * max(before - after, 0.0)
+        if unnamed > MUCH_LEFT * max(before - after, 0.0)
     }
 
 

@@ -16,7 +16,6 @@ __all__ = ["in_order", "screened", "stopped", "tried", "unscreened"]
 
 IMITATED: Final = 0.1
 """Share of a signature beside the base below which the base is what hides it."""
-OUTWEIGHED: Final = "what is left without a name is worth more than half of what it took"
 STOPPED: Final = "the diagnosis was interrupted"
 
 
@@ -68,11 +67,11 @@ def stopped(score: Score, trials: Sequence[Trial]) -> CandidateRow:
 
 
 def in_order(rows: Iterable[CandidateRow], causes: Sequence[Cause]) -> tuple[CandidateRow, ...]:
-    """Every effect: causes in their order, with what outweighs them, then the others by score."""
+    """Every effect: causes in their order, with what is in doubt, then the others by score."""
     accepted: Mapping[str, int] = {cause.name: k for k, cause in enumerate(causes)}
-    outweighed = {cause.name for cause in causes if cause.outweighed}
+    doubts = {cause.name: cause.doubt for cause in causes if cause.doubt}
     told = (
-        replace(row, reason=f"{row.reason}, but {OUTWEIGHED}") if row.name in outweighed else row
+        replace(row, reason=f"{row.reason}, but {doubts[row.name]}") if row.name in doubts else row
         for row in rows
     )
     return tuple(

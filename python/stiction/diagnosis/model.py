@@ -28,6 +28,7 @@ from .candidates import Candidate
 from .evidence import Evidence, Plan
 from .influence import limited
 from .regression import step
+from .replay import reread
 
 __all__ = [
     "LEAST_GIVEN",
@@ -46,6 +47,10 @@ REFIT_CONVERGED: Final = 1e-5
 """Of the power: a fifth of a standard error of any parameter."""
 FARTHEST: Final = 7.0
 """Step of the logarithm of a parameter at most: of one that hardly tells, a step may be any."""
+REPLAYS: Final = 8
+"""Recordings in which a plant is right, to see what their noise gains."""
+SEED: Final = 31
+"""Of that noise: always the same."""
 FLAT: Final = 1e-8
 """Directions of the base with less than this share of the strongest one are left alone."""
 MOST_TAKEN: Final = 0.5
@@ -254,6 +259,26 @@ class Model:
         """Weighted power of the residual over the fitted rows, per that of what the drive gives."""
         own = self.residual[self.evidence.fitted]
         return float(own @ own) / self.given
+
+    @cached_property
+    def replays(self) -> list[Model]:
+        """The plant fitted to recordings that it made itself, each with noise of its own.
+
+        Raises
+        ------
+        KeyboardInterrupt
+        """
+        found = [self._replay(number) for number in range(REPLAYS)]
+        if any(model.solution.interrupted for model in found):
+            raise KeyboardInterrupt
+        return found
+
+    def _replay(self, number: int) -> Model:
+        plant, nuisances = self.plant, self.nuisances
+        evidence = self.evidence.with_rows(
+            lambda rows: reread(rows, plant, nuisances, [SEED, number, rows.index])
+        )
+        return fitted(evidence, plant, nuisances)
 
     @cached_property
     def blocks(self) -> tuple[FloatArray, FloatArray]:

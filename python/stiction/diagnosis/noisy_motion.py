@@ -10,15 +10,13 @@ import numpy as np
 from ..catalogue import effects
 from .gains import heldout_gain
 from .model import Model, fitted
-from .replay import reread
 from .screen import NULL_TIMES
 
 __all__ = ["told_by_noise"]
 
-REPLAYS: Final = 8
-"""Recordings in which the plant is right: two fits of each."""
-SEED: Final = 31
-"""Of their noise: always the same."""
+SMALL: Final = 0.25
+"""Gain up to which readings that flicker may be all there is to a cause: with nothing hidden they
+came to .14."""
 LAG: Final = "frictional_lag"
 """What noise of the position may look like beside what is late."""
 LATE_SHARE: Final = 0.5
@@ -34,9 +32,9 @@ def told_by_noise(base: Model, model: Model, gain: float) -> str:
     in their residuals. In the data both are the same noise, and it is not left out by holding rows
     out: what only smooths a speed again helps a law that hangs on the speed everywhere (errors in
     variables; Fuller, Measurement Error Models (1987)). So where readings had to be smoothed to
-    move a machine at all, or where what keeps noise from friction makes it about as late as the
-    effect does, base and effect are fitted to replays as they were to the data, each along readings
-    of its own.
+    move a machine at all, where they flicker and the gain is small, or where what keeps noise from
+    friction makes it about as late as the effect does, base and effect are fitted to replays as
+    they were to the data, each along readings of its own.
 
     Parameters
     ----------
@@ -45,9 +43,12 @@ def told_by_noise(base: Model, model: Model, gain: float) -> str:
     gain : float
         Held out, of the second over the first.
     """
-    if not any(form.steadied > 0.0 for form in base.evidence.forms) and not _late_by_noise(model):
+    forms = base.evidence.forms
+    steadied = any(form.steadied > 0.0 for form in forms)
+    flickers = any(form.flickers for form in forms)
+    if not steadied and not (flickers and gain < SMALL) and not _late_by_noise(model):
         return ""
-    reached = NULL_TIMES * max(_gained(base, model, number) for number in range(REPLAYS))
+    reached = NULL_TIMES * max(_gained(replay, model) for replay in base.replays)
     _logger.info("noise of the motion gains %.3g at most", reached)
     if gain > reached:
         return ""
@@ -65,7 +66,7 @@ def _late_by_noise(model: Model) -> bool:
     """
     effect, evidence = model.plant.effects[-1], model.evidence
     record = next(each for each in effects() if each.name == effect.name)
-    if record.late and any(form.followed_late for form in evidence.forms):
+    if record.late and any(form.flickers for form in evidence.forms):
         (gain,) = record.gains
         return bool(effect.parameters[gain].value <= LATE_SHARE * evidence.support)
     if record.name == LAG:
@@ -75,14 +76,9 @@ def _late_by_noise(model: Model) -> bool:
     return False
 
 
-def _gained(base: Model, model: Model, number: int) -> float:
+def _gained(replay: Model, model: Model) -> float:
     """Held-out gain of an effect on a replay of the base, in which nothing is missing."""
-    plant, nuisances = base.plant, base.nuisances
-    evidence = base.evidence.with_rows(
-        lambda rows: reread(rows, plant, nuisances, [SEED, number, rows.index])
-    )
-    without = fitted(evidence, plant, nuisances)
-    with_it = fitted(evidence, model.plant, nuisances)
-    if without.solution.interrupted or with_it.solution.interrupted:
+    with_it = fitted(replay.evidence, model.plant, replay.nuisances)
+    if with_it.solution.interrupted:
         raise KeyboardInterrupt
-    return heldout_gain(without, with_it)[0]
+    return heldout_gain(replay, with_it)[0]

@@ -94,6 +94,7 @@ class _Replay:
     nuisances: Nuisances
     motion: FloatArray
     residual: _Residual
+    load: FloatArray | None = None
 
     @classmethod
     def of(cls, rows: Rows, plant: Plant, nuisances: Nuisances) -> _Replay:
@@ -103,7 +104,10 @@ class _Replay:
         elif isinstance(form, ShootingForm):
             motion, residual = _shot(form, plant, start)
         else:
-            motion, residual = _slid(form, plant, start) or _followed(form, plant, start)
+            slid = _slid(form, plant, start)
+            if slid is not None:
+                return cls(rows, plant, nuisances, *slid)
+            motion, residual = _followed(form, plant, start)
         return cls(rows, plant, nuisances, motion, residual)
 
     def noise(self) -> Noise:
@@ -161,8 +165,10 @@ def _followed(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _
     return motion, residual
 
 
-def _slid(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual] | None:
-    """A motion near the measured one that a plant with a rigid contact makes, and the residual.
+def _slid(
+    form: WeakForm, plant: Plant, start: Start
+) -> tuple[FloatArray, _Residual, FloatArray] | None:
+    """A motion near the measured one that a plant with a rigid contact makes, residual and load.
 
     None where there is no such contact, or no such motion: nothing drives a machine that is moved,
     and one with hardly any inertia cannot be simulated in samples.
@@ -188,7 +194,7 @@ def _slid(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Resi
         acted = form.given(np.zeros_like(load), load + added[1:] * moves)
         return short + acted - inertia * form.accelerations(readings, driving)
 
-    return motion, residual
+    return motion, residual, load
 
 
 def _looped(form: LoopForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
@@ -216,19 +222,24 @@ def _shot(form: ShootingForm, plant: Plant, start: Start) -> tuple[FloatArray, _
 
 
 def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) -> Rows:
-    """Rows of a recording that is moved, in which the plant is right and only noise is added.
+    """Rows of a recording in which the plant is right and only noise is added.
 
     Unlike a surrogate they are rows in every respect: what is derived along their motion holds the
-    noise that their residual holds.
+    noise that their residual holds. Of a machine that is moved, or has a rigid contact.
     """
     replay = _Replay.of(rows, plant, nuisances)
     form, noise, source = rows.form, replay.noise(), np.random.default_rng(seed)
-    start = nuisances.start(rows.index)
-    needed = form.along(plant, start, position=replay.motion)[1] - form.load[:-1]
-    bent = np.gradient(np.gradient(replay.motion, form.dt), form.dt)
-    effort = np.concatenate([needed[:1], needed]) + form.own(plant).inertia * bent
-    effort += noise.effort * source.standard_normal(len(effort))
-    again = form.reread(replay.read(noise.position, source), effort)
+    white = noise.effort * source.standard_normal(len(replay.motion))
+    if replay.load is not None:
+        # A contact at rest answers whatever acts on it, noise as well.
+        moves = np.diff(replay.motion, append=replay.motion[-1:]) != 0.0
+        acted = np.append(replay.load, replay.load[-1:]) + moves * white
+    else:
+        start = nuisances.start(rows.index)
+        needed = form.along(plant, start, position=replay.motion)[1] - form.load[:-1]
+        bent = np.gradient(np.gradient(replay.motion, form.dt), form.dt)
+        acted = np.concatenate([needed[:1], needed]) + form.own(plant).inertia * bent + white
+    again = form.reread(replay.read(noise.position, source), acted)
     found = Rows(plant, again, rows.index, rows.mask)
     found.weight = rows.weight
     return found

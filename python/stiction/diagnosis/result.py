@@ -69,7 +69,7 @@ class Cause(_Gained):
     name, family : str
         Effect, and the class that it belongs to (``class`` in findings.json).
     decided : bool
-        Whether the data tell it from its look-alikes, and it is not outweighed.
+        Whether the data tell it from its look-alikes, and nothing else leaves a doubt.
     look_alikes : tuple of str
         Effects that explain the same about as well.
     parameters : Mapping of str to FitParameter
@@ -80,8 +80,8 @@ class Cause(_Gained):
         The finding in words.
     coordinate : str
         Coordinate in which the residual showed it.
-    outweighed : bool
-        What is left without a name is worth more than half of what it took.
+    doubt : str
+        Why it is undecided where no look-alike is, "" where there is no other reason.
     """
 
     name: str
@@ -94,7 +94,7 @@ class Cause(_Gained):
     means: str
     try_: str
     coordinate: str
-    outweighed: bool = False
+    doubt: str = ""
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")

@@ -51,6 +51,8 @@ KEPT: Final = 0.75
 """Share of what the screening promises that a refit keeps, unless it is caught."""
 CAUTIOUS: Final = 0.1
 """Share of the screened gain to start from where the whole of it leads astray."""
+LIMITS: Final = ("drive_saturation", "voltage_limit")
+"""What acts beyond a limit alone: once a refit has moved that, its signature is another one."""
 LESSER: Final = 0.7
 """What explains less than this share of what another one does is no match for that."""
 SLIGHT: Final = 0.1
@@ -211,7 +213,7 @@ class Screening:
 
     def contributed(self, score: Score, model: Model) -> FloatArray:
         """What an effect explains of every row after its refit; shape (n,)."""
-        if score.candidate.record.swings:
+        if score.candidate.record.swings or score.candidate.name in LIMITS:
             less = without_effect(model.plant, score.candidate.name)
             return finite(self.evidence.residual(less, model.nuisances)) - model.residual
         index = self.signatures.candidates.index(score.candidate)

@@ -53,6 +53,10 @@ DOUBTFUL = (
     "the interval of every one of its numbers reaches 0, though together they help on rows held out"
 )
 """Of a cause whose name is told, and whose numbers are not."""
+OUTWEIGHED = "what is left without a name is worth more than half of what it took"
+"""Why a name may be none."""
+UNREPEATED = "less than one period was travelled, and a spring may look the same"
+"""Why what should repeat with position may be something else."""
 MORE_MAY_BE = ", and more may be missing"
 """And goes on where something was named by then."""
 MOST_TOLD = 3
@@ -165,11 +169,14 @@ def sentence(
     more = any(
         left.coordinate == NO_COORDINATE or left.coordinate.endswith(ALONE) for left in unexplained
     )
-    outweighed = [cause.name for cause in effects if cause.outweighed]
+    outweighed = [cause.name for cause in effects if cause.doubt == OUTWEIGHED]
     left = f" What is left {_depends(unexplained)}." if more or outweighed else ""
     if outweighed:
         took = joined(outweighed)
         left += f" What has no name there is worth more than half of what {took} took."
+    for cause in effects:
+        if cause.doubt == UNREPEATED:
+            left += f" Of {cause.name} {cause.doubt}."
     return f"{lacks} {named}.{gained}{_unconfirmed(effects)}{left}"
 
 

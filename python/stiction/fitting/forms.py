@@ -23,11 +23,11 @@ __all__ = [
     "KERNELS",
     "LEAST_LEFT",
     "Through",
+    "as_session",
     "as_stated",
     "followable",
     "forms_of",
     "horizon_of",
-    "set_clocks",
     "shows_its_ring",
     "stiffen",
     "told",
@@ -109,14 +109,16 @@ def forms_of(
     return each(form, recordings)
 
 
-def set_clocks(
+def as_session(
     forms: Sequence[WeakForm], recordings: Sequence[Recording], sealed: Collection[int] = ()
 ) -> None:
-    """Lets session clock and path run on from one recording to the next, and begin anew from cold.
+    """Tells each recording what the others know: how noisy the sensor is, session clock and path.
 
-    Of ``sealed`` recordings, which nobody may look at yet, only the length in time is taken: their
-    path is what others of their kind travel in that time, or any other where there is none.
+    Clock and path run on from one recording to the next, and begin anew from cold. Of ``sealed``
+    recordings, which nobody may look at yet, only the length in time is taken: their path is what
+    others of their kind travel in that time, or any other where there is none.
     """
+    _share_noise(forms, sealed)
     starts, ages = starts_of(recordings), ages_of(recordings)
     travelled = {
         k: float(np.sum(np.abs(np.diff(form.position))))
@@ -136,6 +138,21 @@ def set_clocks(
         path = 0.0 if recordings[index].cold else path
         forms[index].clock, forms[index].path = ages[index], path
         path += travelled[index] if index in travelled else usual(index)
+
+
+def _share_noise(forms: Sequence[WeakForm], sealed: Collection[int]) -> None:
+    """Lets no recording take its sensor for a quiet one where in most of them it flickers.
+
+    Readings hardly flicker while a machine rests, and where one rests most of the time they seem to
+    have no noise; friction of a rigid contact then takes each of the few that do for a motion. What
+    yields follows them without harm, and smooths no further than its motion allows.
+    """
+    seen = [form for k, form in enumerate(forms) if k not in sealed]
+    for quiet in [form for form in forms if not form.flickers]:
+        alike = [form for form in seen if form.count == quiet.count]
+        noisy = [form.noise for form in alike if form.flickers]
+        if 2 * len(noisy) > len(alike):
+            quiet.read_with(float(np.median(noisy)))
 
 
 def horizon_of(

@@ -23,7 +23,7 @@ from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from .first_pass import first_pass
-from .forms import KERNELS, Through, as_stated, forms_of, set_clocks
+from .forms import KERNELS, Through, as_session, as_stated, forms_of
 from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stopped
 from .pushes import Watch
 from .pushes import told as pushes_told
@@ -84,7 +84,7 @@ class _Seen:
         )
         self.parts = _deal(recordings, max(form.kernel.support for form in self.forms))
         fitted = {part.recording for part in self.parts.train}
-        set_clocks(self.forms, recordings, set(range(len(self.forms))) - fitted)
+        as_session(self.forms, recordings, set(range(len(self.forms))) - fitted)
         self.watch = watch or Watch(plant, self.forms, recordings, self.parts.train)
         self.pushes = sorted(
             (*self.watch.look(self.parts.train), *self.watch.look(self.parts.test)),

@@ -85,7 +85,7 @@ def _cause(cause: Cause, record: EffectRecord | None, diagnosis: Diagnosis) -> d
         "name": cause.name,
         "title": plain(cause.name),
         "decided": cause.decided,
-        "outweighed": cause.outweighed,
+        "doubt": cause.doubt,
         "doubtful": cause.doubtful,
         "look_alikes": [plain(name) for name in cause.look_alikes],
         "what": f"{summary}{_how_often(effect, plant, cause)}",
