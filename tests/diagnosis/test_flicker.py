@@ -1,0 +1,81 @@
+"""Encoders whose readings scatter by a third of a count before they are rounded."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.blind.score import as_plant, as_session
+from tests.reference.session_reference import make_sessions
+
+import stiction as st
+from stiction.diagnosis.left_open import unrepeated
+from stiction.fitting.forms import as_session as told_of_each_other
+from stiction.weak_form import WeakForm
+
+
+def diagnosed(seed: int, hidden: tuple[Any, ...] = ()) -> Any:
+    spec = {"seed": seed, "base": "coulomb", "hidden": hidden, "flicker": 0.3}
+    (made,) = make_sessions([spec])
+    return st.diagnose(as_plant(made), as_session(made))
+
+
+@pytest.mark.parametrize("seed", [12640007, 12640010, 12640011])
+def test_no_recording_stands_alone_for_it(seed: int) -> None:
+    found = diagnosed(seed)
+    assert found.verdict == "nothing_missing", found.sentence
+
+
+def test_a_delay_is_told_beside_it() -> None:
+    found = diagnosed(12649002, (("input_delay", 0.03, {"sign": 1.0}),))
+    (cause,) = found.effects
+    assert {cause.name, *cause.look_alikes} == {"input_delay", "current_loop_lag"}
+    assert found.gain is not None
+    assert found.gain.ci95[0] > 0.2
+
+
+def test_a_recording_at_rest_is_read_with_the_noise_of_the_others() -> None:
+    plant = st.Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm"},
+            "body": {"inertia": 0.01},
+            "friction": {"law": "coulomb", "coulomb": 0.3},
+            "sensor": {"counts_per_rev": 62832},
+        }
+    )
+    rng, time, count = np.random.default_rng(4), np.arange(3000) * 1e-3, 2.0 * np.pi / 62832
+
+    def form(position: np.ndarray, scatter: float) -> WeakForm:
+        read = count * np.round(position / count + scatter * rng.standard_normal(len(time)))
+        return WeakForm(plant, st.Recording(time, np.sin(time), read), every=0.005)
+
+    # Between two counts, now here, now there.
+    still = count * (np.arange(len(time)) // 40 % 2)
+    moving = [form(np.sin((3.0 + k) * time), 0.3) for k in range(3)]
+    resting = form(still, 0.0)
+    assert all(each.flickers for each in moving)
+    assert not resting.flickers
+    assert np.any(np.diff(resting.position) != 0.0)
+    forms = [*moving, resting]
+    recordings = [st.Recording(time, np.sin(time), np.sin(time)) for _ in forms]
+    told_of_each_other(forms, recordings)
+    assert resting.noise == pytest.approx(np.median([each.noise for each in moving]))
+    assert np.all(np.diff(resting.position) == 0.0)
+    # Of those that nobody may look at yet nothing is taken.
+    other = form(still, 0.0)
+    told_of_each_other([*moving, other], recordings, sealed={0, 1, 2})
+    assert not other.flickers
+
+
+@pytest.mark.parametrize(("order", "seen"), [(5.0, False), (12.0, True)])
+def test_a_wave_that_was_never_seen_to_repeat_is_not_decided(order: float, seen: bool) -> None:
+    effect = SimpleNamespace(name="cogging", parameters={"order": SimpleNamespace(value=order)})
+    forms = [SimpleNamespace(position=np.linspace(-0.3, 0.0, 50) + 0.3 * k) for k in range(2)]
+    evidence = SimpleNamespace(shown=[SimpleNamespace(form=form) for form in forms])
+    model = SimpleNamespace(plant=SimpleNamespace(effects=(effect,)), evidence=evidence)
+    selection: Any = SimpleNamespace(models=[model])
+    assert unrepeated(selection) == (set() if seen else {"cogging"})
+    model.plant.effects = ()
+    assert unrepeated(selection) == set()
