@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,6 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
-from stiction.diagnosis.left_open import unrepeated
 from stiction.fitting.forms import as_session as told_of_each_other
 from stiction.weak_form import WeakForm
 
@@ -67,15 +65,3 @@ def test_a_recording_at_rest_is_read_with_the_noise_of_the_others() -> None:
     other = form(still, 0.0)
     told_of_each_other([*moving, other], recordings, sealed={0, 1, 2})
     assert not other.flickers
-
-
-@pytest.mark.parametrize(("order", "seen"), [(5.0, False), (12.0, True)])
-def test_a_wave_that_was_never_seen_to_repeat_is_not_decided(order: float, seen: bool) -> None:
-    effect = SimpleNamespace(name="cogging", parameters={"order": SimpleNamespace(value=order)})
-    forms = [SimpleNamespace(position=np.linspace(-0.3, 0.0, 50) + 0.3 * k) for k in range(2)]
-    evidence = SimpleNamespace(shown=[SimpleNamespace(form=form) for form in forms])
-    model = SimpleNamespace(plant=SimpleNamespace(effects=(effect,)), evidence=evidence)
-    selection: Any = SimpleNamespace(models=[model])
-    assert unrepeated(selection) == (set() if seen else {"cogging"})
-    model.plant.effects = ()
-    assert unrepeated(selection) == set()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis.chance import odds, share_of_phases, share_of_waves
+from stiction.diagnosis.chance import odds, share_of_phases, share_of_waves, unrepeated
 
 SPAN = 4.0
 """rad that a machine moves over once it is geared down."""
@@ -103,3 +104,13 @@ def test_a_weight_at_its_top_is_no_sure_constant() -> None:
     plant, session = geared(31, "maxwell_slip", span=1.0, top=0.0, cogging=1.0)
     found = st.diagnose(plant, session)
     assert not any(cause.decided for cause in found.effects if cause.name == "torque_bias")
+
+
+@pytest.mark.parametrize(("order", "seen"), [(7.0, False), (9.0, True)])
+def test_a_wave_that_was_never_seen_to_repeat_is_known_as_such(order: float, seen: bool) -> None:
+    effect = SimpleNamespace(name="cogging", parameters={"order": SimpleNamespace(value=order)})
+    forms = [SimpleNamespace(position=np.linspace(-0.3, 0.0, 50) + 0.3 * k) for k in range(2)]
+    evidence = SimpleNamespace(shown=[SimpleNamespace(form=form) for form in forms])
+    model: Any = SimpleNamespace(plant=SimpleNamespace(effects=(effect,)), evidence=evidence)
+    assert unrepeated(model, "cogging") is not seen
+    assert not unrepeated(model, "torque_bias")

@@ -19,12 +19,14 @@ from ..trajectory import FloatArray
 from .candidates import LOWEST, scales_of
 from .decide import Trial
 from .gains import paired_z
+from .model import Model
 from .regression import FLAT
 
-__all__ = ["TOO_NEAR", "by_chance", "odds", "share_of_phases", "share_of_waves"]
+__all__ = ["TOO_NEAR", "by_chance", "odds", "share_of_phases", "share_of_waves", "unrepeated"]
 
 WAVE: Final = ("cosine", "sine")
 ORDER: Final = "order"
+COGGING: Final = "cogging"
 ENOUGH: Final = 3.0
 """Logarithm of the odds, 20 to 1, from which the wave is left aside."""
 DEVIATIONS: Final = 2.0
@@ -33,6 +35,8 @@ TOO_NEAR: Final = 0.04
 """Share of a worth within which another one is about the same: it may be the same cause in another
 form, and what is simpler costs less."""
 SMALLEST: Final = 1e-9
+SEEN: Final = 0.75
+"""Periods that show both turns of a wave, which no spring has."""
 
 
 def by_chance(simple: Trial, other: Trial) -> bool:
@@ -62,6 +66,18 @@ def by_chance(simple: Trial, other: Trial) -> bool:
         return False
     near = other.worth >= (1.0 - TOO_NEAR) * simple.worth
     return odds(share, paired_z(other.model, simple.model), near=near) >= ENOUGH
+
+
+def unrepeated(model: Model, name: str) -> bool:
+    """Whether this is an effort over position of which nobody saw enough to call it a wave.
+
+    A spring, as a cable is, and all else that goes with position look like a part of one.
+    """
+    if name != COGGING:
+        return False
+    effect = next(each for each in model.plant.effects if each.name == name)
+    positions = np.concatenate([rows.form.position for rows in model.evidence.shown])
+    return bool(np.ptp(positions) * effect.parameters[ORDER].value < SEEN * 2.0 * np.pi)
 
 
 def odds(share: float, apart: float, *, near: bool) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..trajectory import FloatArray
 from .candidates import FALL, scales_of
-from .chance import TOO_NEAR, by_chance
+from .chance import TOO_NEAR, by_chance, unrepeated
 from .decide import OUT_OF_RANGE, Trial
 from .gains import paired_z
 
@@ -72,7 +72,7 @@ def choose(trials: Sequence[Trial], encompasses: Encompasses | None = None) -> C
     accepted = [trial for trial in ranked if not trial.reason]
     if not accepted:
         return None
-    winner = accepted[0]
+    winner = _as_was_seen(accepted)
     if strangers(trials, winner):
         return None
     # Who falls short by a little on its own may still be what the winner imitates.
@@ -95,6 +95,18 @@ def choose(trials: Sequence[Trial], encompasses: Encompasses | None = None) -> C
         # Who stands for a family stands for its twin as well.
         others = [trial for trial in others if not _twins(head, trial)]
     return Choice(head, tuple(others), tuple(aside))
+
+
+def _as_was_seen(accepted: Sequence[Trial]) -> Trial:
+    """The best of those that passed; of waves that nobody saw to repeat what is about as good.
+
+    A part of a wave follows whatever goes with position a little better than a constant does.
+    """
+    best = accepted[0]
+    if not unrepeated(best.model, best.name):
+        return best
+    near = (t for t in accepted[1:] if t.worth >= (1.0 - NEAR) * best.worth and _alike(best, t))
+    return next((t for t in near if not unrepeated(t.model, t.name)), best)
 
 
 def _by_chance(head: Trial, other: Trial, winner: Trial) -> bool:

@@ -7,8 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
-import numpy as np
-
+from .chance import unrepeated
 from .decide import SURE
 from .exact_forms import doubted
 from .passing import MOMENTS
@@ -18,8 +17,6 @@ from .words import ALONE, OUTWEIGHED, UNREPEATED
 
 __all__ = ["known_by_themselves", "left_open", "outweighed"]
 
-WAVE: Final = "cogging"
-"""An effort that repeats with position."""
 MUCH_LEFT: Final = 0.5
 """What is left without a name counts against one name where it is worth this share of what that one
 took: right names came to 0.4 but for one, and what was named of a contact whose law has another
@@ -49,7 +46,8 @@ def left_open(
     """
     found = [doubted(cause, left, rests) for cause in causes]
     found = known_by_themselves(selection, found)
-    doubts = dict.fromkeys(unrepeated(selection), UNREPEATED)
+    final = selection.models[-1]
+    doubts = {c.name: UNREPEATED for c in found if unrepeated(final, c.name)}
     doubts |= dict.fromkeys(outweighed(selection, left), OUTWEIGHED)
     return [
         replace(
@@ -59,23 +57,6 @@ def left_open(
         )
         for cause in found
     ]
-
-
-def unrepeated(selection: Search) -> Set[str]:
-    """Efforts over position of which the machine travelled less than one period.
-
-    A spring, as a cable is, and all else that goes with position look like a part of a wave.
-    """
-    final = selection.models[-1]
-    orders = {
-        effect.name: effect.parameters["order"].value
-        for effect in final.plant.effects
-        if effect.name == WAVE
-    }
-    if not orders:
-        return set()
-    positions = np.concatenate([rows.form.position for rows in final.evidence.shown])
-    return {name for name, order in orders.items() if np.ptp(positions) * order < 2.0 * np.pi}
 
 
 def outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
