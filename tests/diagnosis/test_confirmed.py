@@ -132,7 +132,7 @@ def test_what_shows_where_it_was_fitted_alone_is_not_testable() -> None:
     assert found.effects == ()
     assert "drive_saturation" in found.sentence
     reasons = {row.name: row.reason for row in found.candidates}
-    assert reasons["drive_saturation"].endswith("which hardly excite it")
+    assert reasons["drive_saturation"].endswith("hardly excite it")
 
 
 def test_it_is_told_beside_a_name_as_well() -> None:

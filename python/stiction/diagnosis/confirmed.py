@@ -34,6 +34,9 @@ LEFT_OF_ANY: Final = 0.05
 """The same of any other cause, of which few blocks tell a strength: all but noise has to go from
 blocks that it was not fitted to."""
 
+ACTS: Final = 0.05
+"""Share of the most that it does in any block, from which on a block tells what is left."""
+
 
 def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool = False) -> bool:
     """Whether a contribution has about the same strength on rows held out as on those fitted.
@@ -72,8 +75,9 @@ def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool
     if expected <= CLEAR * error:
         return False
     if few:
+        acting = np.where(power > ACTS * float(np.max(power)), power, 0.0)
         before, after = (
-            float(power @ np.bincount(block[held], each.residual[held] ** 2, count))
+            float(acting @ np.bincount(block[held], each.residual[held] ** 2, count))
             for each in (base, model)
         )
         return after < (LEFT if whole else LEFT_OF_ANY) * before
