@@ -171,7 +171,10 @@ class WeakForm:
         self.time = self._thin(time[1:][self.kernel.half : -self.kernel.half])
 
     def read_with(self, noise: float) -> None:
-        """Drives friction by what the readings are without so much noise; forgets what it knew."""
+        """Drives friction by what the readings are without so much noise; forgets what it knew.
+
+        The kernel stays as wide as the recording's own noise made it.
+        """
         for name in _CACHED:
             self.__dict__.pop(name, None)
         self.noise = noise

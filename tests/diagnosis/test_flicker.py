@@ -61,7 +61,32 @@ def test_a_recording_at_rest_is_read_with_the_noise_of_the_others() -> None:
     told_of_each_other(forms, recordings)
     assert resting.noise == pytest.approx(np.median([each.noise for each in moving]))
     assert np.all(np.diff(resting.position) == 0.0)
+    # Nobody stated a count, and a reading that rests shows none.
+    unstated = form(np.zeros(len(time)), 0.0)
+    unstated.count = 0.0
+    told_of_each_other([*moving, unstated], recordings)
+    assert unstated.flickers
     # Of those that nobody may look at yet nothing is taken.
     other = form(still, 0.0)
     told_of_each_other([*moving, other], recordings, sealed={0, 1, 2})
     assert not other.flickers
+
+
+def test_exact_readings_have_no_noise_to_share() -> None:
+    plant = st.Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm"},
+            "body": {"inertia": 0.01},
+            "friction": {"law": "coulomb", "coulomb": 0.3},
+        }
+    )
+    time = np.arange(3000) * 1e-3
+    slow = 8e-6 * np.maximum(np.sin(2.0 * time), 0.0)
+    recordings = [
+        st.Recording(time, np.sin(time), x)
+        for x in (*(np.sin((25.0 + 5.0 * k) * time) for k in range(3)), slow)
+    ]
+    forms = [WeakForm(plant, recording, every=0.005) for recording in recordings]
+    before = forms[-1].position.copy()
+    told_of_each_other(forms, recordings)
+    assert np.array_equal(forms[-1].position, before)

@@ -109,8 +109,14 @@ def test_a_weight_at_its_top_is_no_sure_constant() -> None:
 @pytest.mark.parametrize(("order", "seen"), [(7.0, False), (9.0, True)])
 def test_a_wave_that_was_never_seen_to_repeat_is_known_as_such(order: float, seen: bool) -> None:
     effect = SimpleNamespace(name="cogging", parameters={"order": SimpleNamespace(value=order)})
-    forms = [SimpleNamespace(position=np.linspace(-0.3, 0.0, 50) + 0.3 * k) for k in range(2)]
-    evidence = SimpleNamespace(shown=[SimpleNamespace(form=form) for form in forms])
+    places = [np.linspace(-0.3, 0.0, 200) + 0.3 * k for k in range(2)]
+    # What was not looked at, and what lies between two recordings, does not count.
+    places.append(np.linspace(4.0, 9.0, 200))
+    shown = [
+        SimpleNamespace(form=SimpleNamespace(position=x, mean=lambda x: x), mask=x[1:] < 1.0)
+        for x in places
+    ]
+    evidence = SimpleNamespace(shown=shown)
     model: Any = SimpleNamespace(plant=SimpleNamespace(effects=(effect,)), evidence=evidence)
     assert unrepeated(model, "cogging") is not seen
     assert not unrepeated(model, "torque_bias")

@@ -94,6 +94,7 @@ def test_path_and_clock_of_the_effects_begin_anew_from_cold() -> None:
             clock=None,
             path=None,
             count=0.0,
+            dt=1e-3,
             flickers=False,
         )
         for _ in recordings

@@ -36,7 +36,9 @@ TOO_NEAR: Final = 0.04
 form, and what is simpler costs less."""
 SMALLEST: Final = 1e-9
 SEEN: Final = 0.75
-"""Periods that show both turns of a wave, which no spring has."""
+"""Periods of a wave of which less may as well be a spring, straight or bent."""
+PARTS: Final = 32
+"""Parts of a period that were seen or not."""
 
 
 def by_chance(simple: Trial, other: Trial) -> bool:
@@ -76,8 +78,10 @@ def unrepeated(model: Model, name: str) -> bool:
     if name != COGGING:
         return False
     effect = next(each for each in model.plant.effects if each.name == name)
-    positions = np.concatenate([rows.form.position for rows in model.evidence.shown])
-    return bool(np.ptp(positions) * effect.parameters[ORDER].value < SEEN * 2.0 * np.pi)
+    seen = [rows.form.mean(rows.form.position[1:])[rows.mask] for rows in model.evidence.shown]
+    turns = np.concatenate(seen) * effect.parameters[ORDER].value / (2.0 * np.pi)
+    # Where it stood in between two recordings nobody saw.
+    return len(np.unique(np.floor(turns * PARTS))) < SEEN * PARTS
 
 
 def odds(share: float, apart: float, *, near: bool) -> float:

@@ -98,7 +98,7 @@ def choose(trials: Sequence[Trial], encompasses: Encompasses | None = None) -> C
 
 
 def _as_was_seen(accepted: Sequence[Trial]) -> Trial:
-    """The best of those that passed; of waves that nobody saw to repeat what is about as good.
+    """The best of those that passed; for a wave that nobody saw to repeat what is simpler and near.
 
     A part of a wave follows whatever goes with position a little better than a constant does.
     """
@@ -106,7 +106,8 @@ def _as_was_seen(accepted: Sequence[Trial]) -> Trial:
     if not unrepeated(best.model, best.name):
         return best
     near = (t for t in accepted[1:] if t.worth >= (1.0 - NEAR) * best.worth and _alike(best, t))
-    return next((t for t in near if not unrepeated(t.model, t.name)), best)
+    parameters = best.candidate.parameters
+    return next((t for t in near if t.candidate.parameters < parameters), best)
 
 
 def _by_chance(head: Trial, other: Trial, winner: Trial) -> bool:

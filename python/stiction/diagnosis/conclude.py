@@ -29,7 +29,7 @@ from .gain import HeldOut, gain_of, residuals_of
 from .held_numbers import Held, held_numbers, held_words
 from .holds import holds_of
 from .laws import THE_LAW, Rival, better_law, event_words, law_rows, rivals_of
-from .left_open import left_open
+from .left_open import left_open, waves_left_open
 from .listing import in_order
 from .lone import lone_event
 from .loop import borne_out, replayed
@@ -255,6 +255,7 @@ class Conclusion:
         unexplained: tuple[Unexplained, ...] = ()
         if self.brief:
             # What was not looked for any more is not claimed, and neither is that nothing is left.
+            causes = waves_left_open(selection, causes)
             decided = all(cause.decided for cause in causes)
             verdict = ("missing_effect" if decided else "ambiguous") if causes else "not_testable"
             reason = NOTHING_YET

@@ -3,7 +3,8 @@
 How much a gain varies over blocks says little of a cause that acts in a few of them: it varies with
 what the machine did there. But what was learnt from the rows that were fitted says how much those
 must gain, and by noise alone they do not come near it. A mimic may, where the machine does the
-same again: this is asked only of what many fitted blocks leave no doubt of.
+same again: this is asked only of what many fitted blocks leave no doubt of, or of what leaves next
+to nothing where it was not fitted.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool
         What the effect explains of each row after its refit.
     whole : bool
         Its gain came out as what was known of it beforehand, as of a limit beyond which everything
-        is lost: blocks may be few then.
+        is lost: from few blocks it may leave more then.
     """
     evidence = base.evidence
     plan = evidence.plans[0]

@@ -15,7 +15,7 @@ from .result import Cause, Unexplained
 from .selection import Search
 from .words import ALONE, OUTWEIGHED, UNREPEATED
 
-__all__ = ["known_by_themselves", "left_open", "outweighed"]
+__all__ = ["known_by_themselves", "left_open", "outweighed", "waves_left_open"]
 
 MUCH_LEFT: Final = 0.5
 """What is left without a name counts against one name where it is worth this share of what that one
@@ -46,16 +46,23 @@ def left_open(
     """
     found = [doubted(cause, left, rests) for cause in causes]
     found = known_by_themselves(selection, found)
-    final = selection.models[-1]
-    doubts = {c.name: UNREPEATED for c in found if unrepeated(final, c.name)}
-    doubts |= dict.fromkeys(outweighed(selection, left), OUTWEIGHED)
+    doubts = dict.fromkeys(outweighed(selection, left), OUTWEIGHED)
     return [
         replace(
             cause,
             decided=cause.decided and cause.name not in {*replaced, *doubts},
             doubt=doubts.get(cause.name, cause.doubt),
         )
-        for cause in found
+        for cause in waves_left_open(selection, found)
+    ]
+
+
+def waves_left_open(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
+    """Causes, waves that nobody saw to repeat undecided."""
+    final = selection.models[-1]
+    return [
+        replace(cause, decided=False, doubt=UNREPEATED) if unrepeated(final, cause.name) else cause
+        for cause in causes
     ]
 
 

@@ -28,7 +28,7 @@ from .candidates import Candidate
 from .evidence import Evidence, Plan
 from .influence import limited
 from .regression import step
-from .replay import reread
+from .replay import NoReplayError, reread
 
 __all__ = [
     "LEAST_GIVEN",
@@ -264,13 +264,20 @@ class Model:
     def replays(self) -> list[Model]:
         """The plant fitted to recordings that it made itself, each with noise of its own.
 
+        Empty where none can be made (see ``reread``).
+
         Raises
         ------
         KeyboardInterrupt
         """
-        found = [self._replay(number) for number in range(REPLAYS)]
-        if any(model.solution.interrupted for model in found):
-            raise KeyboardInterrupt
+        found: list[Model] = []
+        for number in range(REPLAYS):
+            try:
+                found.append(self._replay(number))
+            except NoReplayError:
+                return []
+            if found[-1].solution.interrupted:
+                raise KeyboardInterrupt
         return found
 
     def _replay(self, number: int) -> Model:

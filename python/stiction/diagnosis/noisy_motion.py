@@ -1,4 +1,4 @@
-"""What noise of a measured motion gains by itself, where it moves friction or makes it late."""
+"""What noise of a measured motion gains by itself, where it moves friction or hides its turns."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from ..catalogue import effects
 from .gains import heldout_gain
 from .model import Model, fitted
+from .replay import hangs_on_load
 from .screen import NULL_TIMES
 
 __all__ = ["told_by_noise"]
@@ -20,35 +21,43 @@ came to .14."""
 LAG: Final = "frictional_lag"
 """What noise of the position may look like beside what is late."""
 LATE_SHARE: Final = 0.5
-"""Of the kernel's support: a follower that keeps noise from friction is late by less."""
+"""Of the kernel's support: by less than that may a turn be wrong that noise hides."""
+LATE: Final = "lies within what noise of the position makes friction late by"
 
 _logger = logging.getLogger(__name__)
 
 
-def told_by_noise(base: Model, model: Model, gain: float) -> str:
+def told_by_noise(base: Model, model: Model, name: str, gain: float) -> str:
     """Why a held-out gain may be one of noise, "" where it is none or noise is no matter.
 
     Surrogates are screened along the measured motion: its noise is in the signatures, theirs is
     in their residuals. In the data both are the same noise, and it is not left out by holding rows
     out: what only smooths a speed again helps a law that hangs on the speed everywhere (errors in
     variables; Fuller, Measurement Error Models (1987)). So where readings had to be smoothed to
-    move a machine at all, where they flicker and the gain is small, or where what keeps noise from
-    friction makes it about as late as the effect does, base and effect are fitted to replays as
-    they were to the data, each along readings of its own.
+    move a machine at all, where they flicker and the gain is small, or where noise may put a turn
+    as far off as the effect is late, base and effect are fitted to replays as they were to the
+    data, each along readings of its own. Where no replay can be made such a delay is refused, and
+    nothing else.
 
     Parameters
     ----------
     base, model : Model
         Without the effect and with it.
+    name : str
+        Of the effect.
     gain : float
         Held out, of the second over the first.
     """
     forms = base.evidence.forms
     steadied = any(form.steadied > 0.0 for form in forms)
-    flickers = any(form.flickers for form in forms)
-    if not steadied and not (flickers and gain < SMALL) and not _late_by_noise(model):
+    flickers = any(form.flickers and form.count > 0.0 for form in forms)
+    late = _late_by_noise(model, name)
+    if not steadied and not (flickers and gain < SMALL) and not late:
         return ""
-    reached = NULL_TIMES * max(_gained(replay, model) for replay in base.replays)
+    replays = [] if hangs_on_load(model.plant) else base.replays
+    if not replays:
+        return LATE if late else ""
+    reached = NULL_TIMES * max(_gained(replay, model) for replay in replays)
     _logger.info("noise of the motion gains %.3g at most", reached)
     if gain > reached:
         return ""
@@ -58,13 +67,14 @@ def told_by_noise(base: Model, model: Model, gain: float) -> str:
     )
 
 
-def _late_by_noise(model: Model) -> bool:
-    """Whether the latest effect is a delay no longer than noise may make friction late by.
+def _late_by_noise(model: Model, name: str) -> bool:
+    """Whether an effect is a delay no longer than noise may put a turn of the motion off by.
 
-    Where noise is kept from friction, friction turns round late itself, and an input that seems
+    Where noise is kept from friction nobody knows a turn to the sample, and an input that seems
     late, or a friction that follows speed late, may be what is left of that.
     """
-    effect, evidence = model.plant.effects[-1], model.evidence
+    effect = next(each for each in model.plant.effects if each.name == name)
+    evidence = model.evidence
     record = next(each for each in effects() if each.name == effect.name)
     if record.late and any(form.flickers for form in evidence.forms):
         (gain,) = record.gains

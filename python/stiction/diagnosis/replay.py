@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from ..accompanied import accompanied
+from ..catalogue import EffectRecord, effects
 from ..errors import InputError
 from ..fitting.rows import Nuisances, Rows
 from ..loop_form import LoopForm
@@ -21,7 +22,15 @@ from ..weak_form import Start, WeakForm
 from .evidence import Evidence
 from .noise import GAUSSIAN, Noise, measure_noise, position_noise
 
-__all__ = ["centre", "noise_of", "reread", "shared", "surrogate_residuals"]
+__all__ = [
+    "NoReplayError",
+    "centre",
+    "hangs_on_load",
+    "noise_of",
+    "reread",
+    "shared",
+    "surrogate_residuals",
+]
 
 _logger = logging.getLogger(__name__)
 
@@ -37,6 +46,11 @@ BESIDE_NOISE: Final = 1.15
 """Readings are as far from it then as noise takes them, but for so much."""
 TRIED: Final = 2
 """Readings of a motion without noise of the effort, to see what they make of the residual."""
+
+
+class NoReplayError(Exception):
+    """No motion near the measured one could be made of which all efforts are known."""
+
 
 _Residual = Callable[[FloatArray, FloatArray], FloatArray]
 """Residual of readings, shape (rows,), and of white noise on the effort, shape (rows,)."""
@@ -226,11 +240,21 @@ def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) 
 
     Unlike a surrogate they are rows in every respect: what is derived along their motion holds the
     noise that their residual holds. Of a machine that is moved, or has a rigid contact.
+
+    Raises
+    ------
+    NoReplayError
+        A rigid contact that no simulation keeps near the measured motion; a plant that hangs on the
+        load, in whose place stands what makes it follow.
     """
     replay = _Replay.of(rows, plant, nuisances)
     form, noise, source = rows.form, replay.noise(), np.random.default_rng(seed)
     white = noise.effort * source.standard_normal(len(replay.motion))
+    if replay.load is None and not form.prescribed:
+        raise NoReplayError
     if replay.load is not None:
+        if form.own(plant).inertia <= 0.0 or hangs_on_load(plant):
+            raise NoReplayError
         # A contact at rest answers whatever acts on it, noise as well.
         moves = np.diff(replay.motion, append=replay.motion[-1:]) != 0.0
         acted = np.append(replay.load, replay.load[-1:]) + moves * white
@@ -243,6 +267,16 @@ def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) 
     found = Rows(plant, again, rows.index, rows.mask)
     found.weight = rows.weight
     return found
+
+
+def hangs_on_load(plant: Plant) -> bool:
+    """Whether friction or an effect of a plant reads the load that acts on it."""
+    channels = {name for record in effects() for name in record.channels if _has(plant, record)}
+    return "load" in channels or plant.friction.law == "load_dependent"
+
+
+def _has(plant: Plant, record: EffectRecord) -> bool:
+    return any(effect.name == record.name for effect in plant.effects)
 
 
 def centre(null: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -164,7 +164,7 @@ class Screening:
         reason = (
             trial.reason
             or _too_good(self.evidence, model)
-            or told_by_noise(base, model, trial.gain)
+            or told_by_noise(base, model, trial.name, trial.gain)
         )
         return replace(trial, reason=reason)
 
@@ -257,7 +257,11 @@ def _refit(
     plants = [begun(share, *like) for like in alike for share in shares]
     start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
     model = compared_fit(evidence, start, base.nuisances)
-    if model.power < (1.0 - KEPT * score.score) * base.power or score.score < LESSER * best:
+    record = score.candidate.record
+    untold = record.late or record.swings or (evidence.loop and record.before_drive)
+    if model.power < (1.0 - KEPT * score.score) * base.power:
+        return model
+    if score.score < LESSER * best and not untold:
         return model
     # Short of what the screening promised it is caught: a base that has bent itself towards the
     # effect jumps too far at once, and a contact that all but loses its track has a kink on every

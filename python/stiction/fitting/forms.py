@@ -57,6 +57,8 @@ MUCH_LEFT: Final = 0.1
 wrong."""
 NARROW: Final = 1.5
 """Kernels that are wider by no more than this show nothing else."""
+ALIKE: Final = 1e-3
+"""Share by which counts and sampling times of one sensor differ."""
 ROUNDED: Final = float(np.sqrt(12.0))
 """Size of a count over the standard deviation of what rounding to it makes."""
 
@@ -144,15 +146,20 @@ def _share_noise(forms: Sequence[WeakForm], sealed: Collection[int]) -> None:
     """Lets no recording take its sensor for a quiet one where in most of them it flickers.
 
     Readings hardly flicker while a machine rests, and where one rests most of the time they seem to
-    have no noise; friction of a rigid contact then takes each of the few that do for a motion. What
-    yields follows them without harm, and smooths no further than its motion allows.
+    have no noise, or not even counts; friction of a rigid contact then takes each of the few that
+    do for a motion. What yields follows them without harm, and smooths no further than its motion
+    allows. Readings without counts are left alone: what seems to be their noise is the motion.
     """
     seen = [form for k, form in enumerate(forms) if k not in sealed]
     for quiet in [form for form in forms if not form.flickers]:
-        alike = [form for form in seen if form.count == quiet.count]
-        noisy = [form.noise for form in alike if form.flickers]
-        if 2 * len(noisy) > len(alike):
-            quiet.read_with(float(np.median(noisy)))
+        alike = [form for form in seen if np.isclose(form.dt, quiet.dt, rtol=ALIKE)]
+        noisy = [form for form in alike if form.flickers and form.count > 0.0]
+        if 2 * len(noisy) <= len(alike):
+            continue
+        count = float(np.median([form.count for form in noisy]))
+        if quiet.count == 0.0 or np.isclose(quiet.count, count, rtol=ALIKE):
+            quiet.count = count
+            quiet.read_with(float(np.median([form.noise for form in noisy])))
 
 
 def horizon_of(
