@@ -147,6 +147,11 @@ class EffectRecord:
         """
         return "second mass" in self.hooks and "inertia_share" not in self.gains
 
+    @property
+    def limits(self) -> bool:
+        """Whether it acts beyond a limit alone: moved, that has another signature."""
+        return any(shape.parameter == "limit" for shape in self.shapes)
+
     def impossible(self, motion: str, *, servo: bool) -> str:
         """Why such a machine cannot have it, "" where it can.
 

@@ -153,10 +153,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     gain, z = heldout_gain(base, model, touched)
     unseen = int(np.sum(touched & (base.blocks[1] > 0.0))) < FEWEST_BLOCKS
     explained = 1.0 - model.power / base.power if base.power > 0.0 else 0.0
-    # Of what is late the slope at no delay does not tell how much it explains, nor that of what
-    # stands before the drive of a simulated loop.
-    record = score.candidate.record
-    untold = record.late or (base.evidence.loop and record.before_drive)
+    untold = base.evidence.slopes_mislead(score.candidate.record)
     freed = not untold and explained > MOST_TIMES * max(score.score, score.threshold)
     reason = ""
     by_blocks = lone = False

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from ..accompanied import accompanied
-from ..catalogue import EffectRecord, effects
+from ..catalogue import effects
 from ..errors import InputError
 from ..fitting.rows import Nuisances, Rows
 from ..loop_form import LoopForm
@@ -271,12 +271,9 @@ def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) 
 
 def hangs_on_load(plant: Plant) -> bool:
     """Whether friction or an effect of a plant reads the load that acts on it."""
-    channels = {name for record in effects() for name in record.channels if _has(plant, record)}
-    return "load" in channels or plant.friction.law == "load_dependent"
-
-
-def _has(plant: Plant, record: EffectRecord) -> bool:
-    return any(effect.name == record.name for effect in plant.effects)
+    readers = {record.name for record in effects() if "load" in record.channels}
+    reads = any(effect.name in readers for effect in plant.effects)
+    return reads or plant.friction.law == "load_dependent"
 
 
 def centre(null: FloatArray) -> tuple[FloatArray, FloatArray]:

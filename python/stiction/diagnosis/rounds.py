@@ -278,7 +278,7 @@ def _is_asked(screening: Screening, score: Score) -> bool:
     A loop bends itself far towards a goal that is late or held back, and from there the slope of
     such a cause tells nothing of it.
     """
-    return screening.evidence.loop and score.candidate.record.before_drive
+    return screening.evidence.bends_towards(score.candidate.record)
 
 
 def _hopeless(score: Score, trials: Sequence[Trial]) -> bool:

@@ -51,8 +51,6 @@ KEPT: Final = 0.75
 """Share of what the screening promises that a refit keeps, unless it is caught."""
 CAUTIOUS: Final = 0.1
 """Share of the screened gain to start from where the whole of it leads astray."""
-LIMITS: Final = ("drive_saturation", "voltage_limit")
-"""What acts beyond a limit alone: once a refit has moved that, its signature is another one."""
 LESSER: Final = 0.7
 """What explains less than this share of what another one does is no match for that."""
 SLIGHT: Final = 0.1
@@ -213,7 +211,8 @@ class Screening:
 
     def contributed(self, score: Score, model: Model) -> FloatArray:
         """What an effect explains of every row after its refit; shape (n,)."""
-        if score.candidate.record.swings or score.candidate.name in LIMITS:
+        record = score.candidate.record
+        if record.swings or record.limits:
             less = without_effect(model.plant, score.candidate.name)
             return finite(self.evidence.residual(less, model.nuisances)) - model.residual
         index = self.signatures.candidates.index(score.candidate)
@@ -258,7 +257,7 @@ def _refit(
     start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
     model = compared_fit(evidence, start, base.nuisances)
     record = score.candidate.record
-    untold = record.late or record.swings or (evidence.loop and record.before_drive)
+    untold = record.swings or evidence.slopes_mislead(record)
     if model.power < (1.0 - KEPT * score.score) * base.power:
         return model
     if score.score < LESSER * best and not untold:
