@@ -153,7 +153,8 @@ class Signatures:
         ends = np.cumsum([np.count_nonzero(rows.mask) for rows in evidence.shown]).tolist()
         places = [slice(*ends) for ends in pairwise([0, *ends])]
         evidence.each(fill, list(zip(evidence.shown, places, strict=True)))
-        over_fitted = np.compress(evidence.fitted, finite(columns), axis=1)
+        columns = finite(columns)
+        over_fitted = np.concatenate([columns[:, i:j] for i, j in runs(evidence.fitted)], axis=1)
         return cls(tuple(candidates), columns.T, tuple(slices), over_fitted.T)
 
     @classmethod
