@@ -48,6 +48,18 @@ def test_a_limit_is_named_though_it_acts_in_one_recording_of_each_role():
     assert reached == pytest.approx(limit, rel=0.01)
 
 
+def test_a_limit_that_comes_down_with_speed_is_named_and_a_small_part_beyond_it_is_none():
+    """A drive that is out of voltage gives no more, however much is asked for."""
+    _, found = hidden("voltage_limit", 12750007, "coulomb", 0.0106)
+    (cause,) = found.effects
+    assert (cause.name, cause.decided) == ("voltage_limit", True)
+    part = {"amplitude": 0.05, "limit": 0.9, "no_load": 14.0}
+    made = make_session(713, base="coulomb", hidden=[("voltage_limit", None, part)])
+    found = st.diagnose(as_plant(made), as_session(made), threads=1)
+    assert "voltage_limit" not in [cause.name for cause in found.effects]
+    assert "beyond a limit nothing gets through" in row_of(found, "voltage_limit").reason
+
+
 @pytest.mark.parametrize("form", ["library", "foreign"])
 def test_a_part_that_is_lost_of_large_inputs_is_a_torque_constant_that_falls(form):
     """Beyond a soft knee a twentieth is lost: a limit with a small share fits that best."""

@@ -143,3 +143,20 @@ def test_it_is_told_beside_a_name_as_well() -> None:
     assert [cause.name for cause in found.effects] == ["frictional_lag"]
     assert "drive_saturation (the drive holds large inputs back) would explain" in found.sentence
     assert any("drive_saturation" in each.separates for each in found.advice)
+
+
+@pytest.mark.parametrize(
+    ("name", "seed", "size"),
+    [("drive_saturation", 12660012, 0.013588), ("voltage_limit", 12750006, 0.013841)],
+)
+def test_a_limit_that_acts_in_two_fitted_seconds_is_no_noise(
+    name: str, seed: int, size: float
+) -> None:
+    """Turned round with its seconds it explains them as well; that alone kept it from a refit."""
+    made = make_session(seed, base="coulomb", hidden=((name, size),))
+    found = st.diagnose(as_plant(made), as_session(made))
+    assert found.verdict == "not_testable"
+    assert f"{name} (" in found.sentence
+    (row,) = (row for row in found.candidates if row.name == name)
+    assert row.score > row.threshold
+    assert row.reason.endswith("hardly excite it")

@@ -104,21 +104,29 @@ class DriveSaturation(DriveLoss):
         return 0.05
 
     @staticmethod
-    def value_for(size, inputs, shape):
-        """The limit beyond which inputs have an rms of `size`, N m; `size` falls with it."""
+    def value_for(size, inputs, velocities, shape):
+        """The limit beyond which inputs have an rms of `size`, N m."""
         inputs = np.abs(inputs)
-        low, high = 0.0, float(inputs.max())
-        for _ in range(60):
-            limit = 0.5 * (low + high)
-            lost = _beyond(inputs, limit, shape.get("softness"))
-            if np.sqrt(np.mean(lost**2)) > size:
-                low = limit
-            else:
-                high = limit
-        return high
+
+        def lost(limit):
+            return _beyond(inputs, limit, shape.get("softness"))
+
+        return _limit_losing(size, lost, float(inputs.max()))
 
     def loss(self, u):
         return np.copysign(_beyond(np.abs(u), self.limit, getattr(self, "softness", None)), u)
+
+
+def _limit_losing(size, lost, highest):
+    """The limit at which what is lost has an rms of `size`, N m; that falls with the limit."""
+    low, high = 0.0, highest
+    for _ in range(60):
+        limit = 0.5 * (low + high)
+        if np.sqrt(np.mean(lost(limit) ** 2)) > size:
+            low = limit
+        else:
+            high = limit
+    return high
 
 
 def _beyond(size, limit, softness):
@@ -160,21 +168,22 @@ class BackEmf(Effect):
 
 
 class VoltageLimit(Effect):
-    """A current loop reaches u only as far as L (1 - sgn(u) v / v_0); the share a beyond is lost.
+    """A current loop reaches u only as far as L (1 - sgn(u) v / v_0); nothing beyond gets through.
 
-    Foreign: the corner rounds off, R + w tanh((|u| - R) / w) with R what is reached.
+    As of a limit at any speed, a size is reached by L, unless that is given. Foreign: the corner
+    rounds off, R + w tanh((|u| - R) / w) with R what is reached.
     """
 
     forms = ("library", "foreign")
     hooks = ("effort",)
     largest = 1.0
+    reached_by = "limit"
 
     @staticmethod
     def draw(rng, plant, form):
-        # Reached above some 4 rad/s, so that a fast sweep is out of torque.
         shape = {
             "limit": plant["coulomb"] * rng.uniform(2.0, 3.5),
-            "no_load": rng.uniform(0.75, 1.0) * BackEmf.FASTEST,
+            "no_load": rng.uniform(1.0, 1.3) * BackEmf.FASTEST,
         }
         if form == "foreign":
             shape["width"] = shape["limit"] * rng.uniform(0.2, 0.4)
@@ -184,13 +193,27 @@ class VoltageLimit(Effect):
     def usual(plant):
         return 0.05
 
+    @staticmethod
+    def value_for(size, inputs, velocities, shape):
+        """The limit beyond which inputs have an rms of `size`, N m."""
+
+        def lost(limit):
+            return _out_of_reach(inputs, velocities, limit, shape["no_load"], shape.get("width"))
+
+        return _limit_losing(size, lost, 10.0 * float(np.abs(inputs).max()))
+
     def effort(self, s):
         u, v = s.input[self.lanes], s.v[self.lanes]
-        reach = np.maximum(self.limit * (1.0 - np.sign(u) * v / self.no_load), 0.0)
-        beyond = np.maximum(np.abs(u) - reach, 0.0)
-        if hasattr(self, "width"):
-            beyond = beyond - self.width * np.tanh(beyond / self.width)
-        return -self.amplitude * np.copysign(beyond, u)
+        width = getattr(self, "width", None)
+        lost = _out_of_reach(u, v, self.limit, self.no_load, width)
+        return -self.amplitude * np.copysign(lost, u)
+
+
+def _out_of_reach(u, v, limit, no_load, width):
+    """What a current loop lacks of inputs at speed; the corner rounds off over the width."""
+    reach = np.maximum(limit * (1.0 - np.sign(u) * v / no_load), 0.0)
+    beyond = np.maximum(np.abs(u) - reach, 0.0)
+    return beyond if width is None else beyond - width * np.tanh(beyond / width)
 
 
 class CurrentLoopLag(Effect):

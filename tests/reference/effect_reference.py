@@ -65,7 +65,7 @@ class Effect:
     largest = np.inf  # amplitude that physics allows
     channel = None  # what has to be recorded for it: "load" or "temperature"
     # Shape parameter that brings it to size instead of the amplitude, which is 1 then; told by
-    # value_for(size, inputs, shape), of the inputs of the machine without hidden effects.
+    # value_for(size, inputs, velocities, shape), of the machine without hidden effects.
     reached_by = None
 
     def __init__(self, amplitude, shape, setting):

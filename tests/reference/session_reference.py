@@ -140,7 +140,8 @@ class Draft:
         pauses[0] = 0.0
         self.start_s = np.round(np.cumsum(pauses) + spec.duration * np.arange(pauses.size), 3)
         self.start_path = np.zeros(len(self.order))
-        self.free_input = None  # N m, of the machine without hidden effects, where it is needed
+        # Input, N m, and velocity, rad/s, of the machine without hidden effects, where needed.
+        self.free_motion = None
         rows = spec.lead_rows + spec.samples
         self.noise = np.column_stack(
             [stream(seed, "noise", k, r).standard_normal(rows) for k, r in self.order]
@@ -187,11 +188,11 @@ class Draft:
         for effect in self.effects:
             if effect.aim is not None:
                 kind, size = EFFECTS[effect.name], effect.aim * self.plant["coulomb"]
-                value = kind.value_for(size, self.free_input, effect.shape)
+                value = kind.value_for(size, *self.free_motion, effect.shape)
                 effect.shape[kind.reached_by] = value
 
     @property
-    def needs_input(self):
+    def needs_motion(self):
         return any(e.aim is not None for e in self.effects)
 
     @property
@@ -290,10 +291,11 @@ def _take_paths(run, drafts):
         draft.start_path = np.concatenate([[0.0], np.cumsum(run.path[at])[:-1]])
 
 
-def _take_inputs(run, drafts):
-    """Inputs of the machine without hidden effects, and the shapes that they ask for."""
+def _take_motion(run, drafts):
+    """Motion of the machine without hidden effects, and the shapes that it asks for."""
     for draft, at in _pieces(run, drafts):
-        draft.free_input = run.input[draft.spec.lead_rows :, at].ravel()
+        rows = slice(draft.spec.lead_rows, None)
+        draft.free_motion = run.input[rows, at].ravel(), run.velocity[rows, at].ravel()
         draft.shape_to_size()
 
 
@@ -373,9 +375,9 @@ def _make_batch(drafts):
     need = [d for d in drafts if d.needs_path]
     if need:
         _take_paths(simulate(lanes_of(need, without_effects=True)), need)
-    need = [d for d in drafts if d.needs_input]
+    need = [d for d in drafts if d.needs_motion]
     if need:
-        _take_inputs(simulate(lanes_of(need, without_effects=True)), need)
+        _take_motion(simulate(lanes_of(need, without_effects=True)), need)
     unscaled = [d for d in drafts if any(e.size for e in d.effects)]
     if unscaled:
         _simulated(unscaled)

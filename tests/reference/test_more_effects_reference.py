@@ -179,6 +179,22 @@ def test_a_saturated_drive_clips():
 
 
 @pytest.mark.parametrize("form", ["library", "foreign"])
+def test_a_limit_by_speed_is_brought_to_size_by_where_it_lies(form):
+    session = make_session(
+        31, base="coulomb", hidden=[(f"voltage_limit:{form}", 0.012)], seconds=30.0
+    )
+    (effect,) = session.effects
+    assert effect.amplitude == 1.0
+    assert effect.reached == pytest.approx(0.012, rel=0.15)
+    limit, no_load = effect.shape["limit"], effect.shape["no_load"]
+    for r in session.recordings:
+        # Speeds are those at stamps, between which they change a little.
+        reach = limit * (1.0 - np.abs(r.truth["velocity"]) / no_load)
+        still = np.abs(r.torque_nm) <= 0.98 * reach
+        assert not r.truth["hidden"][still].any()
+
+
+@pytest.mark.parametrize("form", ["library", "foreign"])
 def test_a_limit_is_brought_to_size_by_where_it_lies(form):
     """Nothing of what is beyond it gets through, however small a size is asked for."""
     session = make_session(

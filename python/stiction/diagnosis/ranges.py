@@ -22,9 +22,8 @@ class Whole(NamedTuple):
     why: str
 
 
-WHOLE: Final = {
-    "drive_saturation": Whole("share", 0.25, 0.95, "beyond a limit nothing gets through")
-}
+_LIMIT: Final = Whole("share", 0.25, 0.95, "beyond a limit nothing gets through")
+WHOLE: Final = {"drive_saturation": _LIMIT, "voltage_limit": _LIMIT}
 """A part that is lost of large inputs is a torque constant that falls, whatever its curve."""
 MOST_BEYOND: Final = 3.0
 """Largest input over a limit: a drive is not asked for more, and what is beyond is a reading that

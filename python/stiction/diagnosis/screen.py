@@ -315,6 +315,14 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     turned = scan.explained(columns.T @ base.off(flips)) / power
     own = {form: np.array(forms) == form for form in best}
     thresholds = {form: _threshold(noise[rows], turned[rows]) for form, rows in own.items()}
+    most = max(best.values(), key=lambda index: explained[index])
+    if most != strongest:
+        # What acts in a few seconds explains them whichever way they are turned: for it alone what
+        # is left of it is turned, whether or not it carries over.
+        rest = _flipped(residual - parts[most] @ gains[most], problem.block[fitted], null.shape[1])
+        rows = own[forms[most]]
+        again = scan.explained(columns.T @ base.off(rest))[rows] / power
+        thresholds[forms[most]] = _threshold(noise[rows], again)
     scores = []
     for form, index in best.items():
         total = float(np.sum(columns[:, signatures.slices[index]] ** 2))
