@@ -19,6 +19,7 @@ from ..session import Session
 from ..stated import Effect
 from ..trajectory import FloatArray
 from .advice import advise
+from .bursts import Burst, burst_of
 from .candidates import Scales, scales_of
 from .ceiling import Ceiling, ceiling_of
 from .confirm import confirmed, described, lost, lost_on_test
@@ -225,7 +226,16 @@ class Conclusion:
             number = self.null.shape[1]
             return surrogates_of(self.evidence, final, number, self.found.seed)[0]
 
-        return unnamed(self.evidence, self.confirmed, *self.rests, self.null, null_of_last)
+        return unnamed(
+            self.evidence, self.confirmed, *self.rests, self.null, null_of_last, self.burst
+        )
+
+    @cached_property
+    def burst(self) -> Burst | None:
+        """Single moments that hold much of what is left, where no cause is there to tell them."""
+        if self.confirmed.choices or self.confirmed.unseen:
+            return None
+        return burst_of(self.evidence, self.confirmed.models[-1], self.null)
 
     @cached_property
     def held(self) -> Sequence[Held]:
@@ -248,7 +258,7 @@ class Conclusion:
         if causes and test is not None:
             gain = gain_of(test, 0, len(causes), found.seed)
         left = lost(evidence, final, null)
-        event = None
+        event = burst = None
         unseen: Mapping[str, float] = {}
         beside = ""
         verdict: Verdict
@@ -276,6 +286,7 @@ class Conclusion:
                 "seen."
             )
             event = None if causes else lone_event(evidence, final, test, 0)
+            burst = self.burst if event is None else None
             unseen = selection.unseen if event is None else {}
             beside = unseen_words(unseen, verdict != "nothing_missing")
             if unseen and verdict == "nothing_missing":
@@ -316,6 +327,7 @@ class Conclusion:
                 *(each.advice for each in (() if self.brief else self.held)),
                 *([] if better is None else [better.advice()]),
                 *([] if event is None else [event.advice()]),
+                *([] if burst is None else [burst.advice()]),
                 *advise(
                     causes,
                     unexplained,

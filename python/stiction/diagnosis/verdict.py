@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
+from .bursts import Burst, at_moments
 from .decide import LEAST_GAIN
 from .evidence import Evidence
 from .gains import heldout_gain
@@ -36,10 +37,6 @@ LEAST_EXCESS: Final = -3.0
 the replays have lost the machine, as where a dry contact sticks and slips at random."""
 HALF: Final = 0.5
 """Of what goes with no coordinate, from which on a description stands for it."""
-WINDOW_S: Final = 0.2
-"""Length of the windows in which single moments are looked for."""
-FEW_WINDOWS: Final = 0.35
-"""Share of all windows in which moments are single ones."""
 UNTOUCHED: Final = 0.9
 """Of what a coordinate shows, from which on names left it as it was."""
 BESIDE_A_NAME: Final = 0.0015
@@ -54,6 +51,7 @@ def unnamed(
     left: Rest,
     null: FloatArray,
     null_of_last: Callable[[], FloatArray],
+    burst: Burst | None = None,
 ) -> tuple[Unexplained, ...]:
     """What the last model leaves that noise does not explain: coordinates, then single recordings.
 
@@ -67,6 +65,8 @@ def unnamed(
         Residuals of the surrogates.
     null_of_last : callable
         The same of the last model: a shaft that gives turns noise of the position into effort.
+    burst : Burst, optional
+        Single moments that hold much of what is left; told where nothing is named.
     """
     excess = _excess(evidence, selection.models[-1], null)
     told = _told(left, LEAST_SIZE)
@@ -89,15 +89,24 @@ def unnamed(
         null = null_of_last()
         excess = _excess(evidence, selection.models[-1], null)
     if open_ and excess > _most_excess(evidence):
-        bursts = _at_moments(evidence, selection.models[-1], null)
+        bursts = at_moments(evidence, selection.models[-1], null)
         more = Unexplained(MOMENTS.name if bursts else NO_COORDINATE, excess)
         told = (more, *(each for each in told if each.coordinate != more.coordinate))
+    told = _behind(burst if not selection.choices else None, told)
     alone = outlying(evidence, selection.models[-1], null)
     # One recording stands first where it leaves most; beside a coordinate, in which the others
     # show the same, several of them only make a list longer.
     most = 1 if alone and (not told or alone[0].share > told[0].share) else 0
     told = (*alone[:most], *told, *alone[most:])
     return _described(left, told, named=bool(selection.choices))
+
+
+def _behind(burst: Burst | None, told: tuple[Unexplained, ...]) -> tuple[Unexplained, ...]:
+    """What is told, behind moments that hold more: what comes once bends whatever it passes."""
+    if burst is None or burst.share <= max((each.share for each in told), default=0.0):
+        return told
+    places = tuple(each for each in told if each.coordinate not in (MOMENTS.name, NO_COORDINATE))
+    return (Unexplained(MOMENTS.name, burst.share), *places)
 
 
 def _described(
@@ -194,31 +203,6 @@ def left_beside(selection: Search) -> float:
     """Power that is left on rows that decide over that of what the names took; inf without any."""
     before, after = (float(m.blocks[1].sum()) for m in (selection.models[0], selection.models[-1]))
     return after / (before - after) if before > after else float("inf")
-
-
-def _at_moments(evidence: Evidence, model: Model, null: FloatArray) -> bool:
-    """Whether most of what noise does not explain lies in few short windows.
-
-    A window stands out where it holds more than any window of any surrogate of its recording.
-    """
-    outstanding, excess, windows = 0.0, 0.0, [0, 0]
-    for rows in evidence.shown:
-        own = evidence.cells.recording == rows.index
-        length = max(1, round(WINDOW_S / (rows.form.dt * rows.form.stride)))
-        number = int(own.sum()) // length
-        if number == 0:
-            continue
-        first = np.flatnonzero(own)[: number * length].reshape(number, length)
-        power = np.sum(model.residual[first] ** 2, axis=1)
-        noise = np.sum(null[first] ** 2, axis=1)
-        beyond = np.maximum(power - float(np.mean(noise)), 0.0)
-        out = power > float(np.max(noise))
-        outstanding += float(beyond[out].sum())
-        excess += float(beyond.sum())
-        windows[0] += int(out.sum())
-        windows[1] += number
-    few = windows[0] < FEW_WINDOWS * windows[1]
-    return few and outstanding > MOST_EXCESS * excess > 0.0
 
 
 def _most_excess(evidence: Evidence) -> float:

@@ -34,7 +34,8 @@ HINTS: Final = {
     "effort, recording by recording": "a drive whose gain is not the same in all recordings: warm "
     "magnets, a supply, a scale of the log",
     "frequency": "the mains, a fan, a neighbouring machine",
-    "single moments in time": "something nearby: another machine, a cable that catches, a person",
+    "single moments in time": "what comes once: a drive at its limit, a cable, a person, a machine "
+    "nearby",
     "effort": "the drive: gain, saturation, dead zone",
     "rate of the effort": "a delay or lag between input and effort",
     "distance since the reversal": "friction just after a turn: pre-sliding, backlash",

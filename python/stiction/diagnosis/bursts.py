@@ -1,0 +1,133 @@
+"""Single moments in which far more is left than noise leaves, wherever a machine is in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ..fitting.rows import Rows
+from ..trajectory import FloatArray
+from .evidence import Evidence
+from .model import Model
+from .result import Advice
+
+__all__ = ["Burst", "at_moments", "burst_of"]
+
+WINDOW_S: Final = 0.2
+"""Length of the windows in which single moments are looked for."""
+FEW_WINDOWS: Final = 0.35
+"""Share of all windows in which moments are single ones."""
+MOST_OF_IT: Final = 0.75
+"""Of what noise does not explain, from which on it lies in moments."""
+TIMES: Final = 30.0
+"""A window bursts where it holds so many times what any window of any surrogate of its recording
+holds: where nothing was hidden it came to 19, and where a drive was out of voltage for a fifth of a
+second to 74 and more."""
+LEAST: Final = 0.08
+"""Share of all that is left which bursts hold, from which on they are told; there it came to .04,
+and to .13 and more."""
+MOST_WINDOWS: Final = 0.01
+"""Share of all windows up to which bursts are single moments."""
+
+
+@dataclass(frozen=True)
+class Burst:
+    """Single moments that hold much of what is left.
+
+    Attributes
+    ----------
+    share : float
+        Of the power that is left.
+    recording : str
+        In which the largest of them lies.
+    start : float
+        Of that, s since the first row of the recording.
+    """
+
+    share: float
+    recording: str
+    start: float
+
+    def advice(self) -> Advice:
+        """What to look at, and to record."""
+        return Advice(
+            f"look at what happens {self.start:.1f} s into {self.recording}, and record it four "
+            "times or more",
+            f"{100 * self.share:.0f} % of what is left lies in single moments, most of it there",
+            (),
+        )
+
+
+def at_moments(evidence: Evidence, model: Model, null: FloatArray) -> bool:
+    """Whether most of what noise does not explain lies in few short windows.
+
+    A window stands out where it holds more than any window of any surrogate of its recording.
+    """
+    outstanding, excess, windows = 0.0, 0.0, [0, 0]
+    for _, _, power, noise in _windows(evidence, model, null):
+        beyond = np.maximum(power - float(np.mean(noise)), 0.0)
+        out = power > float(np.max(noise))
+        outstanding += float(beyond[out].sum())
+        excess += float(beyond.sum())
+        windows[0] += int(out.sum())
+        windows[1] += len(power)
+    few = windows[0] < FEW_WINDOWS * windows[1]
+    return few and outstanding > MOST_OF_IT * excess > 0.0
+
+
+def burst_of(evidence: Evidence, model: Model, null: FloatArray) -> Burst | None:
+    """What lies in single moments far beyond noise, None where that is little or comes everywhere.
+
+    Smoothers need what comes again, and so do causes. What comes once, or in one role alone, is
+    something all the same.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    model : Model
+        What it leaves is looked at.
+    null : numpy.ndarray, shape (n, surrogates)
+        Residuals of the surrogates.
+    """
+    total = float(np.sum(model.residual**2))
+    largest, there, sums, windows = 0.0, ("", 0.0), [0.0, 0], 0
+    for rows, time, power, noise in _windows(evidence, model, null):
+        out = power > TIMES * float(np.max(noise))
+        sums = [sums[0] + float(power[out].sum()), sums[1] + int(out.sum())]
+        windows += len(power)
+        most = int(np.argmax(power))
+        if out[most] and power[most] > largest:
+            begin = float(evidence.recordings[rows.index].time[0])
+            largest, there = float(power[most]), (evidence.names[rows.index], time[most] - begin)
+    if sums[0] <= LEAST * total or sums[1] > MOST_WINDOWS * windows:
+        return None
+    return Burst(sums[0] / total, there[0], float(there[1]))
+
+
+def _windows(
+    evidence: Evidence, model: Model, null: FloatArray
+) -> Iterator[tuple[Rows, FloatArray, FloatArray, FloatArray]]:
+    """The short windows of each recording.
+
+    Yields
+    ------
+    Rows
+    numpy.ndarray, shape (k,)
+        When each begins, s.
+    numpy.ndarray, shape (k,)
+        Power in each.
+    numpy.ndarray, shape (k, surrogates)
+        The same of each surrogate.
+    """
+    for rows in evidence.shown:
+        own = evidence.cells.recording == rows.index
+        length = max(1, round(WINDOW_S / (rows.form.dt * rows.form.stride)))
+        number = int(own.sum()) // length
+        if number > 0:
+            first = np.flatnonzero(own)[: number * length].reshape(number, length)
+            power = np.sum(model.residual[first] ** 2, axis=1)
+            time = rows.form.time[rows.mask][: number * length : length]
+            yield rows, time, power, np.sum(null[first] ** 2, axis=1)
