@@ -273,12 +273,15 @@ def _outstanding(scores: Sequence[Score]) -> list[Score]:
 
 
 def _is_asked(screening: Screening, score: Score) -> bool:
-    """Whether a candidate is refitted whatever its score: before the drive of a simulated loop.
+    """Whether a candidate is refitted beside those that passed, whatever it does held out.
 
     A loop bends itself far towards a goal that is late or held back, and from there the slope of
-    such a cause tells nothing of it.
+    such a cause tells nothing of it, nor does its score. And what a limit of the grid does on other
+    rows says little of the one that the rows have.
     """
-    return screening.evidence.bends_towards(score.candidate.record)
+    record = score.candidate.record
+    beyond_noise = score.testable and score.score > score.threshold
+    return screening.evidence.bends_towards(record) or (record.limits and beyond_noise)
 
 
 def _hopeless(score: Score, trials: Sequence[Trial]) -> bool:

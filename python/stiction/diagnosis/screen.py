@@ -322,7 +322,7 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
         rest = _flipped(residual - parts[most] @ gains[most], problem.block[fitted], null.shape[1])
         rows = own[forms[most]]
         again = scan.explained(columns.T @ base.off(rest))[rows] / power
-        thresholds[forms[most]] = _threshold(noise[rows], again)
+        thresholds[forms[most]] = min(thresholds[forms[most]], _threshold(noise[rows], again))
     scores = []
     for form, index in best.items():
         total = float(np.sum(columns[:, signatures.slices[index]] ** 2))

@@ -80,9 +80,9 @@ def promises(score: Score) -> bool:
     if not score.testable or score.score <= score.threshold:
         return False
     record = score.candidate.record
-    if record.late or record.swings or record.limits:
+    if record.late or record.swings:
         # By more than a sample the slope at no delay tells that something is late, not by how much;
-        # nor does that at no compliance tell of a resonance, nor one limit of the next.
+        # nor does that at no compliance tell of a resonance.
         return True
     return score.heldout > 0.0 or score.score > max(MUCH, MANY_TIMES * score.threshold)
 
