@@ -15,7 +15,7 @@ import numpy as np
 from .errors import InputError
 from .motion import count_of, evenly, held
 from .recording.checks.signal import without_spikes
-from .residual import free_run, started, starting_velocity
+from .residual import FreeRun, free_run, started, starting_velocity
 from .trajectory import FloatArray
 from .weak_form import Start
 from .wording import NO_POSITION
@@ -219,7 +219,14 @@ class ClosedLoop:
         )
 
 
-def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoop:
+def replay(
+    plant: Plant,
+    recording: Recording,
+    start: Start = None,
+    *,
+    clock: float = 0.0,
+    path: float = 0.0,
+) -> ClosedLoop:
     """Simulate the loop of controller, drive and machine from the measured start.
 
     The controller reads the simulated position, rounded to counts where the plant states a sensor,
@@ -235,6 +242,8 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
     start : dict, optional
         Friction state at the first row (see ``LawRecord.start``); without it the friction was
         never moved.
+    clock, path : float, optional
+        Session clock in s and path travelled in rad or m at the first row, as for ``free_run``.
 
     Returns
     -------
@@ -247,7 +256,7 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
         a loop that runs away.
     """
     if plant.servo:
-        return _servo(plant, recording, start)
+        return _servo(free_run(plant, recording, start, clock=clock, path=path), recording)
     source = str(recording.path) if recording.path is not None else "recording"
     controller = Controller.of(plant)
     if plant.prescribed_motion:
@@ -275,7 +284,7 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
     warmths = [None] * len(time) if warmth is None else held(time, stamps, warmth).tolist()
     on = recording.channels.get("enabled")
     switched = [True] * len(time) if on is None else (held(time, stamps, on) != 0.0).tolist()
-    motor = started(plant, begin["reading"], begin["velocity"], start)
+    motor = started(plant, begin["reading"], begin["velocity"], start, clock=clock, path=path)
     act = controller.acting(reference, dt, **begin, total=total)
     bounds = _bounds(reference, measured)
     try:
@@ -300,9 +309,8 @@ def replay(plant: Plant, recording: Recording, start: Start = None) -> ClosedLoo
     )
 
 
-def _servo(plant: Plant, recording: Recording, start: Start) -> ClosedLoop:
+def _servo(run: FreeRun, recording: Recording) -> ClosedLoop:
     """The loop of a servo, which its own drive closes."""
-    run = free_run(plant, recording, start)
     assert recording.input is not None
     goal = recording.input[:-1]
     return ClosedLoop(run.time, goal, run.measured, run.simulated, goal, run.unit, None)

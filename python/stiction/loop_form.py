@@ -11,6 +11,7 @@ import numpy as np
 
 from .catalogue import EffectRecord, effects
 from .errors import InputError
+from .motion import evenly, smooth
 from .parameter import Parameter
 from .plant import Plant
 from .residual import started, starting_velocity
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 __all__ = ["LoopForm"]
 
+EVEN: Final = 1e-6
+"""Steps that differ by less, as a share of the usual one, are alike."""
 RAN_AWAY: Final = 1e12
 """Positions and their derivatives beyond this are those of a loop that runs away."""
 GAUSSIAN: Final = 1.4826
@@ -55,10 +58,31 @@ class LoopForm(WeakForm):
         third = np.abs(np.diff(self.readings, 3))
         white = GAUSSIAN * float(np.median(third)) / np.sqrt(20.0) if len(third) else 0.0
         self.noise = max(white, self.count / np.sqrt(12.0))
-        stamps = recording.time[0] + self.dt * np.arange(len(self.readings))
+        stamps = self.stamped(recording.time)[1]
+        steps = np.diff(stamps)
+        self.steps = self.dt if np.ptp(steps) <= EVEN * self.dt else steps
         self.velocity_at_start = starting_velocity(stamps, self.readings, self.count)
         self.stride = 1
         self.time = stamps[1:]
+
+    def seen_by(self, plant: Plant) -> LoopForm:
+        """As it is: the simulated motion drives friction."""
+        return self
+
+    @staticmethod
+    def stamped(time: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+        """Even ones where the rows are those of a timer; else those of the rows themselves.
+
+        A goal that is held to the next even stamp comes half a sample late, and a simulated loop
+        has no kernel that would ask for even ones. Where rows are missing some are put in between.
+        """
+        stamps, even, usual = evenly(time)
+        if stamps is not time:
+            return stamps, even, usual
+        parts = np.maximum(np.round(np.diff(time) / float(np.median(np.diff(time)))), 1.0)
+        place = np.concatenate([[0.0], np.cumsum(parts)])
+        rows = np.interp(np.arange(int(place[-1]) + 1), place, time)
+        return time, rows, float(rows[-1] - rows[0]) / (len(rows) - 1)
 
     def stiffen(self, plant: Plant) -> None:
         """Takes the stiffness K of a plant as it stands, whatever a recording was set to."""
@@ -112,15 +136,30 @@ class LoopForm(WeakForm):
         """Simulated position at the sample ends, shape (n,); NaN where none is, or it runs away."""
         motor = self._begun(plant, start)
         try:
-            run = motor.simulate(self.input, self.dt, **self.around, outputs=["position"])
+            run = motor.simulate(self.input, self.steps, **self.around, outputs=["position"])
         except InputError:
             # A trial of a fit that is too stiff for the sample time: it must look bad, not end it.
             return np.full(len(self.input), np.nan)
         return np.where(np.abs(run.position) < RAN_AWAY, run.position, np.nan)
 
     def late(self, plant: Plant) -> FloatArray:
-        """0: where goal and position are stamped hardly matters to a loop that is simulated."""
-        return np.zeros(len(self))
+        """What a later goal changes of the residual, per s: all that follows it is later too."""
+        moved = smooth(self.readings, self.dt, self.kernel.support)
+        late: FloatArray = self.stiffness * np.gradient(moved, self.dt)[1:]
+        return late
+
+    def acted(self, plant: Plant) -> FloatArray:
+        """Effort that the drive gives along the simulated motion; shape (n,).
+
+        What a servo answers to the noise of its readings goes with that, and so does what is left.
+        """
+        reached = self.reaches(plant)
+        there = np.where(np.isfinite(reached), reached, self.position[1:])
+        motor = replace(self.own(plant), effects=()).follower()
+        motor.reset(float(self.position[0]), 0.0)
+        along = np.concatenate([self.position[:1], there])
+        drive: FloatArray = motor.follow(self.moved(along))[0]
+        return drive
 
     def jacobian(self, plant: Plant, paths: Sequence[str], start: Start = None) -> FloatArray:
         """Derivatives of the residual by parameters, exact; shape (n, parameters).
@@ -132,7 +171,7 @@ class LoopForm(WeakForm):
         motor = self._begun(plant, start)
         try:
             moved, _ = motor.sensitivity(
-                self.input, self.dt, [paths[place] for place in own], **self.around
+                self.input, self.steps, [paths[place] for place in own], **self.around
             )
         except InputError:
             return columns

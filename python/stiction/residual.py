@@ -183,7 +183,14 @@ def effort_residual(
     return EffortResidual(form.time, measured, model, form.kernel.support, form.effort_unit)
 
 
-def free_run(plant: Plant, recording: Recording, start: Start = None) -> FreeRun:
+def free_run(
+    plant: Plant,
+    recording: Recording,
+    start: Start = None,
+    *,
+    clock: float = 0.0,
+    path: float = 0.0,
+) -> FreeRun:
     """Simulate the recorded input from the measured start and compare the motion.
 
     The starting velocity is the slope of a parabola through the first rows. The input of a servo is
@@ -198,6 +205,9 @@ def free_run(plant: Plant, recording: Recording, start: Start = None) -> FreeRun
     start : dict, optional
         Friction state at the first row (see ``LawRecord.start``); without it the friction was
         never moved.
+    clock, path : float, optional
+        Session clock in s and path travelled in rad or m at the first row, of a machine that has
+        been running; without them it is cold and new.
 
     Raises
     ------
@@ -219,7 +229,8 @@ def free_run(plant: Plant, recording: Recording, start: Start = None) -> FreeRun
     velocity = starting_velocity(recording.time, position, plant.count or count_of(position))
     beside = (recording.channels.get(name) for name in ("load", "temperature", "enabled"))
     load, temperature, enabled = (None if values is None else values[:-1] for values in beside)
-    trajectory = started(plant, float(position[0]), velocity, start).simulate(
+    motor = started(plant, float(position[0]), velocity, start, clock=clock, path=path)
+    trajectory = motor.simulate(
         recording.input[:-1],
         np.diff(recording.time),
         load=load,

@@ -55,7 +55,7 @@ effort: a coarse encoder needs more than 30 ms."""
 ACCELERATION_SHARE: Final = 0.1
 """Where no inertia is stated: share of the acceleration that may be noise."""
 
-_CACHED: Final = ("motion", "lateness", "_answers", "_known")
+_CACHED: Final = ("motion", "lateness", "_answers", "_known", "_otherwise")
 """What is computed once from readings and effort."""
 MOSTLY: Final = 0.9
 """Share of the kernel through which a machine with a rigid contact moves in rows that tell of
@@ -130,7 +130,7 @@ class WeakForm:
             )
         if self.prescribed:
             driving = without_spikes(driving)
-        stamps, time, self.dt = evenly(recording.time)
+        stamps, time, self.dt = self.stamped(recording.time)
         least = support or max(SUPPORTS_S[0], FEWEST_SAMPLES * self.dt)
         # Before any kernel is made: at 10 MHz one of 30 ms would have 300 000 samples.
         possible = support is None or support <= WIDEST * self.dt
@@ -169,6 +169,27 @@ class WeakForm:
         self.input = np.zeros(len(x) - 1) if self.prescribed else u[:-1]
         self.clock = self.path = 0.0
         self.time = self._thin(time[1:][self.kernel.half : -self.kernel.half])
+
+    def seen_by(self, plant: Plant) -> Self:
+        """The recording with friction driven as that of a plant has to be.
+
+        What keeps a rigid contact at rest between two counts would lead one that yields in steps,
+        and a motion that is smooth throughout never lets a rigid one rest: a law compared along
+        the motion of another one would be outdone whatever it is worth.
+        """
+        return self if plant.friction.springy == self.springy else self._otherwise
+
+    @cached_property
+    def _otherwise(self) -> Self:
+        other = copy(self)
+        other.springy = not self.springy
+        other.read_with(self.noise)
+        return other
+
+    @staticmethod
+    def stamped(time: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+        """Stamps as they were meant, those of the rows that are made of them, and their spacing."""
+        return evenly(time)
 
     def read_with(self, noise: float) -> None:
         """Drives friction by what the readings are without so much noise; forgets what it knew.
@@ -320,6 +341,10 @@ class WeakForm:
 
     def whole(self, plant: Plant) -> FloatArray:
         """What a residual is a part of, to tell how much of it a plant explains; shape (n,)."""
+        return self.measured(plant)
+
+    def acted(self, plant: Plant) -> FloatArray:
+        """Effort of the drive and load that the noise of no reading is in, as far as may be."""
         return self.measured(plant)
 
     def _driven(self, plant: Plant, given: FloatArray) -> FloatArray:

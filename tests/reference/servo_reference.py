@@ -36,11 +36,18 @@ class Servo:
     gear_loss: float = 0.0  # dry friction per torque that the arm's weight puts on the gears
     tremble: float = 0.0  # N m, of a torque that is drawn anew in every sample
     seed: int = 0
+    tardy: float = 0.0  # share of a sample by which the goal arrives late
+    cold: float = 0.0  # share of the dry friction that is lost as the machine warms up
+    warming: float = 10.0  # s, in which it warms up
 
-    def run(self, goal, dt, start=0.0, enabled=None, substeps=400):
-        """Position at the end of each sample whose goal is held."""
+    def run(self, goal, dt, start=0.0, enabled=None, substeps=400, clock=0.0):
+        """Position at the end of each sample whose goal is held; dt of each, or of all of them.
+
+        `clock` is the time since the machine was switched on, s.
+        """
         total = self.inertia + self.mass * self.length**2
-        h = dt / substeps
+        steps = np.broadcast_to(dt, len(goal))
+        tardy = round(self.tardy * substeps)
         q, w = start, 0.0
         arrived = np.concatenate([np.zeros(self.late), goal])[: len(goal)]
         reached = np.empty(len(goal))
@@ -48,8 +55,12 @@ class Servo:
         shaken = self.tremble * np.random.default_rng(self.seed).standard_normal(len(goal))
         for k, target in enumerate(arrived):
             on = enabled is None or enabled[k]
-            for _ in range(substeps):
-                wanted += max(-self.fastest * h, min(self.fastest * h, target - wanted))
+            h = steps[k] / substeps
+            dry = self.coulomb * (1.0 + self.cold * np.exp(-clock / self.warming))
+            clock += steps[k]
+            for place in range(substeps):
+                asked = target if place >= tardy else arrived[max(k - 1, 0)]
+                wanted += max(-self.fastest * h, min(self.fastest * h, asked - wanted))
                 duty = max(-self.duty_limit, min(self.duty_limit, self.proportional * (wanted - q)))
                 current = (self.supply * duty - self.constant * w) / self.resistance
                 current = max(-self.current_limit, min(self.current_limit, current))
@@ -57,7 +68,7 @@ class Servo:
                 weight = self.mass * GRAVITY * self.length * np.sin(q)
                 torque += shaken[k] - weight - self.viscous * w
                 free = w + h * torque / total
-                slowed = h * (self.coulomb + self.gear_loss * abs(weight)) / total
+                slowed = h * (dry + self.gear_loss * abs(weight)) / total
                 w = 0.0 if abs(free) <= slowed else free - np.copysign(slowed, free)
                 q += h * w
             reached[k] = q

@@ -26,7 +26,6 @@ __all__ = ["TOO_NEAR", "by_chance", "odds", "share_of_phases", "share_of_waves",
 
 WAVE: Final = ("cosine", "sine")
 ORDER: Final = "order"
-COGGING: Final = "cogging"
 ENOUGH: Final = 3.0
 """Logarithm of the odds, 20 to 1, from which the wave is left aside."""
 DEVIATIONS: Final = 2.0
@@ -73,11 +72,12 @@ def by_chance(simple: Trial, other: Trial) -> bool:
 def unrepeated(model: Model, name: str) -> bool:
     """Whether this is an effort over position of which nobody saw enough to call it a wave.
 
-    A spring, as a cable is, and all else that goes with position look like a part of one.
+    A spring, as a cable is, and all else that goes with position look like a part of one, and so do
+    a constant and a gain that is another one.
     """
-    if name != COGGING:
-        return False
     effect = next(each for each in model.plant.effects if each.name == name)
+    if ORDER not in effect.parameters:
+        return False
     seen = [rows.form.mean(rows.form.position[1:])[rows.mask] for rows in model.evidence.shown]
     turns = np.concatenate(seen) * effect.parameters[ORDER].value / (2.0 * np.pi)
     # Where it stood in between two recordings nobody saw.

@@ -30,5 +30,5 @@ def limited(*powers: FloatArray) -> tuple[FloatArray, ...]:
     if len(telling) == 0:
         return powers
     cap = MOST_TIMES * float(np.median(telling))
-    factor = np.where(largest > cap, cap / np.maximum(largest, 1e-300), 1.0)
+    factor = cap / np.maximum(largest, cap)
     return tuple(power * factor for power in powers)

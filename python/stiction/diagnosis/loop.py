@@ -147,7 +147,10 @@ def _runs(evidence: Evidence, model: Model, wanted: Sequence[int]) -> tuple[Runs
     for index in wanted:
         recording, start = evidence.recordings[index], model.nuisances.start(index)
         try:
-            runs[index] = closed_loop.replay(model.plant, recording, start)
+            form = evidence.forms[index]
+            runs[index] = closed_loop.replay(
+                model.plant, recording, start, clock=form.clock, path=form.path
+            )
         except InputError as error:
             runs[index] = None
             why = str(error).removeprefix(f"{recording.path or 'recording'}: ")

@@ -103,7 +103,7 @@ class Rows:
 
     def residual(self, plant: Plant, nuisances: Nuisances) -> FloatArray:
         """Measured minus needed effort of every row; shape (n,)."""
-        left = self.form.residual(plant, nuisances.start(self.index))
+        left = self.form.seen_by(plant).residual(plant, nuisances.start(self.index))
         return left + nuisances.timing * self.late
 
     def jacobian(self, plant: Plant, paths: Sequence[str], nuisances: Nuisances) -> FloatArray:
@@ -113,7 +113,8 @@ class Rows:
         """
         follows = plant.following(paths)
         every = [*paths, *(path for path, _, _ in follows)]
-        found = self.form.jacobian(plant, every, nuisances.start(self.index))
+        form = self.form.seen_by(plant)
+        found = form.jacobian(plant, every, nuisances.start(self.index))
         columns = found[:, : len(paths)]
         for column, (_, place, factor) in enumerate(follows, len(paths)):
             columns[:, place] += factor * found[:, column]

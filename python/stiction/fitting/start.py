@@ -322,7 +322,12 @@ def _stiffness(
 
 def _likeliest(plants: Sequence[Plant], forms: Sequence[WeakForm]) -> list[Plant]:
     """Those that leave the least residual, the best first."""
-    powers = [sum(_power(form.residual(p, begun(p, form))) for form in forms) for p in plants]
+
+    def left(plant: Plant) -> float:
+        seen = (form.seen_by(plant) for form in forms)
+        return sum(_power(form.residual(plant, begun(plant, form))) for form in seen)
+
+    powers = [left(plant) for plant in plants]
     return [plants[k] for k in np.argsort(powers, kind="stable")[:TRIED]]
 
 

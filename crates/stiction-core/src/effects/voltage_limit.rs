@@ -57,7 +57,7 @@ impl<S: Scalar> Effect<S> for VoltageLimit<S> {
             Shape {
                 parameter: "no_load",
                 scale: Scale::Speed,
-                grid: &[1.0, 1.1, 1.25],
+                grid: &[1.0, 1.05, 1.1, 1.25],
                 fitted: true,
             },
         ],
