@@ -23,8 +23,9 @@ SECONDS = 72.0
 
 
 @cache
-def made(base: str) -> Any:
-    return make_sessions([{"seed": 31, "seconds": SECONDS, "base": base}])[0]
+def made(base: str, flicker: float = 0.0) -> Any:
+    session = {"seed": 31, "seconds": SECONDS, "base": base, "flicker": flicker}
+    return make_sessions([session])[0]
 
 
 def with_law(base: str, law: str, **keywords: Any) -> st.Diagnosis:
@@ -50,6 +51,50 @@ def test_a_dead_band_that_takes_the_input_away_makes_no_better_law() -> None:
     assert found.verdict == "missing_effect"
     assert [(cause.name, cause.decided) for cause in found.effects] == [("drive_deadband", True)]
     assert found.better_law == ""
+
+
+@pytest.mark.parametrize(
+    ("true", "stated", "flicker"),
+    [("maxwell_slip", "coulomb", 0.3), ("coulomb", "maxwell_slip", 0.0)],
+)
+def test_each_law_is_driven_as_its_own_contact_has_to_be(
+    true: str, stated: str, flicker: float
+) -> None:
+    """Along the motion of the other contact the true law explained .96 and .14 of it."""
+    plant, session = as_plant(made(true, flicker)), as_session(made(true, flicker))
+    other = replace(plant, friction=Friction(stated))
+    found = st.diagnose(other, session, surrogates=6, laws=(true,))
+    (row,) = (row for row in found.laws if row.law == true)
+    assert row.gain is not None
+    left = {}
+    for each in (plant, other):
+        heldout = st.fit(each, session).heldout_rms
+        assert heldout is not None
+        left[each.friction.law] = heldout**2
+    known = 1.0 - left[true] / left[stated]
+    assert known > 0.9
+    assert row.gain.value > 0.98 * known
+    assert found.better_law == true
+
+
+def test_rows_that_test_take_a_law_away_that_is_surely_worse_there() -> None:
+    source = np.random.default_rng(4)
+    own, worse, better = (size * source.standard_normal(4000) for size in (1.0, 1.5, 0.7))
+    cells = SimpleNamespace(block=np.arange(4000) // 100, recording=np.zeros(4000, dtype=int))
+    test = cast("Any", SimpleNamespace(residuals=(own, worse, better), cells=cells))
+    gained = {"beside": 0.8, "z": 9.0}
+    first = replace(rival("load_dependent", 1.0), **gained)
+    second = replace(rival("dahl", 1.0), **{**gained, "beside": 0.5})
+    assert laws.better_law([first, second], 0, None, 0) is first
+    assert laws.better_law([first, second], 0, test, 0) is second
+    assert laws.better_law([first], 0, test, 0) is None
+    # What was tested without the effects that it needs is not judged by that.
+    assert laws.better_law([replace(first, kept=("cogging",))], 0, test, 0) is not None
+
+
+def test_no_law_is_said_to_leave_nothing() -> None:
+    found = replace(rival("dahl", 1.0), beside=0.9996, z=9.0)
+    assert "leaves over 99 % less than coulomb" in found.words("coulomb", named=False)
 
 
 def test_a_better_law_is_told_with_its_gain() -> None:

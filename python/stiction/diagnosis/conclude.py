@@ -252,7 +252,8 @@ class Conclusion:
         baseline = _summary(evidence, base, results[id(base)], test, 0, floor)
         number = len(selection.choices)
         extended = _summary(evidence, final, results[id(final)], test, number, floor)
-        better, own_law = better_law(self.rivals), base.plant.friction.law
+        own_law, last = base.plant.friction.law, len(self.decided.models) - 1
+        better = better_law(self.rivals, last, test, found.seed)
         causes = _causes(selection, results[id(final)], test, found.seed, sole=better is None)
         gain = None
         if causes and test is not None:

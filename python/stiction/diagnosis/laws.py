@@ -95,7 +95,7 @@ class Rival:
         kept = f", with {joined(self.kept)}," if self.kept else ""
         return (
             f"The friction law itself lacks something: {self.law} ({summary}){kept} leaves "
-            f"{100 * self.beside:.0f} % less than {own}{beside}."
+            f"{_less(self.beside)} less than {own}{beside}."
         )
 
     @property
@@ -185,9 +185,32 @@ def _beside(final: Model, model: Model, rival: Rival, selection: Search) -> Riva
     return replace(rival, beside=beside, z=z, kept=tuple(effect.name for effect in kept))
 
 
-def better_law(rivals: Sequence[Rival]) -> Rival | None:
-    """The law that explains most beside what was named, None where none does clearly."""
-    better = [rival for rival in rivals if rival.better]
+def better_law(rivals: Sequence[Rival], own: int, test: HeldOut | None, seed: int) -> Rival | None:
+    """The law that explains most beside what was named, None where none does clearly.
+
+    Rows that test choose none. They may take one away: a law that is surely worse there than what
+    was named is none to be stated.
+
+    Parameters
+    ----------
+    rivals : sequence of Rival
+    own : int
+        Place of the last model of the plant's own law among those that were tested; those of other
+        laws come next.
+    test : HeldOut or None
+    seed : int
+    """
+    places = [k for k, rival in enumerate(rivals) if rival.model is not None]
+    refuted = {
+        rivals[k].law
+        for place, k in enumerate(places, own + 1)
+        # What needs effects beside it was tested without them.
+        if test is not None
+        and rivals[k].better
+        and not rivals[k].kept
+        and gain_of(test, own, place, seed).ci95[1] < 0.0
+    }
+    better = [rival for rival in rivals if rival.better and rival.law not in refuted]
     return max(better, key=lambda rival: rival.beside) if better else None
 
 
@@ -338,6 +361,11 @@ def _in_event(model: Model, own: Model, event: Lone) -> float:
     inside = event.rows(evidence.shown, evidence.names) & evidence.fitted
     one, two = (float(np.sum(each.residual[inside] ** 2)) for each in (model, own))
     return one / max(two, 1e-300)
+
+
+def _less(share: float) -> str:
+    """What is removed, and never all of it."""
+    return "over 99 %" if share > 0.99 else f"{100 * share:.0f} %"
 
 
 def _times(left: float) -> str:
