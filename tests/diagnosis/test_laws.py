@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
 from tests.reference.ladder_spring import LadderSpring
+from tests.reference.laws import lugre
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
@@ -92,9 +93,13 @@ def test_rows_that_test_take_a_law_away_that_is_surely_worse_there() -> None:
     assert laws.better_law([replace(first, kept=("cogging",))], 0, test, 0) is not None
 
 
-def test_no_law_is_said_to_leave_nothing() -> None:
-    found = replace(rival("dahl", 1.0), beside=0.9996, z=9.0)
-    assert "leaves over 99 % less than coulomb" in found.words("coulomb", named=False)
+def test_no_law_is_said_to_leave_nothing_and_no_other_one_to_be_worse_than_it_is() -> None:
+    names = {"leuven": 0.9996, "lugre": 0.99952, "dahl": 0.97}
+    found = [replace(rival(law, 1.0), beside=less, z=9.0) for law, less in names.items()]
+    alike = laws.about_as_good(found, found[0])
+    assert alike == ["lugre"]
+    said = found[0].words("coulomb", named=False, alike=alike)
+    assert said.endswith("leaves over 99 % less than coulomb; lugre leaves about as little.")
 
 
 def test_a_better_law_is_told_with_its_gain() -> None:
@@ -258,3 +263,30 @@ def test_a_contact_that_never_breaks_away_hides_no_offset() -> None:
     # What a contact brought along for a whole recording is in no other one.
     assert found.heldout_relative is not None
     assert found.train_relative > 0.9 * found.heldout_relative
+
+
+def moved_over_bristles(seed: int, role: str) -> st.Recording:
+    """A contact of the law of LuGre with its fall, on a rig that moves it."""
+    rng = np.random.default_rng(seed)
+    dt = 2e-3
+    time = np.arange(0.0, 12.0, dt)
+    swings = zip((0.4, 0.15, 0.02), (0.21, 0.55, 1.3), rng.uniform(0.0, 6.28, 3), strict=True)
+    speed = sum(size * np.cos(2.0 * np.pi * rate * time + at) for size, rate, at in swings)
+    law = {**lugre.GOLDEN.parameters, "initial_stiffness": 400.0}
+    effort = lugre.along(speed, dt, **law) + 1e-3 * rng.standard_normal(len(time))
+    position = np.cumsum(speed) * dt
+    return st.Recording(time, None, position, effort=effort, role=role)
+
+
+def test_a_law_is_compared_with_the_fall_that_it_may_have() -> None:
+    """Without it the law that these data were made with would leave much, and say nothing of it."""
+    roles = ("train", "train", "select", "test")
+    session = st.Session([moved_over_bristles(k, role) for k, role in enumerate(roles)])
+    table = {"drive": {"kind": "prescribed_motion"}, "friction": {"law": "dahl"}}
+    found = st.diagnose(st.Plant.from_dict(table), session, laws=("lugre",), surrogates=6)
+    assert found.better_law == "lugre"
+    (row,) = found.laws
+    assert "with breakaway = 0.5 and stribeck_velocity = 0.0" in row.reason
+    assert row.gain is not None
+    assert row.gain.ci95[0] > 0.9
+    assert "breakaway = 0.5" in found.advice[0].experiment

@@ -20,17 +20,27 @@ from ..fitting.starts import with_turns
 from ..parameter import Parameter
 from ..stated import Friction
 from ..wording import did_you_mean, listed
+from .candidates import scales_of
 from .choose import DECIDED_Z
 from .gain import Gain, HeldOut, gain_of
 from .gains import heldout_gain
 from .lone import Lone
-from .model import LEAST_GIVEN, Model, fitted
+from .model import LEAST_GIVEN, Model, fitted, power_of
 from .result import Advice, LawRow
 from .selection import Search
 from .within import left_within
 from .words import joined
 
-__all__ = ["THE_LAW", "Rival", "better_law", "event_words", "law_names", "law_rows", "rivals_of"]
+__all__ = [
+    "THE_LAW",
+    "Rival",
+    "about_as_good",
+    "better_law",
+    "event_words",
+    "law_names",
+    "law_rows",
+    "rivals_of",
+]
 
 THE_LAW: Final = "the friction law"
 """What is left depends on, where another law leaves less of it."""
@@ -41,6 +51,12 @@ OF_A_LAW: Final = frozenset({"breakaway", "creep", "memory"})
 """Families of effects that say how friction goes with speed, time and reversals, as laws do."""
 WORTH_A_TERM: Final = 0.95
 """Share of the power that an optional term of a law may leave at most to stay in a comparison."""
+FALL: Final = ("breakaway", "stribeck_velocity")
+"""Options of laws whose friction may fall with speed."""
+BREAKS_AWAY: Final = 1.2
+"""Times the level of sliding at which such a fall begins, to start with."""
+FALLS_AT: Final = (0.2, 0.5, 0.8)
+"""Where it is over, on the way from the lowest usual speed to the highest, logarithmically."""
 HOPELESS: Final = 100.0
 """Times the power left with all effects: a law that nobody asked for is given up where it leaves
 more after the first steps from all of its starts."""
@@ -48,6 +64,8 @@ WORTH_MORE: Final = 0.1
 """Share of what is left with all effects that another law alone must remove to be the likelier
 cause."""
 
+AS_LITTLE: Final = 1.25
+"""Times what the best law leaves that one leaves which these data do not tell from it."""
 ALIKE: Final = 1.005
 """Powers are the same up to this ratio: nobody reads a difference in the third digit."""
 MOST_TOLD: Final = 100.0
@@ -88,23 +106,24 @@ class Rival:
         """Whether it explains clearly more than what was named."""
         return self.beside > WORTH_MORE and self.z > DECIDED_Z
 
-    def words(self, own: str, named: bool) -> str:
-        """What that means, in a sentence."""
+    def words(self, own: str, named: bool, alike: Sequence[str] = ()) -> str:
+        """What that means, in a sentence; ``alike`` are laws that leave about as little."""
         summary = next(record.summary for record in all_laws() if record.name == self.law)
         beside = ", whatever is added to it" if named else ""
         kept = f", with {joined(self.kept)}," if self.kept else ""
         return (
             f"The friction law itself lacks something: {self.law} ({summary}){kept} leaves "
-            f"{_less(self.beside)} less than {own}{beside}."
+            f"{_less(self.beside)} less than {own}{beside}{_as_little(alike)}."
         )
 
     @property
     def terms(self) -> tuple[str, ...]:
-        """Terms that a fit leaves alone and this one has: ``"compliance = 4.2e-07"``."""
+        """Terms that nobody stated and this fit has: ``"compliance = 4.2e-07"``."""
         if self.model is None:
             return ()
         given = self.model.plant.friction.parameters
-        return tuple(f"{n} = {given[n].value:.2g}" for n in _left_alone(self.law) if n in given)
+        named = [*_left_alone(self.law), *(FALL if FALL[-1] in given else ())]
+        return tuple(f"{n} = {given[n].value:.2g}" for n in named if n in given)
 
     def advice(self) -> Advice:
         """What to do about it."""
@@ -147,6 +166,8 @@ def rivals_of(selection: Search, wanted: Sequence[str]) -> list[Rival]:
     rivals = []
     for law in names:
         model = _fitted(base, law, math.inf if law in wanted else HOPELESS * final.power)
+        if model is not None and law in wanted and not model.solution.interrupted:
+            model = _falling(model)
         if model is not None and model.solution.interrupted:
             # Half a fit is no fair comparison: what is known of the effects stays.
             selection.interrupted = True
@@ -228,11 +249,43 @@ def _fitted(base: Model, law: str, hopeless: float) -> Model | None:
     if not more or plain is None or plain.solution.interrupted:
         return plain
     full = _launched(base, Friction(law, {**plain.plant.friction.parameters, **more}), hopeless)
-    if full is None:
+    return plain if full is None else _worth_its_terms(full, plain)
+
+
+def _worth_its_terms(full: Model, plain: Model) -> Model:
+    """A law with more terms where these leave less, or half a fit; else the one without."""
+    less = _fitted_power(full) < WORTH_A_TERM * _fitted_power(plain)
+    return full if less or full.solution.interrupted else plain
+
+
+def _falling(plain: Model) -> Model:
+    """A law with friction that falls with speed, where it has that as an option and it helps.
+
+    Beside the plant's own law such a fall is an effect; a law that has it within is not to be
+    outdone by one that only lacks the option to say so.
+    """
+    friction = plain.plant.friction
+    options = {each.name for each in friction.record.parameters}
+    if not options.issuperset(FALL) or "stribeck_velocity" in friction.parameters:
         return plain
-    if full.solution.interrupted:
-        return full
-    return full if _fitted_power(full) < WORTH_A_TERM * _fitted_power(plain) else plain
+    low, high = scales_of(plain.evidence, plain.plant).speeds
+    level = friction.parameters["coulomb"].value
+    plants = [
+        replace(
+            plain.plant,
+            friction=Friction(
+                friction.law,
+                {
+                    **friction.parameters,
+                    "breakaway": Parameter(BREAKS_AWAY * level),
+                    "stribeck_velocity": Parameter(low * (high / low) ** share),
+                },
+            ),
+        )
+        for share in FALLS_AT
+    ]
+    begin = min(plants, key=lambda plant: power_of(plain.evidence, plant, plain.nuisances))
+    return _worth_its_terms(fitted(plain.evidence, begin, plain.nuisances), plain)
 
 
 def _left_alone(law: str) -> dict[str, Parameter]:
@@ -361,6 +414,19 @@ def _in_event(model: Model, own: Model, event: Lone) -> float:
     inside = event.rows(evidence.shown, evidence.names) & evidence.fitted
     one, two = (float(np.sum(each.residual[inside] ** 2)) for each in (model, own))
     return one / max(two, 1e-300)
+
+
+def about_as_good(rivals: Sequence[Rival], best: Rival) -> list[str]:
+    """Laws that leave about as little as the best one, the better ones first."""
+    most = AS_LITTLE * (1.0 - best.beside)
+    near = [r for r in rivals if r is not best and r.better and 1.0 - r.beside <= most]
+    return [rival.law for rival in sorted(near, key=lambda rival: -rival.beside)]
+
+
+def _as_little(alike: Sequence[str]) -> str:
+    if not alike:
+        return ""
+    return f"; {joined(alike)} {'leaves' if len(alike) == 1 else 'leave'} about as little"
 
 
 def _less(share: float) -> str:
