@@ -152,6 +152,14 @@ class EffectRecord:
         """Whether it acts beyond a limit alone: moved, that has another signature."""
         return any(shape.parameter == "limit" for shape in self.shapes)
 
+    def slope_misleads(self, *, loop: bool) -> bool:
+        """Whether the slope at no gain does not tell how much a whole gain explains.
+
+        So it is of what is late, whose slope tells no delay, and of what stands before the drive of
+        a simulated loop, which follows it far.
+        """
+        return self.late or (loop and self.before_drive)
+
     def impossible(self, motion: str, *, servo: bool) -> str:
         """Why such a machine cannot have it, "" where it can.
 

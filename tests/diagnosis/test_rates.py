@@ -50,6 +50,7 @@ viscous friction takes up so much that who knows the hidden torque gains but 3 %
 LONGER = {"relaxation": 156.0}
 """Seconds of a session: creep needs its holds."""
 SEEDS = dict(zip(HIDDEN, range(2, 2 + len(HIDDEN)), strict=True))
+SEEDS["voltage_limit"] = 61  # the first from 60 on in which recordings of every role reach it
 SURROGATES = 6
 LEFT_OUT = ("torque_bias", "stribeck")
 OF_GAIN = ("heldout_gain", "heldout_gain_ci95")

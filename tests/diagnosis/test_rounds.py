@@ -33,7 +33,7 @@ def trial(
 ) -> Trial:
     shapes = (SimpleNamespace(scale="order"),) if wave else ()
     record = SimpleNamespace(family=family or name, name=name, shapes=shapes, second=(), gains=())
-    record.late = record.swings = False
+    record.late = record.swings = record.limits = False
     candidate: Any = SimpleNamespace(name=name, parameters=1, record=record, shape={}, form=name)
     score: Any = SimpleNamespace(
         signature=np.asarray(contributed, dtype=float),
@@ -366,7 +366,9 @@ def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: 
         columns=np.ones((number, 1)),
         residual=np.ones(number),
     )
-    record = SimpleNamespace(late=False, before_drive=False, shapes=(), family="angle")
+    record = SimpleNamespace(
+        late=False, slope_misleads=lambda loop: False, shapes=(), family="angle"
+    )
     candidate = SimpleNamespace(name="cogging", record=record, parameters=2)
     score: Any = SimpleNamespace(score=explained, threshold=0.01, candidate=candidate)
     judged = decide.judge(base, score, model, np.ones(number), 0.1)

@@ -15,6 +15,7 @@ from typing import Final
 
 import numpy as np
 
+from ..catalogue import effects
 from ..trajectory import FloatArray
 from .candidates import LOWEST, scales_of
 from .decide import Trial
@@ -75,9 +76,9 @@ def unrepeated(model: Model, name: str) -> bool:
     A spring, as a cable is, and all else that goes with position look like a part of one, and so do
     a constant and a gain that is another one.
     """
-    effect = next(each for each in model.plant.effects if each.name == name)
-    if ORDER not in effect.parameters:
+    if name not in {r.name for r in effects() if any(s.parameter == ORDER for s in r.shapes)}:
         return False
+    effect = next(each for each in model.plant.effects if each.name == name)
     seen = [rows.form.mean(rows.form.position[1:])[rows.mask] for rows in model.evidence.shown]
     turns = np.concatenate(seen) * effect.parameters[ORDER].value / (2.0 * np.pi)
     # Where it stood in between two recordings nobody saw.

@@ -23,7 +23,7 @@ from .gains import (
 )
 from .homogeneity import unevenness
 from .model import LEAST_GIVEN, Model
-from .ranges import is_whole, out_of_its_range, partly_lost
+from .ranges import BELOW_A_KERNEL, is_whole, out_of_its_range, partly_lost
 from .screen import Score
 
 __all__ = [
@@ -98,6 +98,8 @@ class Trial:
     uneven : float
         What strengths of their own by kind of recording would add, as a share of its gain; 1
         where its shape says that it is something else.
+    of_reading : bool
+        What it imitates is the reading of the motion, of which nothing is missing.
     partly : bool
         Its gain would have to be whole and is not: the curve that is found is another cause's.
     doubtless : bool
@@ -118,6 +120,7 @@ class Trial:
     unseen: bool = False
     freed: bool = False
     partly: bool = False
+    of_reading: bool = False
     doubtless: bool = False
 
     @property
@@ -153,7 +156,7 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     gain, z = heldout_gain(base, model, touched)
     unseen = int(np.sum(touched & (base.blocks[1] > 0.0))) < FEWEST_BLOCKS
     explained = 1.0 - model.power / base.power if base.power > 0.0 else 0.0
-    untold = base.evidence.slopes_mislead(score.candidate.record)
+    untold = score.candidate.record.slope_misleads(loop=base.evidence.loop)
     freed = not untold and explained > MOST_TIMES * max(score.score, score.threshold)
     reason = ""
     by_blocks = lone = False
@@ -245,5 +248,6 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         unseen=unseen,
         freed=freed,
         partly=bool(partly),
+        of_reading=beyond.endswith(BELOW_A_KERNEL),
         doubtless=doubtless,
     )

@@ -11,7 +11,6 @@ from typing import Final, TypeVar
 
 import numpy as np
 
-from ..catalogue import EffectRecord
 from ..errors import NotEnoughData
 from ..fitting.forms import KERNELS, Through, as_session, forms_of
 from ..fitting.pushes import Watch
@@ -176,17 +175,6 @@ class Evidence:
     def simulated(self) -> bool:
         """Whether rows are those of simulations, not of efforts along the measured motion."""
         return any(form.simulated for form in self.forms)
-
-    def bends_towards(self, record: EffectRecord) -> bool:
-        """Whether a simulated loop follows such an effect so far that slopes tell nothing of it."""
-        return self.loop and record.before_drive
-
-    def slopes_mislead(self, record: EffectRecord) -> bool:
-        """Whether the slope at no gain does not tell how much a whole gain explains.
-
-        So it is of what is late, whose slope tells no delay, and before the drive of a loop.
-        """
-        return record.late or self.bends_towards(record)
 
     def each(self, work: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
         """Results of some work on each item, in their order, on as many threads as allowed."""

@@ -30,6 +30,8 @@ MOST_BEYOND: Final = 3.0
 was never there."""
 SURELY: Final = 2.0
 """Standard errors by which a gain is surely less."""
+BELOW_A_KERNEL: Final = "went below what a kernel shows"
+"""What is late by so little is the reading of the motion, and nothing that is missing."""
 AT_THE_EDGE: Final = 0.98
 """A shape that has come this near to the end of where it may be stands there."""
 
@@ -56,7 +58,7 @@ def out_of_its_range(candidate: Candidate, model: Model) -> str:
         if changes and late and stated.value <= stated.min / AT_THE_EDGE:
             return f"{shape.parameter} went below the usual speeds"
         if shape.scale == "kernel" and stated.value <= stated.min / AT_THE_EDGE:
-            return f"{shape.parameter} went below what a kernel shows"
+            return f"{shape.parameter} {BELOW_A_KERNEL}"
     return ""
 
 

@@ -223,7 +223,7 @@ def _refitted(
     found.unseen = {
         t.name: 1.0 - t.model.power / base.power for t in sorted(doubtless, key=lambda t: -t.worth)
     }
-    strange = [t for t in trials if t.imitates and choice is None]
+    strange = [t for t in trials if t.imitates and not t.of_reading and choice is None]
     strange = [t for t in strange if not any(covers(other, t) for other in doubtless)]
     found.imitated = max((t.gain for t in strange), default=0.0)
     for trial in trials:
@@ -281,7 +281,7 @@ def _is_asked(screening: Screening, score: Score) -> bool:
     """
     record = score.candidate.record
     beyond_noise = score.testable and score.score > score.threshold
-    return screening.evidence.bends_towards(record) or (record.limits and beyond_noise)
+    return (screening.evidence.loop and record.before_drive) or (record.limits and beyond_noise)
 
 
 def _hopeless(score: Score, trials: Sequence[Trial]) -> bool:

@@ -257,7 +257,7 @@ def _refit(
     start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
     model = compared_fit(evidence, start, base.nuisances)
     record = score.candidate.record
-    untold = record.swings or evidence.slopes_mislead(record)
+    untold = record.swings or record.slope_misleads(loop=evidence.loop)
     if model.power < (1.0 - KEPT * score.score) * base.power:
         return model
     if score.score < LESSER * best and not untold:
