@@ -24,8 +24,9 @@ def found(more: np.ndarray, residual: float = 1.0) -> Any:
     rows = [
         SimpleNamespace(
             index=k,
-            form=SimpleNamespace(dt=DT, stride=1, time=time),
+            form=SimpleNamespace(dt=DT, stride=1, time=time, clock=100.0 * k),
             mask=np.ones(ROWS, dtype=bool),
+            weight=2.0,
         )
         for k in range(RECORDINGS)
     ]
@@ -36,7 +37,7 @@ def found(more: np.ndarray, residual: float = 1.0) -> Any:
         recordings=[SimpleNamespace(time=time)] * RECORDINGS,
     )
     model: Any = SimpleNamespace(residual=residual * source.standard_normal(len(more)) + more)
-    return burst_of(evidence, model, source.standard_normal((len(more), 12)))
+    return burst_of(evidence, model, source.standard_normal((len(more), 12)), 1.0)
 
 
 def acting(*windows: tuple[int, int], size: float) -> np.ndarray:
@@ -55,6 +56,10 @@ def test_one_window_is_told_with_its_place() -> None:
     total = RECORDINGS * ROWS + 40 * 145.0
     assert burst.share == pytest.approx(40 * 145.0 / total, rel=0.05)
     assert "6.2 s into recording 3" in burst.advice().experiment
+    most = int(np.argmax(burst.view.mean))
+    assert burst.view.at[most] == pytest.approx(200.0 + 31 * 0.2 + 0.1)
+    assert burst.view.mean[most] == pytest.approx(6.0, rel=0.05)
+    assert burst.view.high[most] < 1.0
 
 
 def test_noise_is_no_burst() -> None:
@@ -82,3 +87,8 @@ def test_a_limit_that_rows_that_decide_and_test_reach_is_not_nothing() -> None:
     assert found.unexplained[0].coordinate == "single moments in time"
     assert found.unexplained[0].share > 0.5
     assert "into recording 2" in found.advice[0].experiment
+    assert found.pictures is not None
+    (shown,) = (
+        v for v in found.pictures.after.views if v.coordinate.name == "single moments in time"
+    )
+    assert shown.share == found.unexplained[0].share

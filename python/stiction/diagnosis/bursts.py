@@ -12,7 +12,9 @@ from ..fitting.rows import Rows
 from ..trajectory import FloatArray
 from .evidence import Evidence
 from .model import Model
+from .passing import MOMENTS
 from .result import Advice
+from .view import View
 
 __all__ = ["Burst", "at_moments", "burst_of"]
 
@@ -45,11 +47,14 @@ class Burst:
         In which the largest of them lies.
     start : float
         Of that, s since the first row of the recording.
+    view : View
+        The rms of what is left in every short window, over the session clock.
     """
 
     share: float
     recording: str
     start: float
+    view: View
 
     def advice(self) -> Advice:
         """What to look at, and to record."""
@@ -78,7 +83,7 @@ def at_moments(evidence: Evidence, model: Model, null: FloatArray) -> bool:
     return few and outstanding > MOST_OF_IT * excess > 0.0
 
 
-def burst_of(evidence: Evidence, model: Model, null: FloatArray) -> Burst | None:
+def burst_of(evidence: Evidence, model: Model, null: FloatArray, friction: float) -> Burst | None:
     """What lies in single moments far beyond noise, None where that is little or comes everywhere.
 
     Smoothers need what comes again, and so do causes. What comes once, or in one role alone, is
@@ -91,6 +96,8 @@ def burst_of(evidence: Evidence, model: Model, null: FloatArray) -> Burst | None
         What it leaves is looked at.
     null : numpy.ndarray, shape (n, surrogates)
         Residuals of the surrogates.
+    friction : float
+        Weighted rms of the friction, against which sizes are measured.
     """
     total = float(np.sum(model.residual**2))
     largest, there, sums, windows = 0.0, ("", 0.0), [0.0, 0], 0
@@ -104,7 +111,35 @@ def burst_of(evidence: Evidence, model: Model, null: FloatArray) -> Burst | None
             largest, there = float(power[most]), (evidence.names[rows.index], time[most] - begin)
     if sums[0] <= LEAST * total or sums[1] > MOST_WINDOWS * windows:
         return None
-    return Burst(sums[0] / total, there[0], float(there[1]))
+    share = sums[0] / total
+    size = float(np.sqrt(sums[0] / len(model.residual))) / max(friction, 1e-300)
+    view = View(MOMENTS, *_curve(evidence, model, null), share, LEAST, size)
+    return Burst(share, there[0], float(there[1]), view)
+
+
+def _curve(
+    evidence: Evidence, model: Model, null: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Session clock, rms in each short window, and the band of 95 % of the surrogates."""
+    at: list[FloatArray] = []
+    shown: list[FloatArray] = []
+    low: list[FloatArray] = []
+    high: list[FloatArray] = []
+    for rows, time, power, noise in _windows(evidence, model, null):
+        begin = float(evidence.recordings[rows.index].time[0])
+        at.append(rows.form.clock + time - begin + 0.5 * WINDOW_S)
+        scale = rows.weight * np.sqrt(_length(rows))
+        shown.append(np.sqrt(power) / scale)
+        for bound, share in ((low, 0.025), (high, 0.975)):
+            bound.append(np.quantile(np.sqrt(noise), share, axis=1) / scale)
+    order = np.argsort(np.concatenate(at), kind="stable")
+    clock, mean, least, most = (np.concatenate(each)[order] for each in (at, shown, low, high))
+    return clock, mean, least, most
+
+
+def _length(rows: Rows) -> int:
+    """Rows in a short window."""
+    return max(1, round(WINDOW_S / (rows.form.dt * rows.form.stride)))
 
 
 def _windows(
@@ -124,7 +159,7 @@ def _windows(
     """
     for rows in evidence.shown:
         own = evidence.cells.recording == rows.index
-        length = max(1, round(WINDOW_S / (rows.form.dt * rows.form.stride)))
+        length = _length(rows)
         number = int(own.sum()) // length
         if number > 0:
             first = np.flatnonzero(own)[: number * length].reshape(number, length)

@@ -41,6 +41,7 @@ from .omnibus import Rest, rest
 from .orders import open_orders
 from .outlying import outlying_in_test
 from .own import own_view
+from .passing import MOMENTS
 from .pictures import Pictures, Stretch
 from .regression import refitted
 from .remedies import meant
@@ -235,7 +236,8 @@ class Conclusion:
         """Single moments that hold much of what is left, where no cause is there to tell them."""
         if self.confirmed.choices or self.confirmed.unseen:
             return None
-        return burst_of(self.evidence, self.confirmed.models[-1], self.null)
+        friction = friction_of(self.evidence, self.base)
+        return burst_of(self.evidence, self.confirmed.models[-1], self.null, friction)
 
     @cached_property
     def held(self) -> Sequence[Held]:
@@ -296,6 +298,10 @@ class Conclusion:
         if event is not None and better is None:
             followed = event_words(self.rivals, base, event) if event.fitted else ""
             verdict, reason, unexplained = "not_testable", event.words() + followed, ()
+        before, after = self.rests
+        if burst is not None and MOMENTS.name in {each.coordinate for each in unexplained}:
+            # Nothing is named then: both are what the base leaves.
+            before = after = after.with_view(burst.view)
         return replace(
             found,
             verdict=verdict,
@@ -344,8 +350,8 @@ class Conclusion:
             message=MESSAGE if self.interrupted else found.message,
             pictures=Pictures(
                 stretches=_stretches(evidence, test, (base, 0), (final, number)),
-                before=self.rests[0],
-                after=self.rests[1],
+                before=before,
+                after=after,
                 effort_unit=extended.unit,
                 effort_name="effort by its own law" if final.plant.servo else "measured effort",
                 position_unit=final.plant.position_unit,

@@ -47,6 +47,11 @@ class Rest:
                 del shown[lesser.coordinate.name]
         return tuple(shown.values())
 
+    def with_view(self, view: View) -> Rest:
+        """The same with a view in the place of the one over its coordinate."""
+        others = (each for each in self.views if each.coordinate.name != view.coordinate.name)
+        return Rest(tuple(sorted((*others, view), key=lambda each: -each.share)))
+
     @property
     def described(self) -> tuple[View, ...]:
         """What it goes with where something is left, largest share first."""
