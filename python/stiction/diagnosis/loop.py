@@ -148,9 +148,10 @@ def _runs(evidence: Evidence, model: Model, wanted: Sequence[int]) -> tuple[Runs
         recording, start = evidence.recordings[index], model.nuisances.start(index)
         try:
             form = evidence.forms[index]
-            runs[index] = closed_loop.replay(
+            run = closed_loop.replay(
                 model.plant, recording, start, clock=form.clock, path=form.path
             )
+            runs[index] = _later(run, model.nuisances.timing) if model.plant.servo else run
         except InputError as error:
             runs[index] = None
             why = str(error).removeprefix(f"{recording.path or 'recording'}: ")
@@ -159,6 +160,11 @@ def _runs(evidence: Evidence, model: Model, wanted: Sequence[int]) -> tuple[Runs
     if len(failed) > 1:
         failed[0] += f" (and {counted(len(failed) - 1, 'other recording')} likewise)"
     return runs, failed[:1]
+
+
+def _later(run: ClosedLoop, offset: float) -> ClosedLoop:
+    """The loop of a goal that comes later than it is stamped, as it was fitted."""
+    return replace(run, simulated=np.interp(run.time - offset, run.time, run.simulated))
 
 
 def _errors(evidence: Evidence, model: Model, runs: Runs) -> Replay:
