@@ -14,7 +14,7 @@ from .evidence import Evidence
 from .model import Model
 from .passing import MOMENTS
 from .result import Advice
-from .view import View
+from .view import LEAST_SIZE, View
 
 __all__ = ["Burst", "at_moments", "burst_of"]
 
@@ -30,7 +30,7 @@ holds: where nothing was hidden it came to 19, and where a drive was out of volt
 second to 74 and more."""
 LEAST: Final = 0.08
 """Share of all that is left which bursts hold, from which on they are told; there it came to .04,
-and to .13 and more."""
+and to .13 and more. What is that far beyond noise matters from half of ``LEAST_SIZE`` on."""
 MOST_WINDOWS: Final = 0.01
 """Share of all windows up to which bursts are single moments."""
 
@@ -109,10 +109,11 @@ def burst_of(evidence: Evidence, model: Model, null: FloatArray, friction: float
         if out[most] and power[most] > largest:
             begin = float(evidence.recordings[rows.index].time[0])
             largest, there = float(power[most]), (evidence.names[rows.index], time[most] - begin)
-    if sums[0] <= LEAST * total or sums[1] > MOST_WINDOWS * windows:
+    size = float(np.sqrt(sums[0] / len(model.residual))) / max(friction, 1e-300)
+    little = sums[0] <= LEAST * total or size <= 0.5 * LEAST_SIZE
+    if little or sums[1] > MOST_WINDOWS * windows:
         return None
     share = sums[0] / total
-    size = float(np.sqrt(sums[0] / len(model.residual))) / max(friction, 1e-300)
     view = View(MOMENTS, *_curve(evidence, model, null), share, LEAST, size)
     return Burst(share, there[0], float(there[1]), view)
 
