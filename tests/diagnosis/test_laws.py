@@ -93,6 +93,22 @@ def test_rows_that_test_take_a_law_away_that_is_surely_worse_there() -> None:
     assert laws.better_law([replace(first, kept=("cogging",))], 0, test, 0) is not None
 
 
+def test_of_laws_that_leave_as_little_the_simpler_one_is_named() -> None:
+    """A law that holds another one within it leaves a little less of what that one made."""
+
+    def fitted_by(law: str, beside: float, numbers: int) -> laws.Rival:
+        found = rival(law, 1.0)
+        assert found.model is not None
+        paths = [f"friction.{k}" for k in range(numbers)] + ["body.inertia"]
+        found.model.solution = SimpleNamespace(variables=SimpleNamespace(paths=paths))
+        return replace(found, beside=beside, z=9.0)
+
+    simple, holding = fitted_by("dahl", 0.9990, 4), fitted_by("leuven", 0.9991, 7)
+    worse = fitted_by("bristle", 0.95, 2)
+    assert laws.better_law([holding, simple, worse], 0, None, 0) is simple
+    assert laws.about_as_good([holding, simple, worse], simple) == ["leuven"]
+
+
 def test_no_law_is_said_to_leave_nothing_and_no_other_one_to_be_worse_than_it_is() -> None:
     names = {"leuven": 0.9996, "lugre": 0.99952, "dahl": 0.97}
     found = [replace(rival(law, 1.0), beside=less, z=9.0) for law, less in names.items()]
@@ -176,6 +192,7 @@ def rival(law: str, power: float, **terms: float) -> laws.Rival:
         plant=plant,
         # Beside the event a row in which no law differs from another.
         residual=np.array([np.sqrt(power), 3.0]),
+        solution=SimpleNamespace(variables=SimpleNamespace(paths=["friction.coulomb"])),
         evidence=SimpleNamespace(fitted=np.array([True, True]), shown=(), names=()),
     )
     return laws.Rival(law, True, cast("Model", model))

@@ -106,6 +106,12 @@ class Rival:
         """Whether it explains clearly more than what was named."""
         return self.beside > WORTH_MORE and self.z > DECIDED_Z
 
+    @property
+    def parameters(self) -> int:
+        """How many numbers of its own were fitted."""
+        paths = () if self.model is None else self.model.solution.variables.paths
+        return sum(path.startswith("friction.") for path in paths)
+
     def words(self, own: str, named: bool, alike: Sequence[str] = ()) -> str:
         """What that means, in a sentence; ``alike`` are laws that leave about as little."""
         summary = next(record.summary for record in all_laws() if record.name == self.law)
@@ -209,8 +215,9 @@ def _beside(final: Model, model: Model, rival: Rival, selection: Search) -> Riva
 def better_law(rivals: Sequence[Rival], own: int, test: HeldOut | None, seed: int) -> Rival | None:
     """The law that explains most beside what was named, None where none does clearly.
 
-    Rows that test choose none. They may take one away: a law that is surely worse there than what
-    was named is none to be stated.
+    Of those that explain about as much it is the one with the fewest parameters. Rows that test
+    choose none. They may take one away: a law that is surely worse there than what was named is
+    none to be stated.
 
     Parameters
     ----------
@@ -232,7 +239,12 @@ def better_law(rivals: Sequence[Rival], own: int, test: HeldOut | None, seed: in
         and gain_of(test, own, place, seed).ci95[1] < 0.0
     }
     better = [rival for rival in rivals if rival.better and rival.law not in refuted]
-    return max(better, key=lambda rival: rival.beside) if better else None
+    if not better:
+        return None
+    best = max(better, key=lambda rival: rival.beside)
+    # A law that holds another one within it follows what that one made as well.
+    near = [best, *_about_as_good(better, best)]
+    return min(near, key=lambda rival: (rival.parameters, -rival.beside))
 
 
 def _fitted(base: Model, law: str, hopeless: float) -> Model | None:
@@ -417,10 +429,14 @@ def _in_event(model: Model, own: Model, event: Lone) -> float:
 
 
 def about_as_good(rivals: Sequence[Rival], best: Rival) -> list[str]:
-    """Laws that leave about as little as the best one, the better ones first."""
+    """Laws that leave about as little as one that is recommended, the better ones first."""
+    return [rival.law for rival in _about_as_good(rivals, best)]
+
+
+def _about_as_good(rivals: Sequence[Rival], best: Rival) -> list[Rival]:
     most = AS_LITTLE * (1.0 - best.beside)
-    near = [r for r in rivals if r is not best and r.better and 1.0 - r.beside <= most]
-    return [rival.law for rival in sorted(near, key=lambda rival: -rival.beside)]
+    near = (r for r in rivals if r is not best and r.better and 1.0 - r.beside <= most)
+    return sorted(near, key=lambda rival: -rival.beside)
 
 
 def _as_little(alike: Sequence[str]) -> str:
