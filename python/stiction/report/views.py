@@ -50,6 +50,7 @@ HINTS: Final = {
 }
 """By the name of the coordinate."""
 MOVED: Final = {
+    "single moments in time": "what comes once: a cable, a person, a machine nearby",
     "acceleration": "a mass between the specimen and the sensor of the effort",
     "response to the effort": "effort and position that are not stamped alike, or a fixture that "
     "gives",
