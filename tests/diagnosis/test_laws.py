@@ -86,11 +86,16 @@ def test_rows_that_test_take_a_law_away_that_is_surely_worse_there() -> None:
     gained = {"beside": 0.8, "z": 9.0}
     first = replace(rival("load_dependent", 1.0), **gained)
     second = replace(rival("dahl", 1.0), **{**gained, "beside": 0.5})
-    assert laws.better_law([first, second], 0, None, 0) is first
-    assert laws.better_law([first, second], 0, test, 0) is second
-    assert laws.better_law([first], 0, test, 0) is None
+    assert laws.better_laws([first, second], 0, None, 0) == [first]
+    assert laws.better_laws([first, second], 0, test, 0) == [second]
+    assert laws.better_laws([first], 0, test, 0) == []
+    # Nor is it named beside another one.
+    near = replace(first, beside=0.5)
+    assert laws.better_laws([near, second], 0, None, 0) == [near, second]
+    assert laws.better_laws([near, second], 0, test, 0) == [second]
     # What was tested without the effects that it needs is not judged by that.
-    assert laws.better_law([replace(first, kept=("cogging",))], 0, test, 0) is not None
+    needs = replace(first, kept=("cogging",))
+    assert laws.better_laws([needs], 0, test, 0) == [needs]
 
 
 def test_of_laws_that_leave_as_little_the_simpler_one_is_named() -> None:
@@ -105,16 +110,12 @@ def test_of_laws_that_leave_as_little_the_simpler_one_is_named() -> None:
 
     simple, holding = fitted_by("dahl", 0.9990, 4), fitted_by("leuven", 0.9991, 7)
     worse = fitted_by("bristle", 0.95, 2)
-    assert laws.better_law([holding, simple, worse], 0, None, 0) is simple
-    assert laws.about_as_good([holding, simple, worse], simple) == ["leuven"]
+    assert laws.better_laws([holding, simple, worse], 0, None, 0) == [simple, holding]
 
 
-def test_no_law_is_said_to_leave_nothing_and_no_other_one_to_be_worse_than_it_is() -> None:
-    names = {"leuven": 0.9996, "lugre": 0.99952, "dahl": 0.97}
-    found = [replace(rival(law, 1.0), beside=less, z=9.0) for law, less in names.items()]
-    alike = laws.about_as_good(found, found[0])
-    assert alike == ["lugre"]
-    said = found[0].words("coulomb", named=False, alike=alike)
+def test_no_law_is_said_to_leave_nothing() -> None:
+    found = replace(rival("leuven", 1.0), beside=0.9996, z=9.0)
+    said = found.words("coulomb", named=False, alike=["lugre"])
     assert said.endswith("leaves over 99 % less than coulomb; lugre leaves about as little.")
 
 

@@ -29,7 +29,7 @@ from .exact_forms import rests_of
 from .gain import HeldOut, gain_of, residuals_of
 from .held_numbers import Held, held_numbers, held_words
 from .holds import holds_of
-from .laws import THE_LAW, Rival, about_as_good, better_law, event_words, law_rows, rivals_of
+from .laws import THE_LAW, Rival, better_laws, event_words, law_rows, rivals_of
 from .left_open import left_open, waves_left_open
 from .listing import in_order
 from .lone import lone_event
@@ -255,8 +255,8 @@ class Conclusion:
         number = len(selection.choices)
         extended = _summary(evidence, final, results[id(final)], test, number, floor)
         own_law, last = base.plant.friction.law, len(self.decided.models) - 1
-        better = better_law(self.rivals, last, test, found.seed)
-        alike = [] if better is None else about_as_good(self.rivals, better)
+        laws = better_laws(self.rivals, last, test, found.seed)
+        better = laws[0] if laws else None
         causes = _causes(selection, results[id(final)], test, found.seed, sole=better is None)
         gain = None
         if causes and test is not None:
@@ -306,7 +306,11 @@ class Conclusion:
             found,
             verdict=verdict,
             sentence=_opening(self.interrupted, bool(causes))
-            + ("" if better is None else f"{better.words(own_law, bool(causes), alike)} ")
+            + (
+                ""
+                if better is None
+                else f"{better.words(own_law, bool(causes), [r.law for r in laws[1:]])} "
+            )
             + sentence(
                 verdict, causes, gain, unexplained, reason, slight=_slight(selection, self.rests[1])
             )

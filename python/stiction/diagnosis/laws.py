@@ -34,8 +34,7 @@ from .words import joined
 __all__ = [
     "THE_LAW",
     "Rival",
-    "about_as_good",
-    "better_law",
+    "better_laws",
     "event_words",
     "law_names",
     "law_rows",
@@ -212,12 +211,12 @@ def _beside(final: Model, model: Model, rival: Rival, selection: Search) -> Riva
     return replace(rival, beside=beside, z=z, kept=tuple(effect.name for effect in kept))
 
 
-def better_law(rivals: Sequence[Rival], own: int, test: HeldOut | None, seed: int) -> Rival | None:
-    """The law that explains most beside what was named, None where none does clearly.
+def better_laws(rivals: Sequence[Rival], own: int, test: HeldOut | None, seed: int) -> list[Rival]:
+    """The law to state, and those that leave about as little; empty where none clearly helps.
 
-    Of those that explain about as much it is the one with the fewest parameters. Rows that test
-    choose none. They may take one away: a law that is surely worse there than what was named is
-    none to be stated.
+    First stands the one with the fewest parameters: a law that holds another one within it follows
+    what that one made as well. Rows that test choose none. They may take one away: a law that is
+    surely worse there than what was named is none to be stated.
 
     Parameters
     ----------
@@ -239,12 +238,10 @@ def better_law(rivals: Sequence[Rival], own: int, test: HeldOut | None, seed: in
         and gain_of(test, own, place, seed).ci95[1] < 0.0
     }
     better = [rival for rival in rivals if rival.better and rival.law not in refuted]
-    if not better:
-        return None
-    best = max(better, key=lambda rival: rival.beside)
-    # A law that holds another one within it follows what that one made as well.
-    near = [best, *_about_as_good(better, best)]
-    return min(near, key=lambda rival: (rival.parameters, -rival.beside))
+    most = AS_LITTLE * min((1.0 - rival.beside for rival in better), default=0.0)
+    near = sorted((r for r in better if 1.0 - r.beside <= most), key=lambda r: -r.beside)
+    first = min(near, key=lambda rival: (rival.parameters, -rival.beside), default=None)
+    return [] if first is None else [first, *(rival for rival in near if rival is not first)]
 
 
 def _fitted(base: Model, law: str, hopeless: float) -> Model | None:
@@ -426,17 +423,6 @@ def _in_event(model: Model, own: Model, event: Lone) -> float:
     inside = event.rows(evidence.shown, evidence.names) & evidence.fitted
     one, two = (float(np.sum(each.residual[inside] ** 2)) for each in (model, own))
     return one / max(two, 1e-300)
-
-
-def about_as_good(rivals: Sequence[Rival], best: Rival) -> list[str]:
-    """Laws that leave about as little as one that is recommended, the better ones first."""
-    return [rival.law for rival in _about_as_good(rivals, best)]
-
-
-def _about_as_good(rivals: Sequence[Rival], best: Rival) -> list[Rival]:
-    most = AS_LITTLE * (1.0 - best.beside)
-    near = (r for r in rivals if r is not best and r.better and 1.0 - r.beside <= most)
-    return sorted(near, key=lambda rival: -rival.beside)
 
 
 def _as_little(alike: Sequence[str]) -> str:
