@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Final
@@ -58,12 +58,10 @@ class LoopForm(WeakForm):
         third = np.abs(np.diff(self.readings, 3))
         white = GAUSSIAN * float(np.median(third)) / np.sqrt(20.0) if len(third) else 0.0
         self.noise = max(white, self.count / np.sqrt(12.0))
-        stamps = self.stamped(recording.time)[1]
-        steps = np.diff(stamps)
-        self.steps = self.dt if np.ptp(steps) <= EVEN * self.dt else steps
-        self.velocity_at_start = starting_velocity(stamps, self.readings, self.count)
+        self.steps = self.dt if self._even is None else np.diff(self.stamps)
+        self.velocity_at_start = starting_velocity(self.stamps, self.readings, self.count)
         self.stride = 1
-        self.time = stamps[1:]
+        self.time = self.stamps[1:]
 
     def seen_by(self, plant: Plant) -> LoopForm:
         """As it is: the simulated motion drives friction."""
@@ -101,17 +99,39 @@ class LoopForm(WeakForm):
         """0, for the same reason."""
         return 0.0
 
-    @property
-    def velocity(self) -> FloatArray:
-        """Velocity at the sample ends, shape (n,)."""
-        slope: FloatArray = np.gradient(self.position, self.dt)[1:]
-        return slope
+    @cached_property
+    def _even(self) -> FloatArray | None:
+        """As many even stamps over the same time; None where those of the rows are even."""
+        if np.ptp(np.diff(self.stamps)) <= EVEN * self.dt:
+            return None
+        return np.linspace(self.stamps[0], self.stamps[-1], len(self.stamps))
+
+    def _seen(self, smoothed: Callable[[FloatArray], FloatArray], values: FloatArray) -> FloatArray:
+        """What a kernel, which is as wide in samples everywhere, makes of values at the rows."""
+        if self._even is None:
+            return smoothed(values)
+        made = smoothed(np.interp(self._even, self.stamps, values))
+        seen: FloatArray = np.interp(self.stamps, self._even, made)
+        return seen
+
+    def driving(self, readings: FloatArray) -> FloatArray:
+        """The motion that views look at, from readings of a position; same shape."""
+        return self._seen(super().driving, readings)
+
+    def velocities(self, position: FloatArray) -> FloatArray:
+        """Velocity of a position at the sample ends, shape (n,)."""
+        slope: FloatArray = np.gradient(position, self.dt if self._even is None else self.stamps)
+        return slope[1:]
 
     def accelerations(self, readings: FloatArray, driving: FloatArray | None = None) -> FloatArray:
         """Acceleration of a position at the sample ends, through the kernel, shape (n,)."""
         half = self.kernel.half
-        padded = np.pad(readings[1:], half, "reflect", reflect_type="odd")
-        return self.kernel.second_derivative(padded)
+
+        def bent(values: FloatArray) -> FloatArray:
+            padded = np.pad(values, half, "reflect", reflect_type="odd")
+            return self.kernel.second_derivative(padded)
+
+        return self._seen(bent, readings)[1:]
 
     def measured(self, plant: Plant) -> FloatArray:
         """Effort that the drive gives along the measured motion; shape (n,)."""
@@ -144,9 +164,8 @@ class LoopForm(WeakForm):
 
     def late(self, plant: Plant) -> FloatArray:
         """What a later goal changes of the residual, per s: all that follows it is later too."""
-        moved = smooth(self.readings, self.dt, self.kernel.support)
-        late: FloatArray = self.stiffness * np.gradient(moved, self.dt)[1:]
-        return late
+        moved = self._seen(lambda read: smooth(read, self.dt, self.kernel.support), self.readings)
+        return self.stiffness * self.velocities(moved)
 
     def acted(self, plant: Plant) -> FloatArray:
         """Effort that the drive gives along the simulated motion; shape (n,).

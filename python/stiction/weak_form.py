@@ -87,8 +87,8 @@ class WeakForm:
     acceleration : numpy.ndarray, shape (n,)
         rad/s² or m/s², through the kernel.
     kernel : Kernel
-    readings, position : numpy.ndarray, shape (rows,)
-        Position as it was read, on even stamps, and as it drives friction.
+    stamps, readings, position : numpy.ndarray, shape (rows,)
+        Even stamps in s, the position as it was read there, and as it drives friction.
     count, noise : float
         Step of the readings, 0 where there is none, and standard deviation of their noise, rounding
         included; rad or m.
@@ -131,6 +131,7 @@ class WeakForm:
         if self.prescribed:
             driving = without_spikes(driving)
         stamps, time, self.dt = self.stamped(recording.time)
+        self.stamps = time
         least = support or max(SUPPORTS_S[0], FEWEST_SAMPLES * self.dt)
         # Before any kernel is made: at 10 MHz one of 30 ms would have 300 000 samples.
         possible = support is None or support <= WIDEST * self.dt

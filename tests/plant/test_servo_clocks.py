@@ -112,3 +112,19 @@ def test_a_servo_that_warms_up_is_simulated_as_warm_as_it_is() -> None:
     assert cause.name == "warm_up"
     assert found.gain is not None
     assert found.gain.ci95[0] > 0.5
+
+
+def test_speeds_of_an_uneven_clock_are_those_of_the_machine() -> None:
+    """Smoothed as if rows were even, each late row gave a step of the speed."""
+    steps = np.where(np.random.default_rng(6).random(600) < 0.8, DT, 1.3 * DT)
+    time = np.concatenate([[0.0], np.cumsum(steps)])[:-1]
+    position = 0.8 * np.sin(2.0 * time)
+    form = LoopForm(st.Plant.from_dict(PLANT), st.Recording(time, position, position))
+    # A rigid contact is taken to rest about its turns, and the smoothing has ends.
+    inside = np.flatnonzero(np.abs(np.cos(2.0 * form.time)) > 0.2)[40:-40]
+    velocity = 1.6 * np.cos(2.0 * form.time)[inside]
+    bent = -3.2 * np.sin(2.0 * form.time)[inside]
+    np.testing.assert_allclose(form.velocity[inside], velocity, atol=0.01 * 1.6)
+    np.testing.assert_allclose(form.acceleration[inside], bent, atol=0.02 * 3.2)
+    later = form.late(st.Plant.from_dict(PLANT))[inside]
+    np.testing.assert_allclose(later, form.stiffness * velocity, atol=0.02 * 1.6 * form.stiffness)

@@ -17,7 +17,7 @@ from ..recording import Recording
 from .evidence import Evidence
 from .model import Model
 
-__all__ = ["based", "based_wider"]
+__all__ = ["based", "based_joined", "based_wider"]
 
 LOST: Final = 1e-3
 """An inertia that shrinks to this share of what the plant states, or of what the motion told at
@@ -32,12 +32,14 @@ def based(
     *,
     threads: int | None = None,
     wide: bool = False,
+    joined: bool = False,
 ) -> tuple[Evidence, Model]:
     """A session and the base that is fitted to its rows of train.
 
     The way is that of `stiction.fit`: a first pass from starts that the data give, a second with
     recordings weighted by what the first left in each. Wider kernels (see ``wider_of``) are tried
     with ``wide`` alone: what a cause explains through narrow ones must not be averaged away.
+    ``joined`` as in ``Evidence``.
 
     Returns
     -------
@@ -51,12 +53,12 @@ def based(
     NotEnoughData
         As for ``Evidence``; a base that lost the inertia that the motion shows.
     """
-    evidence = Evidence(plant, recordings, threads=threads)
+    evidence = Evidence(plant, recordings, threads=threads, joined=joined)
     first = first_pass(
         plant,
         evidence,
         lambda found, through, watch: Evidence(
-            found, recordings, threads=threads, through=through, watch=watch
+            found, recordings, threads=threads, through=through, watch=watch, joined=joined
         ),
         most=MOST_EVALUATIONS,
         wide=wide,
@@ -109,6 +111,25 @@ def based_wider(
         return None
     left = share_left(final, evidence.train)
     return (other, base) if share_left(base, other.train) < WORTH_WIDER * left else None
+
+
+def based_joined(
+    plant: Plant,
+    recordings: Sequence[Recording],
+    evidence: Evidence,
+    *,
+    threads: int | None = None,
+) -> tuple[Evidence, Model] | None:
+    """The base that is fitted to the rows that decide as well, through kernels as wide.
+
+    None where these rows cannot be left out in turn, or no such base describes the machine. After
+    Ctrl-C its solution is interrupted.
+    """
+    wide = any(form.widened for form in evidence.forms)
+    try:
+        return based(plant, recordings, threads=threads, wide=wide, joined=True)
+    except InputError:
+        return None
 
 
 def _refuse_what_does_not_move(evidence: Evidence, begin: Plant, base: Model) -> None:

@@ -22,7 +22,15 @@ from .advice import advise
 from .bursts import Burst, burst_of
 from .candidates import Scales, scales_of
 from .ceiling import Ceiling, ceiling_of
-from .confirm import confirmed, described, lost, lost_on_test
+from .confirm import (
+    borne_out_by_test,
+    confirmed,
+    described,
+    likeliest,
+    lost,
+    lost_on_test,
+    with_choice,
+)
 from .coordinates import Look, looks
 from .evidence import Evidence
 from .exact_forms import rests_of
@@ -159,15 +167,36 @@ class Conclusion:
         return self.evidence.open_test()
 
     @cached_property
+    def _tested(self) -> tuple[Search, HeldOut | None]:
+        """The selection, with what the rows that test answer where they were asked, and these."""
+        likely, selection = likeliest(self.decided), self.decided
+        asked = [] if likely is None else [likely.winner.model]
+        others = [r.model for r in self.rivals if r.model is not None]
+        models = [*selection.models, *asked, *others]
+        test = residuals_of(self.evidence, self.opened, [(m.plant, m.nuisances) for m in models])
+        if likely is None or test is None:
+            return selection, test
+        place = len(selection.models)
+        if borne_out_by_test(selection, likely, test, place):
+            more = borne_out(with_choice(selection, likely), self.evidence)
+            if more.choices:
+                return more, test
+        return selection, test.without(place)
+
+    @property
+    def chosen(self) -> Search:
+        """The selection, before the rows that test may take something away."""
+        return self._tested[0]
+
+    @property
     def test(self) -> HeldOut | None:
         """What all models leave there; those of other laws come last."""
-        models = [*self.decided.models, *(r.model for r in self.rivals if r.model is not None)]
-        return residuals_of(self.evidence, self.opened, [(m.plant, m.nuisances) for m in models])
+        return self._tested[1]
 
     @cached_property
     def confirmed(self) -> Search:
         """The selection that the rows that test bear out."""
-        return confirmed(self.decided, self.test, self.found.seed)
+        return confirmed(self.chosen, self.test, self.found.seed)
 
     @cached_property
     def _centred(self) -> tuple[FloatArray, FloatArray]:
@@ -254,7 +283,7 @@ class Conclusion:
         baseline = _summary(evidence, base, results[id(base)], test, 0, floor)
         number = len(selection.choices)
         extended = _summary(evidence, final, results[id(final)], test, number, floor)
-        own_law, last = base.plant.friction.law, len(self.decided.models) - 1
+        own_law, last = base.plant.friction.law, len(self.chosen.models) - 1
         laws = better_laws(self.rivals, last, test, found.seed)
         better = laws[0] if laws else None
         causes = _causes(selection, results[id(final)], test, found.seed, sole=better is None)
@@ -327,7 +356,7 @@ class Conclusion:
             candidates=in_order(selection.rows.values(), causes),
             laws=law_rows(
                 self.rivals,
-                len(self.decided.models),
+                len(self.chosen.models),
                 test,
                 found.seed,
                 beside=(base, event) if event is not None and event.fitted else None,

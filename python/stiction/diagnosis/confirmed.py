@@ -18,7 +18,7 @@ from ..trajectory import FloatArray
 from .model import Model
 from .regression import refitted
 
-__all__ = ["confirmed", "in_few_blocks"]
+__all__ = ["confirmed", "gone_where_it_acts", "in_few_blocks"]
 
 CLEAR: Final = 4.0
 """Size of what is expected on rows held out over its standard error there: far from noise."""
@@ -66,24 +66,56 @@ def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool
     own = refitted(base.columns, contributed, fitted)
     count = int(block.max()) + 1
     learnt_from = np.bincount(block[fitted], own[fitted] ** 2, count)
-    few = _are_few(learnt_from)
-    rows = np.maximum(np.bincount(block[held], minlength=count), 1)
-    noise = np.bincount(block[held], model.residual[held] ** 2, count) / rows
-    power = np.bincount(block[held], own[held] ** 2, count)
-    expected = float(power.sum())
-    # Rows under one kernel are one reading: so many times worse than if they were independent.
-    error = float(np.sqrt(evidence.overlap * (power @ noise)))
-    if expected <= CLEAR * error:
-        return False
-    if few:
-        acting = np.where(power > ACTS * float(np.max(power)), power, 0.0)
-        before, after = (
-            float(acting @ np.bincount(block[held], each.residual[held] ** 2, count))
-            for each in (base, model)
+    before, after = (each.residual[held] for each in (base, model))
+    if _are_few(learnt_from):
+        most = LEFT if whole else LEFT_OF_ANY
+        return gone_where_it_acts(
+            block[held], own[held], before, after, evidence.overlap, most=most
         )
-        return after < (LEFT if whole else LEFT_OF_ANY) * before
+    if not _is_clear(block[held], own[held], after, evidence.overlap):
+        return False
     seen, learnt = (_strength(base.residual[rows], own[rows]) for rows in (held, fitted))
     return learnt > 0.0 and AS_EXPECTED[0] < seen / learnt < AS_EXPECTED[1]
+
+
+def gone_where_it_acts(
+    block: NDArray[Any],
+    explained: FloatArray,
+    before: FloatArray,
+    after: FloatArray,
+    overlap: float,
+    *,
+    most: float = LEFT,
+) -> bool:
+    """Whether next to nothing is left in the blocks in which something acts, far beyond noise.
+
+    Parameters
+    ----------
+    block : numpy.ndarray of int, shape (n,)
+        Of each row, none of them fitted.
+    explained, before, after : numpy.ndarray, shape (n,)
+        What it explains, and what is left without it and with it.
+    overlap : float
+        Rows under one kernel.
+    most : float
+        Share of the power that may be left.
+    """
+    if not _is_clear(block, explained, after, overlap):
+        return False
+    power = np.bincount(block, explained**2)
+    acting = np.where(power > ACTS * float(np.max(power)), power, 0.0)
+    left = float(acting @ np.bincount(block, after**2))
+    return left < most * float(acting @ np.bincount(block, before**2))
+
+
+def _is_clear(
+    block: NDArray[Any], explained: FloatArray, after: FloatArray, overlap: float
+) -> bool:
+    """Whether what something explains stands far beyond the noise of these rows."""
+    noise = np.bincount(block, after**2) / np.maximum(np.bincount(block), 1)
+    power = np.bincount(block, explained**2)
+    # Rows under one kernel are one reading: so many times worse than if they were independent.
+    return float(power.sum()) > CLEAR * float(np.sqrt(overlap * (power @ noise)))
 
 
 def in_few_blocks(base: Model, contributed: FloatArray) -> bool:

@@ -90,10 +90,12 @@ class Evidence:
     watch : Watch, optional
         Who looks out for pushes from outside; without it a new one learns from the rows that may
         be looked at.
+    joined : bool
+        The rows that decide are fitted as well, and folds over all of them decide.
 
     Attributes
     ----------
-    loop : bool
+    loop, joined : bool
     watch : Watch
     pushes : list of Push
         Times that no drive made: their rows are left out. Those among rows that test are added when
@@ -132,6 +134,7 @@ class Evidence:
         threads: int | None = None,
         through: Through = KERNELS,
         watch: Watch | None = None,
+        joined: bool = False,
     ) -> None:
         self.plant = plant
         self.loop = through.loop
@@ -142,7 +145,9 @@ class Evidence:
         self.forms = forms_of(plant, self.recordings, self.each, through)
         self.support = max(form.kernel.support for form in self.forms)
         self.overlap = max(f.kernel.support / (f.dt * f.stride) for f in self.forms)
-        self.split: Split = split(self.recordings, edge_s=min(self.support, 0.25 * BLOCK_S))
+        self.joined = joined
+        edge_s = min(self.support, 0.25 * BLOCK_S)
+        self.split: Split = split(self.recordings, edge_s=edge_s, joined=joined)
         seen = {part.recording for part in (*self.split.train, *self.split.select)}
         as_session(self.forms, self.recordings, set(range(len(self.forms))) - seen)
         shown_parts = (*self.split.train, *self.split.select)

@@ -6,7 +6,8 @@ import logging
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Final
+from functools import partial
+from typing import Any, Final, NamedTuple
 
 from .. import __version__
 from ..errors import InputError, NotEnoughData
@@ -23,7 +24,7 @@ from ..recording.usable import checks_of, usable
 from ..session import Session
 from ..trajectory import FloatArray
 from .advice import advise
-from .base import based, based_wider
+from .base import based, based_joined, based_wider
 from .candidates import left_out
 from .conclude import Conclusion, base_alone, surrogates_of
 from .evidence import Evidence
@@ -32,6 +33,8 @@ from .model import Model
 from .noise import Noise
 from .result import Diagnosis
 from .rounds import search
+from .seconds import acts_for_seconds, asked_before, holds_more, with_rows_of
+from .selection import Search
 
 __all__ = ["SURROGATES", "diagnose"]
 
@@ -201,32 +204,61 @@ def _testable(
     if null is None:
         return base_alone(found, evidence, base)
     _logger.info("screening the effects")
-    selection = search(evidence, base, null, without=without)
-    if not selection.interrupted:
-        final = selection.models[-1]
+    look = _Look(found, evidence, base, null, search(evidence, base, null, without=without))
+    again = partial(_again, surrogates=surrogates, without=without)
+    if not look.selection.interrupted:
+        final = look.selection.models[-1]
         wider = based_wider(found.plant, session.recordings, evidence, final, threads=threads)
         if wider is not None:
-            again, null_again = _replayed(found, *wider, surrogates)
-            if null_again is None:
-                # After Ctrl-C: what was found through narrow kernels is the best so far.
-                selection.interrupted = True
-            else:
-                _logger.info("screening the effects again, through wider kernels")
-                found, null, (evidence, base) = again, null_again, wider
-                selection = search(evidence, base, null, without=without)
+            _logger.info("screening the effects again, through wider kernels")
+            look = again(look, wider) or look
+    if acts_for_seconds(look.evidence, look.selection, look.null):
+        _logger.info("screening limits again, over the rows that decide as well")
+        joined = based_joined(found.plant, session.recordings, look.evidence, threads=threads)
+        before = look.selection
+        second = joined and again(look, joined, without=(*without, *asked_before(before)))
+        if second and holds_more(second.selection, before):
+            look = second._replace(selection=with_rows_of(second.selection, before))
+    selection = look.selection
     # Every decision is taken: now, and once, the rows that test.
     return Conclusion(
-        found,
+        look.found,
         session,
-        evidence,
-        base,
+        look.evidence,
+        look.base,
         selection,
-        null,
+        look.null,
         others,
         checks,
         interrupted=selection.interrupted,
         brief=selection.interrupted,
     ).diagnosis()
+
+
+class _Look(NamedTuple):
+    """A search for effects, and what it was made with."""
+
+    found: Diagnosis
+    evidence: Evidence
+    base: Model
+    null: FloatArray
+    selection: Search
+
+
+def _again(
+    look: _Look,
+    seen: tuple[Evidence, Model],
+    *,
+    surrogates: int,
+    without: Sequence[str],
+) -> _Look | None:
+    """The same search with another base; None after Ctrl-C: what was found is the best so far."""
+    found, null = _replayed(look.found, *seen, surrogates)
+    selection = None if null is None else search(*seen, null, without=without)
+    if null is None or selection is None or selection.interrupted:
+        look.selection.interrupted = True
+        return None
+    return _Look(found, *seen, null, selection)
 
 
 def _replayed(

@@ -220,9 +220,8 @@ def _refitted(
         or pass_together(screening, found.models[-1], trials, found.families)
     )
     doubtless = [t for t in trials if t.doubtless and choice is None]
-    found.unseen = {
-        t.name: 1.0 - t.model.power / base.power for t in sorted(doubtless, key=lambda t: -t.worth)
-    }
+    found.doubtless = sorted(doubtless, key=lambda t: -t.worth)
+    found.spread = any(t.by_blocks and t.candidate.record.limits for t in trials)
     strange = [t for t in trials if t.imitates and not t.of_reading and choice is None]
     strange = [t for t in strange if not any(covers(other, t) for other in doubtless)]
     found.imitated = max((t.gain for t in strange), default=0.0)
@@ -277,11 +276,14 @@ def _is_asked(screening: Screening, score: Score) -> bool:
 
     A loop bends itself far towards a goal that is late or held back, and from there the slope of
     such a cause tells nothing of it, nor does its score. And what a limit of the grid does on other
-    rows says little of the one that the rows have.
+    rows says little of the one that the rows have; where moments are left that nothing has
+    explained, nor does what it explains.
     """
-    record = score.candidate.record
-    beyond_noise = score.testable and score.score > score.threshold
-    return (screening.evidence.loop and record.before_drive) or (record.limits and beyond_noise)
+    record, evidence = score.candidate.record, screening.evidence
+    if evidence.loop and record.before_drive:
+        return True
+    beyond_noise = score.score > score.threshold or evidence.joined
+    return record.limits and score.testable and beyond_noise
 
 
 def _hopeless(score: Score, trials: Sequence[Trial]) -> bool:

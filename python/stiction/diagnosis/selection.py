@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from ..catalogue import EffectRecord
 from .choose import Choice
+from .decide import Trial
 from .model import Model
 from .result import CandidateRow
 
@@ -29,9 +30,11 @@ class Search:
     imitated : float
         Held-out gain of the best of those that were refused last because they imitate something
         else: so much is left that has no name.
-    unseen : dict of str to float
-        Effects of which what was fitted leaves no doubt and what decides tells nothing, with the
-        share that they explain of what is left there; likeliest first.
+    doubtless : list of Trial
+        Effects of which what was fitted leaves no doubt and what decides tells nothing; likeliest
+        first.
+    spread : bool
+        Whether the last round refused a limit for its spread over blocks alone.
     interrupted : bool
     lesser : list of (Model, str, Model)
         Models, an effect of each, and the model fitted without it.
@@ -42,9 +45,16 @@ class Search:
     rows: dict[str, CandidateRow] = field(default_factory=dict)
     blind: list[EffectRecord] = field(default_factory=list)
     imitated: float = 0.0
-    unseen: dict[str, float] = field(default_factory=dict)
+    doubtless: list[Trial] = field(default_factory=list)
+    spread: bool = False
     interrupted: bool = False
     lesser: list[tuple[Model, str, Model]] = field(default_factory=list)
+
+    @property
+    def unseen(self) -> dict[str, float]:
+        """Those without a doubt by name, with the share that they explain of what is left."""
+        power = self.models[-1].power
+        return {trial.name: 1.0 - trial.model.power / power for trial in self.doubtless}
 
     @property
     def families(self) -> set[str]:
@@ -60,4 +70,4 @@ class Search:
         choices = self.choices[:-1]
         models = self.models[: len(choices) + 1]
         # What was told beside it was told of another model.
-        return replace(self, models=models, choices=choices, rows=rows, unseen={})
+        return replace(self, models=models, choices=choices, rows=rows, doubtless=[])

@@ -131,6 +131,7 @@ def split(
     block_s: float = BLOCK_S,
     edge_s: float = EDGE_S,
     decides: bool = True,
+    joined: bool = False,
 ) -> Split:
     """Deal the recordings of a session, or blocks of them, to train, select and test.
 
@@ -150,6 +151,8 @@ def split(
         Dropped on either side of an edge between two blocks, s: the width of the kernel.
     decides : bool
         Something is chosen on the rows of ``select``, so that folds stand in for them.
+    joined : bool
+        The rows of ``select`` train as well, and folds over both decide.
 
     Returns
     -------
@@ -161,7 +164,7 @@ def split(
         Nothing to train on, the same recording in two roles, or a recording shorter than three
         blocks that had to be cut into blocks.
     """
-    return _Dealer(tuple(recordings), block_s, edge_s).deal(decides=decides)
+    return _Dealer(tuple(recordings), block_s, edge_s).deal(decides=decides, joined=joined)
 
 
 class _Dealer:
@@ -180,7 +183,7 @@ class _Dealer:
         self.folds: list[Fold] = []
         self.rules: list[str] = []
 
-    def deal(self, *, decides: bool) -> Split:
+    def deal(self, *, decides: bool, joined: bool) -> Split:
         if self.roles == [None]:
             self._deal_blocks()
         else:
@@ -190,8 +193,15 @@ class _Dealer:
             self._refuse_copies()
             if not self.parts["test"]:
                 self._split_off()
-            if decides and not self.parts["select"]:
-                self._fold()
+        if joined and self.parts["select"]:
+            self.parts["train"] = sorted([*self.parts["train"], *self.parts["select"]])
+            self.parts["select"] = []
+            self.rules.append(
+                "What is left lies in few seconds, so the rows of select train as well."
+            )
+            self._fold(joined=True)
+        elif decides and not self.parts["select"]:
+            self._fold()
         return Split(
             train=tuple(self.parts["train"]),
             select=tuple(self.parts["select"]),
@@ -297,7 +307,7 @@ class _Dealer:
             f"{self.edge_s:g} s on either side of each edge are dropped."
         )
 
-    def _fold(self) -> None:
+    def _fold(self, *, joined: bool = False) -> None:
         kinds = self._kinds_of_train()
         train = tuple(self.parts["train"])
         several = len(self._trained()) > 1
@@ -327,7 +337,9 @@ class _Dealer:
         words = ["the recordings of train are left out in turn"] if many else []
         if single:
             words.append(f"interleaved blocks are left out in turn of {self._listed(single)}")
-        self.rules.append(f"No recording has the role select: to decide, {', and '.join(words)}.")
+        begin = "" if joined else "No recording has the role select: "
+        told = f"{begin}to decide, {', and '.join(words)}."
+        self.rules.append(told[0].upper() + told[1:])
 
     def _turns(self, index: int, train: Sequence[Part]) -> list[list[Part]]:
         """The parts of a recording that occurs once, by the fold that holds them."""

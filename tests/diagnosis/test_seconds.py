@@ -1,0 +1,126 @@
+"""What acts for a second or two, in rows of some roles alone, and who may tell of it."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.blind.score import as_plant, as_session
+from tests.reference.session_reference import make_session
+
+import stiction as st
+from stiction.diagnosis.confirmed import gone_where_it_acts
+from stiction.diagnosis.seconds import asked_before, holds_more
+from stiction.recording.split import split
+
+BLOCKS, ROWS = 40, 50
+BLOCK = np.repeat(np.arange(BLOCKS), ROWS)
+
+
+def diagnosed(seed: int, *hidden: tuple[Any, ...], base: str = "coulomb") -> st.Diagnosis:
+    made = make_session(seed, base=base, hidden=hidden)
+    return st.diagnose(as_plant(made), as_session(made))
+
+
+@pytest.mark.parametrize(
+    ("seed", "base", "name", "size"),
+    [
+        (12890003, "coulomb", "drive_saturation", 0.004872),
+        (12750007, "maxwell_slip", "voltage_limit", 0.010977),
+    ],
+)
+def test_a_limit_is_named_where_rows_that_decide_are_fitted_too(
+    seed: int, base: str, name: str, size: float
+) -> None:
+    """In two or three places of the session, as it was dealt: they tell of each other."""
+    found = diagnosed(seed, (name, size), base=base)
+    assert found.verdict == "missing_effect"
+    (cause,) = found.effects
+    assert (cause.name, cause.decided) == (name, True)
+    assert found.data["split"]["select"] == []
+    assert "the rows of select train as well" in found.split
+    # What the first look said of all others stands, and each is told once.
+    names = [row.name for row in found.candidates]
+    assert len(set(names)) == len(names) > 20
+
+
+def test_a_limit_that_one_recording_shows_is_borne_out_by_rows_that_test() -> None:
+    """Fitted to one second, which leaves no doubt of it; nothing is left of it in two others."""
+    found = diagnosed(12750005, ("voltage_limit", 0.0113))
+    (cause,) = found.effects
+    assert (cause.name, cause.decided) == ("voltage_limit", True)
+    assert cause.gain is not None
+    assert cause.gain.value > 0.7
+    (row,) = (row for row in found.candidates if row.name == "voltage_limit")
+    assert row.reason == "accepted"
+
+
+def test_it_is_found_beside_a_name_as_well() -> None:
+    """Everything is asked again then, for the name has to be found again."""
+    hidden = (("drive_saturation", 0.021924), ("frictional_lag", 0.014924, {"fall": 0.0}))
+    found = diagnosed(10910000, *hidden)
+    assert {cause.name for cause in found.effects} == {"frictional_lag", "drive_saturation"}
+    assert found.verdict == "missing_effect"
+
+
+def test_a_moment_in_rows_that_test_alone_is_told_and_decides_nothing() -> None:
+    found = diagnosed(12900021, ("drive_saturation:foreign", 0.013579))
+    assert (found.verdict, found.effects) == ("nothing_missing", ())
+    (check,) = (each for each in found.data["checks"] if each["name"] == "alone")
+    assert check["recording"] == "recording 6"
+    assert "in one second" in check["what"]
+    assert check["what"] in found.sentence
+
+
+@pytest.mark.parametrize(
+    ("left", "noise", "gone"), [(0.0, 1.0, True), (0.5, 1.0, False), (0.0, 30.0, False)]
+)
+def test_next_to_nothing_is_left_where_it_acts(left: float, noise: float, gone: bool) -> None:
+    """A half of it is left, or it is no more than noise: neither bears a name out."""
+    source = np.random.default_rng(4)
+    explained = np.where(np.isin(BLOCK, (7, 8)), 12.0 * source.standard_normal(len(BLOCK)), 0.0)
+    rest = noise * source.standard_normal(len(BLOCK))
+    after = rest + left * explained
+    assert gone_where_it_acts(BLOCK, explained, after + explained, after, 10.0) is gone
+
+
+@pytest.mark.parametrize("roles", [["train", "select", "test"] * 2, [None] * 6, [None]])
+def test_rows_that_decide_train_as_well_and_those_that_test_stay(roles: list[str | None]) -> None:
+    source = np.random.default_rng(1)
+    time = 5e-3 * np.arange(4000)
+    recordings = [
+        st.Recording(time, source.standard_normal(4000), source.standard_normal(4000), role=role)
+        for role in roles
+    ]
+    apart, joined = split(recordings), split(recordings, joined=True)
+    assert joined.test == apart.test
+    assert joined.select == ()
+    assert set(joined.train) == {*apart.train, *apart.select}
+    assert set(joined.train) == {part for fold in joined.folds for part in fold.held}
+    for fold in joined.folds:
+        assert not {*fold.fit} & {*fold.held}
+    assert joined.rules[-1].startswith("To decide, ")
+
+
+def looked(*names: str, unseen: bool = False) -> Any:
+    choices = [SimpleNamespace(winner=SimpleNamespace(name=name)) for name in names]
+    return SimpleNamespace(choices=choices, unseen={"voltage_limit": 0.1} if unseen else {})
+
+
+def test_a_second_look_stands_where_it_holds_the_first_one_and_more() -> None:
+    limit = "voltage_limit"
+    assert holds_more(looked(limit), looked())
+    assert holds_more(looked("stribeck", limit), looked("stribeck"))
+    assert not holds_more(looked(limit), looked("stribeck"))
+    assert not holds_more(looked("stribeck"), looked("stribeck"))
+    assert holds_more(looked(unseen=True), looked())
+    assert not holds_more(looked(unseen=True), looked(unseen=True))
+    assert not holds_more(looked(), looked())
+
+
+def test_limits_alone_are_asked_again_where_nothing_is_named() -> None:
+    names = {record.name for record in st.effects()} - set(asked_before(looked()))
+    assert names == {"drive_saturation", "voltage_limit"}
+    assert asked_before(looked("stribeck")) == ()
