@@ -55,6 +55,8 @@ DOUBTFUL = (
 """Of a cause whose name is told, and whose numbers are not."""
 OUTWEIGHED = "what is left without a name is worth more than half of what it took"
 """Why a name may be none."""
+AGAINST = "the plant does worse with it on the rows that test"
+"""Why a name is left open that these rows do not bear out."""
 UNREPEATED = "less than one period was travelled, and a spring may look the same"
 """Why what should repeat with position may be something else."""
 MORE_MAY_BE = ", and more may be missing"
