@@ -110,6 +110,18 @@ def test_causes_that_hide_each_other_pass_together(
         assert choice.winner.reason == ""
 
 
+@pytest.mark.parametrize("better", [False, True])
+def test_what_was_accepted_beside_a_base_that_is_replaced_is_decided_again(
+    monkeypatch: pytest.MonkeyPatch, better: bool
+) -> None:
+    monkeypatch.setattr(rounds, "_renew", lambda evidence, found, lead: better)
+    before = CandidateRow("stribeck", 0.1, 0.2, None, "others explain more")
+    found: Any = SimpleNamespace(rows={"stribeck": replace(before, reason="accepted")})
+    lead: Any = None
+    assert rounds._renewed(lead, found, [lead], {"stribeck": before}) is better
+    assert (found.rows["stribeck"] is before) is better
+
+
 def test_a_refit_that_freed_the_base_leads_to_a_better_one_before_any_name() -> None:
     freed = replace(trial("a", 2.0, "the base was freed"), freed=True)
     bench: Any = Bench({"base": [freed, trial("b", 1.0)]})

@@ -84,8 +84,9 @@ def search(
         rests: set[str] = set()
         renewed = 0
         while len(found.choices) < MOST_EFFECTS:
+            told = dict(found.rows)
             choice, leads, trials = _round(screening, found, rests)
-            if renewed < MOST_RENEWALS and any(_renew(evidence, found, lead) for lead in leads):
+            if renewed < MOST_RENEWALS and _renewed(evidence, found, leads, told):
                 renewed += 1
                 continue
             if choice is None or choice.winner.name in dropped:
@@ -370,6 +371,16 @@ def _doubt_a_single_wave(found: Search, place: int, rest: Trial) -> None:
     if single and rest.name not in {rival.name for rival in choice.rivals}:
         _logger.info("%s may be the first wave of %s", choice.winner.name, rest.name)
         found.choices[place] = replace(choice, rivals=(*choice.rivals, rest))
+
+
+def _renewed(
+    evidence: Evidence, found: Search, leads: Sequence[Trial], told: dict[str, CandidateRow]
+) -> bool:
+    """Whether a trial led to a better base; what a round decided beside the other is forgotten."""
+    if not any(_renew(evidence, found, lead) for lead in leads):
+        return False
+    found.rows = told
+    return True
 
 
 def _renew(evidence: Evidence, found: Search, lead: Trial) -> bool:
