@@ -1,9 +1,14 @@
 """Most of what names leave is told, even where a few coordinates show a little of it."""
 
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
 from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
+from stiction.diagnosis import verdict
 from stiction.diagnosis.result import Unexplained
 from stiction.diagnosis.words import NO_COORDINATE, sentence
 
@@ -31,3 +36,18 @@ def test_a_sentence_says_how_much_goes_with_nothing():
     )
     alone = sentence("unexplained", (), None, left[:1], "")
     assert "goes with nothing that was looked at (98 %)" in alone
+
+
+@pytest.mark.parametrize("share", [0.05, 0.5])
+def test_a_coordinate_that_shows_little_hides_not_that_most_goes_with_nothing(monkeypatch, share):
+    """Where nothing is named: of a servo 5 % went with its load, and 95 % with nothing."""
+    monkeypatch.setattr(verdict, "_excess", lambda *_: 0.98)
+    monkeypatch.setattr(verdict, "at_moments", lambda *_: False)
+    monkeypatch.setattr(verdict, "outlying", lambda *_: ())
+    view = SimpleNamespace(coordinate=SimpleNamespace(name="load"), share=share)
+    left = SimpleNamespace(flagged=lambda least: [view], described=())
+    evidence = SimpleNamespace(shown=[], plant=SimpleNamespace(servo=True))
+    selection = SimpleNamespace(choices=[], models=[None], imitated=0.0)
+    told = verdict.unnamed(evidence, selection, left, left, np.zeros((4, 2)), lambda: None)
+    names = [each.coordinate for each in told]
+    assert names == ([NO_COORDINATE, "load"] if share < 0.1 else ["load"])

@@ -83,8 +83,11 @@ def unnamed(
         shown = left.flagged(0.0)
         where = shown[0].coordinate.name if shown else NO_COORDINATE
         told = (Unexplained(where, selection.imitated),)
-    # A few coordinates that show little beside names must not hide that most has no name.
-    open_ = not told or (bool(selection.choices) and not _outweighs(selection, told))
+    # A few coordinates that show little must not hide that most goes with none of them.
+    if selection.choices:
+        open_ = not told or not _outweighs(selection, told)
+    else:
+        open_ = max((each.share for each in told), default=0.0) < WORTH_SHARE * excess
     if open_ and excess > _most_excess(evidence) and selection.choices:
         null = null_of_last()
         excess = _excess(evidence, selection.models[-1], null)
