@@ -8,19 +8,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
-import numpy as np
-
 from ..compared import compared_by
-from ..fitting.result import FitResult
 from ..fitting.rows import Rows
-from ..plant import Plant
 from ..recording import Check
 from ..session import Session
-from ..stated import Effect
 from ..trajectory import FloatArray
 from .advice import advise
 from .bursts import Burst, burst_of
-from .candidates import Scales, scales_of
+from .candidates import scales_of
 from .ceiling import Ceiling, ceiling_of
 from .confirm import (
     borne_out_by_test,
@@ -46,18 +41,24 @@ from .model import Model
 from .noise import Noise
 from .noted import with_checks, with_pushes
 from .omnibus import Rest, rest
-from .orders import open_orders
 from .outlying import outlying_in_test
-from .own import own_view
 from .passing import MOMENTS
-from .pictures import Pictures, Stretch
+from .pictures import Pictures
 from .regression import refitted
-from .remedies import meant
 from .replay import centre, shared, surrogate_residuals
-from .result import Cause, Diagnosis, ModelSummary, Unexplained, Verdict
+from .result import Diagnosis, Unexplained, Verdict
 from .rounds import friction_of
 from .selection import Search
-from .verdict import left_beside, relatives, unnamed, verdict_of
+from .told import (
+    causes_of,
+    effect_of,
+    evaluated,
+    floor_of,
+    own_views,
+    stretches_of,
+    summary_of,
+)
+from .verdict import left_beside, unnamed, verdict_of
 from .view import View
 from .words import (
     INTERRUPTED,
@@ -67,7 +68,6 @@ from .words import (
     no_machine,
     sentence,
     unseen_words,
-    what,
 )
 
 __all__ = ["Conclusion", "base_alone", "surrogates_of"]
@@ -229,10 +229,10 @@ class Conclusion:
         selection, final = self.confirmed, self.confirmed.models[-1]
         (bias, centred), friction = self._centred, friction_of(self.evidence, self.base)
         return tuple(
-            _own_views(
+            own_views(
                 self.evidence,
                 self._seen,
-                _effect(final.plant, choice.winner.name),
+                effect_of(final.plant, choice.winner.name),
                 [model.residual - bias for model in selection.models[k : k + 2]],
                 centred,
                 friction,
@@ -277,16 +277,16 @@ class Conclusion:
         """Verdict and words, from everything that was measured."""
         evidence, selection, test, null = self.evidence, self.confirmed, self.test, self.null
         base, final = selection.models[0], selection.models[-1]
-        floor = _floor(evidence, null)
+        floor = floor_of(evidence, null)
         scales = scales_of(evidence, base.plant)
-        results = {id(m): _evaluated(m, scales) for m in (base, final)}
-        baseline = _summary(evidence, base, results[id(base)], test, 0, floor)
+        results = {id(m): evaluated(m, scales) for m in (base, final)}
+        baseline = summary_of(evidence, base, results[id(base)], test, 0, floor)
         number = len(selection.choices)
-        extended = _summary(evidence, final, results[id(final)], test, number, floor)
+        extended = summary_of(evidence, final, results[id(final)], test, number, floor)
         own_law, last = base.plant.friction.law, len(self.chosen.models) - 1
         laws = better_laws(self.rivals, last, test, found.seed)
         better = laws[0] if laws else None
-        causes = _causes(selection, results[id(final)], test, found.seed, sole=better is None)
+        causes = causes_of(selection, results[id(final)], test, found.seed, sole=better is None)
         gain = None
         if causes and test is not None:
             gain = gain_of(test, 0, len(causes), found.seed)
@@ -382,7 +382,7 @@ class Conclusion:
             success=not self.interrupted,
             message=MESSAGE if self.interrupted else found.message,
             pictures=Pictures(
-                stretches=_stretches(evidence, test, (base, 0), (final, number)),
+                stretches=stretches_of(evidence, test, (base, 0), (final, number)),
                 before=before,
                 after=after,
                 effort_unit=extended.unit,
@@ -412,9 +412,9 @@ def base_alone(found: Diagnosis, evidence: Evidence, base: Model) -> Diagnosis:
     evidence : Evidence
     base : Model
     """
-    result = _evaluated(base, scales_of(evidence, base.plant))
+    result = evaluated(base, scales_of(evidence, base.plant))
     # What noise would leave is told by replays, of which there are none.
-    known = _summary(evidence, base, result, None, 0, float("nan"))
+    known = summary_of(evidence, base, result, None, 0, float("nan"))
     told = UNFITTED if base.solution.interrupted else UNSEARCHED
     found = replace(
         found,
@@ -441,129 +441,3 @@ def surrogates_of(
 def _opening(interrupted: bool, named: bool) -> str:
     """How the sentence begins: that there may be more, where Ctrl-C ended it."""
     return f"{INTERRUPTED}{MORE_MAY_BE if named else ''}. " if interrupted else ""
-
-
-def _causes(
-    selection: Search, result: FitResult, test: HeldOut | None, seed: int, *, sole: bool
-) -> list[Cause]:
-    """What was accepted.
-
-    ``result`` is that of the last model. ``sole``: no other law explains more; beside one that does
-    nothing is decided.
-    """
-    final = selection.models[-1]
-    causes = []
-    taken = {choice.winner.name for choice in selection.choices}
-    for k, choice in enumerate(selection.choices):
-        record = choice.winner.candidate.record
-        # A rival that became a cause of its own is told there.
-        rivals_left = [each.name for each in choice.rivals if each.name not in taken]
-        close = {each.name for each in choice.rivals}
-        others = [name for name in relatives(selection, k) if name not in close]
-        fitted_values = {
-            path: p
-            for path, p in result.parameters.items()
-            if path.startswith(f"effects.{record.name}.")
-        }
-        means, remedy = meant(record, final.plant)
-        causes.append(
-            Cause(
-                name=record.name,
-                family=record.family,
-                decided=choice.decided and not others and sole,
-                look_alikes=(*rivals_left, *others),
-                parameters=fitted_values,
-                gain=None if test is None else gain_of(test, k, k + 1, seed),
-                what=what(record, result.parameters, _effect(final.plant, record.name)),
-                means=means,
-                try_=remedy,
-                coordinate=record.coordinate,
-            )
-        )
-    return causes
-
-
-def _own_views(
-    evidence: Evidence,
-    seen: Sequence[Look],
-    effect: Effect,
-    residuals: Sequence[FloatArray],
-    null: FloatArray,
-    friction: float,
-) -> tuple[View, View]:
-    """A cause in its own coordinate, before it is added and after."""
-    before, after = (
-        own_view(evidence, seen, effect, residual, null, friction) for residual in residuals
-    )
-    return before, after
-
-
-def _effect(plant: Plant, name: str) -> Effect:
-    """The effect of a plant by its name."""
-    return next(effect for effect in plant.effects if effect.name == name)
-
-
-def _evaluated(model: Model, scales: Scales) -> FitResult:
-    return replace(model.told, parameters=open_orders(model.told.parameters, scales))
-
-
-def _summary(
-    evidence: Evidence,
-    model: Model,
-    result: FitResult,
-    test: HeldOut | None,
-    index: int,
-    floor: float,
-) -> ModelSummary:
-    select = None
-    if evidence.split.select:
-        (plan,) = evidence.plans
-        select = float(np.sqrt(np.mean((model.residual / evidence.weights)[plan.held] ** 2)))
-    return ModelSummary(
-        plant=result.plant,
-        parameters=result.parameters,
-        unit=result.unit,
-        train_rms=result.train_rms,
-        select_rms=select,
-        heldout_rms=None if test is None else test.rms(index),
-        train_relative=result.train_relative,
-        heldout_relative=None if test is None else test.relative(index),
-        noise_floor_rms=floor,
-        remarks=result.remarks,
-        assumed=result.assumed,
-        stiffness=result.stiffness,
-    )
-
-
-def _floor(evidence: Evidence, null: FloatArray) -> float:
-    """rms of what noise and rounding leave over the rows fitted."""
-    physical = (null / evidence.weights[:, None])[evidence.fitted]
-    return float(np.sqrt(np.mean(physical**2)))
-
-
-def _stretches(
-    evidence: Evidence, test: HeldOut | None, *models: tuple[Model, int]
-) -> tuple[Stretch, ...]:
-    """Held-out recordings with what both models leave; those of train where none tests.
-
-    With each model its place among those that were tested.
-    """
-    rows = evidence.shown if test is None else test.rows
-    base = models[0][0]
-    begun = [
-        (model.plant, model.nuisances if test is None else test.nuisances[place])
-        for model, place in models
-    ]
-    stretches = []
-    for each in rows:
-        form, mask = each.form, each.mask
-        both = [np.where(mask, each.residual(*own), np.nan) for own in begun]
-        seen = form.measured(base.plant) if form.stiffness is None else form.readings[1:]
-        measured = np.where(mask, seen, np.nan)
-        started = evidence.recordings[each.index].time[0]
-        stretches.append(
-            Stretch(evidence.names[each.index], form.time - started, measured, both[0], both[1])
-        )
-    return tuple(
-        sorted(stretches, key=lambda s: float(np.nansum(s.after**2) - np.nansum(s.before**2)))
-    )
