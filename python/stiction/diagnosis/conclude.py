@@ -64,6 +64,7 @@ from .words import (
     INTERRUPTED,
     MORE_MAY_BE,
     NO_COORDINATE,
+    answered_words,
     apart_words,
     no_machine,
     sentence,
@@ -137,7 +138,7 @@ class Conclusion:
             **self.found.data,
             "replicates": None if ceiling is None else ceiling.to_dict(),
         }
-        found = self._told(replace(self.found, data=data))
+        found = self._told(_asked(replace(self.found, data=data), self.confirmed.answered))
         found = with_pushes(found, self.evidence)
         names, number = self.evidence.names, len(self.confirmed.choices)
         found = with_checks(found, holds_of(self.evidence.shown, final, names))
@@ -343,6 +344,7 @@ class Conclusion:
             + sentence(
                 verdict, causes, gain, unexplained, reason, slight=_slight(selection, self.rests[1])
             )
+            + answered_words(selection.answered)
             + beside
             + no_machine(
                 max(left, lost_on_test(test, len(causes), null)),
@@ -392,6 +394,16 @@ class Conclusion:
                 causes=self.own,
             ),
         )
+
+
+def _asked(found: Diagnosis, answered: str) -> Diagnosis:
+    """With the cause that the rows that test were asked about, among the rules of the split."""
+    if not answered:
+        return found
+    dealt = found.data["split"]
+    rule = f"The rows that test were asked one question: whether they bear {answered} out."
+    dealt = {**dealt, "rules": [*dealt["rules"], rule], "answered": [answered]}
+    return replace(found, split=f"{found.split}\n{rule}", data={**found.data, "split": dealt})
 
 
 def _slight(selection: Search, left: Rest) -> bool:

@@ -170,7 +170,7 @@ def borne_out_by_test(selection: Search, choice: Choice, test: HeldOut, index: i
 
 
 def with_choice(selection: Search, choice: Choice) -> Search:
-    """The selection with one more cause."""
+    """The selection with one more cause, which the rows that test bear out."""
     trials = [choice.winner, *choice.rivals, *choice.aside]
     rows = selection.rows | {trial.name: listing.tried(trial, choice) for trial in trials}
     return replace(
@@ -179,6 +179,7 @@ def with_choice(selection: Search, choice: Choice) -> Search:
         choices=[*selection.choices, choice],
         rows=rows,
         doubtless=[],
+        answered=choice.winner.name,
     )
 
 

@@ -268,6 +268,7 @@ def _replayed(
     dealt = evidence.split.to_dict()
     told = [TRAIN_IS_FITTED] if evidence.split.select else []
     dealt["rules"] = [*dealt["rules"], *told]
+    dealt["answered"] = []
     data = {
         **found.data,
         "split": dealt,

@@ -35,6 +35,8 @@ class Search:
         first.
     spread : bool
         Whether the last round refused a limit for its spread over blocks alone.
+    answered : str
+        The cause that the rows that test were asked about, and bear out.
     interrupted : bool
     lesser : list of (Model, str, Model)
         Models, an effect of each, and the model fitted without it.
@@ -47,6 +49,7 @@ class Search:
     imitated: float = 0.0
     doubtless: list[Trial] = field(default_factory=list)
     spread: bool = False
+    answered: str = ""
     interrupted: bool = False
     lesser: list[tuple[Model, str, Model]] = field(default_factory=list)
 
@@ -70,4 +73,4 @@ class Search:
         choices = self.choices[:-1]
         models = self.models[: len(choices) + 1]
         # What was told beside it was told of another model.
-        return replace(self, models=models, choices=choices, rows=rows, doubtless=[])
+        return replace(self, models=models, choices=choices, rows=rows, doubtless=[], answered="")

@@ -205,6 +205,17 @@ def unseen_words(unseen: Mapping[str, float], beside: bool) -> str:
     return f"These data cannot decide whether anything is missing: {judged}"
 
 
+def answered_words(name: str) -> str:
+    """Why a gain is no measure of rows that nothing was decided on; "" where no row was asked."""
+    if not name:
+        return ""
+    return (
+        f" What was fitted leaves no doubt of {name}, and no other rows could judge it. So those "
+        "that test were asked: next to nothing is left there where it acts. Its gain is that of "
+        "rows which decided on it."
+    )
+
+
 def no_machine(left: float, named: bool, verdict: Verdict, by: Compared = EFFORT) -> str:
     """What to look at first where the plant leaves most of the effort, "" where it does not.
 
