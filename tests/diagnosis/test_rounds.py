@@ -116,10 +116,12 @@ def test_what_was_accepted_beside_a_base_that_is_replaced_is_decided_again(
 ) -> None:
     monkeypatch.setattr(rounds, "_renew", lambda evidence, found, lead: better)
     before = CandidateRow("stribeck", 0.1, 0.2, None, "others explain more")
-    found: Any = SimpleNamespace(rows={"stribeck": replace(before, reason="accepted")})
+    later = {"stribeck": replace(before, reason="accepted")}
+    found: Any = SimpleNamespace(rows=later, blind=[1, 2])
     lead: Any = None
-    assert rounds._renewed(lead, found, [lead], {"stribeck": before}) is better
+    assert rounds._renewed(lead, found, [lead], ({"stribeck": before}, [1])) is better
     assert (found.rows["stribeck"] is before) is better
+    assert found.blind == ([1] if better else [1, 2])
 
 
 def test_a_refit_that_freed_the_base_leads_to_a_better_one_before_any_name() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -11,8 +11,10 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
+from stiction.diagnosis import seconds
 from stiction.diagnosis.confirmed import gone_where_it_acts
 from stiction.diagnosis.seconds import asked_before, holds_more
+from stiction.errors import InputError
 from stiction.recording.split import split
 
 BLOCKS, ROWS = 40, 50
@@ -55,7 +57,7 @@ def test_a_limit_that_one_recording_shows_is_borne_out_by_rows_that_test() -> No
     assert cause.gain is not None
     assert cause.gain.value > 0.7
     (row,) = (row for row in found.candidates if row.name == "voltage_limit")
-    assert row.reason == "accepted"
+    assert row.reason.startswith("accepted: the rows that test")
     # Nobody must take that gain for one of rows that nothing was decided on.
     assert found.data["split"]["answered"] == ["voltage_limit"]
     assert "rows which decided on it" in found.sentence
@@ -111,18 +113,70 @@ def test_rows_that_decide_train_as_well_and_those_that_test_stay(roles: list[str
 
 def looked(*names: str, unseen: bool = False) -> Any:
     choices = [SimpleNamespace(winner=SimpleNamespace(name=name)) for name in names]
-    return SimpleNamespace(choices=choices, unseen={"voltage_limit": 0.1} if unseen else {})
+    told = {"voltage_limit": 0.1} if unseen else {}
+    return SimpleNamespace(choices=choices, unseen=told, models=[None])
 
 
-def test_a_second_look_stands_where_it_holds_the_first_one_and_more() -> None:
+def test_a_second_look_stands_where_it_holds_the_first_one_and_limits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(seconds, "_is_known", lambda trial, model: trial.name != "warm_up")
     limit = "voltage_limit"
     assert holds_more(looked(limit), looked())
     assert holds_more(looked("stribeck", limit), looked("stribeck"))
+    assert not holds_more(looked("warm_up"), looked())
+    assert not holds_more(looked("warm_up", limit), looked())
     assert not holds_more(looked(limit), looked("stribeck"))
     assert not holds_more(looked("stribeck"), looked("stribeck"))
     assert holds_more(looked(unseen=True), looked())
     assert not holds_more(looked(unseen=True), looked(unseen=True))
     assert not holds_more(looked(), looked())
+
+
+@pytest.mark.parametrize(
+    ("share", "stderr", "whole", "known"),
+    [(0.3, 0.02, False, True), (0.5, 3.0, False, False), (1.0, 44.0, True, True)],
+)
+def test_what_a_limit_holds_back_is_known_or_everything(
+    monkeypatch: pytest.MonkeyPatch, share: float, stderr: float, whole: bool, known: bool
+) -> None:
+    monkeypatch.setattr(seconds, "is_whole", lambda candidate, model: whole)
+    number = SimpleNamespace(value=share, stderr=stderr)
+    told = SimpleNamespace(parameters={"effects.drive_saturation.share": number})
+    candidate = SimpleNamespace(record=SimpleNamespace(limits=True), gains=("share",))
+    trial: Any = SimpleNamespace(name="drive_saturation", candidate=candidate)
+    assert seconds._is_known(trial, cast("Any", SimpleNamespace(told=told))) is known
+
+
+def test_a_push_in_few_seconds_is_no_limit_of_the_drive_for_sure() -> None:
+    """Drag of ten milliseconds after each of the greatest efforts, as somebody else made it."""
+    made = make_session(817, base="coulomb")
+    efforts = np.abs(np.concatenate([r.torque_nm for r in made.recordings]))
+    least = np.quantile(efforts, 0.999)
+    parts = []
+    for each in made.recordings:
+        out = np.abs(each.torque_nm) > least
+        late = np.convolve(out, np.ones(10), "full")[: len(out)] > 0
+        parts.append(late * np.sign(each.truth["velocity"]))
+    rms = float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+    torque = [
+        each.torque_nm + 0.02 * made.plant["coulomb"] / rms * part
+        for each, part in zip(made.recordings, parts, strict=True)
+    ]
+    found = st.diagnose(as_plant(made), as_session(made, torque))
+    assert not any(cause.decided for cause in found.effects)
+
+
+def test_copies_are_not_fitted_and_judged_on_in_turn() -> None:
+    source = np.random.default_rng(2)
+    time = 5e-3 * np.arange(2000)
+    made = [(source.standard_normal(2000), source.standard_normal(2000)) for _ in range(4)]
+    roles = ["train", "train", "select", "test"]
+    recordings = [st.Recording(time, *each, role=r) for each, r in zip(made, roles, strict=True)]
+    recordings.append(st.Recording(time, *made[0], role="train"))
+    split(recordings)
+    with pytest.raises(InputError, match="the same recording twice"):
+        split(recordings, joined=True)
 
 
 def test_limits_alone_are_asked_again_where_nothing_is_named() -> None:

@@ -120,7 +120,7 @@ def based_joined(
     *,
     threads: int | None = None,
 ) -> tuple[Evidence, Model] | None:
-    """The base that is fitted to the rows that decide as well, through kernels as wide.
+    """The base that is fitted to the rows that decide as well; through wide kernels as before.
 
     None where these rows cannot be left out in turn, or no such base describes the machine. After
     Ctrl-C its solution is interrupted.

@@ -145,7 +145,7 @@ class Conclusion:
         held = () if self.brief else self.held
         found = with_checks(found, [each.check for each in held], held_words(held))
         apart = outlying_in_test(self.evidence, final, self.test, number)
-        found = with_checks(found, apart, apart_words(apart))
+        found = with_checks(found, apart, apart_words(apart, self.confirmed.answered))
         return replayed(replace(found, ceiling=ceiling), self.evidence, self.base, final)
 
     @cached_property
@@ -197,7 +197,10 @@ class Conclusion:
     @cached_property
     def confirmed(self) -> Search:
         """The selection that the rows that test bear out."""
-        return confirmed(self.chosen, self.test, self.found.seed)
+        found = confirmed(self.chosen, self.test, self.found.seed)
+        # What was answered and taken away again is as open as it was before.
+        taken = bool(self.chosen.answered) and not found.choices
+        return replace(self.decided, rows=found.rows) if taken else found
 
     @cached_property
     def _centred(self) -> tuple[FloatArray, FloatArray]:
@@ -322,7 +325,8 @@ class Conclusion:
             event = None if causes else lone_event(evidence, final, test, 0)
             burst = self.burst if event is None else None
             unseen = selection.unseen if event is None else {}
-            beside = unseen_words(unseen, verdict != "nothing_missing")
+            asked = test is not None and likeliest(self.decided) is not None
+            beside = unseen_words(unseen, verdict != "nothing_missing", asked=asked)
             if unseen and verdict == "nothing_missing":
                 verdict, reason, beside = "not_testable", beside, ""
         if event is not None and better is None:

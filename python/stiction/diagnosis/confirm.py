@@ -113,9 +113,9 @@ def _beyond(residual: FloatArray, effort: FloatArray, null: FloatArray) -> float
 def confirmed(selection: Search, test: HeldOut | None, seed: int) -> Search:
     """The selection without the last causes that the rows that test do not bear out.
 
-    Rows that test choose nothing. They may take a name away, though: a plant that simulates worse
-    with an effect than without it must not come with it, and where the interval of the gain
-    includes 0, the strength at least must be known.
+    Rows that test choose nothing, but for the answer to one question (``likeliest``). They may take
+    a name away, though: a plant that simulates worse with an effect than without it must not come
+    with it, and where the interval of the gain includes 0, the strength at least must be known.
 
     Parameters
     ----------
@@ -173,13 +173,16 @@ def with_choice(selection: Search, choice: Choice) -> Search:
     """The selection with one more cause, which the rows that test bear out."""
     trials = [choice.winner, *choice.rivals, *choice.aside]
     rows = selection.rows | {trial.name: listing.tried(trial, choice) for trial in trials}
+    name = choice.winner.name
+    rows[name] = replace(rows[name], reason="accepted: the rows that test bear it out")
     return replace(
         selection,
         models=[*selection.models, choice.winner.model],
         choices=[*selection.choices, choice],
         rows=rows,
         doubtless=[],
-        answered=choice.winner.name,
+        unseen={},
+        answered=name,
     )
 
 

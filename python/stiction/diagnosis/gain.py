@@ -1,4 +1,4 @@
-"""The gain on rows that nobody looked at: computed once, after the last decision."""
+"""The gain on rows that test: computed once, after the last decision on all other rows."""
 
 from __future__ import annotations
 

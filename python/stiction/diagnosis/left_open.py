@@ -13,7 +13,7 @@ from .exact_forms import doubted
 from .passing import MOMENTS
 from .result import Cause, Unexplained
 from .selection import Search
-from .words import AGAINST, ALONE, OUTWEIGHED, UNREPEATED
+from .words import AGAINST, ALONE, OUTWEIGHED, PARTLY, UNREPEATED
 
 __all__ = ["known_by_themselves", "left_open", "not_borne_out", "outweighed", "waves_left_open"]
 
@@ -48,6 +48,7 @@ def left_open(
     found = known_by_themselves(selection, found)
     doubts = dict.fromkeys(outweighed(selection, left), OUTWEIGHED)
     doubts |= dict.fromkeys(not_borne_out(found), AGAINST)
+    doubts |= dict.fromkeys(selection.partly, PARTLY)
     return [
         replace(
             cause,

@@ -164,7 +164,12 @@ def _densities(cells: Cells, residual: FloatArray) -> FloatArray:
     """Mean power of each block; 0 of those of which little is left."""
     rows = np.bincount(cells.block)
     density = np.bincount(cells.block, residual**2) / np.maximum(rows, 1)
-    return np.where(rows > WHOLE * np.max(rows), density, 0.0)
+    of_block = np.zeros(len(rows), dtype=np.int64)
+    of_block[cells.block] = cells.recording
+    # Of its own recording: others may have been sampled more often.
+    full = np.zeros(int(of_block.max()) + 1)
+    np.maximum.at(full, of_block, rows)
+    return np.where(rows > WHOLE * full[of_block], density, 0.0)
 
 
 def _middles(cells: Cells, residual: FloatArray) -> dict[int, float]:

@@ -220,7 +220,7 @@ def _testable(
         if second and holds_more(second.selection, before):
             look = second._replace(selection=with_rows_of(second.selection, before))
     selection = look.selection
-    # Every decision is taken: now, and once, the rows that test.
+    # Every decision on other rows is taken: now, and once, those that test.
     return Conclusion(
         look.found,
         session,

@@ -8,7 +8,7 @@ from ..fitting.start import largest_command
 from .candidates import Candidate
 from .model import Model
 
-__all__ = ["is_whole", "out_of_its_range", "partly_lost"]
+__all__ = ["is_whole", "out_of_its_range", "partly_lost", "surely_a_part"]
 
 
 class Whole(NamedTuple):
@@ -71,6 +71,15 @@ def is_whole(candidate: Candidate, model: Model) -> bool:
     asked = max(largest_command(rows.form, model.plant) for rows in model.evidence.shown)
     came_out = _value(candidate, model, known.gain) >= known.whole
     return came_out and asked <= MOST_BEYOND * min(limits)
+
+
+def surely_a_part(candidate: Candidate, model: Model) -> bool:
+    """Whether a gain that would have to be whole surely is not, by the interval that is told."""
+    if candidate.name not in WHOLE:
+        return False
+    known = WHOLE[candidate.name]
+    number = model.told.parameters[f"effects.{candidate.name}.{known.gain}"]
+    return number.value + SURELY * number.stderr < known.whole
 
 
 def _value(candidate: Candidate, model: Model, name: str) -> float:

@@ -16,7 +16,7 @@ from . import listing
 from .beside import left_by_forms
 from .candidates import FALL, Candidate, candidates, present, scales_of
 from .choose import ALIKE, Choice, choose, covers, parallel
-from .decide import Trial
+from .decide import LEAST_GAIN, LEAST_STRENGTH, Trial
 from .evidence import Evidence
 from .exact_forms import several
 from .fewer import MIMIC, chained, dropped_by_the_latest, join, without
@@ -84,7 +84,7 @@ def search(
         rests: set[str] = set()
         renewed = 0
         while len(found.choices) < MOST_EFFECTS:
-            told = dict(found.rows)
+            told = dict(found.rows), list(found.blind)
             choice, leads, trials = _round(screening, found, rests)
             if renewed < MOST_RENEWALS and _renewed(evidence, found, leads, told):
                 renewed += 1
@@ -222,7 +222,8 @@ def _refitted(
     )
     doubtless = [t for t in trials if t.doubtless and choice is None]
     found.doubtless = sorted(doubtless, key=lambda t: -t.worth)
-    found.spread = any(t.by_blocks and t.candidate.record.limits for t in trials)
+    found.unseen = {t.name: 1.0 - t.model.power / base.power for t in found.doubtless}
+    found.spread = any(_is_spread(trial) for trial in trials)
     strange = [t for t in trials if t.imitates and not t.of_reading and choice is None]
     strange = [t for t in strange if not any(covers(other, t) for other in doubtless)]
     found.imitated = max((t.gain for t in strange), default=0.0)
@@ -231,6 +232,14 @@ def _refitted(
             found.rows[trial.name] = listing.tried(trial, choice)
     freed = sorted((trial for trial in trials if trial.freed), key=lambda t: -t.worth)[:1]
     return choice, freed if choice is None else [*freed, choice.winner]
+
+
+def _is_spread(trial: Trial) -> bool:
+    """Whether a limit was refused although it helps, for where or how unevenly it does so."""
+    if not (trial.reason and trial.candidate.record.limits) or trial.imitates or trial.freed:
+        return False
+    helps = trial.gain > LEAST_GAIN and trial.strength >= LEAST_STRENGTH
+    return trial.by_blocks or helps
 
 
 def _imitated(scores: Sequence[Score], trials: Sequence[Trial]) -> list[Score]:
@@ -374,12 +383,15 @@ def _doubt_a_single_wave(found: Search, place: int, rest: Trial) -> None:
 
 
 def _renewed(
-    evidence: Evidence, found: Search, leads: Sequence[Trial], told: dict[str, CandidateRow]
+    evidence: Evidence,
+    found: Search,
+    leads: Sequence[Trial],
+    told: tuple[dict[str, CandidateRow], list[EffectRecord]],
 ) -> bool:
     """Whether a trial led to a better base; what a round decided beside the other is forgotten."""
     if not any(_renew(evidence, found, lead) for lead in leads):
         return False
-    found.rows = told
+    found.rows, found.blind = told
     return True
 
 

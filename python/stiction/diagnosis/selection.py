@@ -33,10 +33,14 @@ class Search:
     doubtless : list of Trial
         Effects of which what was fitted leaves no doubt and what decides tells nothing; likeliest
         first.
+    unseen : dict of str to float
+        The same by name, with the share that they explain of what is left there.
     spread : bool
-        Whether the last round refused a limit for its spread over blocks alone.
+        Whether the last round refused a limit that helps, for where or how unevenly it does so.
     answered : str
         The cause that the rows that test were asked about, and bear out.
+    partly : frozenset of str
+        Limits that take a part alone, and were found where rows that decide were fitted as well.
     interrupted : bool
     lesser : list of (Model, str, Model)
         Models, an effect of each, and the model fitted without it.
@@ -48,16 +52,12 @@ class Search:
     blind: list[EffectRecord] = field(default_factory=list)
     imitated: float = 0.0
     doubtless: list[Trial] = field(default_factory=list)
+    unseen: dict[str, float] = field(default_factory=dict)
     spread: bool = False
     answered: str = ""
+    partly: frozenset[str] = frozenset()
     interrupted: bool = False
     lesser: list[tuple[Model, str, Model]] = field(default_factory=list)
-
-    @property
-    def unseen(self) -> dict[str, float]:
-        """Those without a doubt by name, with the share that they explain of what is left."""
-        power = self.models[-1].power
-        return {trial.name: 1.0 - trial.model.power / power for trial in self.doubtless}
 
     @property
     def families(self) -> set[str]:
@@ -73,4 +73,6 @@ class Search:
         choices = self.choices[:-1]
         models = self.models[: len(choices) + 1]
         # What was told beside it was told of another model.
-        return replace(self, models=models, choices=choices, rows=rows, doubtless=[], answered="")
+        return replace(
+            self, models=models, choices=choices, rows=rows, doubtless=[], unseen={}, answered=""
+        )

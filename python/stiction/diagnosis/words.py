@@ -57,6 +57,8 @@ OUTWEIGHED = "what is left without a name is worth more than half of what it too
 """Why a name may be none."""
 AGAINST = "the plant does worse with it on the rows that test"
 """Why a name is left open that these rows do not bear out."""
+PARTLY = "it acts in a few seconds alone, and takes a part there of what is beyond the limit"
+"""Why a limit may be something else that came then."""
 UNREPEATED = "less than one period was travelled, and a spring may look the same"
 """Why what should repeat with position may be something else."""
 MORE_MAY_BE = ", and more may be missing"
@@ -179,13 +181,16 @@ def sentence(
     for cause in effects:
         if cause.doubt == UNREPEATED:
             left += f" Of {cause.name} {cause.doubt}."
+        if cause.doubt == PARTLY:
+            left += f" {cause.name} may be something else: {cause.doubt}."
     return f"{lacks} {named}.{gained}{_unconfirmed(effects)}{left}"
 
 
-def unseen_words(unseen: Mapping[str, float], beside: bool) -> str:
-    """What shows in recordings that train and cannot be judged by those that decide.
+def unseen_words(unseen: Mapping[str, float], beside: bool, *, asked: bool = False) -> str:
+    """What shows in rows that were fitted and cannot be judged by those that were not.
 
-    ``unseen`` are shares of what is left there; ``beside`` something else that was found.
+    ``unseen`` are shares of what is left there; ``beside`` something else that was found;
+    ``asked``: the rows that test were asked as well.
     """
     if not unseen:
         return ""
@@ -195,10 +200,12 @@ def unseen_words(unseen: Mapping[str, float], beside: bool) -> str:
         for name, share in unseen.items()
     ]
     them = "it" if len(unseen) == 1 else "them"
+    rows = "rows that decide, or were left out in turn, or that test," if asked else (
+        "rows that decide, or were left out in turn,"
+    )  # fmt: skip
     judged = (
-        f"of what is left where the plant was fitted {joined(told)}. In the recordings that decide "
-        f"too little of {them} shows, or too unevenly: they neither bear {them} out nor refute "
-        f"{them}."
+        f"of what is left where the plant was fitted {joined(told)}. In {rows} too little of "
+        f"{them} shows, or too unevenly: they neither bear {them} out nor refute {them}."
     )
     if beside:
         return f" {judged[0].upper()}{judged[1:]}"
@@ -250,15 +257,16 @@ def push_words(pushes: Sequence[Push], names: Sequence[str]) -> str:
     return words
 
 
-def apart_words(apart: Sequence[tuple[str, Check]]) -> str:
-    """Recordings that test and stand apart from all others, as one sentence; "" without any."""
+def apart_words(apart: Sequence[tuple[str, Check]], answered: str = "") -> str:
+    """Recordings that test and stand apart from all others, as one sentence; "" without any.
+
+    ``answered`` is the cause that they were asked about, "" for none.
+    """
     if not apart:
         return ""
     each = joined([f"{name} {check.what}" for name, check in apart[:MOST_TOLD]])
-    return (
-        f"Of the recordings that test, {each}: something is different there, and no verdict rests "
-        "on it."
-    )
+    rests = f"no verdict but that of {answered} rests" if answered else "no verdict rests"
+    return f"Of the recordings that test, {each}: something is different there, and {rests} on it."
 
 
 def _unconfirmed(effects: Sequence[Cause]) -> str:

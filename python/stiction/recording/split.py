@@ -190,14 +190,14 @@ class _Dealer:
             if not any(self.roles):
                 self._deal_kinds()
             self._deal_stated()
-            self._refuse_copies()
+            self._refuse_copies(joined=joined)
             if not self.parts["test"]:
                 self._split_off()
         if joined and self.parts["select"]:
             self.parts["train"] = sorted([*self.parts["train"], *self.parts["select"]])
             self.parts["select"] = []
             self.rules.append(
-                "What is left lies in few seconds, so the rows of select train as well."
+                "What may act in few seconds is looked for again: the rows of select train as well."
             )
             self._fold(joined=True)
         elif decides and not self.parts["select"]:
@@ -260,13 +260,15 @@ class _Dealer:
                 'role = "train", or none a role'
             )
 
-    def _refuse_copies(self) -> None:
+    def _refuse_copies(self, *, joined: bool) -> None:
         """The same data may not be fitted and judged on, not even in a fold."""
         first: dict[str, int] = {}
         for index, recording in enumerate(self.recordings):
             at = first.setdefault(recording.hash, index)
             one, two = self.roles[at], self.roles[index]
-            shared = one == two and (one != "train" or bool(self.parts["select"]))
+            folded = one == "select" and joined
+            folded = folded or (one == "train" and (joined or not self.parts["select"]))
+            shared = one == two and not folded
             if at != index and not shared:
                 where = f"as {one} and as {two}" if one != two else "in train"
                 raise InputError(
