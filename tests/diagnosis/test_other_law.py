@@ -60,22 +60,6 @@ def test_a_name_that_took_less_than_twice_what_is_left_is_not_decided(
     assert left_open.outweighed(selection, []) == set()
 
 
-@pytest.mark.parametrize(
-    ("gains", "against"),
-    [((0.3,), []), ((-0.02,), ["cause 0"]), ((-0.1, 0.6), []), ((0.5, -0.01), ["cause 1"])],
-)
-def test_a_last_name_with_which_rows_that_test_are_missed_by_more_is_not_borne_out(
-    gains: tuple[float, ...], against: list[str]
-) -> None:
-    """An earlier one was measured while others were missing."""
-    causes: Any = [
-        SimpleNamespace(name=f"cause {k}", gain=SimpleNamespace(value=gain))
-        for k, gain in enumerate(gains)
-    ]
-    assert left_open.not_borne_out(causes) == against
-    assert left_open.not_borne_out([SimpleNamespace(name="untested", gain=None)]) == []
-
-
 def test_a_further_name_of_which_no_number_is_known_is_not_decided() -> None:
     def cause(name: str, *intervals: tuple[float, float]) -> Cause:
         numbers: Any = {

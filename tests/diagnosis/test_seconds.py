@@ -42,26 +42,18 @@ def test_a_limit_is_named_where_rows_that_decide_are_fitted_too(
     (cause,) = found.effects
     assert (cause.name, cause.decided) == (name, True)
     assert found.data["split"]["select"] == []
-    assert found.data["split"]["answered"] == []
     assert "the rows of select train as well" in found.split
     # What the first look said of all others stands, and each is told once.
     names = [row.name for row in found.candidates]
     assert len(set(names)) == len(names) > 20
 
 
-def test_a_limit_that_one_recording_shows_is_borne_out_by_rows_that_test() -> None:
-    """Fitted to one second, which leaves no doubt of it; nothing is left of it in two others."""
+def test_a_limit_that_one_recording_shows_is_not_testable_by_name() -> None:
+    """Fitted to one second, which leaves no doubt of it; rows that test are asked nothing."""
     found = diagnosed(12750005, ("voltage_limit", 0.0113))
-    (cause,) = found.effects
-    assert (cause.name, cause.decided) == ("voltage_limit", True)
-    assert cause.gain is not None
-    assert cause.gain.value > 0.7
-    (row,) = (row for row in found.candidates if row.name == "voltage_limit")
-    assert row.reason.startswith("accepted: the rows that test")
-    # Nobody must take that gain for one of rows that nothing was decided on.
-    assert found.data["split"]["answered"] == ["voltage_limit"]
-    assert "rows which decided on it" in found.sentence
-    assert "whether they bear voltage_limit out" in found.split
+    assert (found.verdict, found.effects) == ("not_testable", ())
+    assert "voltage_limit (" in found.sentence
+    assert "the rows of select train as well" in found.split
 
 
 def test_it_is_found_beside_a_name_as_well() -> None:

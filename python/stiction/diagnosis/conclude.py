@@ -17,15 +17,7 @@ from .advice import advise
 from .bursts import Burst, burst_of
 from .candidates import scales_of
 from .ceiling import Ceiling, ceiling_of
-from .confirm import (
-    borne_out_by_test,
-    confirmed,
-    described,
-    likeliest,
-    lost,
-    lost_on_test,
-    with_choice,
-)
+from .confirm import confirmed, described, lost, lost_on_test
 from .coordinates import Look, looks
 from .evidence import Evidence
 from .exact_forms import rests_of
@@ -64,7 +56,6 @@ from .words import (
     INTERRUPTED,
     MORE_MAY_BE,
     NO_COORDINATE,
-    answered_words,
     apart_words,
     no_machine,
     sentence,
@@ -138,14 +129,14 @@ class Conclusion:
             **self.found.data,
             "replicates": None if ceiling is None else ceiling.to_dict(),
         }
-        found = self._told(_asked(replace(self.found, data=data), self.confirmed.answered))
+        found = self._told(replace(self.found, data=data))
         found = with_pushes(found, self.evidence)
         names, number = self.evidence.names, len(self.confirmed.choices)
         found = with_checks(found, holds_of(self.evidence.shown, final, names))
         held = () if self.brief else self.held
         found = with_checks(found, [each.check for each in held], held_words(held))
         apart = outlying_in_test(self.evidence, final, self.test, number)
-        found = with_checks(found, apart, apart_words(apart, self.confirmed.answered))
+        found = with_checks(found, apart, apart_words(apart))
         return replayed(replace(found, ceiling=ceiling), self.evidence, self.base, final)
 
     @cached_property
@@ -168,39 +159,15 @@ class Conclusion:
         return self.evidence.open_test()
 
     @cached_property
-    def _tested(self) -> tuple[Search, HeldOut | None]:
-        """The selection, with what the rows that test answer where they were asked, and these."""
-        likely, selection = likeliest(self.decided), self.decided
-        asked = [] if likely is None else [likely.winner.model]
-        others = [r.model for r in self.rivals if r.model is not None]
-        models = [*selection.models, *asked, *others]
-        test = residuals_of(self.evidence, self.opened, [(m.plant, m.nuisances) for m in models])
-        if likely is None or test is None:
-            return selection, test
-        place = len(selection.models)
-        if borne_out_by_test(selection, likely, test, place):
-            more = borne_out(with_choice(selection, likely), self.evidence)
-            if more.choices:
-                return more, test
-        return selection, test.without(place)
-
-    @property
-    def chosen(self) -> Search:
-        """The selection, before the rows that test may take something away."""
-        return self._tested[0]
-
-    @property
     def test(self) -> HeldOut | None:
         """What all models leave there; those of other laws come last."""
-        return self._tested[1]
+        models = [*self.decided.models, *(r.model for r in self.rivals if r.model is not None)]
+        return residuals_of(self.evidence, self.opened, [(m.plant, m.nuisances) for m in models])
 
     @cached_property
     def confirmed(self) -> Search:
         """The selection that the rows that test bear out."""
-        found = confirmed(self.chosen, self.test, self.found.seed)
-        # What was answered and taken away again is as open as it was before.
-        taken = bool(self.chosen.answered) and not found.choices
-        return replace(self.decided, rows=found.rows) if taken else found
+        return confirmed(self.decided, self.test, self.found.seed)
 
     @cached_property
     def _centred(self) -> tuple[FloatArray, FloatArray]:
@@ -287,7 +254,7 @@ class Conclusion:
         baseline = summary_of(evidence, base, results[id(base)], test, 0, floor)
         number = len(selection.choices)
         extended = summary_of(evidence, final, results[id(final)], test, number, floor)
-        own_law, last = base.plant.friction.law, len(self.chosen.models) - 1
+        own_law, last = base.plant.friction.law, len(self.decided.models) - 1
         laws = better_laws(self.rivals, last, test, found.seed)
         better = laws[0] if laws else None
         causes = causes_of(selection, results[id(final)], test, found.seed, sole=better is None)
@@ -325,8 +292,7 @@ class Conclusion:
             event = None if causes else lone_event(evidence, final, test, 0)
             burst = self.burst if event is None else None
             unseen = selection.unseen if event is None else {}
-            asked = test is not None and likeliest(self.decided) is not None
-            beside = unseen_words(unseen, verdict != "nothing_missing", asked=asked)
+            beside = unseen_words(unseen, verdict != "nothing_missing")
             if unseen and verdict == "nothing_missing":
                 verdict, reason, beside = "not_testable", beside, ""
         if event is not None and better is None:
@@ -348,7 +314,6 @@ class Conclusion:
             + sentence(
                 verdict, causes, gain, unexplained, reason, slight=_slight(selection, self.rests[1])
             )
-            + answered_words(selection.answered)
             + beside
             + no_machine(
                 max(left, lost_on_test(test, len(causes), null)),
@@ -362,7 +327,7 @@ class Conclusion:
             candidates=in_order(selection.rows.values(), causes),
             laws=law_rows(
                 self.rivals,
-                len(self.chosen.models),
+                len(self.decided.models),
                 test,
                 found.seed,
                 beside=(base, event) if event is not None and event.fitted else None,
@@ -398,16 +363,6 @@ class Conclusion:
                 causes=self.own,
             ),
         )
-
-
-def _asked(found: Diagnosis, answered: str) -> Diagnosis:
-    """With the cause that the rows that test were asked about, among the rules of the split."""
-    if not answered:
-        return found
-    dealt = found.data["split"]
-    rule = f"The rows that test were asked one question: whether they bear {answered} out."
-    dealt = {**dealt, "rules": [*dealt["rules"], rule], "answered": [answered]}
-    return replace(found, split=f"{found.split}\n{rule}", data={**found.data, "split": dealt})
 
 
 def _slight(selection: Search, left: Rest) -> bool:

@@ -5,32 +5,19 @@ The rows that test may speak against a name, or say as little of it as the fit d
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from ..fitting.rows import Mask
 from ..trajectory import FloatArray
-from . import listing
-from .choose import Choice, choose
-from .confirmed import gone_where_it_acts
 from .evidence import Evidence
 from .gain import HeldOut, gain_of
 from .gains import heldout_gain
 from .model import Model
-from .ranges import is_whole
 from .selection import Search
 
-__all__ = [
-    "borne_out_by_test",
-    "confirmed",
-    "described",
-    "likeliest",
-    "lost",
-    "lost_on_test",
-    "with_choice",
-]
+__all__ = ["confirmed", "described", "lost", "lost_on_test"]
 
 MOST_LOST: Final = 0.5
 """Share of the power of the effort that a plant may leave, beyond noise, on rows that it was not
@@ -113,9 +100,9 @@ def _beyond(residual: FloatArray, effort: FloatArray, null: FloatArray) -> float
 def confirmed(selection: Search, test: HeldOut | None, seed: int) -> Search:
     """The selection without the last causes that the rows that test do not bear out.
 
-    Rows that test choose nothing, but for the answer to one question (``likeliest``). They may take
-    a name away, though: a plant that simulates worse with an effect than without it must not come
-    with it, and where the interval of the gain includes 0, the strength at least must be known.
+    Rows that test choose nothing. They may take a name away, though: a plant that simulates worse
+    with an effect than without it must not come with it, and where the interval of the gain
+    includes 0, the strength at least must be known.
 
     Parameters
     ----------
@@ -134,56 +121,6 @@ def confirmed(selection: Search, test: HeldOut | None, seed: int) -> Search:
         else:
             break
     return selection
-
-
-def likeliest(selection: Search) -> Choice | None:
-    """The effect that what was fitted leaves no doubt of, where nothing else is named.
-
-    One question, asked before the rows that test are opened, of one that all rows but these put:
-    they may answer it.
-    """
-    if selection.choices or selection.interrupted:
-        return None
-    choice = choose([replace(trial, reason="", by_blocks=False) for trial in selection.doubtless])
-    whole = choice is not None and is_whole(choice.winner.candidate, choice.winner.model)
-    return choice if whole else None
-
-
-def borne_out_by_test(selection: Search, choice: Choice, test: HeldOut, index: int) -> bool:
-    """Whether next to nothing is left in rows that test where the likeliest effect acts.
-
-    Parameters
-    ----------
-    selection : Search
-    choice : Choice
-        See ``likeliest``.
-    test : HeldOut
-        Residuals of the models of ``selection``, and of the winner's.
-    index : int
-        Place of the winner's among them.
-    """
-    before, after = test.residuals[len(selection.models) - 1], test.residuals[index]
-    explained = before - after
-    return gone_where_it_acts(
-        test.cells.block, explained, before, after, selection.models[0].evidence.overlap
-    )
-
-
-def with_choice(selection: Search, choice: Choice) -> Search:
-    """The selection with one more cause, which the rows that test bear out."""
-    trials = [choice.winner, *choice.rivals, *choice.aside]
-    rows = selection.rows | {trial.name: listing.tried(trial, choice) for trial in trials}
-    name = choice.winner.name
-    rows[name] = replace(rows[name], reason="accepted: the rows that test bear it out")
-    return replace(
-        selection,
-        models=[*selection.models, choice.winner.model],
-        choices=[*selection.choices, choice],
-        rows=rows,
-        doubtless=[],
-        unseen={},
-        answered=name,
-    )
 
 
 def _is_known(selection: Search) -> bool:

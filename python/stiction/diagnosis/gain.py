@@ -1,9 +1,9 @@
-"""The gain on rows that test: computed once, after the last decision on all other rows."""
+"""The gain on rows that nobody looked at: computed once, after the last decision."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -70,14 +70,6 @@ class HeldOut:
     def rms(self, index: int) -> float:
         """Root mean square of the residual of one plant, in effort."""
         return float(np.sqrt(np.mean((self.residuals[index] / self.weights) ** 2)))
-
-    def without(self, index: int) -> HeldOut:
-        """The same without one of the plants."""
-        return replace(
-            self,
-            residuals=(*self.residuals[:index], *self.residuals[index + 1 :]),
-            nuisances=(*self.nuisances[:index], *self.nuisances[index + 1 :]),
-        )
 
 
 def residuals_of(

@@ -13,9 +13,9 @@ from .exact_forms import doubted
 from .passing import MOMENTS
 from .result import Cause, Unexplained
 from .selection import Search
-from .words import AGAINST, ALONE, OUTWEIGHED, PARTLY, UNREPEATED
+from .words import ALONE, OUTWEIGHED, PARTLY, UNREPEATED
 
-__all__ = ["known_by_themselves", "left_open", "not_borne_out", "outweighed", "waves_left_open"]
+__all__ = ["known_by_themselves", "left_open", "outweighed", "waves_left_open"]
 
 MUCH_LEFT: Final = 0.5
 """What is left without a name counts against one name where it is worth this share of what that one
@@ -47,7 +47,6 @@ def left_open(
     found = [doubted(cause, left, rests) for cause in causes]
     found = known_by_themselves(selection, found)
     doubts = dict.fromkeys(outweighed(selection, left), OUTWEIGHED)
-    doubts |= dict.fromkeys(not_borne_out(found), AGAINST)
     doubts |= dict.fromkeys(selection.partly, PARTLY)
     return [
         replace(
@@ -65,18 +64,6 @@ def waves_left_open(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
     return [
         replace(cause, decided=False, doubt=UNREPEATED) if unrepeated(final, cause.name) else cause
         for cause in causes
-    ]
-
-
-def not_borne_out(causes: Sequence[Cause]) -> list[str]:
-    """The last name where the plant does worse with it on the rows that test.
-
-    They take it away where that is sure, and leave it open where it is not: of 1144 sure names
-    that stood alone they did so for one, which was wrong. Of one that others follow they say
-    little, for those were still missing.
-    """
-    return [
-        cause.name for cause in causes[-1:] if cause.gain is not None and cause.gain.value < 0.0
     ]
 
 

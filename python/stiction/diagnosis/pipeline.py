@@ -220,7 +220,7 @@ def _testable(
         if second and holds_more(second.selection, before):
             look = second._replace(selection=with_rows_of(second.selection, before))
     selection = look.selection
-    # Every decision on other rows is taken: now, and once, those that test.
+    # Every decision is taken: now, and once, the rows that test.
     return Conclusion(
         look.found,
         session,
@@ -268,7 +268,6 @@ def _replayed(
     dealt = evidence.split.to_dict()
     told = [TRAIN_IS_FITTED] if evidence.split.select else []
     dealt["rules"] = [*dealt["rules"], *told]
-    dealt["answered"] = []
     data = {
         **found.data,
         "split": dealt,

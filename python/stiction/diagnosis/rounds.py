@@ -221,8 +221,9 @@ def _refitted(
         or pass_together(screening, found.models[-1], trials, found.families)
     )
     doubtless = [t for t in trials if t.doubtless and choice is None]
-    found.doubtless = sorted(doubtless, key=lambda t: -t.worth)
-    found.unseen = {t.name: 1.0 - t.model.power / base.power for t in found.doubtless}
+    found.unseen = {
+        t.name: 1.0 - t.model.power / base.power for t in sorted(doubtless, key=lambda t: -t.worth)
+    }
     found.spread = any(_is_spread(trial) for trial in trials)
     strange = [t for t in trials if t.imitates and not t.of_reading and choice is None]
     strange = [t for t in strange if not any(covers(other, t) for other in doubtless)]

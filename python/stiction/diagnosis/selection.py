@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 
 from ..catalogue import EffectRecord
 from .choose import Choice
-from .decide import Trial
 from .model import Model
 from .result import CandidateRow
 
@@ -30,15 +29,11 @@ class Search:
     imitated : float
         Held-out gain of the best of those that were refused last because they imitate something
         else: so much is left that has no name.
-    doubtless : list of Trial
-        Effects of which what was fitted leaves no doubt and what decides tells nothing; likeliest
-        first.
     unseen : dict of str to float
-        The same by name, with the share that they explain of what is left there.
+        Effects of which what was fitted leaves no doubt and what decides tells nothing, with the
+        share that they explain of what is left there; likeliest first.
     spread : bool
         Whether the last round refused a limit that helps, for where or how unevenly it does so.
-    answered : str
-        The cause that the rows that test were asked about, and bear out.
     partly : frozenset of str
         Limits that take a part alone, and were found where rows that decide were fitted as well.
     interrupted : bool
@@ -51,10 +46,8 @@ class Search:
     rows: dict[str, CandidateRow] = field(default_factory=dict)
     blind: list[EffectRecord] = field(default_factory=list)
     imitated: float = 0.0
-    doubtless: list[Trial] = field(default_factory=list)
     unseen: dict[str, float] = field(default_factory=dict)
     spread: bool = False
-    answered: str = ""
     partly: frozenset[str] = frozenset()
     interrupted: bool = False
     lesser: list[tuple[Model, str, Model]] = field(default_factory=list)
@@ -73,6 +66,4 @@ class Search:
         choices = self.choices[:-1]
         models = self.models[: len(choices) + 1]
         # What was told beside it was told of another model.
-        return replace(
-            self, models=models, choices=choices, rows=rows, doubtless=[], unseen={}, answered=""
-        )
+        return replace(self, models=models, choices=choices, rows=rows, unseen={})

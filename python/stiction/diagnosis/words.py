@@ -55,8 +55,6 @@ DOUBTFUL = (
 """Of a cause whose name is told, and whose numbers are not."""
 OUTWEIGHED = "what is left without a name is worth more than half of what it took"
 """Why a name may be none."""
-AGAINST = "the plant does worse with it on the rows that test"
-"""Why a name is left open that these rows do not bear out."""
 PARTLY = "it acts in a few seconds alone, and takes a part there of what is beyond the limit"
 """Why a limit may be something else that came then."""
 UNREPEATED = "less than one period was travelled, and a spring may look the same"
@@ -186,11 +184,10 @@ def sentence(
     return f"{lacks} {named}.{gained}{_unconfirmed(effects)}{left}"
 
 
-def unseen_words(unseen: Mapping[str, float], beside: bool, *, asked: bool = False) -> str:
+def unseen_words(unseen: Mapping[str, float], beside: bool) -> str:
     """What shows in rows that were fitted and cannot be judged by those that were not.
 
-    ``unseen`` are shares of what is left there; ``beside`` something else that was found;
-    ``asked``: the rows that test were asked as well.
+    ``unseen`` are shares of what is left there; ``beside`` something else that was found.
     """
     if not unseen:
         return ""
@@ -200,27 +197,14 @@ def unseen_words(unseen: Mapping[str, float], beside: bool, *, asked: bool = Fal
         for name, share in unseen.items()
     ]
     them = "it" if len(unseen) == 1 else "them"
-    rows = "rows that decide, or were left out in turn, or that test," if asked else (
-        "rows that decide, or were left out in turn,"
-    )  # fmt: skip
     judged = (
-        f"of what is left where the plant was fitted {joined(told)}. In {rows} too little of "
-        f"{them} shows, or too unevenly: they neither bear {them} out nor refute {them}."
+        f"of what is left where the plant was fitted {joined(told)}. In rows that decide, or were "
+        f"left out in turn, too little of {them} shows, or too unevenly: they neither bear {them} "
+        f"out nor refute {them}."
     )
     if beside:
         return f" {judged[0].upper()}{judged[1:]}"
     return f"These data cannot decide whether anything is missing: {judged}"
-
-
-def answered_words(name: str) -> str:
-    """Why a gain is no measure of rows that nothing was decided on; "" where no row was asked."""
-    if not name:
-        return ""
-    return (
-        f" What was fitted leaves no doubt of {name}, and no other rows could judge it. So those "
-        "that test were asked: next to nothing is left there where it acts. Its gain is that of "
-        "rows which decided on it."
-    )
 
 
 def no_machine(left: float, named: bool, verdict: Verdict, by: Compared = EFFORT) -> str:
@@ -257,16 +241,15 @@ def push_words(pushes: Sequence[Push], names: Sequence[str]) -> str:
     return words
 
 
-def apart_words(apart: Sequence[tuple[str, Check]], answered: str = "") -> str:
-    """Recordings that test and stand apart from all others, as one sentence; "" without any.
-
-    ``answered`` is the cause that they were asked about, "" for none.
-    """
+def apart_words(apart: Sequence[tuple[str, Check]]) -> str:
+    """Recordings that test and stand apart from all others, as one sentence; "" without any."""
     if not apart:
         return ""
     each = joined([f"{name} {check.what}" for name, check in apart[:MOST_TOLD]])
-    rests = f"no verdict but that of {answered} rests" if answered else "no verdict rests"
-    return f"Of the recordings that test, {each}: something is different there, and {rests} on it."
+    return (
+        f"Of the recordings that test, {each}: something is different there, and no verdict rests "
+        "on it."
+    )
 
 
 def _unconfirmed(effects: Sequence[Cause]) -> str:

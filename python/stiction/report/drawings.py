@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from ..compared import compared_by
-from ..wording import listed
 from . import figures
 from .numbers import isolated, percent, plain
 from .scale import scale_of
@@ -122,12 +121,9 @@ def _headline(diagnosis: Diagnosis) -> _Order:
     assert pictures is not None
     stretch = pictures.stretches[0]
     tested = diagnosis.extended is not None and diagnosis.extended.heldout_rms is not None
-    answered = (diagnosis.data.get("split") or {}).get("answered")
-    rows = "rows that were fitted, as none are left to test on"
-    if tested:
-        rows = "rows held out: fitted on nothing, " + (
-            f"asked about {listed(answered)} alone" if answered else "decided on nothing"
-        )
+    rows = "rows held out: fitted on nothing, decided on nothing" if tested else (
+        "rows that were fitted, as none are left to test on"
+    )  # fmt: skip
     band = scale_of(diagnosis).text(figures.FLOOR_TIMES * pictures.floor)
     by = compared_by(diagnosis.plant)
     what = f"Measured {by.quantity}, and what"

@@ -19,7 +19,6 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section:
         "fitted": diagnosis.extended is not None,
         "effects": bool(diagnosis.effects),
         "loop": diagnosis.plant.servo,
-        "answered": bool((diagnosis.data.get("split") or {}).get("answered")),
         "shot": "(shooting)" in (diagnosis.data.get("residual") or ""),
         "version": diagnosis.version,
         "seed": diagnosis.seed,
