@@ -423,14 +423,14 @@ def test_only_what_passed_by_itself_leaves_waves_aside(monkeypatch: pytest.Monke
 
 
 def test_a_rest_of_a_contact_without_a_spring_is_looked_for_in_two_lengths() -> None:
-    units = dict.fromkeys(("presliding", "loading"), 1.0)
+    units = dict.fromkeys(("presliding", "resting", "loading"), 1.0)
     own, none = (Scales((0.1, 1.0), (1.0,), True, units, finer) for finer in (1.0, 0.1))
     records = {record.name: record for record in st.effects()}
     for name in ("dwell_strengthening", "rate_dependent_breakaway"):
         one, two = (candidates(records[name], scales) for scales in (own, none))
         assert len(two) == 2 * len(one)
         assert {each.shape["window"] for each in two} == {1.0, 0.1}
-    # A refit finds the length of others.
+    # From anywhere a refit finds the length of others.
     gap = records["backlash"]
     assert len(candidates(gap, none)) == len(candidates(gap, own))
 

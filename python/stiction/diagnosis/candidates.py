@@ -62,8 +62,8 @@ class Scales:
     whole_turns : bool
         Orders are whole numbers: the machine turns at least once.
     units : dict of str to float
-        What the scales ``presliding`` (rad or m), ``loading`` (N·m/s or N/s), ``session`` (s) and
-        ``path`` (rad or m) are measured in.
+        What the scales ``presliding`` and ``resting`` (rad or m), ``loading`` (N·m/s or N/s),
+        ``session`` (s) and ``path`` (rad or m) are measured in.
     finer : float
         Factor to a second, smaller pre-sliding length that is tried where the contact has none; 1
         where it has one.
@@ -185,6 +185,7 @@ def _units(evidence: Evidence, plant: Plant, span: float) -> tuple[dict[str, flo
     paths = [form.path + float(np.sum(np.abs(np.diff(form.position)))) for form in forms]
     units = {
         "presliding": length,
+        "resting": length,
         "loading": max(sliding, 1e-300),
         "input": max(1e-300, *(largest_command(form, plant) for form in forms)),
         "kernel": min(form.kernel.support for form in forms),
@@ -223,11 +224,10 @@ def candidates(record: EffectRecord, scales: Scales) -> list[Candidate]:
             if resonance < SAMPLED * scales.rate
             for each in found[:: max(len(found) // MOST_SHARES, 1)]
         ]
-    # What a fit may vary finds its own length; what it may not has to be given the right one.
-    held = any(s.scale == "presliding" and not s.fitted for s in record.shapes)
-    if held and scales.finer < 1.0:
-        length = scales.units["presliding"] * scales.finer
-        found += _grid(record, replace(scales, units={**scales.units, "presliding": length}))
+    # From a rest that is ten times as wide as the right one a fit does not find that.
+    if scales.finer < 1.0 and any(shape.scale == "resting" for shape in record.shapes):
+        finer = {name: scales.units[name] * scales.finer for name in ("presliding", "resting")}
+        found += _grid(record, replace(scales, units={**scales.units, **finer}))
     return found
 
 

@@ -16,7 +16,7 @@ from .choose import Choice
 from .decide import LEAST_GAIN, LEAST_Z, PENALTY, Trial
 from .gains import heldout_gain, log_gain
 from .model import Model, power_of
-from .trials import MANY_TIMES, MUCH, Screening, promises, whole_fit
+from .trials import MUCH, Screening, promises, whole_fit
 
 __all__ = ["beside_a_second", "is_sharpened", "sharpened"]
 
@@ -59,7 +59,7 @@ def beside_a_second(screening: Screening, base: Model, trial: Trial) -> Trial:
     Where two waves are about as large, one alone does harm wherever they cancel.
     """
     score = trial.score
-    if not trial.reason or score.score <= max(MUCH, MANY_TIMES * score.threshold):
+    if not trial.reason or score.score <= max(MUCH, score.threshold):
         return trial
     found = _second(screening, trial)
     if found is None:

@@ -60,7 +60,7 @@ impl<S: Scalar> Effect<S> for DwellStrengthening<S> {
                 grid: &[2.0, 7.0],
                 fitted: true,
             },
-            Shape { parameter: "window", scale: Scale::Presliding, grid: &[1.0], fitted: false },
+            Shape { parameter: "window", scale: Scale::Resting, grid: &[1.0], fitted: true },
         ],
         second: &[],
         law_terms: &[],

@@ -73,7 +73,7 @@ impl<S: Scalar> Effect<S> for RateDependentBreakaway<S> {
                 grid: &[2.0, 7.0],
                 fitted: true,
             },
-            Shape { parameter: "window", scale: Scale::Presliding, grid: &[1.0], fitted: false },
+            Shape { parameter: "window", scale: Scale::Resting, grid: &[1.0], fitted: true },
             Shape { parameter: "loading_time", scale: Scale::One, grid: &[0.1], fitted: false },
         ],
         second: &[],

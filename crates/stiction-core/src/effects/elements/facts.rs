@@ -53,6 +53,9 @@ pub enum Scale {
     Order,
     /// Pre-sliding length of the contact: its friction over its initial stiffness.
     Presliding,
+    /// Displacement within which the contact rests: its pre-sliding length, or a share of the range
+    /// of motion where it has none.
+    Resting,
     /// Friction of the contact per second.
     Loading,
     /// Width of the kernel through which motion and effort are seen.
@@ -72,6 +75,7 @@ impl Scale {
             Self::Input => "input",
             Self::Order => "order",
             Self::Presliding => "presliding",
+            Self::Resting => "resting",
             Self::Loading => "loading",
             Self::Kernel => "kernel",
             Self::Session => "session",
