@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -37,6 +38,8 @@ class Compared:
 
     def share(self, relative: float, decimals: int = 2) -> str:
         """A residual over what it is a part of, in words."""
+        if math.isinf(relative):
+            return f"all there is: {self.whole} is 0"
         if relative > MOST_PERCENT:
             return f"{relative:.3g} times {self.whole}"
         return f"{100.0 * relative:.{decimals}f} % of {self.whole}"

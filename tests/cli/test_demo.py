@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from tests.reference import make_demo_session
 
-from stiction import Diagnosis, Plant, demo_session, diagnose
+from stiction import Diagnosis, Plant, demo_session, diagnose, effects
 from stiction.cli import demo as demo_verb
 from stiction.cli import paper as paper_verb
 from stiction.cli import run
@@ -71,6 +71,10 @@ def test_the_hidden_effect_is_named_and_measured(demo: Demo) -> None:
     assert 0.2 < low < high < 1.0
     velocity = effect["parameters"]["effects.stribeck.velocity"]["value"]
     assert velocity == pytest.approx(make_demo_session.SHAPE["velocity"], rel=0.15)
+    # What was tried and not fitted makes the cause whole.
+    whole = {*effect["parameters"], *demo.findings["data"]["chosen"]}
+    record = next(each for each in effects() if each.name == effect["name"])
+    assert {f"effects.{effect['name']}.{p.name}" for p in record.parameters} == whole
 
 
 def test_it_is_quick(demo: Demo) -> None:

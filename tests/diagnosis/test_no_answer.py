@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.diagnosis import trials
 from stiction.diagnosis.confirm import (
     AGAINST,
     NO_BETTER,
@@ -23,6 +24,7 @@ from stiction.diagnosis.gain import HeldOut
 from stiction.diagnosis.result import CandidateRow
 from stiction.diagnosis.selection import Search
 from stiction.diagnosis.words import no_machine
+from stiction.errors import NotEnoughData
 
 BLOCKS, ROWS = 40, 50
 
@@ -229,3 +231,59 @@ def test_what_a_plant_leaves_of_the_effort_is_said_where_it_is_most(
     assert words in told
     assert bool(told) is bool(left)
     assert no_machine(left, False, "not_testable") == ""
+
+
+def lone(current: np.ndarray, position: np.ndarray) -> st.Recording:
+    return st.Recording(np.arange(len(position)) * 1e-3, current, position)
+
+
+@pytest.mark.parametrize("law", ["coulomb", "dahl"])
+def test_readings_that_are_noise_alone_are_no_machine(law: str) -> None:
+    """A contact that rests in all of them holds every effort: such a plant left nothing at all."""
+    source = np.random.default_rng(3)
+    noise = lone(source.standard_normal(20_000), source.standard_normal(20_000))
+    drive = {"input": "current_a", "gain": 0.5}
+    machine = st.Plant.from_dict({"drive": drive, "friction": {"law": law}})
+    found = st.diagnose(machine, noise, surrogates=4)
+    if law == "coulomb":
+        assert found.verdict == "not_testable"
+        assert "nothing moves beyond the noise" in found.sentence
+        with pytest.raises(NotEnoughData, match="nothing moves beyond the noise"):
+            st.fit(machine, noise)
+    else:
+        # It yields, and no length in which it does is too long to be told.
+        assert not found.effects
+
+
+def test_a_machine_that_nothing_drives_cannot_be_used() -> None:
+    time = np.arange(20_000) * 1e-3
+    swung = lone(np.zeros(len(time)), np.sin(7.0 * time) * np.exp(-0.2 * time))
+    drive = {"input": "current_a", "gain": 0.5}
+    machine = {"drive": drive, "friction": {"law": "coulomb"}}
+    found = st.diagnose(st.Plant.from_dict(machine), swung, surrogates=4)
+    assert found.verdict == "data_fault"
+    assert "input is 0 in every row of all recordings" in found.sentence
+    # Weight drives as well.
+    hung = {**machine, "body": {"inertia": 0.01, "gravity_amplitude": 0.5}}
+    assert st.diagnose(st.Plant.from_dict(hung), swung, surrogates=4).verdict != "data_fault"
+    assert "the effort is 0" in str(st.fit(st.Plant.from_dict(machine), swung))
+
+
+@pytest.mark.parametrize(("left", "taken"), [(0.5, True), (1e-9, False)])
+def test_a_plant_of_which_nothing_is_left_is_no_better_one(
+    monkeypatch: pytest.MonkeyPatch, left: float, taken: bool
+) -> None:
+    """A deadband wider than any input left nothing to drive, and nothing that was unexplained."""
+    own: Any = SimpleNamespace(power=1.0)
+    better: Any = SimpleNamespace(power=left, interrupted=False)
+    evidence: Any = SimpleNamespace(train=[], floor=0.4)
+    monkeypatch.setattr(trials, "from_elsewhere", lambda *_: better)
+    monkeypatch.setattr(
+        trials,
+        "Model",
+        lambda evidence, solution, _: SimpleNamespace(
+            evidence=evidence, solution=solution, power=solution.power, given=1
+        ),
+    )
+    model: Any = SimpleNamespace(evidence=evidence, solution=own, nuisances=None)
+    assert (trials.unstuck(model) is not model) == taken

@@ -589,8 +589,11 @@ def test_findings_hold_every_field_that_others_build_on() -> None:
         for parameter in model["parameters"].values():
             assert set(parameter) == {"value", "ci95", "unit", "at_bound"}
     assert set(found["data"]) == {
-        "checks", "split", "replicates", "residual", "hashes", "noise",
+        "checks", "split", "replicates", "residual", "hashes", "noise", "chosen", "complete",
     }  # fmt: skip
+    assert [each["recording"] for each in found["data"]["noise"]] == ["recording 1", "recording 2"]
+    assert all(each["effort"] > 0.0 for each in found["data"]["noise"])
+    assert found["data"]["complete"]
     if not found["effects"]:
         assert found["extended"] == found["baseline"]
 

@@ -6,7 +6,14 @@ from types import SimpleNamespace
 
 from stiction.diagnosis.gain import Gain
 from stiction.diagnosis.result import Unexplained
-from stiction.diagnosis.words import OUTWEIGHED, UNREPEATED, joined, sentence, unseen_words
+from stiction.diagnosis.words import (
+    LEAVES_NOTHING,
+    OUTWEIGHED,
+    UNREPEATED,
+    joined,
+    sentence,
+    unseen_words,
+)
 
 
 def test_words_join_and_say_what_was_not_confirmed() -> None:
@@ -74,6 +81,9 @@ def test_words_join_and_say_what_was_not_confirmed() -> None:
     assert taken.endswith(
         "Of run_in less than one period was travelled, and a spring may look the same."
     )
+    alone.doubt = LEAVES_NOTHING.format("effort")
+    taken = sentence("ambiguous", (sure, alone), None, (), "")
+    assert "run_in may be something else: what is left goes with effort, and of that it" in taken
     worse = sentence("missing_effect", (sure,), Gain(-0.1, (-0.2, 0.1)), (), "")
     assert worse.startswith("By the rows that decide, and by no others, the simulation lacks")
     assert "Adding it makes the held-out rows worse." in worse

@@ -95,13 +95,13 @@ def test_a_contact_that_is_moved_and_read_coarsely_is_told_without_a_ring() -> N
     assert "rings" not in found.data["residual"]
 
 
-def bent(seed: int, role: str, *before: float) -> st.Recording:
+def bent(seed: int, role: str, *before: float, size: float = LOADED) -> st.Recording:
     """Loops that never slide, on a contact that earlier ways have bent."""
     rng = np.random.default_rng(seed)
     time = np.arange(0.0, 20.0, DT)
     swings = zip((1.0, 0.6), (0.31, 0.83), rng.uniform(0.0, 6.28, 2), strict=True)
     way = sum(share * np.sin(2.0 * np.pi * rate * time + at) for share, rate, at in swings)
-    position = LOADED * (way - way[0])
+    position = size * (way - way[0])
     spring = LadderSpring(**CURVE)
     for step in before:
         spring.advance(step)
@@ -161,6 +161,18 @@ def test_a_second_turn_is_kept_where_it_explains_more() -> None:
     # What it is fitted from afterwards stays: a plant that hardly differs does not lose it.
     again = started(fitted, [rows], Nuisances(0.0, {0: start})).starts[0]
     assert set(again) == set(start)
+
+
+def test_a_force_that_makes_up_for_an_offset_hides_no_turn() -> None:
+    """It bent all the rest by so much that no turn seemed to change any of it."""
+    fitted = st.fit(PLANT, machine(bent(61, "train", *SLID_BACK))).plant
+    form = WeakForm(PLANT, bent(60, "test", *SLID_BACK, size=0.5 * LOADED))
+    rows = Rows(PLANT, form, 0, form.time > WARM_UP_S)
+    start = started(fitted, [rows], Nuisances()).starts[0]
+    left = rows.residual(fitted, Nuisances(0.0, {0: start}))[rows.mask]
+    # With a force alone it would be 1.2 N.
+    assert np.sqrt(np.mean(left**2)) < NOISE
+    assert abs(start["turned"]) > 0.9
 
 
 def test_an_offset_is_no_turn() -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import NotEnoughData
 from ..fitting.forms import KERNELS, Through, as_session, forms_of
 from ..fitting.pushes import Watch
-from ..fitting.rows import Mask, Nuisances, Rows, rows_of
+from ..fitting.rows import Mask, Nuisances, Rows, ask_to_tell, rows_of
 from ..fitting.starts import started
 from ..plant import Plant
 from ..recording import Part, Recording
@@ -154,8 +154,7 @@ class Evidence:
         self.watch = watch or Watch(plant, self.forms, self.recordings, shown_parts)
         self.pushes = self.watch.look(shown_parts)
         self.train = self._rows(plant, self.split.train)
-        if not self.train:
-            raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
+        ask_to_tell(self.train)
         self._select = self._masks(self.split.select)
         self._sealed = True
         # What may be looked at before the last decision: train and select, one under the other.

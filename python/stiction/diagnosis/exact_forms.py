@@ -18,6 +18,7 @@ from .coordinates import ANGLE
 from .omnibus import Rest
 from .periodic import WITH_ACCELERATION, WITH_SQUARED_SPEED
 from .result import Cause, Unexplained
+from .words import LEAVES_NOTHING
 
 __all__ = ["doubted", "rests_of", "several"]
 
@@ -52,8 +53,9 @@ def doubted(cause: Cause, left: Sequence[Unexplained], rests: Sequence[Unexplain
     rests : sequence of Unexplained
         What it leaves where names leave nothing, as ``rests_of`` tells.
     """
-    if any(each.coordinate in EXACT.get(cause.name, ()) for each in rests):
-        return replace(cause, decided=False)
+    for each in rests:
+        if each.coordinate in EXACT.get(cause.name, ()):
+            return replace(cause, decided=False, doubt=LEAVES_NOTHING.format(each.coordinate))
     record = next(each for each in effects() if each.name == cause.name)
     others = [name for name in several(record) if name not in cause.look_alikes]
     if not others or all(each.coordinate != ANGLE.name for each in left):

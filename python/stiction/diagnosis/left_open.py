@@ -13,7 +13,7 @@ from .exact_forms import doubted
 from .passing import MOMENTS
 from .result import Cause, Unexplained
 from .selection import Search
-from .words import ALONE, OUTWEIGHED, PARTLY, UNREPEATED
+from .words import ALONE, MAY_BE_NOTHING, OUTWEIGHED, PARTLY, UNREPEATED
 
 __all__ = ["known_by_themselves", "left_open", "outweighed", "waves_left_open"]
 
@@ -97,5 +97,5 @@ def known_by_themselves(selection: Search, causes: Sequence[Cause]) -> list[Caus
     found = list(causes)
     for place, (choice, cause) in enumerate(zip(selection.choices, causes, strict=True)):
         if place and cause.doubtful and final.strength(choice.winner.candidate) < SURE:
-            found[place] = replace(cause, decided=False)
+            found[place] = replace(cause, decided=False, doubt=MAY_BE_NOTHING)
     return found

@@ -9,6 +9,8 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, Final, NamedTuple
 
+import numpy as np
+
 from .. import __version__
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import told as residual_told
@@ -49,6 +51,11 @@ TRAIN_IS_FITTED: Final = (
     "and may end at values a little different."
 )
 """Where a fit of the same session and the base differ; everything else they do alike."""
+
+NOT_DRIVEN: Final = (
+    "The data cannot be used: input is 0 in every row of all recordings, so that no effort is known "
+    "to which anything could be compared; add a recording that is driven, or the column that drives."
+)
 
 _logger = logging.getLogger(__name__)
 
@@ -130,7 +137,7 @@ def diagnose(
         version=__version__,
         seed=seed,
     )
-    usable, fault = _usable(checks, entire)
+    usable, fault = _usable(checks, entire, machine)
     # What is missing, and whether anything is, hangs on it.
     doubt = next((f"{n}: {c.what}; {c.try_}." for n, c in checks if c.name == DOUBTED), "")
     if usable is None:
@@ -172,12 +179,16 @@ def _repairs(session: Session) -> list[tuple[str, Check]]:
     ]
 
 
-def _usable(checks: Sequence[tuple[str, Check]], session: Session) -> tuple[Session | None, str]:
+def _usable(
+    checks: Sequence[tuple[str, Check]], session: Session, plant: Plant
+) -> tuple[Session | None, str]:
     """The recordings without a fault, None where too few are left, and in words what is wrong."""
     kept, told = usable(session.recordings, checks)
     if kept is None:
         return None, told
     recordings = without_failures(remaining(session.recordings, kept))
+    if not (plant.prescribed_motion or plant.hangs or any(map(_is_driven, recordings))):
+        return None, NOT_DRIVEN
     places = {k: j for j, k in enumerate(kept)}
     repeats = {
         places[k]: places[of]
@@ -185,6 +196,12 @@ def _usable(checks: Sequence[tuple[str, Check]], session: Session) -> tuple[Sess
         if k in places and of in places
     }
     return Session(recordings, session.plant, repeats), told
+
+
+def _is_driven(recording: Recording) -> bool:
+    """Whether anything that is known acts on the machine."""
+    acted = (recording.input, recording.channels.get("load"))
+    return any(values is not None and bool(np.any(values)) for values in acted)
 
 
 def _testable(
@@ -282,8 +299,8 @@ def _replayed(
         null, noises = surrogates_of(evidence, base, surrogates, found.seed)
     except KeyboardInterrupt:
         return found, None
-    data["noise"] = [_noise_entry(evidence, index, noise) for index, noise in noises.items()]
-    return found, null
+    measured = [_noise_entry(evidence, index, noise) for index, noise in noises.items()]
+    return replace(found, data={**found.data, "noise": measured}), null
 
 
 def _noise_entry(evidence: Evidence, index: int, noise: Noise) -> dict[str, Any]:

@@ -73,7 +73,7 @@ class Cause(_Gained):
     look_alikes : tuple of str
         Effects that explain the same about as well.
     parameters : Mapping of str to FitParameter
-        By path.
+        By path: what was fitted.
     gain : Gain or None
         Over the test rows, beside the model that holds the causes before it.
     what, means, try_ : str
@@ -82,6 +82,9 @@ class Cause(_Gained):
         Coordinate in which the residual showed it.
     doubt : str
         Why it is undecided where no look-alike is, "" where there is no other reason.
+    chosen : Mapping of str to float
+        By path: numbers of it that were not fitted, but taken from those that were tried, as the
+        order of a wave is.
     """
 
     name: str
@@ -95,9 +98,10 @@ class Cause(_Gained):
     try_: str
     coordinate: str
     doubt: str = ""
+    chosen: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        freeze(self, ByPath, "parameters")
+        freeze(self, ByPath, "parameters", "chosen")
 
     @property
     def doubtful(self) -> bool:
@@ -365,11 +369,16 @@ class Diagnosis:
             "extended": None if self.extended is None else self.extended.to_dict(),
             "unexplained": [left.to_dict() for left in self.unexplained],
             "advice": [each.to_dict() for each in self.advice],
-            "data": dict(self.data),
+            "data": {**self.data, "chosen": self._chosen, "complete": self.success},
             "version": self.version,
             "seed": self.seed,
             "seconds": self.seconds,
         }
+
+    @property
+    def _chosen(self) -> dict[str, float]:
+        """Numbers of all causes that were not fitted, by path: with those that were a cause is whole."""
+        return {path: value for cause in self.effects for path, value in cause.chosen.items()}
 
     def to_json(self) -> str:
         """findings.json as text; null stands for an end of an interval that the data leave open."""

@@ -60,6 +60,8 @@ def causes_of(
             if path.startswith(f"effects.{record.name}.")
         }
         means, remedy = meant(record, final.plant)
+        effect = effect_of(final.plant, record.name)
+        own = {f"effects.{record.name}.{name}": p.value for name, p in effect.parameters.items()}
         causes.append(
             Cause(
                 name=record.name,
@@ -68,10 +70,11 @@ def causes_of(
                 look_alikes=(*rivals_left, *others),
                 parameters=fitted_values,
                 gain=None if test is None else gain_of(test, k, k + 1, seed),
-                what=what(record, result.parameters, effect_of(final.plant, record.name)),
+                what=what(record, result.parameters, effect),
                 means=means,
                 try_=remedy,
                 coordinate=record.coordinate,
+                chosen={path: value for path, value in own.items() if path not in fitted_values},
             )
         )
     return causes

@@ -302,12 +302,17 @@ def unstuck(model: Model) -> Model:
     """A model, or a better one from starts that it may not have seen (see ``from_elsewhere``).
 
     What is fitted on from a base that made up for the effect may end in the valley of that base.
+    A plant of which nothing is left, drive and inertia and all, explains everything and is no
+    better one.
     """
-    solution = from_elsewhere(model.solution, model.evidence.train)
+    evidence = model.evidence
+    solution = from_elsewhere(model.solution, evidence.train)
     if solution.interrupted:
         raise KeyboardInterrupt
-    better = solution.power < (1.0 - WORTH_MOVING) * model.solution.power
-    return Model(model.evidence, solution, model.nuisances) if better else model
+    if solution.power >= (1.0 - WORTH_MOVING) * model.solution.power:
+        return model
+    better = Model(evidence, solution, model.nuisances)
+    return model if _too_good(evidence, better) else better
 
 
 def whole_fit(

@@ -59,6 +59,10 @@ PARTLY = "it acts in a few seconds alone, and takes a part there of what is beyo
 """Why a limit may be something else that came then."""
 UNREPEATED = "less than one period was travelled, and a spring may look the same"
 """Why what should repeat with position may be something else."""
+LEAVES_NOTHING = "what is left goes with {}, and of that it leaves nothing where it is the cause"
+"""Why a name may be a relative of the cause that no catalogue has."""
+MAY_BE_NOTHING = "every one of its numbers may be 0"
+"""Why a name beside another one may be what the form of that leaves."""
 MORE_MAY_BE = ", and more may be missing"
 """And goes on where something was named by then."""
 MOST_TOLD = 3
@@ -179,7 +183,7 @@ def sentence(
     for cause in effects:
         if cause.doubt == UNREPEATED:
             left += f" Of {cause.name} {cause.doubt}."
-        if cause.doubt == PARTLY:
+        elif cause.doubt and cause.doubt != OUTWEIGHED:
             left += f" {cause.name} may be something else: {cause.doubt}."
     return f"{lacks} {named}.{gained}{_unconfirmed(effects)}{left}"
 

@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from ..catalogue import ParameterRecord, effects
+from ..errors import NotEnoughData
 from ..plant import Plant
 from ..recording import Part, Recording
 from ..trajectory import FloatArray
@@ -23,6 +24,7 @@ __all__ = [
     "Push",
     "Rows",
     "Start",
+    "ask_to_tell",
     "begun",
     "numbers",
     "primed",
@@ -154,6 +156,30 @@ class Push:
         """When, and whether it is sure."""
         told = f"{self.start:.1f} s to {self.end:.1f} s"
         return told if self.sure else f"{told} (or it does there what it does nowhere else)"
+
+
+def ask_to_tell(rows: Sequence[Rows]) -> None:
+    """Refuse rows that tell nothing of any machine.
+
+    A contact without a spring that rests in all of them holds whatever acts on it, so that every
+    plant leaves nothing: of readings that are noise alone it would be a perfect one.
+
+    Parameters
+    ----------
+    rows : sequence of Rows
+        That are to be fitted.
+
+    Raises
+    ------
+    NotEnoughData
+    """
+    if not rows:
+        raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
+    if not any(np.any(each.form.reached[each.mask]) for each in rows):
+        raise NotEnoughData(
+            "nothing moves beyond the noise of its position in the rows to fit; record a motion, or "
+            "check which column is position"
+        )
 
 
 def rows_of(

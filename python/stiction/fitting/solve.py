@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from ..drive import assumed_gain
-from ..errors import InputError, NotEnoughData
+from ..errors import InputError
 from ..given import instance, whole
 from ..plant import Plant
 from ..products import on_one_thread
@@ -28,7 +28,7 @@ from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stop
 from .pushes import Watch
 from .pushes import told as pushes_told
 from .result import FitParameter, FitResult
-from .rows import Nuisances, Rows, primed, rows_of
+from .rows import Nuisances, Rows, ask_to_tell, primed, rows_of
 from .slopes import slopes
 from .start import complete, free_paths
 from .starts import started, turned
@@ -97,8 +97,7 @@ class _Seen:
                 mask = rows_of(form, recording, index, own, self.pushes)
                 if mask.any():
                     chosen.append(Rows(plant, form, index, mask))
-        if not self.train:
-            raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
+        ask_to_tell(self.train)
 
 
 @on_one_thread

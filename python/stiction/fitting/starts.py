@@ -141,7 +141,9 @@ def _turned(plant: Plant, rows: Rows, known: Start, nuisances: Nuisances) -> Sta
 
     # What the force alone may do is no merit of a turn.
     own = fitted(known)
-    least, forces = TELLS * power(own), (0.0, own["force"])
+    forces = (0.0, own["force"])
+    # A force that makes up for an offset may bend all the rest: beside that nothing would tell.
+    least = TELLS * min(power({**own, "force": force}) for force in forces)
     begun: dict[float, list[Start]] = {}
     for force in forces:
         # A force beyond the turn forgets it; then nothing changes, and it is not looked for.
