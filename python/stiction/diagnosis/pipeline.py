@@ -53,8 +53,9 @@ TRAIN_IS_FITTED: Final = (
 """Where a fit of the same session and the base differ; everything else they do alike."""
 
 NOT_DRIVEN: Final = (
-    "The data cannot be used: input is 0 in every row of all recordings, so that no effort is known "
-    "to which anything could be compared; add a recording that is driven, or the column that drives."
+    "The data cannot be used: input is 0 in every row of all recordings, so that no effort is "
+    "known to which anything could be compared; add a recording that is driven, or the column that "
+    "drives."
 )
 
 _logger = logging.getLogger(__name__)

@@ -377,7 +377,7 @@ class Diagnosis:
 
     @property
     def _chosen(self) -> dict[str, float]:
-        """Numbers of all causes that were not fitted, by path: with those that were a cause is whole."""
+        """Numbers of all causes that were not fitted, by path: with the others a cause is whole."""
         return {path: value for cause in self.effects for path, value in cause.chosen.items()}
 
     def to_json(self) -> str:

@@ -177,8 +177,8 @@ def ask_to_tell(rows: Sequence[Rows]) -> None:
         raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
     if not any(np.any(each.form.reached[each.mask]) for each in rows):
         raise NotEnoughData(
-            "nothing moves beyond the noise of its position in the rows to fit; record a motion, or "
-            "check which column is position"
+            "nothing moves beyond the noise of its position in the rows to fit; record a motion, "
+            "or check which column is position"
         )
 
 
