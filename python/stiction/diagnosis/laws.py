@@ -14,7 +14,7 @@ from ..catalogue import effects
 from ..catalogue import laws as all_laws
 from ..errors import InputError
 from ..fitting.first_pass import launched
-from ..fitting.forms import followable
+from ..fitting.forms import followable, horizon_of
 from ..fitting.minimise import MOST_EVALUATIONS
 from ..fitting.starts import with_turns
 from ..parameter import Parameter
@@ -69,6 +69,12 @@ ALIKE: Final = 1.005
 """Powers are the same up to this ratio: nobody reads a difference in the third digit."""
 MOST_TOLD: Final = 100.0
 """Beyond so many times the power a number says nothing: the fit of the law has failed."""
+
+TOO_COARSE: Final = (
+    "cannot be compared here: it yields within a few counts of the position, which are too coarse to "
+    "drive it; state it in the plant file and diagnose with that, then it is simulated"
+)
+"""Why a law that yields is not judged by the efforts that it needs along a coarse motion."""
 
 _logger = logging.getLogger(__name__)
 
@@ -367,6 +373,9 @@ def law_rows(
         index += 1
         if not (rival.asked or rival.better):
             continue
+        if not rival.better and _too_coarse(rival.model):
+            rows.append((-math.inf, LawRow(rival.law, None, TOO_COARSE)))
+            continue
         if gain is None:
             reason = "fitted, and no rows were left to test on"
         elif gain.ci95[0] > 0.0:
@@ -415,6 +424,14 @@ def event_words(
         f"{_times(left[best])} that {own.plant.friction.law} leaves there{halves}. No other event "
         "confirms that."
     )
+
+
+def _too_coarse(model: Model) -> bool:
+    """Whether a plant with that law would be simulated, for readings are too coarse to drive it."""
+    evidence = model.evidence
+    if evidence.simulated or not model.plant.friction.springy:
+        return False
+    return horizon_of(model.plant, model.nuisances, evidence.train, evidence.forms) is not None
 
 
 def _in_event(model: Model, own: Model, event: Lone) -> float:
