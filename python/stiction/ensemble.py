@@ -411,4 +411,10 @@ def _row(name: str, values: npt.ArrayLike, members: int | None) -> FloatArray:
     if row.ndim != 1 or (members is not None and len(row) != members):
         wanted = "(members,)" if members is None else f"({members},)"
         raise InputError(f"parameters['{name}'] has shape {row.shape}; give {wanted}")
+    bad = np.flatnonzero(~np.isfinite(row))
+    if len(bad):
+        raise InputError(
+            f"parameters['{name}'][{bad[0]}] = {row[bad[0]]} is not a finite number; give a finite "
+            "one"
+        )
     return row

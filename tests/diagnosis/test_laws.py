@@ -105,6 +105,7 @@ def test_of_laws_that_leave_as_little_the_simpler_one_is_named() -> None:
         found = rival(law, 1.0)
         assert found.model is not None
         paths = [f"friction.{k}" for k in range(numbers)] + ["body.inertia"]
+        found.model.evidence = SimpleNamespace(simulated=True)
         found.model.solution = SimpleNamespace(variables=SimpleNamespace(paths=paths))
         return replace(found, beside=beside, z=9.0)
 
@@ -194,7 +195,7 @@ def rival(law: str, power: float, **terms: float) -> laws.Rival:
         # Beside the event a row in which no law differs from another.
         residual=np.array([np.sqrt(power), 3.0]),
         solution=SimpleNamespace(variables=SimpleNamespace(paths=["friction.coulomb"])),
-        evidence=SimpleNamespace(fitted=np.array([True, True]), shown=(), names=()),
+        evidence=SimpleNamespace(fitted=np.array([True, True]), shown=(), names=(), simulated=True),
     )
     return laws.Rival(law, True, cast("Model", model))
 

@@ -154,13 +154,17 @@ pub struct OptionSpec {
 
 /// Fills in what the user left out and checks every bound.
 pub fn resolve(kind: &str, specs: &[ParameterSpec], stated: &[(String, f64)]) -> Result<Vec<f64>> {
-    for (name, _) in stated {
-        if !specs.iter().any(|spec| spec.name == name) {
-            return Err(Error::unknown(
-                format!("parameter of {kind}"),
-                name,
-                specs.iter().map(|spec| spec.name),
-            ));
+    for (name, value) in stated {
+        match specs.iter().find(|spec| spec.name == name) {
+            // Before what follows from it: a level that nobody stated must not be told as wrong.
+            Some(spec) => spec.check(*value)?,
+            None => {
+                return Err(Error::unknown(
+                    format!("parameter of {kind}"),
+                    name,
+                    specs.iter().map(|spec| spec.name),
+                ));
+            }
         }
     }
     let given = |name: &str| stated.iter().find(|(n, _)| n == name).map(|(_, v)| *v);
@@ -248,6 +252,13 @@ mod tests {
         let sentence = resolve("x", SPECS, &stated(-1.0)).unwrap_err().to_string();
         assert!(sentence.contains("coulomb = -1") && sentence.contains("0 to 10"), "{sentence}");
         assert!(resolve("x", SPECS, &stated(f64::NAN)).is_err());
+        let follows = ParameterSpec {
+            name: "sliding",
+            default: Default::Ratio { of: "coulomb", factor: 0.7, otherwise: 1.0 },
+            ..SPECS[0]
+        };
+        let given = resolve("x", &[follows, SPECS[0]], &stated(-1.0)).unwrap_err().to_string();
+        assert!(given.contains("coulomb = -1"), "{given}");
         let unknown = resolve("x", SPECS, &[("columb".to_owned(), 1.0)]).unwrap_err().to_string();
         assert!(unknown.contains("did you mean 'coulomb'"), "{unknown}");
     }

@@ -43,6 +43,8 @@ SAMPLED: Final = 0.3
 FALL: Final = "fall"
 """Shape that says how much of a fall of friction with speed is meant: such a gain is positive, as
 that of ``stribeck`` is, or a rise of friction from rest that no machine has would be found."""
+RESTING: Final = "resting"
+"""Scale of displacements within which a contact rests."""
 ORDER_STEP: Final = 0.5
 """Spacing of orders where the machine does not turn fully, in periods over its range."""
 LOWEST: Final = 0.5
@@ -136,9 +138,15 @@ class Candidate:
         return self.record.second[first.index(name)]
 
     @property
+    def last(self) -> tuple[str, ...]:
+        """Shapes that a refit varies once all else is fitted: far from there they lead astray."""
+        own = {shape.parameter for shape in self.record.shapes if shape.scale == RESTING}
+        return tuple(name for name in self.free if name in own)
+
+    @property
     def parameters(self) -> int:
-        """How many parameters it adds to a fit."""
-        return len(self.record.gains) + len(self.free)
+        """How many parameters it adds to a fit; those varied last only mend what is known."""
+        return len(self.record.gains) + len(self.free) - len(self.last)
 
 
 def scales_of(evidence: Evidence, plant: Plant) -> Scales:
@@ -185,7 +193,7 @@ def _units(evidence: Evidence, plant: Plant, span: float) -> tuple[dict[str, flo
     paths = [form.path + float(np.sum(np.abs(np.diff(form.position)))) for form in forms]
     units = {
         "presliding": length,
-        "resting": length,
+        RESTING: length,
         "loading": max(sliding, 1e-300),
         "input": max(1e-300, *(largest_command(form, plant) for form in forms)),
         "kernel": min(form.kernel.support for form in forms),
@@ -207,7 +215,7 @@ def left_out(without: Sequence[str]) -> tuple[str, ...]:
     for name in without:
         if name not in known:
             raise InputError(
-                f"--without {name}: there is no such effect{did_you_mean(name, known)}; "
+                f"without: there is no effect {name}{did_you_mean(name, known)}; "
                 f"there are {listed(known)}"
             )
     return tuple(without)
@@ -225,8 +233,8 @@ def candidates(record: EffectRecord, scales: Scales) -> list[Candidate]:
             for each in found[:: max(len(found) // MOST_SHARES, 1)]
         ]
     # From a rest that is ten times as wide as the right one a fit does not find that.
-    if scales.finer < 1.0 and any(shape.scale == "resting" for shape in record.shapes):
-        finer = {name: scales.units[name] * scales.finer for name in ("presliding", "resting")}
+    if scales.finer < 1.0 and any(shape.scale == RESTING for shape in record.shapes):
+        finer = {name: scales.units[name] * scales.finer for name in ("presliding", RESTING)}
         found += _grid(record, replace(scales, units={**scales.units, **finer}))
     return found
 

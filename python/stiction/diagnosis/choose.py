@@ -80,7 +80,7 @@ def choose(trials: Sequence[Trial], encompasses: Encompasses | None = None) -> C
         other
         for other in ranked
         if other is not winner
-        and not other.partly
+        and not (other.partly or other.empty)
         and (other.gain > 0.0 or other.by_blocks)
         and (not other.imitates or _outdoes(other, winner))
         and (

@@ -102,6 +102,8 @@ class Trial:
         What it imitates is the reading of the motion, of which nothing is missing.
     partly : bool
         Its gain would have to be whole and is not: the curve that is found is another cause's.
+    empty : bool
+        It leaves no effort or no inertia to be explained, which no cause does.
     doubtless : bool
         Refused because blocks held out hardly excite it, in one recording alone, or gain too
         unevenly, while what was fitted leaves no doubt of it.
@@ -121,6 +123,7 @@ class Trial:
     freed: bool = False
     partly: bool = False
     of_reading: bool = False
+    empty: bool = False
     doubtless: bool = False
 
     @property
@@ -166,9 +169,11 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     confirmed = cache(
         lambda: strength >= SURE and is_confirmed(base, model, contributed, whole=gain_known)
     )
-    if model.given <= LEAST_GIVEN:
+    empty = model.given <= LEAST_GIVEN
+    if empty:
         reason = "takes away the effort itself, so that nothing is left to explain"
     elif model.plant.inertia < LEAST_INERTIA * base.plant.inertia:
+        empty = True
         reason = "takes away the inertia, so that hardly any motion is left to explain"
     elif explained <= 0.0:
         reason = "fits no better than without it"
@@ -249,5 +254,6 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         freed=freed,
         partly=bool(partly),
         of_reading=beyond.endswith(BELOW_A_KERNEL),
+        empty=empty,
         doubtless=doubtless,
     )

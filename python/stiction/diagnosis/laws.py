@@ -71,8 +71,8 @@ MOST_TOLD: Final = 100.0
 """Beyond so many times the power a number says nothing: the fit of the law has failed."""
 
 TOO_COARSE: Final = (
-    "cannot be compared here: it yields within a few counts of the position, which are too coarse to "
-    "drive it; state it in the plant file and diagnose with that, then it is simulated"
+    "cannot be compared here: it yields within a few counts of the position, which are too coarse "
+    "to drive it; state it in the plant file and diagnose with that, then it is simulated"
 )
 """Why a law that yields is not judged by the efforts that it needs along a coarse motion."""
 

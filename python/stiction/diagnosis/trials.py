@@ -24,6 +24,7 @@ from .model import (
     power_of,
     stepped,
     with_effect,
+    with_shapes_free,
     without_effect,
 )
 from .noisy_motion import told_by_noise
@@ -233,6 +234,18 @@ class Screening:
 
 
 def _refit(
+    evidence: Evidence, base: Model, signatures: Signatures, score: Score, best: float
+) -> Model:
+    """The base with an effect, fitted; what leads astray far from a fit is varied from there on."""
+    model = _from_screening(evidence, base, signatures, score, best)
+    candidate = score.candidate
+    if not candidate.last:
+        return model
+    plant = with_shapes_free(model.plant, candidate)
+    return min((model, compared_fit(evidence, plant, model.nuisances)), key=lambda each: each.power)
+
+
+def _from_screening(
     evidence: Evidence, base: Model, signatures: Signatures, score: Score, best: float
 ) -> Model:
     """The base with an effect, fitted from where the screening says; from near 0 if that fails.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
@@ -293,7 +293,8 @@ def _causes(effects: Sequence[Cause]) -> str:
         group = {cause.name, *cause.look_alikes}
         kin = [c for c in effects if {c.name, *c.look_alikes} == group]
         if len(kin) < 2 or len(kin) < len(group):
-            (told if cause.decided else undecided).append(_cause(cause))
+            others = {each.name for each in effects if each is not cause}
+            (told if cause.decided else undecided).append(_cause(cause, others))
         elif cause.name not in together:
             together |= group
             each = joined([_with_meaning(one) for one in kin])
@@ -306,15 +307,16 @@ def _with_meaning(cause: Cause) -> str:
     return f"{cause.name} ({cause.what.partition(':')[0]})"
 
 
-def _cause(cause: Cause) -> str:
-    """A cause with its meaning, or the effects that it may be with theirs."""
+def _cause(cause: Cause, others: Set[str]) -> str:
+    """A cause with its meaning, or the effects that it may be with theirs, or more of others."""
     own = _with_meaning(cause)
     if cause.decided:
         return own
     if not cause.look_alikes:
         return f"perhaps {own}"
     known = {record.name: f"{record.name} ({record.summary})" for record in catalogue()}
-    names = [own, *(known.get(name, name) for name in cause.look_alikes)]
+    alike = (known.get(n, n) if n not in others else f"more of {n}" for n in cause.look_alikes)
+    names = [own, *alike]
     either = "either" if len(names) == 2 else "one of"
     return f"{either} {joined(names, 'or')}, which these data cannot tell apart"
 
