@@ -104,6 +104,9 @@ class Driving:
         followed = smooth(played(readings, self._backlash), self._dt, self._smoothing)
         if self._prescribed:
             return followed
+        if np.ptp(readings) < FLICKER * self._count:
+            # Below break-away a machine yields a little, which a contact without a spring does not.
+            return np.full_like(readings, readings[0])
         if self._backlash > 0.0:
             return rested(followed, readings, self._window, RESTING * self._noise)
         # Little noise turns readings round where a machine rests between counts, and there alone.

@@ -7,6 +7,8 @@ from tests.reference.session_reference import make_session
 
 from stiction.diagnosis.base import based
 from stiction.diagnosis.replay import centre, shared, surrogate_residuals
+from stiction.driving import Driving
+from stiction.motion import Kernel
 
 NOISE = 0.02
 """Standard deviation of the torque that nobody commanded, as a share of F_c."""
@@ -69,6 +71,16 @@ def test_a_recording_in_which_the_machine_never_moves_says_nothing(dry):
         rows = evidence.cells.recording == index
         assert rms(base.residual[rows] / evidence.weights[rows]) < 1e-9
         assert rms(null[rows] / evidence.weights[rows, None]) < 1e-9
+
+
+def test_a_machine_that_yields_by_a_count_below_break_away_rests():
+    kernel, count = Kernel(0.03, 1e-3), 1e-4
+    load = np.sin(np.arange(4000) * 2e-3)
+    rigid = {"noise": 0.0, "count": count, "springy": False, "prescribed": False}
+    for yields, rests in ((1.0, True), (2.0, False)):
+        readings = count * np.round(yields * (load > 0.5))
+        motion = Driving(readings, kernel, **rigid).motion(readings)
+        assert (np.ptp(motion) == 0.0) == rests
 
 
 def test_what_replays_share_counts_as_far_as_the_residual_has_it():

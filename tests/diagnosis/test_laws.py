@@ -208,6 +208,26 @@ def test_advice_to_state_a_law_names_the_terms_that_made_it_better() -> None:
     assert row.reason.endswith("with compliance = 3.6e-07")
 
 
+def test_a_law_is_not_compared_along_readings_too_coarse_to_drive_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A lugre that yielded within four counts "left eighty times" what coulomb did."""
+    monkeypatch.setattr(laws, "horizon_of", lambda *_: 0.1)
+    yields, rigid = rival("dahl", 3.0), rival("rigid_perfectly_plastic", 2.0)
+    for each in (yields, rigid):
+        assert each.model is not None
+        each.model.nuisances, each.model.evidence.simulated = None, False
+        each.model.evidence.train = each.model.evidence.forms = ()
+    rows = laws.law_rows([yields, rigid], 1, None, 0)
+    told = {row.law: row.reason for row in rows}
+    assert told["dahl"].startswith("cannot be compared here: it yields within a few counts")
+    assert told["rigid_perfectly_plastic"].startswith("fitted")
+    assert all(row.gain is None for row in rows)
+    # What is simulated is no motion that was read.
+    yields.model.evidence.simulated = True
+    assert laws.law_rows([yields], 1, None, 0)[0].reason.startswith("fitted")
+
+
 def test_the_law_that_follows_a_single_event_is_named_and_comes_first() -> None:
     own = rival("coulomb", 1.0).model
     assert own is not None
