@@ -85,10 +85,6 @@ class Comparison:
                 return row
         raise KeyError(law)
 
-    def laws_with(self, verdict: str, name: str) -> list[str]:
-        """Laws whose property of this name has this verdict."""
-        return [row.law for row in self.rows if row.cells[name].verdict == verdict]
-
     def to_dict(self) -> dict[str, Any]:
         """Everything that was measured, as plain dicts and lists."""
         return {

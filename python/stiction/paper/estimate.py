@@ -206,7 +206,7 @@ def estimate(
         if name not in NAMES:
             raise InputError(f"estimate: '{name}' is no parameter; known are {', '.join(NAMES)}")
     steps = read_off(recorded)
-    guess = _guess(steps, recorded, start or {}, fixed)
+    guess = _guess(steps, start or {}, fixed)
     fit = _Fit(recorded, guess, fixed)
     return fit.run(steps)
 
@@ -407,7 +407,7 @@ class _Fit:
             for name, each in parameters.items()
             if not each.determined
         )
-        branch, branch_low, branch_high = _branch_interval(x, values, chain, covariance)
+        branch, branch_low, branch_high = _branch_interval(values, chain, covariance)
         deviation = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
         return Estimate(
             title="Parameters from the paper's experiments",
@@ -448,7 +448,7 @@ class _Fit:
 
 
 def _branch_interval(
-    x: FloatArray, values: Mapping[str, float], chain: FloatArray, covariance: FloatArray
+    values: Mapping[str, float], chain: FloatArray, covariance: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """G and its interval, from the covariance of what it depends on."""
     k_0, k_inf, d_0 = (values[name] for name in NAMES[:3])
@@ -463,9 +463,7 @@ def _branch_interval(
     return curve, curve - _QUANTILE * spread, curve + _QUANTILE * spread
 
 
-def _guess(
-    steps: Steps, records: list[Recorded], start: Mapping[str, float], fixed: tuple[str, ...]
-) -> dict[str, float]:
+def _guess(steps: Steps, start: Mapping[str, float], fixed: tuple[str, ...]) -> dict[str, float]:
     """Where the fit starts: what was read off, then what was given, then the illustrative rig."""
     guess = {name: float(ILLUSTRATIVE_RIG[name]) for name in NAMES}
     guess |= {name: float(value) for name, value in start.items()}

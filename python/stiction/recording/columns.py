@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from ..errors import InputError
 from ..frozen import Frozen
-from ..wording import did_you_mean, listed
+from ..wording import did_you_mean
 from .units import find_unit
 
 ROLES: Final[dict[str, tuple[str, ...]]] = {
@@ -233,8 +233,3 @@ def _finite(value: object, key: str, where: str) -> float:
     if not math.isfinite(converted):
         raise InputError(f"{where}: {key} is {converted!r}; give a finite number")
     return converted
-
-
-def roles_needed() -> str:
-    """The sentence end that says how to name columns."""
-    return f"name columns under [columns], or use the names {listed(CANONICAL)}"
