@@ -92,8 +92,10 @@ def test_pushes_of_one_recording_are_told_in_one_sentence() -> None:
     ]
     told = push_words(pushes, ("a.csv", "b.csv"))
     assert told.startswith(
-        "Something pushed the machine from 2.0 s to 3.0 s and 5.0 s to 6.5 s (or it does there "
-        "what it does nowhere else) in b.csv and from 1.0 s to 2.0 s in a.csv; these rows"
+        "Something pushed the machine from 2.0 s to 3.0 s in b.csv and from 1.0 s to 2.0 s in "
+        "a.csv; these rows are left out, because the drive did not make that motion. Something "
+        "pushed the machine, or it does there what it does nowhere else, from 5.0 s to 6.5 s in "
+        "b.csv; these rows are left out, because nothing shows that the drive made that motion. "
     )
     assert told.endswith("1 more stands among the data checks.")
     assert push_words([], ()) == ""

@@ -72,8 +72,9 @@ def diagnose(
     with finished():
         with written(where):
             report = found.save(where)
-        text = "\n".join([*mended(recordings), f"{found}\n\n{told(found, report)}"])
-        answer(text, found.to_dict(), as_json=json)
+        # The sentence comes first, whatever was mended before it could be said.
+        said = (str(found), "\n".join(mended(recordings)), told(found, report))
+        answer("\n\n".join(filter(None, said)), found.to_dict(), as_json=json)
     if not found.success:
         raise KeyboardInterrupt
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..catalogue import EffectRecord
 from ..catalogue import effects as catalogue
 from ..compared import EFFORT, Compared, compared_by
-from ..fitting.pushes import LEFT_OUT
+from ..fitting.pushes import left_out
 from ..fitting.result import FitParameter
 from ..fitting.rows import Push
 from ..report.scale import loop_scale_of
@@ -229,20 +229,28 @@ def no_machine(left: float, named: bool, verdict: Verdict, by: Compared = EFFORT
 
 
 def push_words(pushes: Sequence[Push], names: Sequence[str]) -> str:
-    """The first pushes, recording by recording, as one sentence; "" without any."""
+    """The first pushes, those that are sure in a sentence of their own; "" without any."""
+    shown = pushes[:MOST_TOLD]
+    words = [
+        _pushed([push for push in shown if push.sure == sure], names) for sure in (True, False)
+    ]
+    if len(pushes) > MOST_TOLD:
+        more = len(pushes) - MOST_TOLD
+        words.append(f"{more} more {'stands' if more == 1 else 'stand'} among the data checks.")
+    return " ".join(filter(None, words))
+
+
+def _pushed(pushes: Sequence[Push], names: Sequence[str]) -> str:
+    """Pushes that are all as sure, in one sentence."""
     if not pushes:
         return ""
-    shown = pushes[:MOST_TOLD]
-    of = {push.recording: [p for p in shown if p.recording == push.recording] for push in shown}
+    of = {push.recording: [p for p in pushes if p.recording == push.recording] for push in pushes}
     times = [
         f"from {joined([push.when() for push in own])} in {names[recording]}"
         for recording, own in of.items()
     ]
-    words = f"Something pushed the machine {joined(times)}; {LEFT_OUT}."
-    if len(pushes) > MOST_TOLD:
-        more = len(pushes) - MOST_TOLD
-        words += f" {more} more {'stands' if more == 1 else 'stand'} among the data checks."
-    return words
+    what = pushes[0].what
+    return f"{what[0].upper()}{what[1:]} {joined(times)}; {left_out(pushes[0])}."
 
 
 def apart_words(apart: Sequence[tuple[str, Check]]) -> str:

@@ -14,7 +14,7 @@ from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .rows import Mask, Push, rows_of
 
-__all__ = ["LEFT_OUT", "Watch", "told"]
+__all__ = ["Watch", "left_out", "told"]
 
 WINDOWS_S: Final = (0.1, 0.3, 0.8)
 """Lengths of the windows whose momentum is compared: what is shorter than the first is a spike, no
@@ -61,16 +61,23 @@ machine was."""
 LACKS: Final = 0.4
 """Of what a push lacks: less is nothing."""
 LEFT_OUT: Final = "these rows are left out, because the drive did not make that motion"
+UNSURE: Final = "these rows are left out, because nothing shows that the drive made that motion"
+"""The same where no rows alike lie elsewhere, which would show it."""
 ROUNDS: Final = 30
 TRIMS: Final = 8
 OUTLYING: Final = 4.0
 """Robust standard deviations beyond which a row says nothing of the machine."""
 
 
+def left_out(push: Push) -> str:
+    """Why rows of a push are left out, in words."""
+    return LEFT_OUT if push.sure else UNSURE
+
+
 def told(pushes: Sequence[Push], names: Sequence[str]) -> list[tuple[str, Check]]:
     """The pushes as what was found in each recording, by its name."""
     return [
-        (names[push.recording], Check("push", "note", push.words(), LEFT_OUT, ""))
+        (names[push.recording], Check("push", "note", push.words(), left_out(push), ""))
         for push in pushes
     ]
 

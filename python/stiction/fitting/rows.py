@@ -150,12 +150,17 @@ class Push:
 
     def words(self) -> str:
         """That in words."""
-        return f"something pushed the machine from {self.when()}"
+        return f"{self.what} from {self.when()}"
+
+    @property
+    def what(self) -> str:
+        """What happened, as far as it is sure."""
+        unsure = "" if self.sure else ", or it does there what it does nowhere else,"
+        return f"something pushed the machine{unsure}"
 
     def when(self) -> str:
-        """When, and whether it is sure."""
-        told = f"{self.start:.1f} s to {self.end:.1f} s"
-        return told if self.sure else f"{told} (or it does there what it does nowhere else)"
+        """When."""
+        return f"{self.start:.1f} s to {self.end:.1f} s"
 
 
 def ask_to_tell(rows: Sequence[Rows]) -> None:
