@@ -49,8 +49,8 @@ def test_a_recording_at_rest_is_read_with_the_noise_of_the_others() -> None:
         read = count * np.round(position / count + scatter * rng.standard_normal(len(time)))
         return WeakForm(plant, st.Recording(time, np.sin(time), read), every=0.005)
 
-    # Between two counts, now here, now there.
-    still = count * (np.arange(len(time)) // 40 % 2)
+    # Two counts apart, now here, now there; within one it rests whatever others tell.
+    still = 2.0 * count * (np.arange(len(time)) // 40 % 2)
     moving = [form(np.sin((3.0 + k) * time), 0.3) for k in range(3)]
     resting = form(still, 0.0)
     assert all(each.flickers for each in moving)

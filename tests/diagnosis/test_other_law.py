@@ -34,7 +34,9 @@ def test_only_what_the_law_lacks_is_named_of_a_machine_with_another_law() -> Non
     assert found.verdict in ("ambiguous", "unexplained")
     reasons = {row.name: row.reason for row in found.candidates}
     for cause in found.effects[1:]:
-        assert f"perhaps {cause.name}" in found.sentence
+        assert not cause.decided
+        either = {0: "perhaps", 1: "either"}.get(len(cause.look_alikes), "one of")
+        assert f"{either} {cause.name}" in found.sentence
         assert "left without a name" in reasons[cause.name]
 
 
