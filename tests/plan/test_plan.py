@@ -176,6 +176,20 @@ def test_speeds_span_three_decades_and_loops_stay_below_break_away(made: Plan) -
     assert np.all(rests[:4900] == 0.0)
 
 
+def test_a_gain_that_is_fitted_is_taken_at_its_value() -> None:
+    table = {
+        "drive": {"input": "current_a", "gain": 0.5},
+        "body": {"inertia": {"value": 0.0076, "fixed": True}},
+        "friction": {"law": "coulomb", "coulomb": 0.3},
+    }
+    exact = plan(st.Plant.from_dict(table), only=("turns", "pulses"))
+    table["drive"] = {"input": "current_a", "gain": {"value": 0.5}}
+    fitted = plan(st.Plant.from_dict(table), only=("turns", "pulses"))
+    assert [s.name for s in fitted.signals] == [s.name for s in exact.signals]
+    for one, other in zip(exact.signals, fitted.signals, strict=True):
+        assert np.array_equal(one.values, other.values)
+
+
 def test_same_seed_same_signals(made: Plan) -> None:
     again, other = plan(made.plant), plan(made.plant, seed=1)
     assert all(

@@ -163,7 +163,7 @@ def _signal(
             allowed["effort"] = np.inf if limits.effort is None else limits.effort
         # Rounding to samples is no fault.
         if all(greatest[name] <= 1.02 * allowed[name] for name in allowed):
-            gain = 1.0 if experiment.kind == "reference" else float(plant.drive.get("gain", 1.0))
+            gain = 1.0 if experiment.kind == "reference" else plant.gain
             reference = "reference_rad" if plant.motion == "rotary" else "reference_m"
             if plant.servo:
                 reference = GOALS[plant.motion]
@@ -208,6 +208,5 @@ def _reached(plant: Plant, goal: FloatArray, dt: float) -> FloatArray:
 
 def _moved(plant: Plant, effort: FloatArray, dt: float) -> FloatArray:
     """Position that the plant comes to with an effort, about its start; shape (n,)."""
-    gain = float(plant.drive.get("gain", 1.0))
-    run = plant.simulate(effort[:-1] / gain, dt, outputs=["position"])
+    run = plant.simulate(effort[:-1] / plant.gain, dt, outputs=["position"])
     return np.concatenate([[0.0], run.position])
