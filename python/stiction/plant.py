@@ -255,10 +255,13 @@ class Plant:
         return own + self.payload[1]
 
     @property
-    def _weight(self) -> float:
-        """Weight of the payload of a plant that lifts, N; one that states no weight moves level."""
-        lifts = self.motion == "linear" and "weight_n" in self.body
-        return self._payload[0] * GRAVITY if lifts else 0.0
+    def weight(self) -> float:
+        """Force against positive motion, payload included, N; 0 where no weight is stated."""
+        # A payload alone says nothing of the slope: an axis that states no weight moves level.
+        if "weight_n" not in self.body:
+            return 0.0
+        carried = self._payload[0] * GRAVITY if self.motion == "linear" else 0.0
+        return self.body["weight_n"].value + carried
 
     @property
     def hangs(self) -> bool:
@@ -419,17 +422,15 @@ class Plant:
         return self._motor(self.inertia or 1.0, "fast")
 
     def _motor(self, inertia: float, integrator: str) -> Motor:
-        def body(name: str) -> float:
-            return self.body[name].value if name in self.body else 0.0
-
+        zero = self.body.get("gravity_zero_rad")
         return Motor(
             inertia,
             self.gain,
             self.friction.model(),
             effects={e.name: {n: p.value for n, p in e.parameters.items()} for e in self.effects},
             gravity_amplitude=self.gravity,
-            gravity_zero=body("gravity_zero_rad"),
-            weight=body("weight_n") + self._weight,
+            gravity_zero=0.0 if zero is None else zero.value,
+            weight=self.weight,
             input_limit=float(self.drive.get("limit", np.inf)),
             servo=servo_numbers(self.drive),
             count=self.count,

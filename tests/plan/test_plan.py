@@ -190,6 +190,27 @@ def test_a_gain_that_is_fitted_is_taken_at_its_value() -> None:
         assert np.array_equal(one.values, other.values)
 
 
+def test_the_weight_of_a_payload_counts() -> None:
+    table = {
+        "motion": {"kind": "linear"},
+        "drive": {"input": "force_n"},
+        "body": {"inertia": 20.0, "weight_n": 10.0, "payload_kg": 5.0},
+        "friction": {"law": "coulomb", "coulomb": 12.0},
+    }
+    plant = st.Plant.from_dict(table)
+    carried = 10.0 + 5.0 * 9.80665
+    assert plant.weight == pytest.approx(carried)
+    # At rest without friction the drive holds it exactly where it pushes with the weight.
+    loose = st.Plant.from_dict({**table, "friction": {"law": "coulomb", "coulomb": 0.0}})
+    held = loose.simulate(np.full(200, carried), 1e-3, outputs=["position"])
+    assert np.max(np.abs(held.position)) < 1e-12
+    with pytest.raises(st.InputError, match=r"moves nothing.*gravity 59"):
+        plan(plant, position=0.1, effort=60.0)
+    # An axis that states no weight moves level, whatever it carries.
+    level = st.Plant.from_dict({**table, "body": {"inertia": 20.0, "payload_kg": 5.0}})
+    assert level.weight == 0.0
+
+
 def test_same_seed_same_signals(made: Plan) -> None:
     again, other = plan(made.plant), plan(made.plant, seed=1)
     assert all(

@@ -166,8 +166,7 @@ def _no_load(plant: Plant) -> float:
 
 def _steady(plant: Plant) -> float:
     """Greatest effort that gravity takes, payload included."""
-    weight = abs(plant.body["weight_n"].value) if "weight_n" in plant.body else 0.0
-    return abs(plant.gravity) + weight
+    return abs(plant.gravity) + abs(plant.weight)
 
 
 def _carried(plant: Plant, speed: float, effort: float) -> float:
