@@ -21,6 +21,7 @@ __all__ = [
     "numbers",
     "path",
     "unmasked",
+    "vacant",
     "whole",
     "written",
 ]
@@ -152,6 +153,31 @@ def unmasked(given: object, where: str) -> None:
     """
     if isinstance(given, np.ma.MaskedArray) and np.ma.is_masked(given):
         raise InputError(f"{where} is masked in places; fill these, or leave them out")
+
+
+def vacant(folder: Path, names: Iterable[str], remedy: str = "another folder") -> None:
+    """Refuse a folder that holds a file of one of these names: nothing is overwritten.
+
+    Parameters
+    ----------
+    folder : Path
+    names : iterable of str
+        Of the files that are to be written into it.
+    remedy : str
+        What to give instead.
+
+    Raises
+    ------
+    InputError
+        One of them is there.
+    """
+    for name in names:
+        # Also a link that leads nowhere: it is there, and would be written through.
+        if os.path.lexists(folder / name):
+            raise InputError(
+                f"{folder / name}: is there already and is not overwritten; move it away, or give "
+                f"{remedy}"
+            )
 
 
 def numbers(given: Any, where: str) -> npt.NDArray[np.float64]:

@@ -17,7 +17,7 @@ from ..diagnosis.result import Diagnosis
 from .answer import answer, folder, written
 from .given import Whole
 from .interrupt import finished
-from .sessions import loaded, mended, spoken_of
+from .sessions import loaded, mended, spared, spoken_of
 
 __all__ = ["diagnose", "progress", "told"]
 
@@ -57,7 +57,9 @@ def diagnose(
         Print JSON.
     """
     recordings, plant = loaded(session, keep_faulty=True)
-    where = folder(Path(f"{session.stem}-diagnosis") if out is None else out)
+    where = Path(f"{session.stem}-diagnosis") if out is None else out
+    spared(plant, where)
+    folder(where)
     names = [name.strip() for name in laws.split(",") if name.strip()]
     with progress(), spoken_of(session, recordings, plant):
         found = run(

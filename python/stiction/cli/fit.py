@@ -14,7 +14,7 @@ from ..fitting import fit as run
 from ..session import Session
 from .answer import answer, folder, written
 from .interrupt import finished
-from .sessions import loaded, mended, spoken_of
+from .sessions import loaded, mended, spared, spoken_of
 
 __all__ = ["fit"]
 
@@ -40,7 +40,9 @@ def fit(
         Print JSON.
     """
     recordings, plant = loaded(session)
-    where = folder(Path(f"{session.stem}-fit") if out is None else out)
+    where = Path(f"{session.stem}-fit") if out is None else out
+    spared(plant, where)
+    folder(where)
     with spoken_of(session, recordings, plant):
         result = run(plant, recordings)
         if not math.isfinite(result.train_rms):

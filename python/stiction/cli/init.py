@@ -11,6 +11,7 @@ from cyclopts import Parameter
 
 from .. import session as sessions
 from ..errors import InputError
+from ..given import vacant
 from ..recording import Table, read_table
 from ..recording.formats import FORMATS
 from ..recording.guess import Guess, guess
@@ -46,12 +47,7 @@ def init(
     json
         Print JSON.
     """
-    for name in _FILES:
-        if (out / name).exists():
-            raise InputError(
-                f"{out / name}: is there already and is not overwritten; move it away, or give "
-                "another folder with --out"
-            )
+    vacant(out, _FILES, "another folder with --out")
     tables, left_out = _read([data, *more])
     found = guess(tables)
     where = folder(out)

@@ -7,7 +7,9 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from ..given import vacant
 from ..plan import plan as run
+from ..plan.result import FILLED_IN
 from ..plant import Plant
 from .answer import answer, folder, written
 from .given import Whole
@@ -28,6 +30,8 @@ def plan(
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """Write input and reference signals with which to record a machine, a figure of each.
+
+    A session.toml or plant.toml that is there is not overwritten.
 
     Parameters
     ----------
@@ -50,6 +54,9 @@ def plan(
     json
         Print JSON.
     """
+    where = Path(f"{plant.stem}-plan") if out is None else out
+    # Better said before the work than after it.
+    vacant(where, FILLED_IN, "another folder with --out")
     made = run(
         Plant.load(plant),
         position=position,
@@ -59,7 +66,7 @@ def plan(
         only=only,
         seed=seed,
     )
-    where = folder(Path(f"{plant.stem}-plan") if out is None else out)
+    where = folder(where)
     with written(where):
         made.save(where)
     text = f"{made!r}\n\nsignals: {where / 'signals'}\nfill in: {where / 'session.toml'}"

@@ -16,7 +16,7 @@ from ..recording.formats import FORMATS
 from ..recording.names import names_of
 from ..session import Session
 
-__all__ = ["loaded", "mended", "spoken_of"]
+__all__ = ["loaded", "mended", "spared", "spoken_of"]
 
 
 def loaded(path: Path, *, keep_faulty: bool = False) -> tuple[Session, Plant]:
@@ -64,6 +64,26 @@ def spoken_of(path: Path, session: Session, plant: Plant) -> Iterator[None]:
         named = [*(str(recording.path) for recording in session), plant.source]
         known = any(name in told for name in named)
         raise InputError(told if known else f"{path}: {told}") from None
+
+
+def spared(plant: Plant, where: Path) -> None:
+    """Refuse to write a plant.toml over the one that was read: what its user wrote would be gone.
+
+    Raises
+    ------
+    InputError
+        The folder ``where`` is the one in which the plant file is.
+    """
+    file = where / "plant.toml"
+    try:
+        same = file.samefile(plant.source)
+    except OSError:  # one of them is not there
+        return
+    if same:
+        raise InputError(
+            f"{file}: is the plant file of this session and is not overwritten; give another "
+            "folder with --out"
+        )
 
 
 def mended(session: Session) -> list[str]:

@@ -16,6 +16,7 @@ import numpy as np
 
 from .. import session as sessions
 from ..errors import InputError
+from ..given import vacant
 from ..session import Session
 
 __all__ = ["copy", "hidden", "load"]
@@ -59,13 +60,8 @@ def copy(folder: str | Path) -> list[Path]:
     texts["session.toml"] = texts["session.toml"].replace('.npz"', '.csv"')
     for path in sorted((_FOLDER / "recordings").glob("*.npz")):
         texts[f"recordings/{path.stem}.csv"] = _as_csv(path)
+    vacant(folder, texts)
     try:
-        for name in texts:
-            if (folder / name).exists():
-                raise InputError(
-                    f"{folder / name}: is there already and is not overwritten; move it away, or "
-                    "give another folder"
-                )
         (folder / "recordings").mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():
             with (folder / name).open("x", encoding="utf-8", newline="\n") as file:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from .. import given
 from ..errors import InputError
 from ..plant import Plant
 from ..trajectory import FloatArray
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 __all__ = ["Plan", "Signal"]
 
 ROLES: Final = ("train", "select", "test")
+FILLED_IN: Final = ("session.toml", "plant.toml")
+"""Files that whoever records goes on writing in: an earlier one is never replaced."""
 PAUSE_S: Final = 5.0
 """Between recordings."""
 LONG_REST_S: Final = 120.0
@@ -159,15 +162,27 @@ class Plan:
     def save(self, where: str | Path) -> Path:
         """Write signals, figures, plan.json and a session.toml to be filled with recordings.
 
+        Parameters
+        ----------
+        where : str or Path
+            Folder, made where it is not there.
+
+        Returns
+        -------
+        Path
+            The folder.
+
         Raises
         ------
         InputError
-            The folder cannot be written.
+            A session.toml or plant.toml is there already, which may have been filled in, and
+            nothing is written then; the folder cannot be written.
         """
         from .. import plot
         from ..json_text import json_of
 
-        folder = Path(where)
+        folder = given.path(where, "Plan.save")
+        given.vacant(folder, FILLED_IN)
         try:
             (folder / "signals").mkdir(parents=True, exist_ok=True)
             for signal in self.signals:
