@@ -76,7 +76,9 @@ def read_toml(path: Path, *, least: str = "[friction] law") -> dict[str, Any]:
     except IsADirectoryError:
         raise InputError(f"{path}: is a directory; give the file in it") from None
     except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+        raise InputError(
+            f"{path}: cannot be read ({error.strerror}); check the path and its rights"
+        ) from None
     except UnicodeDecodeError:
         raise InputError(f"{path}: is not text in UTF-8; save it as UTF-8") from None
     except tomllib.TOMLDecodeError as error:

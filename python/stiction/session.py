@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
@@ -200,8 +201,8 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
             raise InputError(
                 f'{source}: plant = {named!r} is not a path; write plant = "plant.toml"'
             )
-        itself = (path.parent / named).resolve() == path.resolve()
-        if itself or (path.parent / named).is_dir():
+        itself = _beside(path, named, f"{source}: plant") == path.resolve()
+        if itself or os.path.isdir(path.parent / named):
             what = "this file itself" if itself else "a folder"
             raise InputError(f"{source}: plant = {named!r} is {what}; name the plant's own file")
         plant = Plant.load(path.parent / named)
@@ -222,7 +223,7 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
             raise InputError(
                 f'{where}: file = {entry["file"]!r} is not a path; write file = "run.csv"'
             )
-        file = (path.parent / entry["file"]).resolve()
+        file = _beside(path, entry["file"], f"{where}: file")
         if file in seen:
             raise InputError(
                 f"{where}: {entry['file']} is already recording {seen[file]}; "
@@ -264,6 +265,20 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         raise InputError(f"{source}: {str(error).removeprefix('session: ')}") from None
 
 
+def _beside(path: Path, named: str, where: str) -> Path:
+    """The file that a session file names by a path relative to itself.
+
+    Raises
+    ------
+    InputError
+        No file can be there: the path holds a zero character, or its links lead in a circle.
+    """
+    try:
+        return (path.parent / named).resolve()
+    except (OSError, RuntimeError, ValueError) as error:
+        raise InputError(f"{where} = {named!r} is not a path ({error}); mend it") from None
+
+
 def _replicates(path: Path, entries: list[dict[str, Any]], seen: dict[Path, int]) -> dict[int, int]:
     """Index to index, from what ``replicate_of`` names; ``seen`` counts from 1."""
     replicates = {}
@@ -274,7 +289,7 @@ def _replicates(path: Path, entries: list[dict[str, Any]], seen: dict[Path, int]
         where = f"{path}: [[recordings]] {index + 1} replicate_of = {named!r}"
         if not isinstance(named, str):
             raise InputError(f'{where} is not a path; write replicate_of = "…"')
-        of = seen.get((path.parent / named).resolve())
+        of = seen.get(_beside(path, named, f"{path}: [[recordings]] {index + 1} replicate_of"))
         files = [other["file"] for other in entries if other is not entry]
         if of is None:
             raise InputError(

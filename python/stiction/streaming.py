@@ -84,12 +84,20 @@ def stream(
     dt, load = (_number(each, name) for each, name in ((dt, "dt"), (load, "load")))
     if checkpoint is not None:
         checkpoint = given.path(checkpoint, "checkpoint")
-        if checkpoint.is_dir() or not checkpoint.parent.is_dir():
+        if not _has_place(checkpoint):
             raise InputError(
                 f"{checkpoint}: is no place for a checkpoint; name a file in a folder that is there"
             )
     names = given.names(outputs, "outputs")
     return _streamed(motor, currents, dt, tuple(names), every, checkpoint, load)
+
+
+def _has_place(file: Path) -> bool:
+    """Whether a file may be at this path."""
+    try:
+        return file.parent.is_dir() and not file.is_dir()
+    except OSError:  # a name that is too long
+        return False
 
 
 def _number(value: object, name: str) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -91,3 +92,68 @@ def test_more_surrogates_than_any_threshold_needs_are_refused() -> None:
     plant = st.Plant.from_dict({"drive": {"input": "torque_nm"}, "friction": {"law": "coulomb"}})
     with pytest.raises(st.InputError, match="from 4 to 1000"):
         st.diagnose(plant, recording, surrogates=10**9)
+
+
+LONG = 300 * "a"
+"""More than any file may be called."""
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["init", LONG],
+        ["init", f"{LONG}.csv"],
+        ["fit", LONG],
+        ["fit", f"{LONG}.csv"],
+        ["fit", "of a plant.toml"],
+        ["diagnose", "of a recording.toml"],
+        ["fit", "of nothing.toml"],
+        ["fit", "of zero.toml"],
+        ["fit", "in a circle.toml"],
+        ["simulate", "plant.toml", f"{LONG}.csv"],
+        ["plan", "plant.toml", "-o", LONG],
+    ],
+)
+def test_a_path_that_no_file_can_have_is_refused_in_a_sentence(
+    arguments: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    plant = '[drive]\ninput = "torque_nm"\n[body]\ninertia = 0.01\n[friction]\nlaw = "coulomb"\n'
+    Path("plant.toml").write_text(plant)
+    with suppress(OSError):  # not everybody may make links everywhere
+        Path("circle").symlink_to("circle")
+    recording = '[[recordings]]\nfile = "{}"\n'
+    Path("of a plant.toml").write_text(f'plant = "{LONG}"\n{recording.format("run.csv")}')
+    Path("of a recording.toml").write_text(recording.format(f"{LONG}.csv"))
+    Path("of nothing.toml").write_text(recording.format(r"run\u0000.csv"))
+    Path("of zero.toml").write_text(r'plant = "p\u0000"' "\n" + recording.format("run.csv"))
+    Path("in a circle.toml").write_text(recording.format("circle"))
+    assert run(arguments) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.count("\n") == 1
+    assert said.err.startswith("stiction: ")
+    assert ";" in said.err
+
+
+def test_a_folder_that_may_not_be_listed_is_refused_in_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def refused(_: Path) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "iterdir", refused)
+    assert run(["init", str(tmp_path)]) == 2
+    assert "the folder cannot be read (Permission denied); check" in capsys.readouterr().err
+    # Nor is what else is in it looked at, for a file that is not there.
+    assert run(["init", str(tmp_path / "run.csv")]) == 2
+    assert "there is no such file; check the path" in capsys.readouterr().err
+
+
+def test_a_checkpoint_of_an_overlong_name_is_refused(tmp_path: Path) -> None:
+    motor = st.Motor(inertia=0.01, friction=st.FrictionModel("coulomb"))
+    with pytest.raises(st.InputError, match="is no place for a checkpoint"):
+        st.stream(motor, [np.ones(8)], 1e-3, checkpoint=tmp_path / LONG)

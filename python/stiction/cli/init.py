@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -82,7 +83,8 @@ def _read(paths: Sequence[Path]) -> tuple[list[Table], list[tuple[Path, str]]]:
     left_out: list[tuple[Path, str]] = []
     alone = len(paths) == 1
     for path in paths:
-        if not path.is_dir():
+        # Not Path.is_dir, which fails on an overlong name.
+        if not os.path.isdir(path):
             tables.append(_table(path))
             continue
         inside = _files_in(path)
@@ -100,14 +102,20 @@ def _read(paths: Sequence[Path]) -> tuple[list[Table], list[tuple[Path, str]]]:
         raise InputError(
             f"{listed(str(path) for path in paths)}: no file in it can be used: {faults}"
         )
-    return _same_columns(tables, left_out, chosen=not any(path.is_dir() for path in paths))
+    return _same_columns(tables, left_out, chosen=not any(map(os.path.isdir, paths)))
 
 
 def _files_in(path: Path) -> list[Path]:
     endings = [suffix for known in FORMATS for suffix in known.suffixes]
-    inside = sorted(
-        file for file in path.iterdir() if file.is_file() and file.suffix.casefold() in endings
-    )
+    try:
+        inside = sorted(
+            file for file in path.iterdir() if file.is_file() and file.suffix.casefold() in endings
+        )
+    except OSError as error:
+        raise InputError(
+            f"{path}: the folder cannot be read ({error.strerror}); check its rights, or name "
+            "the files in it"
+        ) from None
     if not inside:
         raise InputError(
             f"{path}: there is no recording in this folder; the endings known are "

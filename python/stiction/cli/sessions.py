@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -41,7 +42,7 @@ def loaded(path: Path, *, keep_faulty: bool = False) -> tuple[Session, Plant]:
 def _kind_of(path: Path) -> str:
     """What a file is that is taken for a session by mistake, "" where it may be one."""
     endings = [suffix for known in FORMATS for suffix in known.suffixes]
-    if path.suffix.casefold() in endings and path.is_file():
+    if path.suffix.casefold() in endings and os.path.isfile(path):
         return "recording"
     try:
         keys = tomllib.loads(path.read_text("utf-8")).keys()

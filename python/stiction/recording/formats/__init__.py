@@ -43,19 +43,20 @@ def read_table(path: str | os.PathLike[str]) -> Table:
         If the file is missing, empty, a folder, of an unknown kind, or not what its ending says.
     """
     file = Path(path)
-    if file.is_dir():
-        raise InputError(f"{file}: this is a folder; name a file in it")
-    if not file.exists():
-        raise InputError(f"{file}: there is no such file{_near_by(file)}")
-    chosen = _format_of(file)
+    # Asking for a file of an overlong name fails as reading one does.
     try:
+        if file.is_dir():
+            raise InputError(f"{file}: this is a folder; name a file in it")
+        if not file.exists():
+            raise InputError(f"{file}: there is no such file{_near_by(file)}")
+        chosen = _format_of(file)
         if file.stat().st_size == 0:
             raise InputError(f"{file}: the file is empty; record it again or name another")
         return chosen.read(file)
     except OSError as error:
         reason = error.strerror or "the system refuses"
         raise InputError(
-            f"{file}: the file cannot be read ({reason}); check its rights and the disk"
+            f"{file}: the file cannot be read ({reason}); check the path, its rights and the disk"
         ) from error
 
 
@@ -73,5 +74,8 @@ def _near_by(file: Path) -> str:
     folder = file.parent
     if not folder.is_dir():
         return f", and no folder '{folder}'; check the path"
-    near = nearest(file.name, (entry.name for entry in folder.iterdir()))
+    try:
+        near = nearest(file.name, (entry.name for entry in folder.iterdir()))
+    except OSError:  # a folder that may not be listed
+        near = None
     return f" (did you mean '{near}'?)" if near else "; check the path"
