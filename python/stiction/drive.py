@@ -26,6 +26,8 @@ _NO_EFFORT: Final = {"current_a": "A", "voltage_v": "V"}
 """Inputs that are no effort, and their units."""
 GOALS: Final = {"rotary": "goal_rad", "linear": "goal_m"}
 """What a servo is commanded in."""
+_OF_INPUT: Final = ("input", "gain", "limit")
+"""Keys of a drive that is not a servo beside its kind."""
 KINDS: Final = ("direct", "prescribed_motion", "servo")
 LEAST_GAIN: Final = 1e-12
 """Effort per unit of input; no unit of an input is that large."""
@@ -136,7 +138,13 @@ def read_drive(given: Mapping[str, Any], motion: str, where: str) -> dict[str, A
         }
         check_servo(drive, where)
     else:
-        known(given, ("kind", "input", "gain", "limit"), where)
+        known(given, ("kind", *_OF_INPUT), where)
+        useless = [name for name in _OF_INPUT if name in given]
+        if kind == "prescribed_motion" and useless:
+            raise InputError(
+                f"{where} {listed(useless)} goes with an input, and a machine whose motion is "
+                "prescribed has none; leave it out"
+            )
         if "input" in given:
             allowed = [name for name in INPUTS if name != _OTHER_MOTION[motion]]
             drive["input"] = choice(given["input"], allowed, f"{where} input of a {motion} plant")

@@ -115,10 +115,10 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
     body = _body(section(table, "body", source), motion, source)
     _check_scale(drive, body, friction, source)
     controller = _controller(section(table, "controller", source), source)
-    if drive.get("kind") == "prescribed_motion" and "gain" in drive:
+    if drive.get("kind") == "servo" and controller:
         raise InputError(
-            f"{source}: [drive] gain goes with an input, and a machine whose motion is prescribed "
-            "has none; leave it out"
+            f"{source}: [controller] goes with an input that a controller commands, and a servo "
+            "closes its loop itself; leave it out, and write its gains under [drive]"
         )
     return Parts(
         motion=motion,
@@ -153,6 +153,7 @@ def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Param
         )
     for name in _PAYLOAD:
         if name in body:
+            _check_weighed(given[name], f"{where} {name}")
             body[name] = Parameter(body[name].value, fixed=True)
     check_payload(body, motion, where)
     if "payload_m" in body and motion == "linear":
@@ -165,6 +166,19 @@ def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Param
         if name in body and motion == "linear":
             raise InputError(f"{where} {name} is for rotary plants; use weight_n for a linear one")
     return body
+
+
+def _check_weighed(given: Any, where: str) -> None:
+    """Refuse what a payload, which no fit changes, would be fitted by."""
+    stated = given if isinstance(given, Mapping) else {}
+    useless = [name for name in ("min", "max") if name in stated]
+    if stated.get("fixed") is False:
+        useless.append("fixed = false")
+    if useless:
+        raise InputError(
+            f"{where}: {listed(useless)} goes with what is fitted, and a payload is weighed and "
+            "measured, never fitted; leave it out"
+        )
 
 
 def check_payload(body: Mapping[str, Parameter], motion: str, where: str) -> None:

@@ -210,6 +210,11 @@ def test_prescribed_motion_has_nothing_to_simulate(tmp_path: Path) -> None:
         ({"motion": {"kind": "linear"}, "body": {"gravity_amplitude": 1.0}}, "for rotary plants"),
         ({"motion": {"kind": "linear"}, "body": {"gravity_zero_rad": 1.0}}, "for rotary plants"),
         ({"drive": {"kind": "prescribed_motion", "gain": 2.0}}, r"\[drive\] gain goes with an"),
+        ({"drive": {"kind": "prescribed_motion", "input": "current_a"}}, r"\] input goes with an"),
+        (
+            {"drive": {"kind": "prescribed_motion", "limit": 2.0, "input": "torque_nm"}},
+            r"\] input, limit goes with an input, .* leave it out",
+        ),
     ],
 )
 def test_what_a_plant_of_its_kind_has_no_use_for_is_refused(table, told):

@@ -297,6 +297,18 @@ def test_only_a_servo_has_a_goal():
             "scale with it",
         ),
         ({"body": {"inertia": 0.01, "payload_kg": -1.0}}, "payload_kg"),
+        (
+            {"controller": {"kind": "pd", "kp": 2.0}},
+            r"\[controller\] goes with an input .* a servo closes its loop itself; leave it out",
+        ),
+        *(
+            ({"body": {"payload_kg": {"value": 2.0, **more}, "payload_m": 0.1}}, f"kg: {told} goes")
+            for more, told in (
+                ({"min": 1.0, "max": 3.0, "fixed": False}, "min, max, fixed = false"),
+                ({"fixed": False}, "fixed = false"),
+                ({"max": 3.0, "fixed": True}, "max"),
+            )
+        ),
         ({"body": {"inertia": 0.01, "payload_kg": 1.0}}, "payload_kg is stated without payload_m"),
         *(
             ({"drive": {**PLANT["drive"], name: 0.0}}, f"{name} = 0 ")
@@ -320,6 +332,14 @@ def test_only_a_servo_has_a_goal():
 def test_a_servo_that_cannot_be_is_refused(table, told):
     with pytest.raises(st.InputError, match=told):
         st.Plant.from_dict({**PLANT, **table})
+
+
+def test_a_payload_may_be_written_as_a_table():
+    body = {"inertia": 0.01, "payload_kg": {"value": 2.0}, "payload_m": {"value": 0.1}}
+    made = st.Plant.from_dict({**PLANT, "body": body})
+    assert made.payload == st.Plant.from_dict(made.to_dict()).payload
+    assert made.payload[0] == pytest.approx(0.02)
+    assert made.body["payload_kg"].fixed
 
 
 def test_an_integral_alone_moves_a_servo():
