@@ -289,12 +289,13 @@ def simulate_ensemble(
     parameters : Mapping of str to array_like of shape (members,), optional
         What the machines differ in, as for ``Ensemble``.
     dt, load, outputs, every, reduce, target, threads
-        As for ``Ensemble.simulate``.
+        As for ``Ensemble.simulate``; no ``threads`` with an executor, whose parts take one each.
     executor : concurrent.futures.Executor, optional
         Runs parts of the ensemble: a pool of processes, or a cluster's. The result is the same to
         the bit.
     parts : int, optional
-        Into how many parts it is cut then; four for each processor of this machine without it.
+        Into how many parts an executor's work is cut; four for each processor of this machine
+        without it.
 
     Returns
     -------
@@ -303,7 +304,8 @@ def simulate_ensemble(
     Raises
     ------
     InputError
-        As for ``Ensemble`` and ``Ensemble.simulate``; an executor that is none, ``parts`` below 1.
+        As for ``Ensemble`` and ``Ensemble.simulate``; an executor that is none, ``parts`` below 1
+        or without an executor, ``threads`` with one.
 
     Examples
     --------
@@ -322,6 +324,18 @@ def simulate_ensemble(
         given.instance(executor, Executor, "executor", "one of concurrent.futures, or none")
     if parts is not None:
         parts = given.whole(parts, "parts", least=1)
+        if executor is None:
+            raise InputError(
+                f"parts = {parts} is for an executor, and there is none; give one, or leave parts "
+                "out"
+            )
+    if threads is not None:
+        threads = given.whole(threads, "threads", least=1, most=MOST_THREADS)
+        if executor is not None:
+            raise InputError(
+                f"threads = {threads} is for work in this process, and the parts of an executor "
+                "take one thread each; leave threads out, and give parts"
+            )
     inputs = given.numbers(currents, "currents")
     values = _rows_by_path(motor, parameters, len(inputs) if inputs.ndim == 2 else None)
     sizes = {len(row) for row in values.values()} | ({len(inputs)} if inputs.ndim == 2 else set())

@@ -10,6 +10,8 @@ import pytest
 import stiction as st
 
 DT = 2e-4
+POOL = ThreadPoolExecutor(1)
+"""Of which nothing is asked."""
 LAWS = [law.name for law in st.laws()]
 
 
@@ -140,6 +142,10 @@ def test_members_start_where_the_motor_is() -> None:
         ({"outputs": "position"}, "sequence of names"),
         ({"outputs": ("speed",)}, "output 'speed' is unknown"),
         ({"threads": 0.5}, "threads"),
+        ({"threads": 257}, "threads = 257 is out of bounds: give a whole number from 1 to 256"),
+        ({"parts": 2}, "parts = 2 is for an executor, and there is none; give one, or leave"),
+        ({"executor": POOL, "threads": "4"}, "threads = '4' is out of bounds"),
+        ({"executor": POOL, "threads": 2}, "threads = 2 is for work in this process.*; leave"),
     ],
 )
 def test_what_cannot_be_run_is_refused_in_a_sentence(change: dict, words: str) -> None:
