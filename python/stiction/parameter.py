@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 from .errors import InputError
@@ -80,14 +81,14 @@ class Parameter:
 
 
 def number(given: Any, where: str) -> float:
-    """Take a number that is not NaN.
+    """Take a number that is not NaN, numpy's too.
 
     Raises
     ------
     InputError
         Anything else.
     """
-    if isinstance(given, bool) or not isinstance(given, int | float):
+    if isinstance(given, bool) or not isinstance(given, Real):
         kind = type(given).__name__
         raise InputError(f"{where}: {given!r} is a {kind}; allowed is a number")
     try:

@@ -18,7 +18,7 @@ from .frozen import ByPath, Frozen, freeze, path_of
 from .motor import Motor
 from .parameter import Parameter, number
 from .recording.units import Motion
-from .stated import Effect, Friction
+from .stated import Effect, Friction, check_parameters
 from .trajectory import Trajectory
 from .wording import listed
 
@@ -55,8 +55,8 @@ class Plant:
 
     Notes
     -----
-    ``load``, ``from_dict`` and ``with_values`` check what they make; of a plant that is put
-    together by hand, ``motor`` refuses what no motor has.
+    ``load``, ``from_dict`` and ``with_values`` check what they make. A plant that is put together
+    by hand refuses parts that are of another class, and its ``motor`` what no motor has.
     """
 
     friction: Friction
@@ -70,6 +70,10 @@ class Plant:
 
     def __post_init__(self) -> None:
         freeze(self, Frozen, "drive", "body", "sensor", "controller")
+        given.instance(self.friction, Friction, f"{self.source}: friction", "a Friction")
+        check_parameters(self.body, f"{self.source}: [body]")
+        for effect in self.effects:
+            given.instance(effect, Effect, f"{self.source}: an effect", "an Effect")
 
     @classmethod
     def load(cls, path: str | Path) -> Plant:
@@ -364,9 +368,7 @@ class Plant:
         wanted = given.mapping(values, "Plant.with_values: values", "numbers by path")
         for name, value in wanted.items():
             path = path_of(name, stated, f"{self.source}: ", "is not stated")
-            changed[path] = replace(
-                stated[path], value=number(_plain(value), f"{self.source}: {path}")
-            )
+            changed[path] = replace(stated[path], value=number(value, f"{self.source}: {path}"))
 
         def part(prefix: str) -> Mapping[str, Parameter]:
             return {p.removeprefix(prefix): v for p, v in changed.items() if p.startswith(prefix)}
@@ -496,11 +498,6 @@ class Plant:
             f"<tr><td>{path}</td><td>{p.value:.6g}</td></tr>" for path, p in self.parameters.items()
         )
         return f"<p>{self!r}</p><table><tr><th>parameter</th><th>value</th></tr>{rows}</table>"
-
-
-def _plain(value: Any) -> Any:
-    """A number of numpy as Python's."""
-    return value.item() if isinstance(value, np.generic) else value
 
 
 def _table(parameter: Parameter) -> dict[str, float | bool]:

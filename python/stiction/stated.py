@@ -8,9 +8,21 @@ from dataclasses import dataclass, field
 from ._native import FrictionModel
 from .catalogue import LawRecord, laws
 from .frozen import Frozen, freeze
+from .given import instance
 from .parameter import Parameter
 
-__all__ = ["Effect", "Friction"]
+__all__ = ["Effect", "Friction", "check_parameters"]
+
+
+def check_parameters(given: Mapping[str, Parameter], where: str) -> None:
+    """Refuse what is put together by hand and holds something else than parameters.
+
+    Raises
+    ------
+    InputError
+    """
+    for name, value in given.items():
+        instance(value, Parameter, f"{where} {name}", "a Parameter of stiction.parameter")
 
 
 @dataclass(frozen=True)
@@ -23,6 +35,7 @@ class Friction:
 
     def __post_init__(self) -> None:
         freeze(self, Frozen, "parameters", "options")
+        check_parameters(self.parameters, "friction:")
 
     def model(self) -> FrictionModel:
         """The friction model; what is not stated takes the catalogue's default."""
@@ -49,3 +62,4 @@ class Effect:
 
     def __post_init__(self) -> None:
         freeze(self, Frozen, "parameters")
+        check_parameters(self.parameters, f"effect {self.name}:")

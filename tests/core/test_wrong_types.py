@@ -9,6 +9,10 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.compare import compare
+from stiction.parameter import Parameter
+from stiction.plan import plan
+from stiction.stated import Effect, Friction
 
 ROWS = np.arange(300.0)
 DT = 1e-3
@@ -120,6 +124,39 @@ REFUSED = {
         lambda: streamed([np.ones(3)], checkpoint="/nonexistent/c"),
         "/nonexistent/c: is no place for a checkpoint",
     ),
+    "plan of nothing": (lambda: plan(None), "plan: plant is None; give a Plant"),
+    "plan of a file": (lambda: plan("p.toml"), "plan: plant is 'p.toml'; give a Plant"),
+    "plan's limit in words": (lambda: plan(plant(), position="1"), "plan: position: '1' is a str"),
+    "plan's rate in words": (lambda: plan(plant(), rate="1"), "plan: rate: '1' is a str"),
+    "plan's rate": (lambda: plan(plant(), rate=np.nan), "plan: rate: nan is not a number"),
+    "plan of a word": (lambda: plan(plant(), only="ramps"), "plan: only = 'ramps' is a word; give"),
+    "comparison of a word": (lambda: compare("coulomb"), "compare: laws = 'coulomb' is a word"),
+    "half a step": (lambda: compare(steps=2000.5), "compare: steps = 2000.5 is out of bounds"),
+    "too few steps": (lambda: compare(steps=999), "give a whole number from 1000"),
+    "draws below 0": (
+        lambda: compare(draws=-1),
+        "draws = -1 is out of bounds: give a whole number",
+    ),
+    "body of numbers": (
+        lambda: st.Plant(Friction("coulomb"), body={"inertia": 0.1}),
+        "plant: [body] inertia is 0.1; give a Parameter",
+    ),
+    "friction of numbers": (
+        lambda: Friction("coulomb", {"coulomb": 0.1}),
+        "friction: coulomb is 0.1; give a Parameter",
+    ),
+    "plant of a law's name": (
+        lambda: st.Plant("coulomb"),
+        "friction is 'coulomb'; give a Friction",
+    ),
+    "effect by its name": (
+        lambda: st.Plant(Friction("coulomb"), effects=("cogging",)),
+        "an effect is 'cogging'; give an Effect",
+    ),
+    "effect of numbers": (
+        lambda: Effect("cogging", {"cosine": 0.1}),
+        "effect cogging: cosine is 0.1; give a Parameter",
+    ),
     "members beyond memory": (
         lambda: st.Ensemble(motor(), 10**12),
         "GiB) for 1000000000000 machines; give fewer",
@@ -137,6 +174,11 @@ def test_what_cannot_be_used_is_refused_in_one_sentence(asked, told: str) -> Non
 
 
 def test_their_good_twins_are_taken() -> None:
+    by_hand = st.Plant(Friction("coulomb"), body={"inertia": Parameter(0.01)})
+    assert by_hand.motor() is not None
+    limits = {"position": np.float32(2.0), "speed": np.int64(5)}
+    made = plan(by_hand, **limits, only=np.array(["turns"]))
+    assert len(made.signals) == 3
     assert len(st.Session(recording())) == 1
     assert len(st.Ensemble(motor(), np.int64(2))) == 2
     assert ensemble(every=np.int64(2)).position.shape == (1, 2)

@@ -8,6 +8,7 @@ from functools import partial
 from .. import catalogue
 from ..catalogue import LawRecord
 from ..errors import InputError
+from ..given import names, whole
 from ..wording import did_you_mean, listed
 from .cost import BESIDE, costs
 from .draws import DRAWS
@@ -51,7 +52,7 @@ def compare(
     Raises
     ------
     InputError
-        An unknown law, or fewer than 1000 steps.
+        No sequence of names, an unknown law, fewer than 1000 steps, draws below 0.
 
     Examples
     --------
@@ -59,11 +60,11 @@ def compare(
     >>> table["maxwell_slip"].cells["reverse_points_recovered"].verdict
     'yes'
     """
-    if steps < 1000 or draws < 0:
-        raise InputError(
-            f"compare: steps = {steps}, draws = {draws}; give at least 1000 steps and 0 draws"
-        )
-    records = [_record(name) for name in dict.fromkeys(laws)] or list(catalogue.laws())
+    steps = whole(steps, "compare: steps", least=1000)
+    draws = whole(draws, "compare: draws", least=0)
+    records = [_record(name) for name in dict.fromkeys(names(laws, "compare: laws"))] or list(
+        catalogue.laws()
+    )
     rows = []
     spent = costs([record.name for record in records])
     for record in records:

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError
+from ..parameter import number
 from ..plant import Plant
 from ..presliding import presliding
 from ..wording import listed
@@ -53,7 +54,10 @@ class Limits:
     def __post_init__(self) -> None:
         for name in ("position", "speed", "effort"):
             value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value > 0.0):
+            if value is None:
+                continue
+            value = number(value, f"plan: {name}")
+            if not (math.isfinite(value) and value > 0.0):
                 raise InputError(f"{name} = {value:g} is out of bounds: give a number above 0")
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from .._native import Motion
 from ..drive import GOALS
 from ..errors import InputError
-from ..given import whole
+from ..given import instance, names, whole
+from ..parameter import number
 from ..plant import Plant
 from ..trajectory import FloatArray
 from ..wording import did_you_mean, listed
@@ -62,9 +63,12 @@ def plan(
     Raises
     ------
     InputError
-        A limit that is no number above 0, or within which the machine cannot be moved; an unknown
-        experiment.
+        No plant; a limit that is no number above 0, or within which the machine cannot be moved; a
+        rate or seed out of bounds; an unknown experiment.
     """
+    instance(plant, Plant, "plan: plant", "a Plant, as Plant.load returns it")
+    rate = number(rate, "plan: rate")
+    only = names(only, "plan: only")
     if not RATES[0] <= rate <= RATES[1]:
         raise InputError(
             f"rate = {rate:g} is out of bounds: allowed is {RATES[0]:g} to {RATES[1]:g} samples/s"
