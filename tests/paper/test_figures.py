@@ -12,7 +12,7 @@ import pytest
 
 import stiction as st
 from stiction import plot
-from stiction.cli.paper import paper_command, render_json, render_text
+from stiction.cli.paper import Section, _write_numbers, paper_command, render_json, render_text
 from stiction.errors import InputError
 from stiction.paper.figures import static_comparison
 
@@ -148,3 +148,13 @@ def test_thinned_line_keeps_gaps_and_short_lines():
 def test_plotting_is_imported_on_use_only():
     code = "import sys, stiction.paper; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_number_that_is_not_known_is_null_in_the_file(tmp_path):
+    class Open:
+        def to_dict(self):
+            return {"measured": float("nan"), "limit": float("inf")}
+
+    _write_numbers(tmp_path, [Section("one", Open(), ())])
+    (read,) = json.loads((tmp_path / "numbers.json").read_text("utf-8"))["experiments"]
+    assert read == {"name": "one", "measured": None, "limit": None, "figures": []}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json as json_text
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,7 +28,7 @@ from ..paper import (
     static_test,
     stick_slip,
 )
-from .answer import answer, folder, written
+from .answer import answer, folder, json_of, written
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -121,8 +120,8 @@ def paper_command(out: Path) -> list[Section]:
     sections = []
 
     def add(name: str, result: Result, figure: Figure | None = None) -> None:
-        written = write_figure(out, name, result.plot() if figure is None else figure)
-        sections.append(Section(name, result, written))
+        drawn = write_figure(out, name, result.plot() if figure is None else figure)
+        sections.append(Section(name, result, drawn))
 
     add("experiment-1", experiment_1())
     add("experiment-2", experiment_2())
@@ -150,7 +149,7 @@ def paper_command(out: Path) -> list[Section]:
 
 
 def _write_numbers(out: Path, sections: Sequence[Section]) -> None:
-    text = json_text.dumps(render_json(sections), indent=2, ensure_ascii=False) + "\n"
+    text = json_of(render_json(sections)) + "\n"
     with written(out):
         (out / "numbers.json").write_text(text, encoding="utf-8")
 
