@@ -85,11 +85,6 @@ class Session:
         object.__setattr__(self, "ages", ages_of(self.recordings))
 
     @property
-    def clock_stated(self) -> bool:
-        """Whether any recording states ``start_s``; without it the pauses are unknown."""
-        return any(recording.start_s != 0.0 for recording in self.recordings)
-
-    @property
     def hashes(self) -> tuple[str, ...]:
         """SHA-256 of each recording's channels, in hexadecimal."""
         return tuple(recording.hash for recording in self.recordings)

@@ -57,7 +57,6 @@ def test_a_hash_tells_recordings_apart_and_holds_for_copies() -> None:
 
 def test_the_session_clock_starts_each_recording_where_it_says() -> None:
     session = st.Session((recorded(start_s=100.0), recorded(1, start_s=0.0)))
-    assert session.clock_stated
     assert session.starts == (100.0, 0.0)
     assert session.clock(0)[0] == 100.0
     np.testing.assert_allclose(np.diff(session.clock(0)), 0.01)
@@ -65,7 +64,6 @@ def test_the_session_clock_starts_each_recording_where_it_says() -> None:
 
 def test_without_a_stated_start_the_recordings_follow_one_another() -> None:
     session = st.Session((recorded(0), recorded(1)))
-    assert not session.clock_stated
     assert session.starts == pytest.approx((0.0, 3.0))
     assert session.clock(1)[0] == pytest.approx(session.clock(0)[-1] + 0.01)
 

@@ -153,13 +153,6 @@ def to_si(
     return np.asarray(values, dtype=np.float64) * _factor(unit, count_size, where) + unit.offset
 
 
-def from_si(
-    values: npt.ArrayLike, unit: Unit, *, count_size: float | None = None, where: str = "values"
-) -> FloatArray:
-    """The inverse of `to_si`, with the same arguments and errors."""
-    return (np.asarray(values, dtype=np.float64) - unit.offset) / _factor(unit, count_size, where)
-
-
 def _factor(unit: Unit, count_size: float | None, where: str) -> float:
     if unit.factor is not None:
         return unit.factor
