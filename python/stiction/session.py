@@ -19,7 +19,7 @@ from .plant import Plant
 from .plant_file import read_toml, section
 from .recording import SETTINGS, Columns, Recording
 from .recording.names import names_of
-from .recording.recording import recordings_of
+from .recording.recording import SPLIT_ROLES, recordings_of
 from .recording.session_clock import ages_of, starts_of
 from .recording.split import BLOCK_S, EDGE_S, Split, split
 from .recording.units import FloatArray, Motion
@@ -29,7 +29,6 @@ __all__ = ["Session", "load", "load_recording"]
 
 _TABLES = ("plant", "columns", "recordings")
 _RECORDING = ("file", "role", "kind", "start_s", "cold", "replicate_of", "columns", *SETTINGS)
-_ROLES = ("train", "select", "test")
 
 
 @dataclass(frozen=True)
@@ -225,7 +224,7 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
                 "a file has one role, drop one of the two"
             )
         seen[file] = index
-        role = choice(entry["role"], _ROLES, f"{where} role") if "role" in entry else None
+        role = choice(entry["role"], SPLIT_ROLES, f"{where} role") if "role" in entry else None
         kind = entry.get("kind", "")
         if not isinstance(kind, str):
             raise InputError(f'{where} kind = {kind!r} is not text; write kind = "…"')

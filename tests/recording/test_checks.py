@@ -212,6 +212,8 @@ def test_a_sensor_that_freezes_under_efforts_that_move_the_machine_is_stuck() ->
     frozen["position"][1000 : 1000 + turn] = frozen["position"][1000]
     frozen["position"][1000 + turn :] += data["position"][1000] - data["position"][1000 + turn]
     assert verdict(frozen, "stuck channel") == "fault"
+    # A goal is no effort, whether its unit or a servo's gain says so.
+    assert verdict({**frozen, "settings": {"proportional": 4.0}}, "stuck channel") == "fine"
     # Steady efforts hold a machine, and so do those under which it rests elsewhere, too.
     held = {**frozen, "input": frozen["input"].copy()}
     held["input"][1000 : 1000 + turn] = 0.9

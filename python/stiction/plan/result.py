@@ -13,6 +13,7 @@ import numpy as np
 from .. import given
 from ..errors import InputError
 from ..plant import Plant
+from ..recording.recording import SPLIT_ROLES
 from ..trajectory import FloatArray
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Plan", "Signal"]
 
-ROLES: Final = ("train", "select", "test")
 FILLED_IN: Final = ("session.toml", "plant.toml")
 """Files that whoever records goes on writing in: an earlier one is never replaced."""
 PAUSE_S: Final = 5.0
@@ -265,7 +265,7 @@ def _session_order(signals: Sequence[Signal]) -> list[Signal | None]:
     """
     cycle = [s for s in signals if s.experiment == "cycle"]
     others = [s for s in signals if s.experiment != "cycle"]
-    by_role = [s for role in ROLES for s in others if s.role == role]
+    by_role = [s for role in SPLIT_ROLES for s in others if s.role == role]
     half = len(by_role) // 2
     again = [s for s in others if s.kind == "reference"][:1]
     begin: list[Signal | None] = [cycle[0], None, cycle[1]] if cycle else [None]

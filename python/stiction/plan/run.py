@@ -14,11 +14,12 @@ from ..errors import InputError
 from ..given import instance, names, whole
 from ..parameter import number
 from ..plant import Plant
+from ..recording.recording import SPLIT_ROLES
 from ..trajectory import FloatArray
 from ..wording import did_you_mean, listed
 from .experiments import EXPERIMENTS, Experiment
 from .limits import Limits, Sizes, sizes_of
-from .result import ROLES, Plan, Signal
+from .result import Plan, Signal
 
 __all__ = ["plan"]
 
@@ -110,7 +111,7 @@ def plan(
                 role,
                 [seed, k, known.index(experiment.name)],
             )
-            for k, role in enumerate(ROLES)
+            for k, role in enumerate(SPLIT_ROLES)
         ]
         kept = [signal for signal in made if signal is not None]
         if len(kept) < len(made):

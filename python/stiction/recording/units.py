@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
+from ..trajectory import FloatArray as FloatArray
 from ..wording import did_you_mean, listed
 
-FloatArray = npt.NDArray[np.float64]
 Motion = Literal["rotary", "linear"]
 
 _ZERO_CELSIUS_K = 273.15

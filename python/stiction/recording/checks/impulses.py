@@ -19,7 +19,7 @@ from ..names import names_of
 from ..recording import Recording
 from ..units import FloatArray
 from .finding import Check
-from .signal import SPIKE_TIMES, IntArray, runs, without_spikes
+from .signal import SPIKE_TIMES, IntArray, is_goal, runs, without_spikes
 
 __all__ = ["Impulses", "impulse_checks", "impulses", "without_failures"]
 
@@ -34,8 +34,6 @@ BESIDE: Final = 0.1
 """Share of the height of an impulse that belongs to it."""
 LEAST_SHARE: Final = 1e-3
 """And this share of the range of the input."""
-GOALS: Final = ("rad", "m")
-"""Units of an input that is a place to go to, and no effort."""
 LATE_S: Final = (
     *(0.0, 0.004, 0.008, 0.016, 0.024, 0.032, 0.048, 0.064, 0.08, 0.096, 0.12, 0.15),
     *(0.2, 0.25, 0.3, 0.4, 0.5),
@@ -147,8 +145,7 @@ def _impulses(recording: Recording) -> Impulses:
     """Those of one recording, by its own motion."""
     values = recording.input
     none = np.zeros(0, dtype=np.int64)
-    goal = recording.units.get("input") in GOALS or "proportional" in recording.settings
-    if values is None or goal or not np.all(np.isfinite(values)):
+    if values is None or is_goal(recording) or not np.all(np.isfinite(values)):
         return Impulses(none, None)
     rows = _apart(values)
     position = recording.position

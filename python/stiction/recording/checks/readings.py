@@ -11,15 +11,21 @@ from ...wording import counted
 from ..recording import Recording
 from ..units import FloatArray
 from .finding import Check
-from .signal import SPIKE_COUNTS, SPIKE_TIMES, channels_of, runs, spike_rows, without_spikes
+from .signal import (
+    SPIKE_COUNTS,
+    SPIKE_TIMES,
+    channels_of,
+    is_goal,
+    runs,
+    spike_rows,
+    without_spikes,
+)
 
 _MEASURED: Final = ("position", "velocity", "effort")
 _BOUNDED: Final = ("position", "effort")
 _NEEDED: Final = ("input", "position", "effort")
 _REST: Final = 5
 """Rows; shorter ones are repeated readings."""
-_OF_GOALS: Final = ("rad", "m")
-"""Units of an input that is a place to go to, and no effort."""
 
 
 def missing(recording: Recording) -> list[Check]:
@@ -248,8 +254,8 @@ def _held_against_efforts(
     """
     position = recording.position
     effort = recording.input if recording.effort is None else recording.effort
-    goal = recording.effort is None and recording.units.get("input") in _OF_GOALS
-    if position is None or effort is None or goal or np.ptp(effort) == 0.0:
+    goes_to = recording.effort is None and is_goal(recording)
+    if position is None or effort is None or goes_to or np.ptp(effort) == 0.0:
         return []
     if not (np.all(np.isfinite(position)) and np.all(np.isfinite(effort))):
         return []
@@ -386,7 +392,7 @@ def saturation(
     values = recording.input
     if values is None or not np.all(np.isfinite(values)) or np.ptp(values) == 0.0:
         return Check(name, "fine", "there is no changing input to look at")
-    if recording.units.get("input") in ("rad", "m") or "proportional" in recording.settings:
+    if is_goal(recording):
         return Check(name, "fine", "the input is a goal, which has no limits of its own")
     resting = np.zeros(len(values), dtype=np.bool_)
     for extreme in (values.min(), values.max()):

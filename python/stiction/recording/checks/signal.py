@@ -22,8 +22,16 @@ row in twenty may be a spike, each of which disturbs three second differences.""
 SPIKE_COUNTS: Final = 12.0
 """And this many sensor counts, for a machine at rest flickers by one."""
 
+_GOALS: Final = ("rad", "m")
+"""Units of an input that is a goal."""
+
 BACK_SHARE: Final = 0.25
 """The rows beside a spike agree to this share of its height: it went out and came back."""
+
+
+def is_goal(recording: Recording) -> bool:
+    """Whether the input is a place to go to, and no effort: by its unit, or as a servo's gains."""
+    return recording.units.get("input") in _GOALS or "proportional" in recording.settings
 
 
 def channels_of(recording: Recording) -> Iterator[tuple[str, FloatArray]]:
