@@ -219,6 +219,22 @@ def test_same_seed_same_signals(made: Plan) -> None:
     assert not np.array_equal(made["ramps-train"].values, other["ramps-train"].values)
 
 
+def test_a_plan_prints_as_a_table_in_words(made: Plan) -> None:
+    lines = repr(made).splitlines()
+    assert lines[0].startswith("33 signals, ")
+    assert lines[2].split() == [
+        *("signal", "kind", "length", "position", "speed", "effort"),
+        *("what", "it", "is", "for"),
+    ]
+    assert lines[3].split() == ["s", "rad", "rad/s", "N·m"]
+    for signal, line in zip(made.signals, lines[4:], strict=True):
+        assert line.endswith(signal.purpose)
+        name, kind, *numbers = line.removesuffix(signal.purpose).split()
+        assert (name, kind) == (signal.name, signal.kind)
+        asked = [signal.duration, *signal.greatest.values()]
+        assert [float(each) for each in numbers] == pytest.approx(asked, rel=1e-2)
+
+
 def test_files_can_be_read_back(made: Plan, tmp_path: Path) -> None:
     where = made.save(tmp_path / "plan")
     read = np.loadtxt(where / "signals" / "chirp-test.csv", delimiter=",", skiprows=1)

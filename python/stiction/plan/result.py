@@ -15,6 +15,7 @@ from ..errors import InputError
 from ..plant import Plant
 from ..recording.recording import SPLIT_ROLES
 from ..trajectory import FloatArray
+from ..wording import counted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -244,9 +245,31 @@ class Plan:
         return "\n".join(lines) + "\n"
 
     def __repr__(self) -> str:
+        """A table of the signals, with what the machine comes to at most."""
         total = sum(signal.duration for signal in self.signals)
-        head = f"{len(self.signals)} signals, {total:.0f} s in all"
-        return "\n".join([head, *(f"  {signal!r}" for signal in self.signals), *self.notes])
+        unit, effort = self.plant.position_unit, self.plant.effort_unit
+        rows = [
+            ("signal", "kind", "length", "position", "speed", "effort", "what it is for"),
+            ("", "", "s", unit, f"{unit}/s", effort, ""),
+            *map(_row, self.signals),
+        ]
+        widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]) - 1)]
+        # Words begin below one another, numbers end so.
+        sides = "<<>>>>"
+        lines = [
+            "  ".join(
+                [
+                    *(f"{row[k]:{sides[k]}{width}}" for k, width in enumerate(widths)),
+                    row[-1],
+                ]
+            ).rstrip()
+            for row in rows
+        ]
+        head = f"{counted(len(self.signals), 'signal')}, {total:.0f} s in all"
+        told = "position, speed and effort are the greatest that the plant comes to"
+        return "\n".join(
+            [f"{head}; {told}:", "", *lines, *([""] if self.notes else []), *self.notes]
+        )
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -255,6 +278,11 @@ class Plan:
             for s in self.signals
         )
         return f"<table><tr><th>signal</th><th>purpose</th><th>length</th></tr>{rows}</table>"
+
+
+def _row(signal: Signal) -> tuple[str, ...]:
+    most = (f"{signal.greatest[name]:.3g}" for name in ("distance", "speed", "effort"))
+    return (signal.name, signal.kind, f"{signal.duration:.1f}", *most, signal.purpose)
 
 
 def _session_order(signals: Sequence[Signal]) -> list[Signal | None]:
