@@ -333,3 +333,19 @@ def test_real_recordings_get_drafts_that_a_fit_runs_on(
         assert 'kind = "servo"' in (tmp_path / "plant.toml").read_text("utf-8")
         assert any('kind = "servo"' in told for told in found["to_do"])
         assert "no column is known to be the input" in run_fit(tmp_path, capsys)
+
+
+def test_a_line_of_units_below_the_header_is_taken_at_its_word(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(tmp_path / "run.csv", ("t", "i", "pos"))
+    names, *rows = path.read_text("utf-8").splitlines()
+    path.write_text("\n".join([names, "s,mA,deg", *rows, ""]), encoding="utf-8")
+    assert run(["init", str(path), "-o", str(tmp_path), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [one["unit"] for one in found["columns"]] == ["s", "mA", "deg"]
+    assert found["to_do"] == []
+    (recording,) = st.load(tmp_path / "session.toml")
+    assert len(recording) == ROWS
+    assert recording.input == pytest.approx(1e-3 * channels()["drive"])
+    assert recording.position == pytest.approx(np.radians(channels()["position"]))

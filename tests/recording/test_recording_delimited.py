@@ -55,6 +55,37 @@ def test_names_with_blanks_units_and_signs_stay_as_they_are(written: Written) ->
     assert list(read_table(path).columns) == ["Time (s)", "pos [µm]"]
 
 
+@pytest.mark.parametrize(
+    ("content", "units"),
+    [
+        (["t,x", "s,deg", "0,0.5", "1,-1.5", "2,250"], {"t": "s", "x": "deg"}),
+        (["t;x;", "[ms];(µm);", "0;0,5;", "1;-1,5;", "2;250;"], {"t": "ms", "x": "µm"}),
+        (["t x", "s rad/s", "0 0.5", "1 -1.5", "2 250"], {"t": "s", "x": "rad/s"}),
+    ],
+)
+def test_a_line_of_units_below_the_header_is_no_row(
+    written: Written, content: list[str], units: dict[str, str]
+) -> None:
+    table = read_table(written(content))
+    assert columns_of(written(content)) == PLAIN
+    assert table.units == units
+    assert table.place(0) == "line 3"
+    assert [table.heading(name) for name in table.columns] == [
+        f"{name} [{unit}]" for name, unit in units.items()
+    ]
+
+
+def test_of_some_columns_the_line_of_units_may_say_nothing(written: Written) -> None:
+    table = read_table(written(["t,x,mu,mode", "s,A,[-],", "0,1,2,3"]))
+    assert table.units == {"t": "s", "x": "A", "mu": "-"}
+    assert [column.tolist() for column in table.columns.values()] == [[0.0], [1.0], [2.0], [3.0]]
+
+
+@pytest.mark.parametrize("line", ["s,furlong", "s,", "1,A", "0,A", "1,1", ",", "[x],[y]"])
+def test_a_line_of_something_else_is_no_line_of_units(written: Written, line: str) -> None:
+    assert not read_table(written(["t,x,", f"{line}", "1,2", "2,3"])).units
+
+
 def test_a_text_cell_is_known_by_its_line(written: Written) -> None:
     table = read_table(written(["# head", "t,x", "0,1", "", "1,abc", "2,1_000"]))
     assert [(cell.row, cell.column, cell.text) for cell in table.cells] == [

@@ -207,3 +207,54 @@ def test_unknown_choices_are_refused(archive: Archive, option: str) -> None:
     path = archive("time_s", "current_a")
     with pytest.raises(InputError, match=f"{option} is 'sideways'; give one of"):
         Recording.load(path, **{option: "sideways"})  # type: ignore[arg-type]
+
+
+def with_units(folder: Path, names: str, units: str) -> Path:
+    rows = [f"{0.01 * k!r},{k!r},{k!r}" for k in range(240)]
+    path = folder / "run.csv"
+    path.write_text("\n".join([names, units, *rows, ""]), encoding="utf-8")
+    return path
+
+
+def test_a_line_of_units_is_taken_where_nothing_else_states_one(tmp_path: Path) -> None:
+    path = with_units(tmp_path, "t,i,pos", "s,mA,deg")
+    named = {"time": "t", "input": "i", "position": "pos"}
+    recording = Recording.load(path, named)
+    assert dict(recording.units) == {"time": "s", "input": "A", "position": "rad"}
+    assert recording.position is not None
+    assert recording.position[-1] == pytest.approx(math.radians(239.0))
+    assert "position: column 'pos' is in deg, by the line of units" in recording.notes
+    stated = Recording.load(path, {**named, "position": {"name": "pos", "unit": "rad"}})
+    assert stated.position is not None
+    assert stated.position[-1] == 239.0
+    assert not any("position" in note for note in stated.notes)
+
+
+@pytest.mark.parametrize(
+    ("names", "units", "told"),
+    [
+        (
+            "time_s,current_a,position_rad",
+            "s,A,deg",
+            "says rad, and the line of units below it deg",
+        ),
+        ("time_s,current_a,q [rad]", "s,A,deg", "says rad, and the line of units below it deg"),
+        (
+            "time_s,current_a,q",
+            "s,A,[grad]",
+            "the header gives the unit 'grad', which is not known",
+        ),
+    ],
+)
+def test_a_line_of_units_that_says_something_else_is_refused(
+    names: str, units: str, told: str, tmp_path: Path
+) -> None:
+    path = with_units(tmp_path, names, units)
+    columns = {} if "position_rad" in names else {"position": names.rsplit(",", 1)[1]}
+    with pytest.raises(InputError, match=told):
+        Recording.load(path, columns)
+
+
+def test_a_line_of_units_may_say_the_same_in_other_letters(tmp_path: Path) -> None:
+    path = with_units(tmp_path, "time_s,torque_nm,position_rad", "s,N·m,[rad]")
+    assert Recording.load(path).notes == ()

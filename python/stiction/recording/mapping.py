@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -22,6 +22,7 @@ from .units import (
     bracketed_unit,
     ending_unit,
     find_unit,
+    known_unit,
     to_si,
     unit_names,
 )
@@ -139,7 +140,7 @@ def _choose(
     quantities = ROLES[role]
     if role == "input" and drive in CANONICAL:
         quantities = (find_unit(CANONICAL[drive][1], where).quantity,)
-    unit = _stated_unit(role, column, where)
+    unit = _stated_unit(table, role, column, where)
     if unit is not None and unit.quantity not in quantities:
         raise InputError(
             f"{where} has the unit {unit.name}, which is no unit of {role}"
@@ -161,21 +162,31 @@ def _choose(
             unit = None
         if unit is not None and unit.name != SI_UNIT.get(unit.quantity):
             notes.append(f"{role}: column '{column.name}' was read in {unit.name}, by its ending")
+    elif _told_below(table, column):
+        notes.append(f"{role}: column '{column.name}' is in {unit.name}, by the line of units")
     return _Chosen(column, unit, where)
 
 
-def _stated_unit(role: str, column: Column, where: str) -> Unit | None:
-    """The unit from the mapping, the canonical name, or the brackets in the header."""
+def _told_below(table: Table, column: Column) -> bool:
+    """Whether the unit is taken from a line of units below the header."""
+    by_name = column.unit is not None or column.name in CANONICAL
+    return not by_name and table.heading(column.name) != column.name
+
+
+def _stated_unit(table: Table, role: str, column: Column, where: str) -> Unit | None:
+    """The unit from the mapping, the canonical name, or the header: in brackets, or below it."""
     if column.unit is not None:
         return find_unit(column.unit, where)
     if column.name in CANONICAL:
-        return find_unit(CANONICAL[column.name][1], where)
-    bracketed = bracketed_unit(column.name)
+        unit = find_unit(CANONICAL[column.name][1], where)
+        _check_below(table, role, column, unit, where)
+        return unit
+    bracketed = bracketed_unit(table.heading(column.name))
     # Digits in brackets number a joint: q[0], tau(1).
     if not bracketed or bracketed.isdigit():
         return None
     try:
-        return find_unit(bracketed, where)
+        unit = find_unit(bracketed, where)
     except InputError as error:
         # Taking an unknown unit for SI could be wrong by a factor of a million.
         raise InputError(
@@ -183,6 +194,18 @@ def _stated_unit(role: str, column: Column, where: str) -> Unit | None:
             f'write {role} = {{ name = "{column.name}", unit = "..." }} with one of '
             f"{unit_names(ROLES[role])}"
         ) from error
+    _check_below(table, role, column, unit, where)
+    return unit
+
+
+def _check_below(table: Table, role: str, column: Column, unit: Unit, where: str) -> None:
+    """Refuse a name that says another unit than the line below it."""
+    below = known_unit(table.units.get(column.name, ""))
+    if below is not None and replace(below, name=unit.name) != unit:
+        raise InputError(
+            f"{where}: the name says {unit.name}, and the line of units below it {below.name}; "
+            f'write {role} = {{ name = "{column.name}", unit = "..." }} with the one that holds'
+        )
 
 
 def _motion_told(role: str, unit: Unit | None) -> Motion | None:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..wording import counted, did_you_mean, listed
-from .units import FloatArray
+from .units import FloatArray, bracketed_unit
 
 # Of each column, this many cells that are not numbers are kept; one is enough for an error.
 CELLS_KEPT = 20
@@ -45,6 +45,8 @@ class Table:
         What else the file holds, and why it cannot be a column ("is a scalar").
     lines : ndarray of int, shape (rows,), optional
         1-based line number of each row, for formats that have lines.
+    units : dict of str to str
+        Units that stand in a line of their own below the names, by column.
     """
 
     path: Path
@@ -52,6 +54,12 @@ class Table:
     cells: tuple[Cell, ...] = ()
     unusable: dict[str, str] = field(default_factory=dict)
     lines: npt.NDArray[np.int64] | None = None
+    units: dict[str, str] = field(default_factory=dict)
+
+    def heading(self, name: str) -> str:
+        """A column's name, with the unit below it in brackets where it has none itself."""
+        below = self.units.get(name)
+        return name if below is None or bracketed_unit(name) else f"{name} [{below}]"
 
     def place(self, row: int) -> str:
         """How a reader finds a 0-based row again: ``"line 19"``, or ``"row 17"`` (1-based)."""

@@ -102,6 +102,11 @@ MOTION_OF_QUANTITY: Final[dict[str, Motion]] = {
 _LOOK_ALIKES = str.maketrans({"\N{GREEK SMALL LETTER MU}": "µ", "\N{DOT OPERATOR}": "·"})
 
 
+def known_unit(name: str) -> Unit | None:
+    """The unit written ``name``, None where there is none."""
+    return UNITS.get(name.strip().translate(_LOOK_ALIKES))
+
+
 def find_unit(name: str, where: str) -> Unit:
     """The unit written ``name``; letter case matters (mN is not MN).
 
@@ -117,7 +122,7 @@ def find_unit(name: str, where: str) -> Unit:
     InputError
         If there is no such unit.
     """
-    unit = UNITS.get(name.strip().translate(_LOOK_ALIKES))
+    unit = known_unit(name)
     if unit is None:
         raise InputError(
             f"{where}: the unit '{name}' is not known{did_you_mean(name, UNITS)}; "

@@ -3,6 +3,7 @@
 The delimiter (comma, semicolon, tab, bar or blanks) is found from the first lines.  Where it is
 not the comma, numbers may have a decimal comma.  Lines that begin with ``#`` are comments; the
 last one before the numbers serves as header where no other header stands (NumPy writes such).
+The line below the header may hold units in place of numbers.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from ...errors import InputError
 from ...wording import counted
 from ..table import CELLS_KEPT, Cell, Table, is_missing
-from ..units import FloatArray
+from ..units import FloatArray, bracketed_unit, known_unit
 from .format import Format
 
 _BLANKS = " "
@@ -34,6 +35,9 @@ def read(path: Path) -> Table:
     delimiter = _find_delimiter([text for _, text in lines[: _SAMPLED + 1]])
     header, body = _split_header(path, lines, comments, delimiter)
     names = _names(path, header, delimiter)
+    units = _units(names, body[0], delimiter) if body else {}
+    if units:
+        del body[0]
     if not body:
         raise InputError(
             f"{path}: the file has a header ({counted(len(names), 'column')}) and no rows under "
@@ -44,7 +48,7 @@ def read(path: Path) -> Table:
     columns = _numbers(names, rows, delimiter, cells)
     cells.sort(key=lambda cell: cell.row)
     numbers = np.array([number for number, _ in body], dtype=np.int64)
-    return Table(path, columns, tuple(cells), lines=numbers)
+    return Table(path, columns, tuple(cells), lines=numbers, units=units)
 
 
 FORMAT = Format("CSV", (".csv", ".txt", ".tsv", ".dat"), read)
@@ -162,6 +166,26 @@ def _names(path: Path, header: _Line, delimiter: str) -> list[str]:
                 f"{path}: line {number} names two columns '{name}'; give each its own name"
             )
     return [name or f"column {column}" for column, name in enumerate(names, start=1)]
+
+
+def _units(names: list[str], line: _Line, delimiter: str) -> dict[str, str]:
+    """Units by column where a line holds them and nothing else: at least two that are known.
+
+    In brackets a unit may be one that is not known here, or a dash: that is told where the column
+    is used, as of one in the header.
+    """
+    cells = _split(line[1], delimiter)
+    if not _fits(cells, len(names)):
+        return {}
+    found: dict[str, str] = {}
+    for name, cell in zip(names, cells, strict=False):
+        inside = bracketed_unit(cell) if cell[:1] in ("[", "(") else None
+        # A bare 1 is a number before it is a unit.
+        if cell and inside is None and (_is_number(cell, delimiter) or known_unit(cell) is None):
+            return {}
+        if unit := cell if inside is None else inside:
+            found[name] = unit
+    return found if sum(known_unit(unit) is not None for unit in found.values()) > 1 else {}
 
 
 def _rows(

@@ -117,7 +117,7 @@ def columns_of(tables: Sequence[Table]) -> list[Column]:
 
 
 def _column(name: str, tables: Sequence[Table], rows: Sequence[int]) -> Column:
-    said = what_it_says(name)
+    said = what_it_says(tables[0].heading(name))
     arrays = []
     for table, number in zip(tables, rows, strict=True):
         if name not in table.columns:

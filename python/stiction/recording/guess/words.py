@@ -267,7 +267,7 @@ def _in_brackets(name: str) -> tuple[Written | None, str]:
     # Digits in brackets number a joint: q[0].
     if not text or text.isdigit():
         return None, ""
-    how = f"its name says [{text}]"
+    how = f"the header says [{text}]"
     try:
         return Written(find_unit(text, name).name, 1.0, how), ""
     except InputError:
