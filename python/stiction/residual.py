@@ -27,6 +27,7 @@ __all__ = [
     "FreeRun",
     "effort_residual",
     "free_run",
+    "input_run",
     "started",
     "starting_velocity",
 ]
@@ -109,6 +110,7 @@ class FreeRun:
     Attributes
     ----------
     time : numpy.ndarray, shape (n,)
+        Stamps of the recording from the second row on, s.
     measured, simulated : numpy.ndarray, shape (n,)
         Position, rad or m.
     trajectory : Trajectory
@@ -214,35 +216,70 @@ def free_run(
     InputError
         No position or no input; a plant without inertia or of prescribed motion.
     """
-    position, source = _needed(recording)
+    position = _position(recording)
     (recording,) = without_failures([recording])
     # A reading that failed for a sample is no motion that a simulation could miss.
     position = without_spikes(position)
-    if recording.input is None:
-        raise InputError(f"{source}: there is no input, so nothing can run freely")
-    if plant.prescribed_motion:
-        raise InputError(
-            f"{plant.source}: [drive] kind = 'prescribed_motion' has no input to simulate; use "
-            "Motor.follow or a drive with an input"
-        )
-    plant = plant.under(recording.settings)
+    plant = _driven(plant, recording)
     velocity = starting_velocity(recording.time, position, plant.count or count_of(position))
-    beside = (recording.channels.get(name) for name in ("load", "temperature", "enabled"))
-    load, temperature, enabled = (None if values is None else values[:-1] for values in beside)
     motor = started(plant, float(position[0]), velocity, start, clock=clock, path=path)
-    trajectory = motor.simulate(
-        recording.input[:-1],
-        np.diff(recording.time),
-        load=load,
-        temperature=temperature,
-        enabled=enabled,
-    )
+    trajectory = _simulated(motor, recording)
     return FreeRun(
         recording.time[1:],
         position[1:],
         trajectory.position,
         trajectory,
         plant.position_unit,
+    )
+
+
+def input_run(plant: Plant, recording: Recording) -> Trajectory:
+    """Simulate the recorded input from rest, of a recording whose motion nobody measured.
+
+    What acted beside the input, and what was set for the recording, counts as in ``free_run``.
+
+    Parameters
+    ----------
+    plant : Plant
+    recording : Recording
+        With input.
+
+    Returns
+    -------
+    Trajectory
+        Row k is the state at the stamp of row k + 1.
+
+    Raises
+    ------
+    InputError
+        No input; a plant without inertia or of prescribed motion.
+    """
+    return _simulated(_driven(plant, recording).motor(), recording)
+
+
+def _driven(plant: Plant, recording: Recording) -> Plant:
+    """The plant as it was set for a recording, of which both have an input."""
+    if recording.input is None:
+        raise InputError(f"{_source(recording)}: there is no input, so nothing can run freely")
+    if plant.prescribed_motion:
+        raise InputError(
+            f"{plant.source}: [drive] kind = 'prescribed_motion' has no input to simulate; use "
+            "Motor.follow or a drive with an input"
+        )
+    return plant.under(recording.settings)
+
+
+def _simulated(motor: Motor, recording: Recording) -> Trajectory:
+    """The motor under all that acted on the recorded machine."""
+    assert recording.input is not None
+    beside = (recording.channels.get(name) for name in ("load", "temperature", "enabled"))
+    load, temperature, enabled = (None if values is None else values[:-1] for values in beside)
+    return motor.simulate(
+        recording.input[:-1],
+        np.diff(recording.time),
+        load=load,
+        temperature=temperature,
+        enabled=enabled,
     )
 
 
@@ -286,8 +323,11 @@ def starting_velocity(time: FloatArray, position: FloatArray, count: float) -> f
     return float(np.polynomial.Polynomial.fit(t, x, 2).deriv()(0.0))
 
 
-def _needed(recording: Recording) -> tuple[FloatArray, str]:
-    source = str(recording.path) if recording.path is not None else "recording"
+def _position(recording: Recording) -> FloatArray:
     if recording.position is None:
-        raise InputError(f"{source}: {NO_POSITION}")
-    return recording.position, source
+        raise InputError(f"{_source(recording)}: {NO_POSITION}")
+    return recording.position
+
+
+def _source(recording: Recording) -> str:
+    return str(recording.path) if recording.path is not None else "recording"

@@ -124,8 +124,7 @@ def _one(plant: Plant, recording: Recording, where: Path, support: float | None)
     if recording.position is None:
         if recording.input is None:
             raise InputError(f"{stem}: there is neither input nor motion to work with")
-        steps = np.diff(recording.time)
-        trajectory = plant.simulate(recording.input[:-1], steps)
+        trajectory = residual.input_run(plant, recording)
         files.append(trajectory.save(where / f"{stem}-trajectory.csv"))
         lines.append(f"simulated: {trajectory.message}")
     else:
