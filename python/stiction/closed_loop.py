@@ -14,7 +14,7 @@ import numpy as np
 
 from .errors import InputError
 from .motion import count_of, evenly, held
-from .recording.checks.signal import without_spikes
+from .recording.checks import without_failures, without_spikes
 from .residual import FreeRun, free_run, started, starting_velocity
 from .trajectory import FloatArray
 from .weak_form import Start
@@ -152,7 +152,7 @@ class ClosedLoop:
     Attributes
     ----------
     time : numpy.ndarray, shape (n,)
-        s, evenly spaced; the first is the start.
+        s. Evenly spaced from the start on; of a servo the recorded stamps after the first row.
     reference, measured, simulated : numpy.ndarray, shape (n,)
         Positions, rad or m.
     input : numpy.ndarray, shape (n,)
@@ -255,10 +255,12 @@ def replay(
         No controller, no reference, no position; a plant of prescribed motion or without inertia;
         a loop that runs away.
     """
+    (recording,) = without_failures([recording])
     if plant.servo:
         return _servo(free_run(plant, recording, start, clock=clock, path=path), recording)
     source = str(recording.path) if recording.path is not None else "recording"
     controller = Controller.of(plant)
+    plant = plant.under(recording.settings)
     if plant.prescribed_motion:
         raise InputError(
             f"{plant.source}: [drive] kind = 'prescribed_motion' has no input that a controller "

@@ -158,6 +158,32 @@ def test_a_recording_may_begin_in_motion_and_with_a_strained_contact() -> None:
     assert replay(machine, moving, {"force": -0.19}).rms > replay(machine, moving).rms
 
 
+def test_what_was_set_for_a_recording_counts_once() -> None:
+    settings = {"payload_kg": 1.0, "payload_m": 0.06}
+    machine = plant(KINDS["pd"])
+    heavy = machine.under(settings)
+    made = by_hand(heavy, goals())
+    recording = st.Recording(
+        made.time, made.input, made.position, settings=settings, **made.channels
+    )
+    loop = replay(machine, recording)
+    assert loop.greatest <= 0.5001 * machine.count
+    assert replay(machine, made).rms > 1e-3
+    # Of a plant that was set already nothing comes on top.
+    assert replay(heavy, recording).simulated == pytest.approx(loop.simulated, abs=0.0)
+
+
+def test_inputs_that_no_machine_got_are_none_that_the_controller_missed() -> None:
+    machine = plant(KINDS["pd"])
+    made = by_hand(machine, goals())
+    assert made.input is not None
+    logged = made.input.copy()
+    logged[300:1800:150] += 8.0
+    recording = st.Recording(made.time, logged, made.position, **made.channels)
+    # A line between neighbours is not quite what the controller asked for there.
+    assert (replay(machine, recording).controller_error or 0.0) < 0.02
+
+
 def test_what_cannot_be_replayed_is_refused_in_one_sentence() -> None:
     machine = plant(KINDS["pd"])
     recording = by_hand(machine, goals(0.5))
