@@ -12,6 +12,7 @@ import numpy.typing as npt
 from . import given
 from .errors import InputError
 from .frozen import Frozen
+from .table_file import save_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -214,24 +215,7 @@ class Trajectory:
             No path, an unknown ending, a folder that is not there, a file that cannot be written.
         """
         path = given.path(path, "Trajectory.save")
-        if not path.parent.is_dir():
-            raise InputError(f"{path}: there is no folder {path.parent}; make it first")
-        table = {"time_s": self.time, **self._columns}
-        if path.suffix not in (".npz", ".csv"):
-            raise InputError(f"{path}: ending '{path.suffix}' is not known; use .npz or .csv")
-        with given.written(path):
-            if path.suffix == ".npz":
-                np.savez_compressed(path, **table)  # type: ignore[arg-type]
-            else:
-                np.savetxt(
-                    path,
-                    np.column_stack(list(table.values())),
-                    delimiter=",",
-                    header=",".join(table),
-                    comments="",
-                    fmt="%.17g",
-                )
-        return path
+        return save_table(path, {"time_s": self.time, **self._columns})
 
     def plot(self) -> Figure:
         """A figure of position, velocity and friction over time.

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import stiction as st
 from stiction import Plant
 from stiction.cli import run
+from stiction.cli.simulate import stems_of
 
 DT = 1e-3
 ROWS = 2000
@@ -69,3 +72,109 @@ def test_an_input_alone_is_simulated_with_what_was_set_for_it(plant: Path, tmp_p
     expected = heavy.simulate(EFFORT[:-1], DT)
     found = column(tmp_path / "o" / "run-trajectory.csv", 1)
     assert found == pytest.approx(expected.position, abs=1e-9)
+
+
+def test_recordings_of_one_name_keep_their_files_apart(
+    plant: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = ("a/run.csv", "b/run.csv", "c/run.csv", "other.csv")
+    for k, name in enumerate(files, 1):
+        written(tmp_path / name, time_s=TIME, torque_nm=k * EFFORT)
+    session = tmp_path / "session.toml"
+    listed = "".join(f'[[recordings]]\nfile = "{name}"\n' for name in files)
+    session.write_text(listed, encoding="utf-8")
+    out = tmp_path / "o"
+    assert run(["simulate", str(plant), str(session), "-o", str(out), "--json"]) == 0
+    stems = ["a-run", "b-run", "c-run", "other"]
+    assert [each["recording"] for each in json.loads(capsys.readouterr().out)] == stems
+    assert {path.name for path in out.iterdir()} == {f"{stem}-trajectory.csv" for stem in stems}
+
+
+def test_files_that_differ_in_their_ending_or_fold_into_one_are_told_apart(tmp_path: Path) -> None:
+    columns = {"time_s": TIME, "torque_nm": EFFORT}
+    files = [
+        written(tmp_path / name, **columns) for name in ("run.csv", "a/x.csv", "b/x.csv", "b-x.csv")
+    ]
+    np.savez(tmp_path / "run.npz", **columns)
+    recordings = [st.Recording.load(file) for file in (*files, tmp_path / "run.npz")]
+    stems = stems_of(recordings)
+    assert stems[0] == "run-csv"
+    assert stems[4] == "run-npz"
+    assert len(set(stems)) == len(stems)
+    assert stems_of(recordings[:1]) == ["run"]
+
+
+def test_a_loop_that_cannot_be_simulated_says_so_in_json_too(
+    plant: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with plant.open("a", encoding="utf-8") as file:
+        file.write('[controller]\nkind = "pd"\nkp = -9.0\n')
+    position = 0.1 * np.sin(6.0 * TIME)
+    path = written(
+        tmp_path / "run.csv",
+        time_s=TIME, torque_nm=EFFORT, position_rad=position, reference_rad=position,
+    )  # fmt: skip
+    assert run(["simulate", str(plant), str(path), "-o", str(tmp_path / "o"), "--json"]) == 0
+    loop = json.loads(capsys.readouterr().out)["closed_loop"]
+    assert list(loop) == ["error"]
+    assert "runs away" in loop["error"]
+
+
+def test_a_repair_is_told_once(
+    plant: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    holed = EFFORT.copy()
+    holed[700:703] = np.nan
+    path = written(tmp_path / "run.csv", time_s=TIME, torque_nm=holed)
+    assert run(["simulate", str(plant), str(path), "-o", str(tmp_path / "o")]) == 0
+    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    assert len([line for line in lines if "interpolated" in line]) == 1
+    assert len(set(lines)) == len(lines)
+
+
+def test_a_velocity_alone_is_refused_with_what_would_do(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    machine = tmp_path / "damper.toml"
+    machine.write_text(
+        '[drive]\nkind = "prescribed_motion"\n[friction]\nlaw = "coulomb"\n', encoding="utf-8"
+    )
+    path = written(tmp_path / "swept.csv", time_s=TIME, torque_nm=EFFORT, velocity_rad_s=EFFORT)
+    assert run(["simulate", str(machine), str(path), "-o", str(tmp_path / "o")]) == 2
+    said = capsys.readouterr().err
+    assert said.count("swept") == 1
+    assert "there is no position" in said
+    assert "call it position_rad" in said
+
+
+@pytest.mark.parametrize("motion", ["rotary", "linear"])
+def test_what_simulate_writes_is_a_recording(motion: str, tmp_path: Path) -> None:
+    effort, position, velocity = (
+        ("torque_nm", "position_rad", "velocity_rad_s")
+        if motion == "rotary"
+        else ("force_n", "position_m", "velocity_m_s")
+    )
+    friction, load = ("friction_nm", "load_nm") if motion == "rotary" else ("friction_n", "load_n")
+    machine = tmp_path / "machine.toml"
+    text = PLANT.replace("torque_nm", effort).replace('"coulomb"', '"hsieh_pan"')
+    sensor = "counts_per_rev = 65536" if motion == "rotary" else "count_m = 1e-6"
+    machine.write_text(f'[motion]\nkind = "{motion}"\n{text}[sensor]\n{sensor}\n')
+    pushed = {"time_s": TIME, effort: EFFORT, load: 0.1 * np.cos(4.0 * TIME)}
+    path = written(tmp_path / "run.csv", **pushed)
+    out = tmp_path / "o"
+    assert run(["simulate", str(machine), str(path), "-o", str(out)]) == 0
+    made = out / "run-trajectory.csv"
+    header = made.read_text(encoding="utf-8").splitlines()[0].split(",")
+    assert header[0] == "time_s"
+    assert {position, velocity, friction, effort, load} <= set(header)
+    again = st.session.load_recording(made, Plant.load(machine))
+    assert again.position is not None
+    assert again.input == pytest.approx(EFFORT[1:], abs=0.0)
+    # Row by row it is the motion of the plant: simulated from there it comes out once more.
+    first = st.residual.free_run(Plant.load(machine), again)
+    assert first.rms < 1e-3 * np.ptp(again.position)
+    assert run(["init", str(made), "-o", str(tmp_path / "draft")]) == 0
+    (drafted,) = st.load(tmp_path / "draft" / "session.toml")
+    assert drafted.position == pytest.approx(again.position, abs=0.0)
+    assert drafted.input == pytest.approx(again.input, abs=0.0)
+    assert drafted.motion == motion

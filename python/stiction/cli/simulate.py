@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated, Any
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from cyclopts import Parameter
@@ -13,7 +15,14 @@ from ..errors import InputError
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.checks import check, impulse_checks
+from ..recording.names import names_of
 from .answer import answer, folder, written
+from .trajectory_csv import save_trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..trajectory import Trajectory
 
 __all__ = ["simulate"]
 
@@ -29,17 +38,18 @@ def simulate(
 ) -> None:
     """Simulate the recorded input; where the motion was measured too, show what is wrong.
 
-    With the input alone the trajectory is written. With measured motion two errors are printed:
-    the free run (started once, left alone) and the effort residual along the measured motion.
-    Where the plant states its controller and the recording has a reference, the loop of both is
-    simulated as well.
+    The trajectory is written, as a CSV file that can be read as a recording. With measured motion
+    two errors are printed: the free run (started once, left alone) and the effort residual along
+    the measured motion. Where the plant states its controller and the recording has a reference,
+    the loop of both is simulated as well.
 
     Parameters
     ----------
     plant
         Plant file.
     recording
-        CSV or MAT file, or a session file that lists recordings and their columns.
+        CSV, MAT, NPZ, JSON or Parquet file, or a session file that lists recordings and their
+        columns.
     columns
         Columns of a recording whose names are not the canonical ones, with units in brackets:
         "time=t, input=vir [V], position=qm [m]".
@@ -60,7 +70,10 @@ def simulate(
         recordings = [session.load_recording(recording, machine, mapped, where="--columns")]
     where = folder(out)
     with written(where):
-        results = [_named(machine, each, where, support) for each in recordings]
+        results = [
+            _named(machine, each, where / stem, support)
+            for each, stem in zip(recordings, stems_of(recordings), strict=True)
+        ]
     text = "\n\n".join(result.pop("text") for result in results)
     answer(text, results[0] if len(results) == 1 else results, as_json=json)
 
@@ -93,75 +106,155 @@ def read_columns(text: str) -> dict[str, Any]:
     return columns
 
 
-def _named(
-    plant: Plant, recording: Recording, where: Path, support: float | None
-) -> dict[str, Any]:
+def stems_of(recordings: Sequence[Recording]) -> list[str]:
+    """What the files of each recording begin with: its own name, and no other one's.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+
+    Returns
+    -------
+    list of str
+        Names of files without an ending.
+    """
+    names = [PurePath(name) for name in names_of(recordings)]
+    bare = [_flat(name.with_suffix("")) for name in names]
+    # Beside run.csv there may be run.npz; not every disk tells Run from run.
+    counts = Counter(stem.casefold() for stem in bare)
+    ended = [
+        f"{stem}{name.suffix.replace('.', '-')}" for stem, name in zip(bare, names, strict=True)
+    ]
+    stems = [
+        long if counts[short.casefold()] > 1 else short
+        for short, long in zip(bare, ended, strict=True)
+    ]
+    counts = Counter(stem.casefold() for stem in stems)
+    return [
+        f"{stem}-{k}" if counts[stem.casefold()] > 1 else stem for k, stem in enumerate(stems, 1)
+    ]
+
+
+def _flat(name: PurePath) -> str:
+    """Folders and file in one word."""
+    return name.as_posix().lstrip("/").replace("/", "-").replace(":", "")
+
+
+def _named(plant: Plant, recording: Recording, stem: Path, support: float | None) -> dict[str, Any]:
     """The answer for one recording, or a refusal that names its file."""
     try:
         # Absurd numbers are refused below, in words.
         with np.errstate(all="ignore"):
-            return _one(plant, recording, where, support)
+            return _one(plant, recording, stem, support)
     except InputError as error:
         file = str(recording.path)
         raise InputError(str(error) if file in str(error) else f"{file}: {error}") from None
 
 
-def _one(plant: Plant, recording: Recording, where: Path, support: float | None) -> dict[str, Any]:
-    stem = recording.path.stem if recording.path is not None else "recording"
-    lines = [f"{stem}: {len(recording)} rows over {recording.duration:.6g} s"]
-    lines += [f"  {note}" for note in recording.notes]
+def _one(plant: Plant, recording: Recording, stem: Path, support: float | None) -> dict[str, Any]:
+    """The answer for one recording, whose files begin with ``stem``."""
     checks = [*check(recording), *(own for _, own in impulse_checks([recording]))]
     remarks = [each.what for each in checks if each.verdict != "fine"]
-    lines += [f"  {remark}" for remark in remarks]
+    # What was mended stands in the notes already.
+    told = dict.fromkeys((*recording.notes, *remarks))
+    lines = [f"{stem.name}: {len(recording)} rows over {recording.duration:.6g} s"]
+    lines += [f"  {sentence}" for sentence in told]
     result: dict[str, Any] = {
-        "recording": stem,
+        "recording": stem.name,
         "remarks": remarks,
         "rows": len(recording),
         "duration_s": recording.duration,
         "notes": list(recording.notes),
     }
-    files: list[Path] = []
-    if recording.position is None:
-        if recording.input is None:
-            raise InputError(f"{stem}: there is neither input nor motion to work with")
+    drawn = _Drawn(stem)
+    if recording.position is not None:
+        lines += _beside_the_motion(plant, recording, support, drawn, result)
+    elif recording.input is not None:
         trajectory = residual.input_run(plant, recording)
-        files.append(trajectory.save(where / f"{stem}-trajectory.csv"))
+        drawn.trajectory(plant, recording, trajectory)
         lines.append(f"simulated: {trajectory.message}")
     else:
-        if not plant.prescribed_motion and recording.input is not None:
-            run = residual.free_run(plant, recording)
-            files.append(run.trajectory.save(where / f"{stem}-trajectory.csv"))
-            files += _figures(run.plot(), where / f"{stem}-free-run")
-            lines.append(
-                f"free run: position error {run.rms:.4g} {run.unit} rms, "
-                f"{run.mean_absolute:.4g} {run.unit} mean, greatest {run.greatest:.4g} {run.unit}"
-            )
-            result["free_run"] = run.to_dict()
-        if plant.controller and "reference" in recording.channels:
-            try:
-                loop = closed_loop.replay(plant, recording)
-            except InputError as error:
-                lines.append(f"closed loop: {error}")
-            else:
-                files += _figures(loop.plot(), where / f"{stem}-closed-loop")
-                lines += _loop_lines(loop)
-                result["closed_loop"] = loop.to_dict()
-        effort = residual.effort_residual(plant, recording, support=support)
-        if not np.isfinite(effort.relative):
-            raise InputError(
-                "the effort residual is not a finite number; check units, and cells far beyond "
-                "what the machine can do"
-            )
-        files += _figures(effort.plot(), where / f"{stem}-effort-residual")
-        lines.append(
-            f"effort along the measured motion: error {100 * effort.relative:.3f} % "
-            f"(relative 2-norm), {effort.rms:.4g} {effort.unit} rms, "
-            f"B-spline kernel of {1e3 * effort.support:.0f} ms on all terms"
+        raise InputError(
+            "there is no position, and the velocity alone does not tell where friction turns "
+            "round; name the column of the position, as in --columns "
+            '"position=x" or under [columns] of a session, or call it position_rad or '
+            "position_m"
         )
-        result["effort_residual"] = effort.to_dict()
-    lines += [f"wrote {file}" for file in files]
-    result["files"] = [str(file) for file in files]
+    lines += [f"wrote {file}" for file in drawn.files]
+    result["files"] = [str(file) for file in drawn.files]
     return {"text": "\n".join(lines), **result}
+
+
+class _Drawn:
+    """Files of one recording, and their writing.
+
+    Attributes
+    ----------
+    files : list of Path
+        That were written, in their order.
+    """
+
+    def __init__(self, stem: Path) -> None:
+        self._stem = stem
+        self.files: list[Path] = []
+
+    def trajectory(self, plant: Plant, recording: Recording, trajectory: Trajectory) -> None:
+        """Write what was simulated."""
+        path = self._named("trajectory.csv")
+        self.files.append(save_trajectory(path, plant, recording, trajectory))
+
+    def figure(self, figure: Figure, name: str) -> None:
+        """Write a figure in both formats."""
+        from ..plot import save
+
+        self.files += [save(figure, self._named(f"{name}{ending}")) for ending in (".svg", ".png")]
+
+    def _named(self, name: str) -> Path:
+        return self._stem.with_name(f"{self._stem.name}-{name}")
+
+
+def _beside_the_motion(
+    plant: Plant,
+    recording: Recording,
+    support: float | None,
+    drawn: _Drawn,
+    result: dict[str, Any],
+) -> list[str]:
+    """Lines on what a simulation misses of a measured motion; the numbers go into ``result``."""
+    lines = []
+    if not plant.prescribed_motion and recording.input is not None:
+        run = residual.free_run(plant, recording)
+        drawn.trajectory(plant, recording, run.trajectory)
+        drawn.figure(run.plot(), "free-run")
+        lines.append(
+            f"free run: position error {run.rms:.4g} {run.unit} rms, "
+            f"{run.mean_absolute:.4g} {run.unit} mean, greatest {run.greatest:.4g} {run.unit}"
+        )
+        result["free_run"] = run.to_dict()
+    if plant.controller and "reference" in recording.channels:
+        try:
+            loop = closed_loop.replay(plant, recording)
+        except InputError as error:
+            lines.append(f"closed loop: {error}")
+            result["closed_loop"] = {"error": str(error)}
+        else:
+            drawn.figure(loop.plot(), "closed-loop")
+            lines += _loop_lines(loop)
+            result["closed_loop"] = loop.to_dict()
+    effort = residual.effort_residual(plant, recording, support=support)
+    if not np.isfinite(effort.relative):
+        raise InputError(
+            "the effort residual is not a finite number; check units, and cells far beyond what "
+            "the machine can do"
+        )
+    drawn.figure(effort.plot(), "effort-residual")
+    lines.append(
+        f"effort along the measured motion: error {100 * effort.relative:.3f} % "
+        f"(relative 2-norm), {effort.rms:.4g} {effort.unit} rms, "
+        f"B-spline kernel of {1e3 * effort.support:.0f} ms on all terms"
+    )
+    result["effort_residual"] = effort.to_dict()
+    return lines
 
 
 def _loop_lines(loop: closed_loop.ClosedLoop) -> list[str]:
@@ -175,12 +268,3 @@ def _loop_lines(loop: closed_loop.ClosedLoop) -> list[str]:
             f"{100 * loop.controller_error:.3f} % of the recorded input (relative 2-norm)"
         )
     return lines
-
-
-def _figures(figure: Any, stem: Path) -> list[Path]:
-    from ..plot import save
-
-    paths = [stem.with_name(stem.name + ending) for ending in (".svg", ".png")]
-    for path in paths:
-        save(figure, path)
-    return paths
