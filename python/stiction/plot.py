@@ -15,6 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from . import given
 from .errors import InputError
 from .trajectory import FloatArray
 
@@ -270,14 +271,17 @@ def save(fig: Figure, path: str | Path) -> Path:
     Raises
     ------
     InputError
-        Another ending.
+        No path, another ending, a folder that is not there, a file that cannot be written.
     """
-    path = Path(path)
+    path = given.path(path, "plot.save")
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: there is no folder {path.parent}; make it first")
     if path.suffix not in _FORMATS:
         raise InputError(f"{path}: ending '{path.suffix}' is not known; use .svg or .png")
     # Dates, versions and random identifiers would make each file differ from the last.
     metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-    with matplotlib.rc_context({"svg.hashsalt": "stiction", "svg.fonttype": "path"}):
+    style = matplotlib.rc_context({"svg.hashsalt": "stiction", "svg.fonttype": "path"})
+    with style, given.written(path):
         fig.savefig(path, format=path.suffix[1:], dpi=RESOLUTION, metadata=metadata)
     return path
 

@@ -96,6 +96,8 @@ def test_same_figure_gives_the_same_bytes(experiment_2, tmp_path, ending):
 def test_another_ending_is_refused(experiment_2, tmp_path):
     with pytest.raises(InputError, match=r"\.pdf"):
         plot.save(experiment_2.plot(), tmp_path / "one.pdf")
+    with pytest.raises(InputError, match="there is no folder"):
+        plot.save(experiment_2.plot(), tmp_path / "none" / "one.svg")
 
 
 def test_trajectory_draws_what_it_has():

@@ -174,9 +174,10 @@ class Recording:
             offset.  Roles left out are looked for under their canonical names (``time_s``).
         motion : {"rotary", "linear"}, optional
             Without it the units tell.
-        drive : {"current_a", "voltage_v", "torque_nm", "force_n", "prescribed_motion"}, optional
-            Which canonical column is the input; with "prescribed_motion" ``torque_nm`` and
-            ``force_n`` are the measured effort.
+        drive : str, optional
+            Which canonical column is the input: "current_a", "voltage_v", "torque_nm", "force_n",
+            or "goal_rad" or "goal_m" of a servo; or "prescribed_motion". With "prescribed_motion"
+            ``torque_nm`` and ``force_n`` are the measured effort.
         count_size : float, optional
             Size of one sensor count in rad or m, for columns in ``count``.
         role, kind, start_s, cold, settings
