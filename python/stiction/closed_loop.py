@@ -175,6 +175,22 @@ class ClosedLoop:
     controller_error: float | None
 
     @property
+    def success(self) -> bool:
+        """Whether all positions and inputs are finite."""
+        shown = (self.reference, self.measured, self.simulated, self.input)
+        return all(bool(np.isfinite(values).all()) for values in shown)
+
+    @property
+    def message(self) -> str:
+        """What came out, in words."""
+        if not self.success:
+            return "some values of the loop are not finite; check units and gains"
+        return (
+            f"position error {self.rms:.4g} {self.unit} rms, greatest {self.greatest:.4g} "
+            f"{self.unit}"
+        )
+
+    @property
     def error(self) -> FloatArray:
         """Measured less simulated position, shape (n,)."""
         return self.measured - self.simulated

@@ -63,6 +63,23 @@ class EffortResidual:
     unit: str
 
     @property
+    def success(self) -> bool:
+        """Whether both efforts are finite."""
+        return bool(np.isfinite(self.effort).all() and np.isfinite(self.model).all())
+
+    @property
+    def message(self) -> str:
+        """What came out, in words."""
+        if not self.success:
+            return "some efforts are not finite; check units, and cells beyond what is possible"
+        if self.relative == float("inf"):
+            return f"effort error {self.rms:.4g} {self.unit} rms; the measured effort is 0"
+        return (
+            f"effort error {100 * self.relative:.3f} % of the measured effort, "
+            f"{self.rms:.4g} {self.unit} rms"
+        )
+
+    @property
     def residual(self) -> FloatArray:
         """Measured minus model."""
         return self.effort - self.model
@@ -122,6 +139,23 @@ class FreeRun:
     simulated: FloatArray
     trajectory: Trajectory
     unit: str
+
+    @property
+    def success(self) -> bool:
+        """Whether the simulation stayed finite."""
+        return self.trajectory.success and bool(np.isfinite(self.measured).all())
+
+    @property
+    def message(self) -> str:
+        """What came out, in words."""
+        if not self.trajectory.success:
+            return self.trajectory.message
+        if not self.success:
+            return "some measured positions are not finite; leave these rows out"
+        return (
+            f"position error {self.rms:.4g} {self.unit} rms, greatest {self.greatest:.4g} "
+            f"{self.unit}"
+        )
 
     @property
     def rms(self) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import given
-from .errors import InputError
+from .errors import InputError, UnknownName
 from .frozen import Frozen
 from .table_file import save_table
 
@@ -32,7 +32,8 @@ class Trajectory:
     Attributes
     ----------
     columns : Mapping of str to numpy.ndarray, shape (n,)
-        The columns that were asked for, by name.
+        The columns that were asked for, by name. No column can be written to: arrays that were
+        given as ``out`` are written through the caller's own.
     dt : float or numpy.ndarray, shape (n,)
         Duration of a sample in s, or of each.
     time : numpy.ndarray, shape (n,)
@@ -89,12 +90,12 @@ class Trajectory:
     @property
     def columns(self) -> Mapping[str, FloatArray]:
         """The columns by name."""
-        return Frozen(self._columns)
+        return Frozen({name: _read_only(values) for name, values in self._columns.items()})
 
     @property
     def dt(self) -> float | FloatArray:
         """Duration of a sample in s, or of each."""
-        return self._dt
+        return _read_only(self._dt) if isinstance(self._dt, np.ndarray) else self._dt
 
     @property
     def time(self) -> FloatArray:
@@ -118,14 +119,16 @@ class Trajectory:
         if not self.success:
             return "the motion ran away: some values are not finite; check units and inertia"
         counted = self.statistics
-        slides = counted.get("breakaways", 0)
-        return f"{self._length} samples, {slides} break-aways, {counted.get('sticks', 0)} stops"
+        slides, stops = counted.get("breakaways", 0), counted.get("sticks", 0)
+        # The counts go on from run to run; of one that starts at 0 they are its own.
+        since = " since the last reset" if self._start else ""
+        return f"{self._length} samples, {slides} break-aways, {stops} stops{since}"
 
     def __getattr__(self, name: str) -> FloatArray:
         # No column has such a name; of one that holds nothing yet, asking would go on for ever.
         columns = {} if name.startswith("_") else self._columns
         try:
-            return columns[name]
+            return _read_only(columns[name])
         except KeyError:
             have = ", ".join(columns)
             raise AttributeError(f"trajectory has no column '{name}'; it has {have}") from None
@@ -135,14 +138,14 @@ class Trajectory:
 
         Raises
         ------
-        InputError
-            There is none of this name.
+        UnknownName
+            An ``InputError`` and a ``KeyError``: there is none of this name.
         """
         try:
-            return self._columns[name]
+            return _read_only(self._columns[name])
         except KeyError:
             have = ", ".join(self._columns)
-            raise InputError(f"column '{name}' is not in the trajectory; it has {have}") from None
+            raise UnknownName(f"column '{name}' is not in the trajectory; it has {have}") from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._columns)
@@ -174,6 +177,8 @@ class Trajectory:
             f"<tr><th>{name}</th><td>{values[0]:.6g}</td><td>{values.min():.6g}</td>"
             f"<td>{values.max():.6g}</td><td>{values[-1]:.6g}</td></tr>"
             for name, values in self._columns.items()
+            # A chunk of a stream may be shorter than what it keeps a row of.
+            if values.size
         )
         return (
             f"<p>{self.message}</p><table><tr><th>column</th><th>first</th><th>least</th>"
@@ -228,6 +233,13 @@ class Trajectory:
         from . import plot
 
         return plot.trajectory(self)
+
+
+def _read_only(values: FloatArray) -> FloatArray:
+    """The same numbers, not to be written to."""
+    view = values.view()
+    view.flags.writeable = False
+    return view
 
 
 _keep: Final = Trajectory._own.__set__  # type: ignore[attr-defined, misc]

@@ -14,8 +14,14 @@ import pytest
 from tests.reference.coulomb_reference import simulate_coulomb
 
 import stiction as st
+from stiction.closed_loop import ClosedLoop
+from stiction.compare.result import Comparison, Row
 from stiction.diagnosis.result import CandidateRow, LawRow
+from stiction.errors import UnknownName
 from stiction.frozen import ByPath, Frozen
+from stiction.paper.result import Number, Result
+from stiction.plan.result import Plan
+from stiction.residual import effort_residual, free_run
 
 DT = 1e-3
 AGAIN = [copy.deepcopy, lambda item: pickle.loads(pickle.dumps(item))]
@@ -178,3 +184,75 @@ def test_a_trajectory_that_holds_nothing_yet_has_no_columns() -> None:
     empty = st.Trajectory.__new__(st.Trajectory)
     with pytest.raises(AttributeError, match="has no column"):
         _ = empty.position
+
+
+def test_columns_of_a_trajectory_cannot_be_written_to_and_those_of_out_can() -> None:
+    motor = st.Motor(0.0076, friction=st.FrictionModel("coulomb"))
+    kept = {"position": np.zeros(5), "velocity": np.zeros(5)}
+    run = motor.simulate(np.ones(5), np.full(5, 1e-3), out=kept)
+    for values in (run.position, run["position"], run.columns["position"], run.dt):
+        with pytest.raises(ValueError, match="read-only"):
+            values[0] = 1.0
+    kept["position"][0] = 3.0
+    assert run.position[0] == 3.0
+    motor.reset()
+    again = motor.simulate(np.ones(5), 1e-3, out=kept)
+    assert np.shares_memory(again.position, kept["position"])
+
+
+def test_counts_that_go_on_from_run_to_run_say_so() -> None:
+    motor = st.Motor(0.0076, friction=st.FrictionModel("coulomb"))
+    pushed = np.tile([2.0, -2.0, 0.0], 20)
+    first, second = motor.simulate(pushed, 1e-2), motor.simulate(pushed, 1e-2)
+    assert "since" not in first.message
+    assert second.statistics["breakaways"] > first.statistics["breakaways"]
+    assert second.message.endswith("stops since the last reset")
+    assert "since" in pickle.loads(pickle.dumps(second)).message
+    motor.reset()
+    assert motor.simulate(pushed, 1e-2).message == first.message
+
+
+def test_a_chunk_without_rows_shows_itself() -> None:
+    motor = st.Motor(0.0076, friction=st.FrictionModel("coulomb"))
+    (part,) = st.stream(motor, [np.ones(5)], 1e-3, every=10)
+    assert len(part) == 0
+    assert part.success
+    assert "0 samples" in part._repr_html_()
+    assert "0 samples" in repr(part)
+
+
+def test_a_name_that_is_not_there_is_the_same_error_everywhere() -> None:
+    run = st.Motor(0.0076, friction=st.FrictionModel("coulomb")).simulate(np.ones(5), 1e-3)
+    row = Row("coulomb", 0.3, 0.0, True, {}, 5.0, 1.0)
+    made = Plan(plant(), ())
+    for found in (run, made, Comparison((), (row,), 0, 0), ensemble_run()):
+        with pytest.raises(UnknownName, match="no such") as raised:
+            found["no such"]
+        assert isinstance(raised.value, KeyError)
+        assert isinstance(raised.value, st.InputError)
+
+
+def test_what_is_compared_says_success_and_message() -> None:
+    recording = session().recordings[0]
+    free, effort = free_run(plant(), recording), effort_residual(plant(), recording)
+    position = np.zeros(3)
+    loop = ClosedLoop(position, position, position, position, position, "rad", None)
+    row = Row("coulomb", 0.3, 0.0, True, {}, 5.0, 1.0)
+    compared = Comparison((), (row,), 0, 0)
+    read = Result(title="t", source="s", shows="w", numbers={"a": Number(1.0, "1")})
+    for found in (free, effort, loop, compared, read):
+        assert found.success, found
+        assert found.message
+        assert found._repr_html_()
+    nothing = np.full(3, np.nan)
+    lost = (
+        replace(free, trajectory=st.Trajectory({"position": nothing}, 1e-3, 3, 0.0, {})),
+        replace(free, measured=np.full_like(free.measured, np.nan)),
+        replace(effort, model=np.full_like(effort.model, np.nan)),
+        replace(loop, simulated=nothing),
+        replace(compared, rows=(replace(row, level=float("nan")),)),
+        replace(read, numbers={"a": Number(float("inf"), "1")}),
+    )
+    for found in lost:
+        assert not found.success
+        assert "finite" in found.message

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from ..errors import UnknownName
+from ..wording import counted, did_you_mean, listed
 from .measured import Measured, Property
 
 __all__ = ["CONDITIONAL", "NO", "UNDEFINED", "YES", "Cell", "Comparison", "Row", "verdict_of"]
@@ -80,10 +83,39 @@ class Comparison:
     draws: int
 
     def __getitem__(self, law: str) -> Row:
+        """The row of a law.
+
+        Raises
+        ------
+        UnknownName
+            An ``InputError`` and a ``KeyError``: it was not compared.
+        """
         for row in self.rows:
             if row.law == law:
                 return row
-        raise KeyError(law)
+        compared = [row.law for row in self.rows]
+        near = did_you_mean(str(law), compared)
+        raise UnknownName(f"law {law!r} was not compared{near}; there are {listed(compared)}")
+
+    @property
+    def success(self) -> bool:
+        """Whether all that was found and timed of each law is a finite number."""
+        return not self._without_numbers()
+
+    @property
+    def message(self) -> str:
+        """What happened, in words."""
+        laws = counted(len(self.rows), "law")
+        done = f"{laws} compared by {counted(len(self.properties), 'property', 'properties')}"
+        lost = self._without_numbers()
+        return f"{done}; no finite number came out for {listed(lost)}" if lost else done
+
+    def _without_numbers(self) -> list[str]:
+        return [
+            row.law
+            for row in self.rows
+            if not all(map(math.isfinite, (row.level, row.span, row.cost_ns, row.cost)))
+        ]
 
     def to_dict(self) -> dict[str, Any]:
         """Everything that was measured, as plain dicts and lists."""

@@ -110,9 +110,10 @@ class Estimate(Result):
         by themselves, and readings so quiet that rounding shows. No interval tells of either.
     rms : tuple of float
         What the fit leaves of each recording, rad.
-    success : bool
+    ended : bool
         Whether the fit came to an end.
-    message : str
+    ending : str
+        How, in words.
     """
 
     parameters: Mapping[str, Estimated]
@@ -124,13 +125,23 @@ class Estimate(Result):
     undetermined: tuple[str, ...]
     cautions: tuple[str, ...]
     rms: tuple[float, ...]
-    success: bool
-    message: str
+    ended: bool
+    ending: str
     correlations: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
 
     def __post_init__(self) -> None:
         super().__post_init__()
         freeze(self, Frozen, "parameters")
+
+    @property
+    def success(self) -> bool:
+        """Whether the fit came to an end."""
+        return self.ended
+
+    @property
+    def message(self) -> str:
+        """How the fit ended, in words."""
+        return self.ending
 
     def motor(self) -> Motor:
         """The machine with the estimated parameters."""
@@ -436,8 +447,8 @@ class _Fit:
                 *stairs(self._records),
             ),
             rms=self._left(self._missed(x)),
-            success=success,
-            message=message,
+            ended=success,
+            ending=message,
             correlations=covariance / np.outer(deviation, deviation),
         )
 

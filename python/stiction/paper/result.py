@@ -7,8 +7,11 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
+import numpy as np
+
 from ..frozen import Frozen, freeze
 from ..trajectory import FloatArray
+from ..wording import counted, listed
 from .rig import ARC_SECOND
 
 if TYPE_CHECKING:
@@ -58,6 +61,23 @@ class Result:
 
     def __post_init__(self) -> None:
         freeze(self, Frozen, "numbers")
+
+    @property
+    def success(self) -> bool:
+        """Whether all that was recorded and read off is finite."""
+        return not self._lost()
+
+    @property
+    def message(self) -> str:
+        """What happened, in words."""
+        lost = self._lost()
+        if lost:
+            return f"no finite number came out for {listed(lost)}"
+        return f"the experiment ran to its end: {counted(len(self.numbers), 'number')} read off"
+
+    def _lost(self) -> list[str]:
+        """What is not finite, by name."""
+        return [name for name, number in self.numbers.items() if not np.isfinite(number.value)]
 
     def plot(self) -> Figure:
         """The figure of this experiment."""
@@ -139,6 +159,11 @@ class MotionResult(Result):
     velocity: FloatArray
     measured: FloatArray
     states: Mapping[str, FloatArray]
+
+    def _lost(self) -> list[str]:
+        recorded = ("position", "velocity", "measured")
+        ran_away = [name for name in recorded if not np.isfinite(getattr(self, name)).all()]
+        return [*ran_away, *super()._lost()]
 
 
 def arcsec(value: float, prototype: Known = None) -> Number:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .. import given
-from ..errors import InputError
+from ..errors import InputError, UnknownName
 from ..plant import Plant
 from ..recording.recording import SPLIT_ROLES
 from ..trajectory import FloatArray
@@ -127,14 +127,14 @@ class Plan:
 
         Raises
         ------
-        InputError
-            There is no such signal.
+        UnknownName
+            An ``InputError`` and a ``KeyError``: there is no such signal.
         """
         for signal in self.signals:
             if signal.name == name:
                 return signal
         known = ", ".join(signal.name for signal in self.signals)
-        raise InputError(f"plan: there is no signal '{name}'; there are {known}")
+        raise UnknownName(f"plan: there is no signal '{name}'; there are {known}")
 
     def schedule(self) -> list[dict[str, Any]]:
         """What to record when: file, role, kind and start of every recording, pauses included."""
