@@ -40,7 +40,7 @@ from .statistics import (
     jackknife,
     undetermined_directions,
 )
-from .variables import Variables, states_bound, unit_of, with_effort_in
+from .variables import RATIOS, Variables, states_bound, unit_of, with_effort_in
 
 __all__ = ["evaluate", "fit", "reweighted", "settled"]
 
@@ -348,14 +348,17 @@ def _sides(
 ) -> list[str]:
     """Where each variable stands: "lower", "upper" or "" for inside its bounds."""
     lower, upper = variables.bounds()
-    sides = []
+    clamped = variables.clamped(vector)
+    sides: list[str] = []
     for value, start, low, high, error in zip(vector, begin, lower, upper, errors, strict=True):
         # Near means near compared with where the fit came from and with what the data tell:
         # boxes can be 1e15 wide.
         near = AT_BOUND * max(abs(start), error if np.isfinite(error) else 0.0)
         if np.isfinite(high - low):
             near = min(near, NEAR_BOUND * (high - low))
-        if np.isfinite(low) and value - low <= max(near, AT_BOUND * abs(low)):
+        if len(sides) in clamped:
+            sides.append(clamped[len(sides)])
+        elif np.isfinite(low) and value - low <= max(near, AT_BOUND * abs(low)):
             sides.append("lower")
         elif np.isfinite(high) and high - value <= near:
             sides.append("upper")
@@ -403,6 +406,11 @@ def _bound_sentences(
                 f"{path} ended at its {p.at_bound} bound, {value}: widen the bound, or the data "
                 "pull it where it has no meaning"
             )
+        elif (held := _held_beside(path, p.at_bound, parameters, given)) is not None:
+            sentences.append(
+                f"{path} ended at {value}, as near to {held} as a fit lets it come, which is held: "
+                "these data show no difference of the two, or want the other order; free both"
+            )
         elif p.at_bound == "lower" and p.value == 0.0:
             sentences.append(
                 f"{path} ended at 0, below which it has no meaning: these data show nothing of it, "
@@ -416,6 +424,18 @@ def _bound_sentences(
                 "read the value as one of the machine; state it fixed where you know it"
             )
     return tuple(sentences)
+
+
+def _held_beside(
+    path: str, side: str, parameters: dict[str, FitParameter], given: Plant
+) -> str | None:
+    """The held one of an ordered pair against which the other one ended."""
+    for lesser, greater in RATIOS.items():
+        if (path, side) in ((lesser, "upper"), (greater, "lower")):
+            other = greater if path == lesser else lesser
+            if other not in parameters and other in given.parameters:
+                return other
+    return None
 
 
 def _undetermined_sentences(

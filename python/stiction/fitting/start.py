@@ -32,6 +32,8 @@ SLIDING_SHARE: Final = 0.1
 """Share of the rms speed above which a machine slides for sure."""
 ABOVE_COULOMB: Final = 1.1
 """Break-away over Coulomb friction to start from."""
+SOFTER: Final = 0.27
+"""Final over initial stiffness to start from, as of the catalogue's defaults."""
 
 
 REFERRED: Final = ("rate_and_state",)
@@ -90,6 +92,9 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
         stated[name] = Parameter(float(np.clip(value, low, high)))
     if "breakaway" in stated and "coulomb" in stated:
         stated = _ordered(stated, silent)
+    if "final_stiffness" in silent and "initial_stiffness" not in silent:
+        softer = SOFTER * stated["initial_stiffness"].value
+        stated["final_stiffness"] = Parameter(softer)
     whole = replace(
         plant,
         body=body,
@@ -298,12 +303,16 @@ def _stiffness(
 ) -> list[Plant]:
     """The plants with the pre-sliding reaches that leave the least residual."""
     span = max(float(np.ptp(form.position)) for form in forms)
+    stated = plant.friction.parameters
     recorded = {path.removeprefix("friction."): each for path, each in records(plant).items()}
 
     def tried(reach: float) -> Plant:
         values = {"initial_stiffness": coulomb / reach}
         if "final_stiffness" in silent:
-            values["final_stiffness"] = 0.27 * values["initial_stiffness"]
+            values["final_stiffness"] = SOFTER * values["initial_stiffness"]
+        elif "final_stiffness" in stated:
+            least = stated["final_stiffness"].value / SOFTER
+            values["initial_stiffness"] = max(least, values["initial_stiffness"])
         values |= {name: reach for name in silent if recorded[name].unit == LENGTH}
         if "hardening_coefficient" in silent:
             values["hardening_coefficient"] = HARDENED * reach / coulomb**2

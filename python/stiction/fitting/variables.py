@@ -13,7 +13,15 @@ from ..catalogue import ParameterRecord, effects
 from ..plant import Plant
 from ..trajectory import FloatArray
 
-__all__ = ["Variables", "bounds_of", "records", "states_bound", "unit_of", "with_effort_in"]
+__all__ = [
+    "RATIOS",
+    "Variables",
+    "bounds_of",
+    "records",
+    "states_bound",
+    "unit_of",
+    "with_effort_in",
+]
 
 Mask = np.ndarray[Any, np.dtype[np.bool_]]
 
@@ -22,7 +30,7 @@ RATIOS: Final = {
     "friction.coulomb": "friction.breakaway",
 }
 """The lesser of an ordered pair is varied as a share of the greater: box bounds cannot express
-the order."""
+the order. Where one of the two is held, the other one is bounded by it."""
 SHARES: Final = (1e-3, 1.0 - 1e-3)
 LINEAR: Final = ("coulomb", "breakaway", "viscous", "order")
 """Positive parameters that are varied as they are: the residual is linear in them, or they may well
@@ -46,7 +54,7 @@ _BODY: Final = {
     "drive.torque_constant": (1e-12, math.inf, ("N·m/A", "N/A")),
     "body.inertia": (1e-12, math.inf, ("kg·m²", "kg")),
     "body.gravity_amplitude": (-math.inf, math.inf, ("N·m", "N·m")),
-    "body.gravity_zero_rad": (-math.pi, math.pi, ("rad", "rad")),
+    "body.gravity_zero_rad": (-math.inf, math.inf, ("rad", "rad")),
     "body.weight_n": (-math.inf, math.inf, ("N", "N")),
 }
 
@@ -138,6 +146,7 @@ class Variables:
         for path in paths:
             low, high = bounds_of(plant, path)
             stated = plant.parameters[path]
+            low, high = _beside_held(plant, path, paths, low, high)
             least.append(low if stated.min is None else max(low, stated.min))
             most.append(high if stated.max is None else min(high, stated.max))
         ratios = {
@@ -147,6 +156,9 @@ class Variables:
         }
         begin = np.array([plant.parameters[path].value for path in paths])
         lower, upper = np.array(least), np.array(most)
+        for child, parent in ratios.items():
+            # A stated least value of the lesser one is one of the greater one.
+            lower[parent] = max(lower[parent], lower[child] / SHARES[1])
         positive = (lower >= 0.0) & (begin > 0.0)
         chosen = [
             not path.startswith(("body.", "drive.")) and path.rsplit(".", 1)[-1] not in LINEAR
@@ -184,11 +196,33 @@ class Variables:
             values[child] = vector[child] * values[parent]
         return np.asarray(np.clip(values, self.lower, self.upper))
 
+    def clamped(self, vector: FloatArray) -> dict[int, str]:
+        """Which shares would lead past a bound of their parameter, and past which: it stays there.
+
+        Returns
+        -------
+        dict of int to str
+            "lower" or "upper" by the parameter's index.
+        """
+        values = self.values(vector)
+        found = {}
+        for child, parent in self.ratio_of.items():
+            own = vector[child] * values[parent]
+            if own <= self.lower[child]:
+                found[child] = "lower"
+            elif own >= self.upper[child]:
+                found[child] = "upper"
+        return found
+
     def chain(self, jacobian: FloatArray, vector: FloatArray) -> FloatArray:
         """Derivatives by the vector from derivatives by the parameters."""
         columns = jacobian.copy()
         values = self.values(vector)
+        clamped = self.clamped(vector)
         for child, parent in self.ratio_of.items():
+            if child in clamped:
+                columns[:, child] = 0.0
+                continue
             columns[:, parent] += jacobian[:, child] * vector[child]
             columns[:, child] = jacobian[:, child] * values[parent]
         columns[:, self.logarithmic] *= values[self.logarithmic]
@@ -198,3 +232,19 @@ class Variables:
         """The plant with the values of a vector."""
         values = self.values(vector)
         return plant.with_values(dict(zip(self.paths, values.tolist(), strict=True)))
+
+
+def _beside_held(
+    plant: Plant, path: str, varied: Sequence[str], low: float, high: float
+) -> tuple[float, float]:
+    """Bounds of a parameter of an ordered pair of which the other one is stated and held."""
+    for lesser, greater in RATIOS.items():
+        other = {lesser: greater, greater: lesser}.get(path)
+        held = None if other is None or other in varied else plant.parameters.get(other)
+        if held is None or not math.isfinite(held.value):
+            continue
+        if path == lesser:
+            high = min(high, SHARES[1] * held.value)
+        else:
+            low = max(low, held.value / SHARES[1])
+    return low, high
