@@ -93,7 +93,8 @@ class WeakForm:
         Step of the readings, 0 where there is none, and standard deviation of their noise, rounding
         included; rad or m.
     clock, path : float
-        Session clock in s and path travelled in rad or m, at the first row; 0 until they are set.
+        Time since the machine was switched on in s and path travelled since in rad or m, at the
+        first row; 0 until they are set.
 
     Raises
     ------

@@ -85,7 +85,7 @@ def test_an_interrupted_fit_is_written_and_says_so(
     session: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def stopped(*given: Any) -> Any:
-        return replace(fit(*given), success=False, message="interrupted: these are the best")
+        return replace(fit(*given), success=False, interrupted=True)
 
     monkeypatch.setattr("stiction.cli.fit.run", stopped)
     assert run(["fit", str(session), "-o", str(tmp_path / "out")]) == 130

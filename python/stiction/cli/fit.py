@@ -52,7 +52,7 @@ def fit(
             )
     with finished():
         _told(recordings, result, where, session.name, as_json=json)
-    if result.message.startswith("interrupted"):
+    if result.interrupted:
         raise KeyboardInterrupt
 
 

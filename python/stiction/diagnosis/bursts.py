@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -16,7 +16,7 @@ from .passing import MOMENTS
 from .result import Advice
 from .view import LEAST_SIZE, View
 
-__all__ = ["Burst", "at_moments", "burst_of"]
+__all__ = ["Burst", "at_moments", "burst_of", "bursts"]
 
 WINDOW_S: Final = 0.2
 """Length of the windows in which single moments are looked for."""
@@ -83,7 +83,13 @@ def at_moments(evidence: Evidence, model: Model, null: FloatArray) -> bool:
     return few and outstanding > MOST_OF_IT * excess > 0.0
 
 
-def burst_of(evidence: Evidence, model: Model, null: FloatArray, friction: float) -> Burst | None:
+def burst_of(
+    evidence: Evidence,
+    model: Model,
+    null: FloatArray,
+    friction: float,
+    starts: Sequence[float],
+) -> Burst | None:
     """What lies in single moments far beyond noise, None where that is little or comes everywhere.
 
     Smoothers need what comes again, and so do causes. What comes once, or in one role alone, is
@@ -98,7 +104,26 @@ def burst_of(evidence: Evidence, model: Model, null: FloatArray, friction: float
         Residuals of the surrogates.
     friction : float
         Weighted rms of the friction, against which sizes are measured.
+    starts : sequence of float
+        When each recording starts on the session clock, s.
     """
+    found = _largest(evidence, model, null, friction)
+    if found is None:
+        return None
+    share, size, recording, start = found
+    view = View(MOMENTS, *_curve(evidence, model, null, starts), share, LEAST, size)
+    return Burst(share, recording, start, view)
+
+
+def bursts(evidence: Evidence, model: Model, null: FloatArray, friction: float) -> bool:
+    """Whether there is one (see ``burst_of``)."""
+    return _largest(evidence, model, null, friction) is not None
+
+
+def _largest(
+    evidence: Evidence, model: Model, null: FloatArray, friction: float
+) -> tuple[float, float, str, float] | None:
+    """Share and size of what lies in moments; recording and start of the largest of them."""
     total = float(np.sum(model.residual**2))
     largest, there, sums, windows = 0.0, ("", 0.0), [0.0, 0], 0
     for rows, time, power, noise in _windows(evidence, model, null):
@@ -113,13 +138,11 @@ def burst_of(evidence: Evidence, model: Model, null: FloatArray, friction: float
     little = sums[0] <= LEAST * total or size <= 0.5 * LEAST_SIZE
     if little or sums[1] > MOST_WINDOWS * windows:
         return None
-    share = sums[0] / total
-    view = View(MOMENTS, *_curve(evidence, model, null), share, LEAST, size)
-    return Burst(share, there[0], float(there[1]), view)
+    return sums[0] / total, size, there[0], float(there[1])
 
 
 def _curve(
-    evidence: Evidence, model: Model, null: FloatArray
+    evidence: Evidence, model: Model, null: FloatArray, starts: Sequence[float]
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Session clock, rms in each short window, and the band of 95 % of the surrogates."""
     at: list[FloatArray] = []
@@ -128,7 +151,7 @@ def _curve(
     high: list[FloatArray] = []
     for rows, time, power, noise in _windows(evidence, model, null):
         begin = float(evidence.recordings[rows.index].time[0])
-        at.append(rows.form.clock + time - begin + 0.5 * WINDOW_S)
+        at.append(starts[rows.index] + time - begin + 0.5 * WINDOW_S)
         scale = rows.weight * np.sqrt(_length(rows))
         shown.append(np.sqrt(power) / scale)
         for bound, share in ((low, 0.025), (high, 0.975)):

@@ -138,7 +138,7 @@ class Candidate:
         return self.record.second[first.index(name)]
 
     @property
-    def last(self) -> tuple[str, ...]:
+    def varied_last(self) -> tuple[str, ...]:
         """Shapes that a refit varies once all else is fitted: far from there they lead astray."""
         own = {shape.parameter for shape in self.record.shapes if shape.scale == RESTING}
         return tuple(name for name in self.free if name in own)
@@ -146,7 +146,7 @@ class Candidate:
     @property
     def parameters(self) -> int:
         """How many parameters it adds to a fit; those varied last only mend what is known."""
-        return len(self.record.gains) + len(self.free) - len(self.last)
+        return len(self.record.gains) + len(self.free) - len(self.varied_last)
 
 
 def scales_of(evidence: Evidence, plant: Plant) -> Scales:

@@ -237,7 +237,8 @@ class Conclusion:
         if self.confirmed.choices or self.confirmed.unseen:
             return None
         friction = friction_of(self.evidence, self.base)
-        return burst_of(self.evidence, self.confirmed.models[-1], self.null, friction)
+        starts = self.session.starts
+        return burst_of(self.evidence, self.confirmed.models[-1], self.null, friction, starts)
 
     @cached_property
     def held(self) -> Sequence[Held]:

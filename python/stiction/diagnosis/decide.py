@@ -96,8 +96,8 @@ class Trial:
     freed : bool
         It explains far more than its signature can: the refit freed a base that was caught.
     uneven : float
-        What strengths of their own by kind of recording would add, as a share of its gain; 1
-        where its shape says that it is something else.
+        What strengths of their own by kind of recording would add, as a share of its gain;
+        ``OUT_OF_RANGE`` where its shape says that it is something else.
     of_reading : bool
         What it imitates is the reading of the motion, of which nothing is missing.
     partly : bool
@@ -179,8 +179,8 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         reason = "fits no better than without it"
     elif explained <= score.threshold:
         reason = (
-            f"explains {100 * explained:.2f} % of the residual, and noise alone reaches "
-            f"{100 * score.threshold:.2f} %"
+            f"explains {100 * explained:.2f} % of the residual, below the limit of "
+            f"{100 * score.threshold:.2f} % that noise and misfit set"
         )
     elif freed:
         reason = (

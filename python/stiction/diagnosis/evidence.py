@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import NotEnoughData
 from ..fitting.forms import KERNELS, Through, as_session, forms_of
 from ..fitting.pushes import Watch
-from ..fitting.rows import Mask, Nuisances, Rows, ask_to_tell, rows_of
+from ..fitting.rows import Mask, Nuisances, Rows, require_motion, rows_of
 from ..fitting.starts import started
 from ..plant import Plant
 from ..recording import Part, Recording
@@ -154,7 +154,7 @@ class Evidence:
         self.watch = watch or Watch(plant, self.forms, self.recordings, shown_parts)
         self.pushes = self.watch.look(shown_parts)
         self.train = self._rows(plant, self.split.train)
-        ask_to_tell(self.train)
+        require_motion(self.train)
         self._select = self._masks(self.split.select)
         self._sealed = True
         # What may be looked at before the last decision: train and select, one under the other.

@@ -79,7 +79,7 @@ def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tupl
 
 
 def without_the_best(base: Model, model: Model, contributed: FloatArray) -> float:
-    """Held-out gain without the recordings that gain most and least; the whole gain of a few.
+    """Held-out gain without the recordings that gain most and least; 1 where too few are held out.
 
     In a recording in which the base has lost the machine anything may find it again. Recordings in
     which the effect does nothing count for neither side: in one of them the base may lose it.

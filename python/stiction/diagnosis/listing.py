@@ -28,7 +28,7 @@ def screened(score: Score) -> CandidateRow:
         share = "all" if score.left < 1e-4 else f"all but {few} %"
         reason = f"not testable: the base imitates {share} of it on these data"
     elif score.score <= score.threshold:
-        reason = "explains no more than noise does"
+        reason = "explains less than the limit that noise and misfit set"
     else:
         reason = "does not help on rows held out"
     return CandidateRow(score.candidate.name, score.score, score.threshold, score.heldout, reason)

@@ -38,7 +38,7 @@ __all__ = [
     "power_of",
     "stepped",
     "with_effect",
-    "with_shapes_free",
+    "with_last_free",
     "without_effect",
 ]
 
@@ -384,7 +384,7 @@ def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> P
         parameters[name] = Parameter(float(np.clip(np.nan_to_num(value), *reach)), *narrower)
     for name, value in candidate.shape.items():
         low, high = candidate.limits.get(name, (None, None))
-        fixed = name not in candidate.free or name in candidate.last
+        fixed = name not in candidate.free or name in candidate.varied_last
         own = candidate.own(name)
         parameters[own] = Parameter(float(np.clip(value, *bounds[own])), low, high, fixed=fixed)
     kept = []
@@ -396,10 +396,10 @@ def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> P
     return replace(plant, effects=(*kept, Effect(candidate.name, parameters)))
 
 
-def with_shapes_free(plant: Plant, candidate: Candidate) -> Plant:
-    """The plant with the shapes free that a candidate varies last (see ``Candidate.last``)."""
+def with_last_free(plant: Plant, candidate: Candidate) -> Plant:
+    """The plant with the shapes free that a candidate varies last."""
     effect = next(each for each in plant.effects if each.name == candidate.name)
-    free = {name: replace(effect.parameters[name], fixed=False) for name in candidate.last}
+    free = {name: replace(effect.parameters[name], fixed=False) for name in candidate.varied_last}
     freed = Effect(effect.name, {**effect.parameters, **free})
     effects = tuple(freed if each is effect else each for each in plant.effects)
     return replace(plant, effects=effects)

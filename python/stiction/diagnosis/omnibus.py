@@ -100,15 +100,17 @@ def rest(
         for coordinate in COUPLED
     ]
     views += order_views(asked, orders, position, evidence.plans, evidence.weights, friction)
-    form = evidence.shown[0].form
-    spacing = form.dt * form.stride
-    moved = stacked(evidence, [response_columns(look) for look in seen])
-    views.append(response_view(moved, spacing, evidence.plans, both, evidence.weights, friction))
+    spacings = [rows.form.dt * rows.form.stride for rows in evidence.shown]
+    views.append(_response(evidence, seen, spacings, both, friction))
     clock = stacked(evidence, [look.time for look in seen])
     velocity = stacked(evidence, [look.velocity for look in seen])
     sliding = stacked(evidence, [look.slides.sliding for look in seen])
     steady = stacked(evidence, [settled(look) for look in seen])
     cells, weights = evidence.cells, evidence.weights
+    of_rows = stacked(
+        evidence,
+        [np.full(len(look.time), each) for look, each in zip(seen, spacings, strict=True)],
+    )
     # Numbers are those of the session, also where some of its recordings are left out.
     entered = replace(cells, recording=evidence.places[cells.recording])
     apart = (
@@ -125,7 +127,38 @@ def rest(
     with_time = (
         drift_view(cells, clock, velocity, sliding, both, weights, friction),
         moments_view(cells, clock, steady, both, weights, friction),
-        frequency_view(cells, spacing, both, weights, friction),
+        frequency_view(cells, of_rows, both, weights, friction),
     )
     views += [view for view in (*apart, *with_time) if view is not None]
     return Rest(tuple(sorted(views, key=lambda view: -view.share)))
+
+
+def _response(
+    evidence: Evidence,
+    seen: Sequence[Look],
+    spacings: Sequence[float],
+    both: FloatArray,
+    friction: float,
+) -> View:
+    """What a filter of the effort explains, of the measured one and of that of the model.
+
+    Noise of the effort is in the residual as well, and a filter finds it there, of the measured
+    effort where it was read, of the model's where it acted: what a machine answers late shows in
+    both, so that the one in which less shows tells.
+    """
+    own, spacing = both[:, 0] / evidence.weights, max(spacings)
+    first = 0
+    measured, modelled = [], []
+    for look, rows, each in zip(seen, evidence.shown, spacings, strict=True):
+        effort, last = look.effort.copy(), first + int(rows.mask.sum())
+        effort[rows.mask] -= own[first:last]
+        first = last
+        measured.append(response_columns(look.effort, spacing / each))
+        modelled.append(response_columns(effort, spacing / each))
+    views = [
+        response_view(
+            stacked(evidence, columns), spacing, evidence.plans, both, evidence.weights, friction
+        )
+        for columns in (measured, modelled)
+    ]
+    return min(views, key=lambda view: view.share / view.threshold)

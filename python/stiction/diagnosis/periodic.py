@@ -11,7 +11,7 @@ import numpy as np
 from ..trajectory import FloatArray
 from .coordinates import Coordinate, Look
 from .evidence import Cells, Plan
-from .view import FLAG_ABOVE, View, limit, means
+from .view import View, limit, means
 
 __all__ = [
     "COUPLED",
@@ -204,26 +204,41 @@ def _sign_of(factor: FloatArray | None) -> FloatArray:
 
 
 def frequency_view(
-    cells: Cells, spacing: float, both: FloatArray, weights: FloatArray, friction: float
+    cells: Cells, spacings: FloatArray, both: FloatArray, weights: FloatArray, friction: float
 ) -> View | None:
     """The frequency that stands out of its neighbours most; None where no block is whole.
 
     Spectra of blocks of 1 s, averaged. A line's share is what it holds above its neighbours.
+    Recordings whose rows lie apart differently have the same lines, 1 Hz from one to the next; what
+    is faster than the slowest of them shows is left out.
+
+    Parameters
+    ----------
+    cells : Cells
+    spacings : numpy.ndarray, shape (n,)
+        Of the rows of the recording that each row is of, s.
+    both : numpy.ndarray, shape (n, 1 + surrogates)
+        Weighted residual, then those of the surrogates.
+    weights : numpy.ndarray, shape (n,)
+    friction : float
+        Weighted rms of the friction.
     """
-    length = round(1.0 / spacing)
+    lengths = np.rint(1.0 / spacings).astype(np.int64)
     starts = [
         rows[0]
         for rows in np.split(np.arange(len(cells.block)), np.flatnonzero(np.diff(cells.block)) + 1)
-        if len(rows) >= length
+        if len(rows) >= lengths[rows[0]]
     ]
-    if not starts or length < 4 * NEIGHBOURS[1]:
+    shortest = int(min((lengths[start] for start in starts), default=0))
+    if shortest < 4 * NEIGHBOURS[1]:
         return None
-    window = np.hanning(length)[:, None]
-    spectrum = np.zeros((length // 2 + 1, both.shape[1]))
+    spectrum = np.zeros((shortest // 2 + 1, both.shape[1]))
     effort = np.zeros_like(spectrum)
     for start in starts:
-        rows = slice(start, start + length)
-        held = np.abs(np.fft.rfft(window * both[rows], axis=0)) ** 2
+        rows = slice(start, start + int(lengths[start]))
+        window = np.hanning(lengths[start])[:, None]
+        lines_of = np.fft.rfft(window * both[rows], axis=0)[: len(spectrum)]
+        held = np.abs(lines_of / float(window.sum())) ** 2
         spectrum += held
         # In units of effort for the eye; the weight is one number within a recording.
         effort += held / weights[start] ** 2
@@ -236,17 +251,17 @@ def frequency_view(
         floor = np.median(spectrum[around], axis=0)
         lines[k] = np.sum(spectrum[k - 1 : k + 2] - floor, axis=0)
     shares = np.max(lines, axis=0) / total
-    amplitudes = 2.0 * np.sqrt(effort / len(starts)) / float(window.sum())
+    amplitudes = 2.0 * np.sqrt(effort / len(starts))
     low, high = np.quantile(amplitudes[:, 1:], [0.025, 0.975], axis=1)
     power = float(np.mean(both[:, 0] ** 2))
     size = float(np.sqrt(max(shares[0], 0.0) * power)) / max(friction, 1e-300)
     return View(
         FREQUENCY,
-        np.arange(len(spectrum)) / (length * spacing),
+        np.arange(len(spectrum)) / (shortest * float(np.max(spacings[starts]))),
         amplitudes[:, 0],
         low,
         high,
         float(shares[0]),
-        max(limit(shares[1:]), FLAG_ABOVE),
+        limit(shares[1:]),
         size,
     )

@@ -222,7 +222,7 @@ def _testable(
     if null is None:
         return base_alone(found, evidence, base)
     _logger.info("screening the effects")
-    look = _Look(found, evidence, base, null, search(evidence, base, null, without=without))
+    look = _Searched(found, evidence, base, null, search(evidence, base, null, without=without))
     again = partial(_again, surrogates=surrogates, without=without)
     if not look.selection.interrupted:
         final = look.selection.models[-1]
@@ -253,7 +253,7 @@ def _testable(
     ).diagnosis()
 
 
-class _Look(NamedTuple):
+class _Searched(NamedTuple):
     """A search for effects, and what it was made with."""
 
     found: Diagnosis
@@ -264,19 +264,19 @@ class _Look(NamedTuple):
 
 
 def _again(
-    look: _Look,
+    look: _Searched,
     seen: tuple[Evidence, Model],
     *,
     surrogates: int,
     without: Sequence[str],
-) -> _Look | None:
+) -> _Searched | None:
     """The same search with another base; None after Ctrl-C: what was found is the best so far."""
     found, null = _replayed(look.found, *seen, surrogates)
     selection = None if null is None else search(*seen, null, without=without)
     if null is None or selection is None or selection.interrupted:
         look.selection.interrupted = True
         return None
-    return _Look(found, *seen, null, selection)
+    return _Searched(found, *seen, null, selection)
 
 
 def _replayed(

@@ -11,13 +11,16 @@ from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .evidence import Plan
 
-__all__ = ["FLAT", "Base", "Projected", "project", "refitted", "step"]
+__all__ = ["FLAT", "Base", "Projected", "bounded", "project", "refitted", "step"]
 
 FLAT: Final = 1e-8
 """Directions of the base with less than this share of the strongest one are dropped."""
 LEAST_TOLD: Final = 0.05
 """A direction of which a fold tells less than this share of what all fitted rows tell is left where
 those put it: what one block alone determines, the others cannot."""
+
+SWEEPS: Final = 30
+"""Times that gains within bounds are mended one after the other, beside one that is at a bound."""
 
 
 @dataclass(frozen=True)
@@ -94,3 +97,37 @@ def refitted(columns: FloatArray, residuals: FloatArray, fitted: Mask) -> FloatA
     """Residuals of all rows once the base was fitted to each over the fitted rows; same shape."""
     everywhere = Plan(fitted, np.ones_like(fitted))
     return Base(columns, everywhere).project(residuals).held
+
+
+def bounded(
+    normal: FloatArray, product: FloatArray, best: FloatArray, low: FloatArray, high: FloatArray
+) -> FloatArray:
+    """Gains within bounds that take most, of many small regressions.
+
+    Where one of several has to stay at a bound the others are not what they are without it.
+
+    Parameters
+    ----------
+    normal : numpy.ndarray, shape (m, q, q)
+        SᵀS.
+    product : numpy.ndarray, shape (m, q)
+        Sᵀr.
+    best : numpy.ndarray, shape (m, q)
+        What takes most without bounds; 0 where nothing can be told.
+    low, high : numpy.ndarray, shape (m, q)
+    """
+    found = np.clip(best, low, high)
+    asked = np.flatnonzero(np.any(found != best, axis=1)) if best.shape[1] > 1 else ()
+    if len(asked):
+        own, given, slope = (
+            found[asked],
+            product[asked],
+            np.diagonal(normal, axis1=1, axis2=2)[asked],
+        )
+        for _ in range(SWEEPS):
+            for k in range(own.shape[1]):
+                rest = given[:, k] - np.einsum("ki,ki->k", normal[asked, k], own)
+                moved = own[:, k] + rest / np.maximum(slope[:, k], 1e-300)
+                own[:, k] = np.clip(moved, low[asked, k], high[asked, k])
+        found[asked] = own
+    return found

@@ -15,7 +15,8 @@ from .view import View, limit
 __all__ = ["RESPONSE", "response_columns", "response_view"]
 
 LAGS: Final = 4
-"""Rows by which the effort is moved to either side: 20 ms, the width of the kernel."""
+"""Rows by which the effort is moved to either side: 20 ms where they are 5 ms apart, about as far
+as the narrowest kernel reaches."""
 
 
 def _lag(_: Look) -> FloatArray:
@@ -26,12 +27,22 @@ RESPONSE: Final = Coordinate("response to the effort", "time after the effort, s
 """Residual that a filter of the effort explains: what is frequency response to a mechanic."""
 
 
-def response_columns(look: Look) -> FloatArray:
-    """The effort moved by whole rows, less the effort itself; shape (n, 2·LAGS)."""
-    effort = look.effort
-    padded = np.pad(effort, LAGS, "edge")
+def response_columns(effort: FloatArray, step: float = 1.0) -> FloatArray:
+    """The effort of a recording moved by a few steps, less itself.
+
+    Parameters
+    ----------
+    effort : numpy.ndarray, shape (n,)
+    step : float
+        In rows: where recordings have other rows than one another, they are moved by one time.
+
+    Returns
+    -------
+    numpy.ndarray, shape (n, 2·LAGS)
+    """
+    at = np.arange(len(effort), dtype=np.float64)
     lags = [lag for lag in range(-LAGS, LAGS + 1) if lag != 0]
-    moved = [padded[LAGS - lag : LAGS - lag + len(effort)] for lag in lags]
+    moved = [np.interp(at - lag * step, at, effort) for lag in lags]
     return np.column_stack(moved) - effort[:, None]
 
 

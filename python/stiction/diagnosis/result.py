@@ -291,7 +291,7 @@ class Diagnosis:
     sentence : str
         The same in words.
     effects : tuple of Cause
-        Best first.
+        In the order in which they were added, each beside those before it.
     gain : Gain or None
         All of them beside the baseline, over rows that nobody looked at before.
     candidates : tuple of CandidateRow

@@ -441,7 +441,8 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
     if again is None:
         return
     choices = [*found.choices[:place], again, *found.choices[place + 1 :]]
-    if again.winner.name != record.name:
+    if again.winner.model is not whole:
+        # Another effect, or the same with another shape of those that are held.
         _logger.info("%s stands better than %s", again.winner.name, record.name)
         found.models[:] = chained(evidence, found.models[0], choices, again.winner.model)
     found.choices[:] = choices

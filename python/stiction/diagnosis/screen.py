@@ -21,7 +21,7 @@ from .candidates import Candidate
 from .evidence import Evidence, Plan
 from .influence import limited
 from .model import with_effect
-from .regression import project
+from .regression import bounded, project
 
 __all__ = [
     "NULL_DEVIATIONS",
@@ -384,7 +384,8 @@ class _Scan:
         gains, explained = [np.zeros(0)] * number, np.zeros(number)
         for some, normal, inverse in zip(self.alike, self.normal, self.inverse, strict=True):
             product = products[some.own]
-            best = np.clip(np.einsum("kij,kj->ki", inverse, product), some.low, some.high)
+            best = np.einsum("kij,kj->ki", inverse, product)
+            best = bounded(normal, product, best, some.low, some.high)
             taken = 2.0 * np.sum(best * product, axis=1)
             explained[some.places] = taken - np.einsum("ki,kij,kj->k", best, normal, best)
             for place, own in zip(some.places.tolist(), best, strict=True):
@@ -468,9 +469,12 @@ def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) ->
         before += np.bincount(block, residual.held**2, number)
         for index in chosen:
             part = base.project(signatures.columns[:, signatures.slices[index]])
-            (inverse,) = _inverses((part.fit.T @ part.fit)[None])
-            estimated = inverse @ (part.fit.T @ residual.fit)
-            gains = np.clip(estimated, *_bounds(signatures.candidates[index]))
+            normal, product = part.fit.T @ part.fit, part.fit.T @ residual.fit
+            (inverse,) = _inverses(normal[None])
+            low, high = map(np.array, _bounds(signatures.candidates[index]))
+            (gains,) = bounded(
+                normal[None], product[None], (inverse @ product)[None], low[None], high[None]
+            )
             left = residual.held - part.held @ gains
             after[index] += np.bincount(block, left**2, number)
     shares = {}

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ..catalogue import effects
 from ..trajectory import FloatArray
-from .bursts import burst_of
+from .bursts import bursts
 from .decide import Trial
 from .evidence import Evidence
 from .model import Model
@@ -34,8 +34,9 @@ def acts_for_seconds(evidence: Evidence, selection: Search, null: FloatArray) ->
     if selection.interrupted or not evidence.split.select:
         return False
     friction = friction_of(evidence, selection.models[0])
-    burst = burst_of(evidence, selection.models[-1], null, friction)
-    return selection.spread or bool(selection.unseen) or burst is not None
+    if selection.spread or selection.unseen:
+        return True
+    return bursts(evidence, selection.models[-1], null, friction)
 
 
 def asked_before(selection: Search) -> Sequence[str]:

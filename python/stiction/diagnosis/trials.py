@@ -24,7 +24,7 @@ from .model import (
     power_of,
     stepped,
     with_effect,
-    with_shapes_free,
+    with_last_free,
     without_effect,
 )
 from .noisy_motion import told_by_noise
@@ -239,9 +239,9 @@ def _refit(
     """The base with an effect, fitted; what leads astray far from a fit is varied from there on."""
     model = _from_screening(evidence, base, signatures, score, best)
     candidate = score.candidate
-    if not candidate.last:
+    if not candidate.varied_last:
         return model
-    plant = with_shapes_free(model.plant, candidate)
+    plant = with_last_free(model.plant, candidate)
     return min((model, compared_fit(evidence, plant, model.nuisances)), key=lambda each: each.power)
 
 

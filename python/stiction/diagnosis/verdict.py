@@ -135,7 +135,7 @@ def verdict_of(selection: Search, left: Sequence[Unexplained], decided: bool) ->
 
     A recording that stands apart says nothing against names that explain all others.
     """
-    if not selection.choices and selection.rows and len(selection.blind) == len(selection.rows):
+    if not selection.choices and _all_blind(selection):
         return "not_testable"
     of_all = [each for each in left if not each.coordinate.endswith(ALONE)]
     if _outweighs(selection, of_all if selection.choices else left):
@@ -143,6 +143,13 @@ def verdict_of(selection: Search, left: Sequence[Unexplained], decided: bool) ->
     if not decided:
         return "ambiguous"
     return "missing_effect" if selection.choices else "nothing_missing"
+
+
+def _all_blind(selection: Search) -> bool:
+    """Whether the base hides every effect that was looked for; others were never asked."""
+    blind = {record.name for record in selection.blind}
+    asked = {name for name, row in selection.rows.items() if row.score is not None} | blind
+    return bool(blind) and asked == blind
 
 
 def relatives(selection: Search, place: int) -> list[str]:

@@ -25,9 +25,15 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ALONE",
+    "DOUBTFUL",
     "INTERRUPTED",
+    "LEAVES_NOTHING",
+    "MAY_BE_NOTHING",
     "MORE_MAY_BE",
     "NO_COORDINATE",
+    "OUTWEIGHED",
+    "PARTLY",
+    "UNREPEATED",
     "WORSE",
     "gain_words",
     "joined",
@@ -49,6 +55,8 @@ ALONE = " alone"
 """What stands behind the name of a recording in the place of a coordinate."""
 INTERRUPTED = "Interrupted: this is the best so far"
 """How the sentence of a diagnosis begins that Ctrl-C ended."""
+MORE_MAY_BE = ", and more may be missing"
+"""And goes on where something was named by then."""
 DOUBTFUL = (
     "the interval of every one of its numbers reaches 0, though together they help on rows held out"
 )
@@ -63,8 +71,6 @@ LEAVES_NOTHING = "what is left goes with {}, and of that it leaves nothing where
 """Why a name may be a relative of the cause that no catalogue has."""
 MAY_BE_NOTHING = "every one of its numbers may be 0"
 """Why a name beside another one may be what the form of that leaves."""
-MORE_MAY_BE = ", and more may be missing"
-"""And goes on where something was named by then."""
 MOST_TOLD = 3
 """Pushes that a sentence names."""
 MOST_ROWS = 5

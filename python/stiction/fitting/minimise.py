@@ -204,9 +204,9 @@ def launch(
                 break
     best = min(first, key=lambda solution: solution.power)
     if any(solution.interrupted for solution in first):
-        return stopped(best)
+        return stopped(replace(best, evaluations=spent))
     if best.success:
-        return best
+        return replace(best, evaluations=spent)
     known = primed(best.plant, rows, best.nuisances)
     converged = CONVERGED if rows[0].form.simulated else LAUNCHED
     whole = _further(best, rows, most, nuisances=known, converged=converged)

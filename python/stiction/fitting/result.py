@@ -71,6 +71,8 @@ class FitResult:
         Which rows were fitted and which held out, in words.
     success : bool
     message : str
+    interrupted : bool
+        Whether Ctrl-C ended it: this is the best so far.
     evaluations : int
     timing_offset : float
         By how much the input was taken to be stamped early, s; bounded by half a sample.
@@ -102,6 +104,7 @@ class FitResult:
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     assumed: tuple[str, ...] = ()
     stiffness: float | None = None
+    interrupted: bool = False
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")

@@ -24,10 +24,10 @@ __all__ = [
     "Push",
     "Rows",
     "Start",
-    "ask_to_tell",
     "begun",
     "numbers",
     "primed",
+    "require_motion",
     "rows_of",
     "start_quantities",
 ]
@@ -163,7 +163,7 @@ class Push:
         return f"{self.start:.1f} s to {self.end:.1f} s"
 
 
-def ask_to_tell(rows: Sequence[Rows]) -> None:
+def require_motion(rows: Sequence[Rows]) -> None:
     """Refuse rows that tell nothing of any machine.
 
     A contact without a spring that rests in all of them holds whatever acts on it, so that every

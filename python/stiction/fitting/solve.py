@@ -28,7 +28,7 @@ from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stop
 from .pushes import Watch
 from .pushes import told as pushes_told
 from .result import FitParameter, FitResult
-from .rows import Nuisances, Rows, ask_to_tell, primed, rows_of
+from .rows import Nuisances, Rows, primed, require_motion, rows_of
 from .slopes import slopes
 from .start import complete, free_paths
 from .starts import started, turned
@@ -97,7 +97,7 @@ class _Seen:
                 mask = rows_of(form, recording, index, own, self.pushes)
                 if mask.any():
                     chosen.append(Rows(plant, form, index, mask))
-        ask_to_tell(self.train)
+        require_motion(self.train)
 
 
 @on_one_thread
@@ -331,6 +331,7 @@ def evaluate(
         split=described,
         success=solution.success,
         message=solution.message,
+        interrupted=solution.interrupted,
         evaluations=evaluations,
         timing_offset=nuisances.timing,
         starts={names[index]: dict(start) for index, start in nuisances.starts.items()},

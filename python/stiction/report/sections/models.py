@@ -32,7 +32,6 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
                 path,
                 model.parameters[path],
                 meanings.get(path, ""),
-                model.remarks,
                 model.parameters,
             )
             if path in model.parameters

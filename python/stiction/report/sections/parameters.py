@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from ...catalogue import effects, laws
@@ -33,7 +33,6 @@ def row(
     path: str,
     parameter: FitParameter,
     meaning: str,
-    remarks: Sequence[str] = (),
     beside: Mapping[str, FitParameter] = NOTHING,
 ) -> dict[str, Any]:
     """A parameter: name, meaning, value, interval, unit and what is odd about it.
@@ -44,7 +43,7 @@ def row(
     notes = []
     if parameter.at_bound:
         notes.append(f"at its {parameter.at_bound} bound")
-    if any(remark.startswith(f"{path} is not determined") for remark in remarks):
+    if not math.isfinite(parameter.stderr):
         notes.append("not determined by these data")
     elif not _told(parameter) and not parameter.at_bound:
         partner = beside.get(_partner(path))
