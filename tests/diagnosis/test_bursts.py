@@ -37,7 +37,8 @@ def found(more: np.ndarray, residual: float = 1.0) -> Any:
         recordings=[SimpleNamespace(time=time)] * RECORDINGS,
     )
     model: Any = SimpleNamespace(residual=residual * source.standard_normal(len(more)) + more)
-    return burst_of(evidence, model, source.standard_normal((len(more), 12)), 1.0)
+    null = source.standard_normal((len(more), 12))
+    return burst_of(evidence, model, null, 1.0, [100.0 * k for k in range(RECORDINGS)])
 
 
 def acting(*windows: tuple[int, int], size: float) -> np.ndarray:

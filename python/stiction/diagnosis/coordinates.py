@@ -338,7 +338,7 @@ def _load(plant: Plant, form: WeakForm, position: FloatArray) -> FloatArray:
     if plant.hangs:
         body = {name: parameter.value for name, parameter in plant.body.items()}
         angle = position - body.get("gravity_zero_rad", 0.0)
-        return load - plant.gravity * np.sin(angle) - body.get("weight_n", 0.0)
+        return load - plant.gravity * np.sin(angle) - plant.weight
     return load if np.any(load) else np.full(len(form), np.nan)
 
 

@@ -1,0 +1,53 @@
+"""Noise that is on the logged input alone, and noise that acts: neither is anything missing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tests.reference.coulomb_reference import simulate_coulomb
+
+from stiction import Diagnosis, Plant, Recording, Session, diagnose
+
+DT = 1e-3
+ROWS = 15_000
+COULOMB = 0.3
+COUNT = 2 * np.pi / 2**18
+
+
+def diagnosed(noise: float, *, acts: bool, late: int = 0) -> Diagnosis:
+    """Six recordings of a machine with noise of its input, of which the drive answers late."""
+    recordings = []
+    time = np.arange(ROWS) * DT
+    for k in range(6):
+        source = np.random.default_rng([7, k])
+        phases = source.uniform(0.0, 6.0, 3)
+        waves = ((2.3, phases[0]), (7.1, phases[1]), (15.7, phases[2]))
+        asked = sum(0.35 * np.sin(w * (1.0 + 0.1 * k) * time + p) for w, p in waves)
+        added = noise * COULOMB * source.standard_normal(ROWS)
+        acted = np.concatenate([np.full(late, asked[0]), asked[: ROWS - late]])
+        run = simulate_coulomb(
+            (acted + added if acts else acted)[:-1],
+            DT,
+            inertia=0.0076,
+            coulomb=COULOMB,
+            breakaway=COULOMB,
+            viscous=0.05,
+        )
+        position = np.round(np.concatenate([[0.0], run["position"]]) / COUNT) * COUNT
+        recordings.append(Recording(time, asked if acts else asked + added, position))
+    plant = Plant.from_dict({"drive": {"input": "torque_nm"}, "friction": {"law": "coulomb"}})
+    return diagnose(plant, Session(recordings), without=("input_delay", "current_loop_lag"))
+
+
+@pytest.mark.parametrize(("noise", "acts"), [(0.01, False), (0.04, False), (0.04, True)])
+def test_noise_of_the_input_is_nothing_missing(noise: float, acts: bool) -> None:
+    found = diagnosed(noise, acts=acts)
+    assert found.verdict == "nothing_missing"
+    assert not found.effects
+
+
+@pytest.mark.parametrize("acts", [False, True])
+def test_an_answer_that_comes_late_is_still_told(acts: bool) -> None:
+    found = diagnosed(0.02, acts=acts, late=4)
+    assert found.verdict == "unexplained"
+    assert "response to the effort" in {each.coordinate for each in found.unexplained}
