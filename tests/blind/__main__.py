@@ -23,7 +23,7 @@ def main():
     rows = _read(args.out)
     done = {row["key"] for row in rows}
     plan = cases(args.number, args.seed, args.base, args.sizes, args.kinds, args.effects)
-    plan = [replace(case, flicker=args.flicker) for case in plan]
+    plan = [replace(case, flicker=args.flicker, log_noise=args.log_noise) for case in plan]
     plan = [case for case in plan if case.key not in done]
     state = _state()
     try:
@@ -78,6 +78,7 @@ def _arguments():
     parser.add_argument(
         "--effects", type=_words(library()), default=(), help="hidden ones; all without it"
     )
+    parser.add_argument("--log-noise", type=float, default=0.0, help="share of F_c, of the log")
     parser.add_argument("--flicker", type=float, default=0.0, help="counts, of the readings")
     parser.add_argument("--out", type=Path, default=Path("blind.jsonl"), help="one line a session")
     parser.add_argument("--threads", type=int, default=1)

@@ -34,18 +34,20 @@ class Case:
     hidden: tuple = ()
     without: tuple = ()
     flicker: float = 0.0
+    log_noise: float = 0.0
 
     @property
     def key(self):
         """Tells cases apart; the same for the same draw."""
         flickers = f" flicker {self.flicker}" if self.flicker else ""
-        return f"{self.base} {self.seed} {self.kind} {self.hidden}{flickers}"
+        noisy = f" log {self.log_noise}" if self.log_noise else ""
+        return f"{self.base} {self.seed} {self.kind} {self.hidden}{flickers}{noisy}"
 
     @property
     def spec(self):
         """For `make_sessions`."""
         own = {"seed": self.seed, "base": self.base, "hidden": self.hidden}
-        return {**own, "flicker": self.flicker}
+        return {**own, "flicker": self.flicker, "log_noise": self.log_noise}
 
 
 def library(base=None):

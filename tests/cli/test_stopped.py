@@ -137,7 +137,7 @@ def test_a_file_that_cannot_be_written_is_named_in_a_sentence(
 def test_figures_of_the_paper_are_refused_in_a_sentence(tmp_path: Path) -> None:
     from stiction.plot import figure
 
-    with pytest.raises(st.InputError, match="there is no folder .*; make it first"):
+    with pytest.raises(st.InputError, match=r"there is no folder .*; make it first"):
         write_figure(tmp_path / "away", "one", figure(1, height=1.0, title="")[0])
 
 

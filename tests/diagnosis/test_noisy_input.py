@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.blind.score import as_plant, as_session
 from tests.reference.coulomb_reference import simulate_coulomb
+from tests.reference.session_reference import make_session
 
 from stiction import Diagnosis, Plant, Recording, Session, diagnose
 
@@ -51,3 +53,9 @@ def test_an_answer_that_comes_late_is_still_told(acts: bool) -> None:
     found = diagnosed(0.02, acts=acts, late=4)
     assert found.verdict == "unexplained"
     assert "response to the effort" in {each.coordinate for each in found.unexplained}
+
+
+@pytest.mark.parametrize("seed", [1340001, 1340004])
+def test_a_machine_that_rests_under_a_noisy_log_lacks_nothing(seed: int) -> None:
+    made = make_session(seed=seed, base="maxwell_slip", log_noise=0.02)
+    assert diagnose(as_plant(made), as_session(made)).verdict == "nothing_missing"

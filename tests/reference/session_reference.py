@@ -52,7 +52,8 @@ class Spec:
 
     `seconds` is the total of all recordings (default: 8.67 s for each); `rate` that of the
     simulation, Hz; `counts_per_rev` 0 reads exactly; `noise` is the standard deviation of the
-    torque noise as a share of F_c, `flicker` that of a reading before it is rounded, in counts.
+    torque noise that acts as a share of F_c, `log_noise` that of one that is logged and does not
+    act, `flicker` that of a reading before it is rounded, in counts.
     `lead_in` seconds of decaying torque, not recorded, let each recording start with a contact that
     is not virgin. With `size_support` sizes are those of the hidden torque seen through a cubic
     B-spline of so many seconds, not of the raw one; a
@@ -72,6 +73,7 @@ class Spec:
     rate: float = 1e4
     counts_per_rev: int = 2**18
     noise: float = 0.02
+    log_noise: float = 0.0
     flicker: float = 0.0
     lead_in: float = 0.0
     size_support: float = 0.0
@@ -182,6 +184,13 @@ class Draft:
             return HiddenEffect(name, form, float(size), shape, 1.0, aim=float(size))
         amplitude = kind.usual(self.plant) * size / 0.01 if size else 0.0
         return HiddenEffect(name, form, float(size), shape, min(amplitude, kind.largest))
+
+    def logged(self, index):
+        """Noise of a recording's log, N m."""
+        kind, role = self.order[index]
+        rows = self.spec.samples
+        white = stream(self.spec.seed, "log", kind, role).standard_normal(rows)
+        return white * (self.spec.log_noise * self.plant["coulomb"])
 
     def shape_to_size(self):
         """Give shapes the value with which effects have the size that is aimed at."""
@@ -360,7 +369,7 @@ def _session(run, draft, at):
                 role=role,
                 start_s=float(draft.start_s[i]),
                 time_s=time,
-                torque_nm=run.input[rows, lane].copy(),
+                torque_nm=run.input[rows, lane] + draft.logged(i),
                 position_rad=run.position[rows, lane].copy(),
                 reference_rad=None if reference is None else reference + draft.start[i],
                 truth=truth,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -12,9 +13,10 @@ from ..trajectory import FloatArray
 from .by_recording import BY_RECORDING, by_recording_view
 from .coordinates import COORDINATES, Look
 from .evidence import Evidence
+from .noisy_effort import Noisy
 from .passing import drift_view, moments_view, settled
 from .periodic import COUPLED, ORDERS, Asked, frequency_view, order_views
-from .response import response_columns, response_view
+from .response import RESPONSE, response_columns, response_view
 from .smoother import smoother, stacked
 from .view import LEAST_SIZE, View
 
@@ -87,8 +89,11 @@ def rest(
     direction = stacked(evidence, [look.direction for look in seen])
     position = stacked(evidence, [look.position for look in seen])
     both = np.column_stack([residual, null])
+    cells, weights = evidence.cells, evidence.weights
+    spacings = [rows.form.dt * rows.form.stride for rows in evidence.shown]
+    noisy = Noisy(evidence, seen, spacings, both)
     views = [
-        smoother(coordinate, evidence, seen, both, friction)
+        noisy.view(coordinate, partial(smoother, coordinate, evidence, friction=friction))
         for coordinate in COORDINATES
         if evidence.plant.motion == "rotary" or not coordinate.name.startswith("angle")
         if any(np.any(np.isfinite(coordinate.values(look))) for look in seen)
@@ -99,14 +104,23 @@ def rest(
         Asked(coordinate, both, stacked(evidence, [coordinate.values(look) for look in seen]))
         for coordinate in COUPLED
     ]
-    views += order_views(asked, orders, position, evidence.plans, evidence.weights, friction)
-    spacings = [rows.form.dt * rows.form.stride for rows in evidence.shown]
-    views.append(_response(evidence, seen, spacings, both, friction))
+    views += order_views(asked, orders, position, evidence.plans, weights, friction)
+
+    def answered(looks: Sequence[Look], both: FloatArray) -> View:
+        moved = stacked(
+            evidence,
+            [
+                response_columns(look.effort, max(spacings) / spacing)
+                for look, spacing in zip(looks, spacings, strict=True)
+            ],
+        )
+        return response_view(moved, max(spacings), evidence.plans, both, weights, friction)
+
+    views.append(noisy.view(RESPONSE, answered))
     clock = stacked(evidence, [look.time for look in seen])
     velocity = stacked(evidence, [look.velocity for look in seen])
     sliding = stacked(evidence, [look.slides.sliding for look in seen])
     steady = stacked(evidence, [settled(look) for look in seen])
-    cells, weights = evidence.cells, evidence.weights
     of_rows = stacked(
         evidence,
         [np.full(len(look.time), each) for look, each in zip(seen, spacings, strict=True)],
@@ -131,34 +145,3 @@ def rest(
     )
     views += [view for view in (*apart, *with_time) if view is not None]
     return Rest(tuple(sorted(views, key=lambda view: -view.share)))
-
-
-def _response(
-    evidence: Evidence,
-    seen: Sequence[Look],
-    spacings: Sequence[float],
-    both: FloatArray,
-    friction: float,
-) -> View:
-    """What a filter of the effort explains, of the measured one and of that of the model.
-
-    Noise of the effort is in the residual as well, and a filter finds it there, of the measured
-    effort where it was read, of the model's where it acted: what a machine answers late shows in
-    both, so that the one in which less shows tells.
-    """
-    own, spacing = both[:, 0] / evidence.weights, max(spacings)
-    first = 0
-    measured, modelled = [], []
-    for look, rows, each in zip(seen, evidence.shown, spacings, strict=True):
-        effort, last = look.effort.copy(), first + int(rows.mask.sum())
-        effort[rows.mask] -= own[first:last]
-        first = last
-        measured.append(response_columns(look.effort, spacing / each))
-        modelled.append(response_columns(effort, spacing / each))
-    views = [
-        response_view(
-            stacked(evidence, columns), spacing, evidence.plans, both, evidence.weights, friction
-        )
-        for columns in (measured, modelled)
-    ]
-    return min(views, key=lambda view: view.share / view.threshold)
