@@ -8,6 +8,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from ..atomic_files import write_text
 from ..compare import compare as run
 from ..compare.draws import DRAWS
 from ..compare.properties.passivity import PASSIVE_STEPS
@@ -47,11 +48,11 @@ def compare(
         from ..compare.page import page
         from ..compare.text import as_markdown
 
-        drawn = page(made)
         with written(out):
-            (out / "compare.html").write_text(drawn, encoding="utf-8")
-            (out / "compare.md").write_text(as_markdown(made) + "\n", encoding="utf-8")
-            (out / "compare.json").write_text(json_of(made.to_dict()) + "\n", encoding="utf-8")
+            # The numbers first: no figure can cost them.
+            write_text(out / "compare.json", json_of(made.to_dict()) + "\n")
+            write_text(out / "compare.md", as_markdown(made) + "\n")
+            write_text(out / "compare.html", page(made))
         text += f"\n\nWith figures and all numbers: {out / 'compare.html'}"
     answer(text, made.to_dict(), as_json=json)
 

@@ -8,6 +8,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from ..atomic_files import write_text
 from ..errors import InputError
 from ..fitting import FitResult
 from ..fitting import fit as run
@@ -61,11 +62,11 @@ def _told(recordings: Session, result: FitResult, where: Path, name: str, *, as_
     from ..report.fit_page import fit_page
 
     files = [where / "plant.toml", where / "fit.json", where / "fit.html"]
-    page = fit_page(result, list(recordings), f"Fit of {name}")
     with written(where):
+        # The numbers first: no figure can cost them.
         result.plant.save(files[0])
-        files[1].write_text(result.to_json() + "\n", encoding="utf-8")
-        files[2].write_text(page, encoding="utf-8")
+        write_text(files[1], result.to_json() + "\n")
+        write_text(files[2], fit_page(result, list(recordings), f"Fit of {name}"))
     wrote = "\n".join(f"wrote {file}" for file in files)
     repairs = mended(recordings)
     told = "\n".join([*repairs, str(result)])

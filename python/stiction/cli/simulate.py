@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -180,8 +180,10 @@ def _one(plant: Plant, recording: Recording, stem: Path, support: float | None) 
             '"position=x" or under [columns] of a session, or call it position_rad or '
             "position_m"
         )
+    lines += drawn.failures
     lines += [f"wrote {file}" for file in drawn.files]
     result["files"] = [str(file) for file in drawn.files]
+    result["not_drawn"] = drawn.failures
     return {"text": "\n".join(lines), **result}
 
 
@@ -192,22 +194,31 @@ class _Drawn:
     ----------
     files : list of Path
         That were written, in their order.
+    failures : list of str
+        Why a figure was not, a sentence each.
     """
 
     def __init__(self, stem: Path) -> None:
         self._stem = stem
         self.files: list[Path] = []
+        self.failures: list[str] = []
 
     def trajectory(self, plant: Plant, recording: Recording, trajectory: Trajectory) -> None:
         """Write what was simulated."""
         path = self._named("trajectory.csv")
         self.files.append(save_trajectory(path, plant, recording, trajectory))
 
-    def figure(self, figure: Figure, name: str) -> None:
-        """Write a figure in both formats."""
-        from ..plot import save
+    def figure(self, make: Callable[[], Figure], name: str) -> None:
+        """Write a figure in both formats, or note why it cannot be drawn."""
+        from ..plot import save_or_say
 
-        self.files += [save(figure, self._named(f"{name}{ending}")) for ending in (".svg", ".png")]
+        paths = [self._named(f"{name}{ending}") for ending in (".svg", ".png")]
+        # Of one recording among many: which one is told as well.
+        failure = save_or_say(f"the figure {self._stem.name}-{name}", make, *paths)
+        if failure:
+            self.failures.append(failure)
+        else:
+            self.files += paths
 
     def _named(self, name: str) -> Path:
         return self._stem.with_name(f"{self._stem.name}-{name}")
@@ -225,7 +236,7 @@ def _beside_the_motion(
     if not plant.prescribed_motion and recording.input is not None:
         run = residual.free_run(plant, recording)
         drawn.trajectory(plant, recording, run.trajectory)
-        drawn.figure(run.plot(), "free-run")
+        drawn.figure(run.plot, "free-run")
         lines.append(
             f"free run: position error {run.rms:.4g} {run.unit} rms, "
             f"{run.mean_absolute:.4g} {run.unit} mean, greatest {run.greatest:.4g} {run.unit}"
@@ -238,7 +249,7 @@ def _beside_the_motion(
             lines.append(f"closed loop: {error}")
             result["closed_loop"] = {"error": str(error)}
         else:
-            drawn.figure(loop.plot(), "closed-loop")
+            drawn.figure(loop.plot, "closed-loop")
             lines += _loop_lines(loop)
             result["closed_loop"] = loop.to_dict()
     effort = residual.effort_residual(plant, recording, support=support)
@@ -247,7 +258,7 @@ def _beside_the_motion(
             "the effort residual is not a finite number; check units, and cells far beyond what "
             "the machine can do"
         )
-    drawn.figure(effort.plot(), "effort-residual")
+    drawn.figure(effort.plot, "effort-residual")
     lines.append(
         f"effort along the measured motion: error {100 * effort.relative:.3f} % "
         f"(relative 2-norm), {effort.rms:.4g} {effort.unit} rms, "
