@@ -58,11 +58,18 @@ def render(diagnosis: Diagnosis, drawings: Drawings, remarks: Sequence[str] = ()
     )
     environment.filters["breakable"] = _breakable
     found = [_section(builder, diagnosis, drawings, environment) for builder in BUILDERS]
+    sections = [section for section in found if section is not None]
+    # The section that would show a figure may not be there itself.
+    unsaid = [
+        each.failure
+        for each in drawings.values()
+        if each.failure and not any(escape(each.failure) in section.body for section in sections)
+    ]
     page: str = environment.get_template("page.html").render(
         diagnosis=diagnosis,
         drawings=drawings,
-        sections=[section for section in found if section is not None],
-        remarks=remarks,
+        sections=sections,
+        remarks=[*remarks, *unsaid],
     )
     return labelled(page)
 
