@@ -13,7 +13,7 @@ from ..diagnosis import diagnose as run
 from ..diagnosis.result import Diagnosis
 from ..session import Session
 from ..wording import counted
-from .answer import answer, folder, written
+from .answer import answer, folder, told_anyway, written
 from .diagnose import progress, told
 from .interrupt import finished
 
@@ -56,7 +56,7 @@ def demo(
 
 def _told(session: Session, found: Diagnosis, where: Path, *, as_json: bool) -> None:
     """Write the report and say what was found, and what was hidden."""
-    with written(where):
+    with told_anyway(str(found), found.to_dict(), as_json=as_json), written(where):
         report = found.save(where)
     seconds = sum(recording.duration for recording in session)
     text = (

@@ -14,7 +14,7 @@ from cyclopts import Parameter
 from ..diagnosis import SURROGATES
 from ..diagnosis import diagnose as run
 from ..diagnosis.result import Diagnosis
-from .answer import answer, folder, written
+from .answer import answer, folder, told_anyway, written
 from .given import Whole
 from .interrupt import finished
 from .sessions import loaded, mended, spared, spoken_of
@@ -72,7 +72,7 @@ def diagnose(
             threads=threads,
         )
     with finished():
-        with written(where):
+        with told_anyway(str(found), found.to_dict(), as_json=json), written(where):
             report = found.save(where)
         # The sentence comes first, whatever was mended before it could be said.
         said = (str(found), "\n".join(mended(recordings)), told(found, report))

@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..fitting import FitResult
 from ..fitting import fit as run
 from ..session import Session
-from .answer import answer, folder, written
+from .answer import answer, folder, told_anyway, written
 from .interrupt import finished
 from .sessions import loaded, mended, spared, spoken_of
 
@@ -62,7 +62,7 @@ def _told(recordings: Session, result: FitResult, where: Path, name: str, *, as_
     from ..report.fit_page import fit_page
 
     files = [where / "plant.toml", where / "fit.json", where / "fit.html"]
-    with written(where):
+    with told_anyway(str(result), result.to_dict(), as_json=as_json), written(where):
         # The numbers first: no figure can cost them.
         result.plant.save(files[0])
         write_text(files[1], result.to_json() + "\n")
