@@ -16,6 +16,7 @@ import tempfile
 import time
 import tomllib
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -124,7 +125,8 @@ class Killed:
             time.sleep(source.uniform(0.0, self._last - self._first) ** 2 / 4.0)
         else:
             time.sleep(source.uniform(0.8 * self._first, self._last))
-        os.killpg(process.pid, signal.SIGKILL)
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
         process.wait()
         return self._looked_at(out)
 

@@ -15,6 +15,7 @@ from ..fitting import fit as run
 from ..session import Session
 from .answer import answer, folder, told_anyway, written
 from .interrupt import finished
+from .progress import progress
 from .sessions import loaded, mended, spared, spoken_of
 
 __all__ = ["fit"]
@@ -40,17 +41,18 @@ def fit(
     json
         Print JSON.
     """
-    recordings, plant = loaded(session)
-    where = Path(f"{session.stem}-fit") if out is None else out
-    spared(plant, where)
-    folder(where)
-    with spoken_of(session, recordings, plant):
-        result = run(plant, recordings)
-        if not math.isfinite(result.train_rms):
-            raise InputError(
-                "the effort residual is not a finite number; check units, and values far beyond "
-                "what the machine can do"
-            )
+    with progress():
+        recordings, plant = loaded(session)
+        where = Path(f"{session.stem}-fit") if out is None else out
+        spared(plant, where)
+        folder(where)
+        with spoken_of(session, recordings, plant):
+            result = run(plant, recordings)
+            if not math.isfinite(result.train_rms):
+                raise InputError(
+                    "the effort residual is not a finite number; check units, and values far "
+                    "beyond what the machine can do"
+                )
     with finished():
         _told(recordings, result, where, session.name, as_json=json)
     if result.interrupted:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,12 +30,16 @@ from ..paper import (
     static_test,
     stick_slip,
 )
+from ..progress import phase
 from .answer import answer, folder, json_of, written
+from .progress import progress
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["Section", "drawn", "paper", "paper_command", "render_json", "render_text"]
+
+_logger = logging.getLogger(__name__)
 
 NOTE = (
     'The rig is illustrative: its numbers are not the authors\'. "prototype" is an independent '
@@ -84,7 +89,8 @@ def paper(
     json
         Print JSON.
     """
-    sections = paper_command(out)
+    with progress():
+        sections = paper_command(out)
     slow = next(s.result for s in sections if isinstance(s.result, StickSlip))
     smooth = stick_slip(FAST, duration=2.0)
     sections.append(drawn(out, "smooth-sliding", smooth, smooth.plot))
@@ -185,6 +191,7 @@ def drawn(out: Path, name: str, result: Result, make: Callable[[], Figure]) -> S
     """Write a figure of a result as SVG and PNG, or say why it cannot be drawn."""
     from ..plot import save_or_say
 
+    phase(_logger, "drawing %s", name)
     paths = tuple(out / f"{name}{ending}" for ending in (".svg", ".png"))
     with written(out):
         failure = save_or_say(f"the figure {name}", make, *paths)

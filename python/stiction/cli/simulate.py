@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path, PurePath
@@ -13,10 +14,12 @@ from cyclopts import Parameter
 from .. import closed_loop, residual, session
 from ..errors import InputError
 from ..plant import Plant
+from ..progress import phase, steps
 from ..recording import Recording
 from ..recording.checks import check, impulse_checks
 from ..recording.names import names_of
 from .answer import answer, folder, written
+from .progress import progress
 from .trajectory_csv import save_trajectory
 
 if TYPE_CHECKING:
@@ -25,6 +28,8 @@ if TYPE_CHECKING:
     from ..trajectory import Trajectory
 
 __all__ = ["simulate"]
+
+_logger = logging.getLogger(__name__)
 
 
 def simulate(
@@ -61,19 +66,22 @@ def simulate(
         Print JSON.
     """
     machine = Plant.load(plant)
-    if recording.suffix.lower() == ".toml":
-        if columns is not None:
-            raise InputError("--columns belongs to a single file; the session states its own")
-        recordings = list(session.load(recording, plant=machine))
-    else:
-        mapped = None if columns is None else read_columns(columns)
-        recordings = [session.load_recording(recording, machine, mapped, where="--columns")]
-    where = folder(out)
-    with written(where):
-        results = [
-            _named(machine, each, where / stem, support)
-            for each, stem in zip(recordings, stems_of(recordings), strict=True)
-        ]
+    with progress():
+        if recording.suffix.lower() == ".toml":
+            if columns is not None:
+                raise InputError("--columns belongs to a single file; the session states its own")
+            recordings = list(session.load(recording, plant=machine))
+        else:
+            mapped = None if columns is None else read_columns(columns)
+            recordings = [session.load_recording(recording, machine, mapped, where="--columns")]
+        where = folder(out)
+        stems = [where / stem for stem in stems_of(recordings)]
+        with written(where):
+            phase(_logger, "simulating")
+            results = [
+                _named(machine, each, stem, support)
+                for each, stem in steps(list(zip(recordings, stems, strict=True)), "recording")
+            ]
     text = "\n\n".join(result.pop("text") for result in results)
     answer(text, results[0] if len(results) == 1 else results, as_json=json)
 

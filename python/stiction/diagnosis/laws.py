@@ -20,6 +20,7 @@ from ..fitting.forms import followable, horizon_of
 from ..fitting.minimise import MOST_EVALUATIONS
 from ..fitting.starts import with_turns
 from ..parameter import Parameter
+from ..progress import phase, steps
 from ..stated import Friction
 from ..wording import did_you_mean, listed
 from .candidates import scales_of
@@ -182,7 +183,7 @@ def rivals_of(selection: Search, wanted: Sequence[str]) -> list[Rival]:
     if rigid and selection.choices and YIELDING not in names:
         names.append(YIELDING)
     rivals = []
-    for law in names:
+    for law in steps(names, "law"):
         made = attempt(f"the comparison with {law}", partial(_rival, selection, law, law in wanted))
         rival = (
             Rival(law, law in wanted, None, why=str(made)) if isinstance(made, Failure) else made
@@ -286,7 +287,7 @@ def _fitted(base: Model, law: str, hopeless: float) -> Model | None:
     Terms of the law that a fit leaves alone and no effect would offer, such as the compliance of a
     rig, are tried as well, and stay where they leave less.
     """
-    _logger.info("fitting law %s", law)
+    phase(_logger, "fitting law %s", law)
     more = _left_alone(law)
     plain = _launched(base, Friction(law), hopeless)
     if not more or plain is None or plain.solution.interrupted:

@@ -40,9 +40,9 @@ def complete(table: Table) -> Table:
             whole = int(np.argmin(right)) if not np.all(right) else len(right)
             raise InputError(
                 f"{table.path}: column '{name.strip()}' says that the file has "
-                f"{counted(number, 'row')}, and {whole} of {len(column)} stand as they were written: "
-                "the file was cut short or edited; write it again, or delete that column where "
-                "rows were left out on purpose"
+                f"{counted(number, 'row')}, and {whole} of {len(column)} stand as they were "
+                "written: the file was cut short or edited; write it again, or delete that column "
+                "where rows were left out on purpose"
             )
         return replace(
             table,

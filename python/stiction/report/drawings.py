@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import re
 from collections.abc import Callable
@@ -13,6 +14,7 @@ from markupsafe import Markup
 
 from ..best_effort import Failure, attempt
 from ..compared import compared_by
+from ..progress import phase, steps
 from . import figures
 from .numbers import isolated, percent, plain
 from .scale import scale_of
@@ -25,6 +27,9 @@ if TYPE_CHECKING:
     from ..diagnosis.result import Diagnosis
 
 __all__ = ["Drawing", "Drawings", "Order", "draw", "orders"]
+
+
+_logger = logging.getLogger(__name__)
 
 
 class _Drawn(Protocol):
@@ -93,7 +98,8 @@ class Order:
 def draw(diagnosis: Diagnosis) -> Drawings:
     """Draw every figure that the diagnosis has data for; of one that fails, say why."""
     made: Drawings = {}
-    for order in orders(diagnosis):
+    phase(_logger, "drawing the report")
+    for order in steps(orders(diagnosis), "figure"):
         drawn = attempt(f"the figure {order.name}", partial(order.draw, diagnosis))
         if isinstance(drawn, Failure):
             drawn = Drawing(order.name, "", Markup(), Markup(), failure=drawn.sentence)
