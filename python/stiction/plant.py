@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import given, plant_file
+from .atomic_files import write_text
 from .catalogue import effects
 from .drive import check_servo, gain_name, servo_numbers
 from .errors import InputError
@@ -142,7 +143,7 @@ class Plant:
         Parameters
         ----------
         path : str or Path
-            A file that is there is replaced.
+            A file that is there is replaced, and so is a link.
 
         Returns
         -------
@@ -156,7 +157,7 @@ class Plant:
         """
         path = given.path(path, "Plant.save")
         with given.written(path):
-            path.write_text(plant_file.render(self.to_dict()), encoding="utf-8")
+            write_text(path, plant_file.render(self.to_dict()))
         return path
 
     def to_dict(self) -> dict[str, Any]:

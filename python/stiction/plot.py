@@ -6,7 +6,8 @@ no global state. :func:`save` writes the same bytes for the same figure.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,8 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from . import given
+from .atomic_files import replacing
+from .best_effort import Failure, attempt
 from .errors import InputError
 from .trajectory import FloatArray
 
@@ -41,6 +44,7 @@ __all__ = [
     "overlay",
     "residual",
     "save",
+    "save_or_say",
     "thinned",
     "trajectory",
 ]
@@ -278,12 +282,57 @@ def save(fig: Figure, path: str | Path) -> Path:
         raise InputError(f"{path}: there is no folder {path.parent}; make it first")
     if path.suffix not in _FORMATS:
         raise InputError(f"{path}: ending '{path.suffix}' is not known; use .svg or .png")
-    # Dates, versions and random identifiers would make each file differ from the last.
-    metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-    style = matplotlib.rc_context({"svg.hashsalt": "stiction", "svg.fonttype": "path"})
-    with style, given.written(path):
-        fig.savefig(path, format=path.suffix[1:], dpi=RESOLUTION, metadata=metadata)
+    data = _encoded(fig, path.suffix)
+    with given.written(path), replacing(path) as file:
+        file.write(data)
     return path
+
+
+def save_or_say(what: str, make: Callable[[], Figure], *paths: Path) -> str:
+    """Draw a figure and write it, or say why it cannot be drawn; one of an earlier run goes then.
+
+    Parameters
+    ----------
+    what : str
+        Subject of the sentence, such as ``"the figure of the free run"``.
+    make : callable
+        Draws it.
+    *paths : Path
+        Endings .svg or .png.
+
+    Returns
+    -------
+    str
+        A sentence, which is logged as a warning too; "" where it was drawn.
+
+    Raises
+    ------
+    OSError
+        A file cannot be written.
+    """
+
+    def drawn() -> list[bytes]:
+        figure = make()
+        return [_encoded(figure, path.suffix) for path in paths]
+
+    made = attempt(what, drawn)
+    if isinstance(made, Failure):
+        for path in paths:
+            path.unlink(missing_ok=True)
+        return made.sentence
+    for path, data in zip(paths, made, strict=True):
+        with replacing(path) as file:
+            file.write(data)
+    return ""
+
+
+def _encoded(fig: Figure, suffix: str) -> bytes:
+    # Dates, versions and random identifiers would make each file differ from the last.
+    metadata = {"Date": None} if suffix == ".svg" else {"Software": None}
+    target = BytesIO()
+    with matplotlib.rc_context({"svg.hashsalt": "stiction", "svg.fonttype": "path"}):
+        fig.savefig(target, format=suffix[1:], dpi=RESOLUTION, metadata=metadata)
+    return target.getvalue()
 
 
 def _compared(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,6 +18,7 @@ from .keys import choice, known
 from .parameter import number
 from .plant import Plant
 from .plant_file import read_toml, section
+from .progress import phase, steps
 from .recording import SETTINGS, Columns, Recording
 from .recording.names import names_of
 from .recording.recording import SPLIT_ROLES, recordings_of
@@ -159,6 +161,8 @@ class Session:
         )
 
 
+_logger = logging.getLogger(__name__)
+
 _HEAD = ("recording", "role", "kind", "starts at s", "lasts s", "rows", "replicate of")
 
 
@@ -208,7 +212,8 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         raise InputError(f"{source}: there are no [[recordings]]; list at least one file")
     seen: dict[Path, int] = {}
     recordings = []
-    for index, entry in enumerate(entries, 1):
+    phase(_logger, "reading the recordings")
+    for index, entry in enumerate(steps(entries, "recording"), 1):
         where = f"{source}: [[recordings]] {index}"
         known(entry, _RECORDING, where)
         if "file" not in entry:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import zipfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import given
+from .atomic_files import replacing
 from .errors import InputError
 from .motor import Motor
 from .trajectory import FloatArray, Trajectory
@@ -162,15 +162,10 @@ def _identity(motor: Motor, dt: float, every: int, load: float) -> str:
 
 
 def _keep(motor: Motor, path: Path, identity: str, done: int, start: float) -> None:
-    """Writes the state beside the file and moves it there: a kill leaves the old one or the new."""
+    """Keep the state; a kill leaves the old one or the new."""
     state = {f"state.{name}": np.asarray(value) for name, value in motor.state.items()}
-    beside = path.with_name(f"{path.name}.part")
-    with given.written(path):
-        with beside.open("wb") as file:
-            np.savez(file, identity=identity, done=done, start=start, **state)  # type: ignore[arg-type]
-            file.flush()
-            os.fsync(file.fileno())
-        beside.replace(path)
+    with given.written(path), replacing(path) as file:
+        np.savez(file, identity=identity, done=done, start=start, **state)  # type: ignore[arg-type]
 
 
 def _resume(motor: Motor, path: Path, identity: str) -> tuple[int, float]:

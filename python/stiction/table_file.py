@@ -1,4 +1,8 @@
-"""Columns of numbers as a file, NPZ or CSV by the name's ending."""
+"""Columns of numbers as a file, NPZ or CSV by the name's ending.
+
+A CSV file that was cut short is one as well, so that its last column counts the rows and says in
+its name how many there are; ``recording.row_count`` reads that.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import given
+from .atomic_files import replacing
 from .errors import InputError
 
 if TYPE_CHECKING:
@@ -19,6 +24,8 @@ __all__ = ["save_table"]
 
 def save_table(path: Path, table: Mapping[str, FloatArray]) -> Path:
     """Write columns to a file; every number is read back as it was.
+
+    A CSV file gets one more column, such as ``row_of_4000``, which counts its rows.
 
     Parameters
     ----------
@@ -41,16 +48,13 @@ def save_table(path: Path, table: Mapping[str, FloatArray]) -> Path:
         raise InputError(f"{path}: there is no folder {path.parent}; make it first")
     if path.suffix not in (".npz", ".csv"):
         raise InputError(f"{path}: ending '{path.suffix}' is not known; use .npz or .csv")
-    with given.written(path):
+    with given.written(path), replacing(path) as file:
         if path.suffix == ".npz":
-            np.savez_compressed(path, **table)  # type: ignore[arg-type]
+            np.savez_compressed(file, **table)  # type: ignore[arg-type]
         else:
-            np.savetxt(
-                path,
-                np.column_stack(list(table.values())),
-                delimiter=",",
-                header=",".join(table),
-                comments="",
-                fmt="%.17g",
-            )
+            rows = np.column_stack(list(table.values()))
+            counting = np.arange(1, len(rows) + 1)
+            file.write(f"{','.join(table)},row_of_{len(rows)}\n".encode())
+            formats = ["%.17g"] * rows.shape[1] + ["%d"]
+            np.savetxt(file, np.column_stack([rows, counting]), delimiter=",", fmt=formats)
     return path

@@ -204,6 +204,9 @@ class Trajectory:
     def save(self, path: str | Path) -> Path:
         """Write time, s, and columns to a file.
 
+        A CSV file gets one more column, such as ``row_of_4000``, which counts its rows: read as a
+        recording, a file that was cut short is refused.
+
         Parameters
         ----------
         path : str or Path

@@ -19,7 +19,6 @@ import stiction as st
 from stiction.cli import run
 from stiction.cli.answer import folder
 from stiction.cli.interrupt import finished
-from stiction.cli.paper import write_figure
 from stiction.fitting import fit
 
 PLANT = """
@@ -132,13 +131,6 @@ def test_a_file_that_cannot_be_written_is_named_in_a_sentence(
     assert told.count("\n") == 1
     assert "cannot be written (Is a directory)" in told
     assert str(out) in told
-
-
-def test_figures_of_the_paper_are_refused_in_a_sentence(tmp_path: Path) -> None:
-    from stiction.plot import figure
-
-    with pytest.raises(st.InputError, match=r"there is no folder .*; make it first"):
-        write_figure(tmp_path / "away", "one", figure(1, height=1.0, title="")[0])
 
 
 def test_where_nothing_can_be_written_nothing_is_fitted(

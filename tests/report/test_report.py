@@ -13,23 +13,20 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from tests.report.canned import (
+    VERDICTS,
+    diagnosis,
+    model,
+    parameter,
+    pictures,
+    plant,
+    undrawn,
+)
 
 import stiction as st
-from stiction.diagnosis import Diagnosis
-from stiction.diagnosis.coordinates import COORDINATES
 from stiction.diagnosis.gain import Gain
-from stiction.diagnosis.omnibus import Rest, View
-from stiction.diagnosis.pictures import Pictures, Stretch
-from stiction.diagnosis.result import (
-    Advice,
-    CandidateRow,
-    Cause,
-    LawRow,
-    ModelSummary,
-    Unexplained,
-    Verdict,
-)
-from stiction.fitting.result import FitParameter
+from stiction.diagnosis.omnibus import Rest
+from stiction.diagnosis.result import CandidateRow, Verdict
 from stiction.parameter import Parameter
 from stiction.report import write
 from stiction.report.figures import headline, most_shown
@@ -40,173 +37,7 @@ from stiction.stated import Effect
 
 LARGEST_REPORT = 5_000_000  # bytes; what an e-mail carries
 HOSTILE = "<script>alert(1)</script>&\"' $x^2$ -->]]> \u202e名.csv"
-FITTED: tuple[Verdict, ...] = ("unexplained", "ambiguous", "missing_effect", "nothing_missing")
-VERDICTS: tuple[Verdict, ...] = (*FITTED, "not_testable", "data_fault")
-# Each further coordinate costs time and shows nothing new.
-SEEN = {"speed", "position", "effort", "distance since the reversal", "time since the reversal"}
 VOID = {"meta", "br", "hr", "img", "link", "input", "wbr"}
-
-
-def plant(*, effects: bool = False) -> st.Plant:
-    table = {
-        "motion": {"kind": "rotary"},
-        "drive": {"input": "torque_nm"},
-        "body": {"inertia": 0.0076},
-        "friction": {"law": "coulomb", "coulomb": 0.3, "viscous": 0.05},
-    }
-    if effects:
-        table["effects"] = [{"name": "torque_bias", "bias": 0.02}]
-    return st.Plant.from_dict(table)
-
-
-def parameter(value: float, half: float, unit: str, at_bound: str = "") -> FitParameter:
-    return FitParameter(value, half / 2, (value - half, value + half), unit, at_bound, value)
-
-
-def model(*, effects: bool, held_out: float | None = 0.02) -> ModelSummary:
-    own = {
-        "body.inertia": parameter(0.0076, 0.0002, "kg·m²"),
-        "friction.coulomb": parameter(0.3, 0.004, "N·m", "lower"),
-        "friction.viscous": parameter(0.001, 0.02, "N·m·s/rad"),
-    }
-    if effects:
-        own["effects.torque_bias.bias"] = parameter(0.02, 0.003, "N·m")
-    return ModelSummary(
-        plant=plant(effects=effects),
-        parameters=own,
-        unit="N·m",
-        train_rms=0.01 if effects else 0.02,
-        select_rms=0.011 if effects else 0.021,
-        heldout_rms=held_out,
-        train_relative=0.03 if effects else 0.06,
-        heldout_relative=None if held_out is None else 0.03,
-        noise_floor_rms=0.008,
-        remarks=("friction.viscous is not determined by these data: its standard error 0.01",),
-    )
-
-
-def rest(size: float) -> Rest:
-    """Views with repeated places, zeros and many decades, as machines that run steadily give."""
-    at = np.linspace(-1.0, 1.0, 24).round(1)
-    places = {
-        "speed": np.geomspace(1e-4, 10.0, 24),
-        "distance since the reversal": np.concatenate([[0.0], np.geomspace(1e-7, 1e-2, 23)]),
-        "time since the reversal": np.full(24, 0.5),
-    }
-    return Rest(
-        tuple(
-            View(
-                coordinate,
-                places.get(coordinate.name, at),
-                size * np.sin(3.0 * at + k),
-                np.full(24, -0.002),
-                np.full(24, 0.002),
-                share=size * (12 - k),
-                threshold=0.02 - 0.01 * k,
-                size=0.02,
-            )
-            for k, coordinate in enumerate(COORDINATES)
-            if coordinate.name in SEEN
-        )
-    )
-
-
-def pictures(*, effects: bool, names: tuple[str, ...]) -> Pictures:
-    time = np.arange(4000) * 0.005
-    gap = np.where((time > 4.0) & (time < 6.0), np.nan, 1.0)
-    noise = 0.008 * np.random.default_rng(1).standard_normal(4000) * gap
-    before = noise + 0.02 * np.sin(time) if effects else noise
-    effort = 0.4 * np.sin(2.0 * time) * gap
-    return Pictures(
-        stretches=tuple(Stretch(name, time, effort, before, noise) for name in names),
-        before=rest(0.02 if effects else 0.001),
-        after=rest(0.001),
-        effort_unit="N·m",
-        position_unit="rad",
-        floor=0.008,
-        causes=((rest(0.02).views[0], rest(0.001).views[0]),) if effects else (),
-    )
-
-
-def cause(*, decided: bool) -> Cause:
-    return Cause(
-        name="torque_bias",
-        family="offset",
-        decided=decided,
-        look_alikes=() if decided else ("direction_asymmetry",),
-        parameters={"effects.torque_bias.bias": parameter(0.02, 0.003, "N·m")},
-        gain=Gain(0.412, (0.35, 0.47)),
-        what="constant effort, at rest as well as in motion: bias 0.02 N·m (0.017 to 0.023)",
-        means="a constant effort pulls one way, at rest too",
-        try_="add it as a feed-forward",
-        coordinate="everywhere, also at rest",
-    )
-
-
-def data(name: str, *, fault: bool = False) -> dict[str, object]:
-    def check(what: str, verdict: str) -> dict[str, str]:
-        told = {"means": f"{what} means", "try": f"{what} try"}
-        return {"recording": name, "name": what, "verdict": verdict, "what": f"{what} told"} | told
-
-    part = {"recording": 0, "name": name, "rows": [0, 4000], "seconds": [0.0, 20.0]}
-    split = {"rules": ["The rule of the split."], "train": [part, part], "select": [],
-             "test": [part], "folds": [{"fit": [part], "held": [part]}] * 2}  # fmt: skip
-    return {
-        "checks": [
-            check("gaps", "fine"),
-            check("spikes", "note"),
-            check("stuck channel", "fault" if fault else "fine"),
-        ],
-        "split": None if fault else split,
-        "hashes": ["d29e801c" * 8],
-        "noise": []
-        if fault
-        else [{"recording": name, "position": 2.1e-8, "count": 0.0, "effort": 0.011}],
-    }
-
-
-def diagnosis(verdict: Verdict, *, name: str = "run.csv", names: int = 2) -> Diagnosis:
-    """A small diagnosis of each kind."""
-    if verdict not in FITTED:
-        fault = verdict == "data_fault"
-        return Diagnosis(
-            verdict=verdict,
-            sentence=f"The data cannot be used: {name}: stuck channel told.",
-            plant=plant(),
-            data=data(name, fault=fault),
-            advice=(Advice("stuck channel try", f"{name}: stuck channel told", ()),),
-            version="0.1.0",
-        )
-    effects = verdict != "nothing_missing"
-    reason = "noise alone reaches it"
-    return Diagnosis(
-        verdict=verdict,
-        sentence=f"The sentence of {verdict}: 41.2 % of the residual's power.",
-        plant=plant(effects=effects),
-        effects=(cause(decided=verdict != "ambiguous"),) if effects else (),
-        gain=Gain(0.412, (0.35, 0.47)) if effects else None,
-        candidates=(
-            CandidateRow("torque_bias", 0.4, 0.03, 0.41, "accepted" if effects else reason),
-            CandidateRow("cogging", -0.001, 0.05, None, reason),
-            CandidateRow("stribeck", None, None, None, "part of the law"),
-        ),
-        laws=(
-            LawRow("maxwell_slip", Gain(0.01, (-0.02, 0.03)), "explains about as much"),
-            LawRow("hsieh_pan", None, "could not be fitted to these data"),
-        ),
-        baseline=model(effects=False, held_out=0.02),
-        extended=model(effects=effects, held_out=0.01),
-        unexplained=(Unexplained("speed", 0.34),) if verdict == "unexplained" else (),
-        advice=(Advice("slow full turns", "it tells cogging apart", ("cogging",)),),
-        data=data(name),
-        version="0.1.0",
-        pictures=pictures(effects=effects, names=tuple(f"{k} {name}" for k in range(names))),
-    )
-
-
-def undrawn(verdict: Verdict, *, name: str = "run.csv") -> Diagnosis:
-    """Without most of its figures, which take the time."""
-    return replace(diagnosis(verdict, name=name), pictures=None)
 
 
 class Page(HTMLParser):
@@ -303,8 +134,8 @@ def test_report_says_all_that_was_found(pages: dict[str, Path], verdict: Verdict
     for check in found.data["checks"]:
         assert check["what"] in text
     assert found.data["hashes"][0] in text
-    for model in filter(None, (found.baseline, found.extended)):
-        assert model.remarks[0] in text
+    for each in filter(None, (found.baseline, found.extended)):
+        assert each.remarks[0] in text
         assert "at its lower bound" in text
 
 
@@ -454,21 +285,26 @@ def test_a_second_report_leaves_nothing_of_the_first_but_what_is_not_its_own(
     assert [path.name for path in figures.iterdir()] == ["my own.svg"]
 
 
-def test_a_write_that_stops_half_way_leaves_the_old_report(
+def test_what_stops_a_report_half_way_leaves_whole_files_and_the_numbers_first(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found = diagnosis("data_fault")
-    write(found, tmp_path)
-    before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
+    page = write(found, tmp_path).read_bytes()
 
     def stopped(*_: object) -> str:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("stiction.report.page.render", stopped)
-    with pytest.raises(KeyboardInterrupt):
-        write(replace(found, seed=7), tmp_path)
-    assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == before
-    assert {p.name for p in tmp_path.iterdir() if p.is_dir()} == {"figures"}
+    for stage in ("drawings.draw", "page.render"):
+        monkeypatch.setattr(f"stiction.report.{stage}", stopped)
+        seed = found.seed + len(stage)
+        with pytest.raises(KeyboardInterrupt):
+            write(replace(found, seed=seed), tmp_path)
+        assert json.loads((tmp_path / "findings.json").read_text("utf-8"))["seed"] == seed
+        assert (tmp_path / "report.html").read_bytes() == page
+        assert {path.name for path in tmp_path.iterdir()} == {
+            *("report.html", "findings.json", "plant.toml", "figures")
+        }
+        monkeypatch.undo()
 
 
 def test_a_file_in_place_of_the_folder_is_refused_in_a_sentence(tmp_path: Path) -> None:

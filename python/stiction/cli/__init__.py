@@ -41,7 +41,7 @@ def run(arguments: Sequence[str]) -> int:
     try:
         return _run(arguments)
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
+        _say("interrupted")
         return INTERRUPTED
 
 
@@ -73,6 +73,12 @@ def _run(arguments: Sequence[str]) -> int:
         # The reader has what it wanted; a second error while closing would say nothing new.
         dropped()
         return ANSWERED
+    except SystemExit as error:
+        # What prints the help makes an end of its own of a reader that has gone.
+        if not isinstance(error.__context__, BrokenPipeError):
+            raise
+        dropped()
+        return ANSWERED
     except OSError as error:
         # What has no name is no file, but standard output.
         if error.filename is not None:
@@ -83,5 +89,14 @@ def _run(arguments: Sequence[str]) -> int:
 
 
 def _refuse(sentence: str) -> int:
-    print(f"stiction: {sentence}", file=sys.stderr)
+    _say(f"stiction: {sentence}")
     return UNREADABLE
+
+
+def _say(sentence: str) -> None:
+    """A line on stderr, where somebody reads it."""
+    try:
+        print(sentence, file=sys.stderr, flush=True)
+    except OSError:
+        # The status says it too; what is still held would fail once more at the end.
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115

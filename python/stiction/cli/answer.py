@@ -14,7 +14,7 @@ from ..errors import InputError
 from ..json_text import json_of
 from .interrupt import finished
 
-__all__ = ["answer", "dropped", "folder", "json_of", "written"]
+__all__ = ["answer", "dropped", "folder", "json_of", "told_anyway", "written"]
 
 
 def answer(text: str, data: Any, *, as_json: bool) -> None:
@@ -24,6 +24,22 @@ def answer(text: str, data: Any, *, as_json: bool) -> None:
         # A question mark in place of a letter would be another name.
         said = json.dumps(json.loads(said), indent=2)
     print(said, flush=True)
+
+
+@contextmanager
+def told_anyway(text: str, data: Any, *, as_json: bool) -> Iterator[None]:
+    """Where the files of an answer cannot be written the answer is printed all the same.
+
+    Raises
+    ------
+    InputError
+        A file cannot be written.
+    """
+    try:
+        yield
+    except InputError:
+        answer(text, data, as_json=as_json)
+        raise
 
 
 def dropped() -> None:

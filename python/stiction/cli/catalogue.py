@@ -9,6 +9,7 @@ from typing import Annotated, Any, TypeVar
 from cyclopts import Parameter
 
 from .. import catalogue
+from ..atomic_files import write_text
 from ..catalogue import EffectRecord, LawRecord, ParameterRecord
 from ..errors import InputError
 from ..json_text import worded
@@ -101,7 +102,7 @@ def _write(out: Path | None, name: str, records: Iterable[LawRecord | EffectReco
     if out is not None:
         text = json_of(_data(records))
         with written(folder(out)):
-            (out / f"{name}.json").write_text(text + "\n", encoding="utf-8")
+            write_text(out / f"{name}.json", text + "\n")
 
 
 def _data(records: Iterable[LawRecord | EffectRecord]) -> list[Any]:

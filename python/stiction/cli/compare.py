@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
+from ..atomic_files import write_text
 from ..compare import compare as run
 from ..compare.draws import DRAWS
 from ..compare.properties.passivity import PASSIVE_STEPS
 from .answer import answer, folder, json_of, written
 from .given import Whole
+from .progress import progress
 
 __all__ = ["compare"]
 
@@ -41,20 +42,17 @@ def compare(
     """
     if out is not None:
         folder(out)
-    made = run(laws, steps=steps, draws=draws, progress=_told if sys.stderr.isatty() else None)
+    with progress():
+        made = run(laws, steps=steps, draws=draws)
     text = repr(made)
     if out is not None:
         from ..compare.page import page
         from ..compare.text import as_markdown
 
-        drawn = page(made)
-        with written(out):
-            (out / "compare.html").write_text(drawn, encoding="utf-8")
-            (out / "compare.md").write_text(as_markdown(made) + "\n", encoding="utf-8")
-            (out / "compare.json").write_text(json_of(made.to_dict()) + "\n", encoding="utf-8")
+        with progress(), written(out):
+            # The numbers first: no figure can cost them.
+            write_text(out / "compare.json", json_of(made.to_dict()) + "\n")
+            write_text(out / "compare.md", as_markdown(made) + "\n")
+            write_text(out / "compare.html", page(made))
         text += f"\n\nWith figures and all numbers: {out / 'compare.html'}"
     answer(text, made.to_dict(), as_json=json)
-
-
-def _told(law: str) -> None:
-    print(f"\r{law:<30}", end="", file=sys.stderr)

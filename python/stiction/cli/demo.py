@@ -13,9 +13,10 @@ from ..diagnosis import diagnose as run
 from ..diagnosis.result import Diagnosis
 from ..session import Session
 from ..wording import counted
-from .answer import answer, folder, written
-from .diagnose import progress, told
+from .answer import answer, folder, told_anyway, written
+from .diagnose import told
 from .interrupt import finished
+from .progress import progress
 
 __all__ = ["demo"]
 
@@ -44,9 +45,9 @@ def demo(
     if copy is not None:
         _copied(copy, as_json=json)
         return
-    session = demo_session.load()
     where = folder(out)
     with progress():
+        session = demo_session.load()
         found = run(None, session)
     with finished():
         _told(session, found, where, as_json=json)
@@ -56,7 +57,7 @@ def demo(
 
 def _told(session: Session, found: Diagnosis, where: Path, *, as_json: bool) -> None:
     """Write the report and say what was found, and what was hidden."""
-    with written(where):
+    with told_anyway(str(found), found.to_dict(), as_json=as_json), progress(), written(where):
         report = found.save(where)
     seconds = sum(recording.duration for recording in session)
     text = (

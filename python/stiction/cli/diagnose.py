@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import logging
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -14,12 +10,13 @@ from cyclopts import Parameter
 from ..diagnosis import SURROGATES
 from ..diagnosis import diagnose as run
 from ..diagnosis.result import Diagnosis
-from .answer import answer, folder, written
+from .answer import answer, folder, told_anyway, written
 from .given import Whole
 from .interrupt import finished
+from .progress import progress
 from .sessions import loaded, mended, spared, spoken_of
 
-__all__ = ["diagnose", "progress", "told"]
+__all__ = ["diagnose", "told"]
 
 
 def diagnose(
@@ -56,23 +53,24 @@ def diagnose(
     json
         Print JSON.
     """
-    recordings, plant = loaded(session, keep_faulty=True)
-    where = Path(f"{session.stem}-diagnosis") if out is None else out
-    spared(plant, where)
-    folder(where)
     names = [name.strip() for name in laws.split(",") if name.strip()]
-    with progress(), spoken_of(session, recordings, plant):
-        found = run(
-            plant,
-            recordings,
-            without=without,
-            laws=names,
-            surrogates=surrogates,
-            seed=seed,
-            threads=threads,
-        )
+    with progress():
+        recordings, plant = loaded(session, keep_faulty=True)
+        where = Path(f"{session.stem}-diagnosis") if out is None else out
+        spared(plant, where)
+        folder(where)
+        with spoken_of(session, recordings, plant):
+            found = run(
+                plant,
+                recordings,
+                without=without,
+                laws=names,
+                surrogates=surrogates,
+                seed=seed,
+                threads=threads,
+            )
     with finished():
-        with written(where):
+        with told_anyway(str(found), found.to_dict(), as_json=json), progress(), written(where):
             report = found.save(where)
         # The sentence comes first, whatever was mended before it could be said.
         said = (str(found), "\n".join(mended(recordings)), told(found, report))
@@ -84,24 +82,3 @@ def diagnose(
 def told(found: Diagnosis, report: Path) -> str:
     """Where the answer is, in words."""
     return f"{found.split}\n\nreport: {report}" if found.split else f"report: {report}"
-
-
-@contextmanager
-def progress() -> Iterator[None]:
-    """Shows on stderr what is being done, on a terminal only."""
-    logger = logging.getLogger("stiction.diagnosis")
-    if not sys.stderr.isatty():
-        yield
-        return
-    handler = logging.StreamHandler(sys.stderr)
-    handler.setFormatter(logging.Formatter("%(message)s …"))
-    level, passed = logger.level, logger.propagate
-    logger.addHandler(handler)
-    logger.setLevel(logging.INFO)
-    logger.propagate = False
-    try:
-        yield
-    finally:
-        logger.removeHandler(handler)
-        logger.setLevel(level)
-        logger.propagate = passed

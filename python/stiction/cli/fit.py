@@ -8,12 +8,14 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from ..atomic_files import write_text
 from ..errors import InputError
 from ..fitting import FitResult
 from ..fitting import fit as run
 from ..session import Session
-from .answer import answer, folder, written
+from .answer import answer, folder, told_anyway, written
 from .interrupt import finished
+from .progress import progress
 from .sessions import loaded, mended, spared, spoken_of
 
 __all__ = ["fit"]
@@ -39,17 +41,18 @@ def fit(
     json
         Print JSON.
     """
-    recordings, plant = loaded(session)
-    where = Path(f"{session.stem}-fit") if out is None else out
-    spared(plant, where)
-    folder(where)
-    with spoken_of(session, recordings, plant):
-        result = run(plant, recordings)
-        if not math.isfinite(result.train_rms):
-            raise InputError(
-                "the effort residual is not a finite number; check units, and values far beyond "
-                "what the machine can do"
-            )
+    with progress():
+        recordings, plant = loaded(session)
+        where = Path(f"{session.stem}-fit") if out is None else out
+        spared(plant, where)
+        folder(where)
+        with spoken_of(session, recordings, plant):
+            result = run(plant, recordings)
+            if not math.isfinite(result.train_rms):
+                raise InputError(
+                    "the effort residual is not a finite number; check units, and values far "
+                    "beyond what the machine can do"
+                )
     with finished():
         _told(recordings, result, where, session.name, as_json=json)
     if result.interrupted:
@@ -61,11 +64,11 @@ def _told(recordings: Session, result: FitResult, where: Path, name: str, *, as_
     from ..report.fit_page import fit_page
 
     files = [where / "plant.toml", where / "fit.json", where / "fit.html"]
-    page = fit_page(result, list(recordings), f"Fit of {name}")
-    with written(where):
+    with told_anyway(str(result), result.to_dict(), as_json=as_json), written(where):
+        # The numbers first: no figure can cost them.
         result.plant.save(files[0])
-        files[1].write_text(result.to_json() + "\n", encoding="utf-8")
-        files[2].write_text(page, encoding="utf-8")
+        write_text(files[1], result.to_json() + "\n")
+        write_text(files[2], fit_page(result, list(recordings), f"Fit of {name}"))
     wrote = "\n".join(f"wrote {file}" for file in files)
     repairs = mended(recordings)
     told = "\n".join([*repairs, str(result)])

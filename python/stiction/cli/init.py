@@ -11,6 +11,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from .. import session as sessions
+from ..atomic_files import create_text
 from ..errors import InputError
 from ..given import vacant
 from ..recording import Table, read_table
@@ -56,8 +57,7 @@ def init(
     texts = (plant_text(found), session_text(found, [t.path for t in tables], left_out, where))
     with written(where):
         for file, text in zip(files, texts, strict=True):
-            with file.open("x", encoding="utf-8", newline="\n") as opened:
-                opened.write(text)
+            create_text(file, text)
     todo = list(found.missing.values())
     if found.counts_needed and not found.counts_per_rev:
         todo.append("state the size of a sensor count under [sensor] of plant.toml")

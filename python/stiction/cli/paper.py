@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import logging
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
+from ..atomic_files import write_text
 from ..paper import (
     ILLUSTRATIVE_RIG,
     Result,
@@ -28,12 +30,16 @@ from ..paper import (
     static_test,
     stick_slip,
 )
+from ..progress import phase
 from .answer import answer, folder, json_of, written
+from .progress import progress
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Section", "paper", "paper_command", "render_json", "render_text", "write_figure"]
+__all__ = ["Section", "drawn", "paper", "paper_command", "render_json", "render_text"]
+
+_logger = logging.getLogger(__name__)
 
 NOTE = (
     'The rig is illustrative: its numbers are not the authors\'. "prototype" is an independent '
@@ -58,12 +64,15 @@ class Section:
     result : Result
         Title, source and numbers.
     figures : tuple of Path
-        SVG and PNG.
+        SVG and PNG; none where they could not be drawn.
+    failure : str
+        Why they could not.
     """
 
     name: str
     result: Result
     figures: tuple[Path, ...]
+    failure: str = ""
 
 
 def paper(
@@ -80,11 +89,11 @@ def paper(
     json
         Print JSON.
     """
-    sections = paper_command(out)
+    with progress():
+        sections = paper_command(out)
     slow = next(s.result for s in sections if isinstance(s.result, StickSlip))
     smooth = stick_slip(FAST, duration=2.0)
-    figures = write_figure(out, "smooth-sliding", smooth.plot())
-    sections.append(Section("smooth-sliding", smooth, figures))
+    sections.append(drawn(out, "smooth-sliding", smooth, smooth.plot))
     _write_numbers(out, sections)
     closing = (
         f"Pulled at {slow.speed:g} rad/s the rotor sticks and slips ({slow.breakaways} "
@@ -119,9 +128,8 @@ def paper_command(out: Path) -> list[Section]:
     out = folder(Path(out))
     sections = []
 
-    def add(name: str, result: Result, figure: Figure | None = None) -> None:
-        drawn = write_figure(out, name, result.plot() if figure is None else figure)
-        sections.append(Section(name, result, drawn))
+    def add(name: str, result: Result, figure: Callable[[], Figure] | None = None) -> None:
+        sections.append(drawn(out, name, result, figure or result.plot))
 
     add("experiment-1", experiment_1())
     add("experiment-2", experiment_2())
@@ -132,8 +140,7 @@ def paper_command(out: Path) -> list[Section]:
     add("static-test-3", static_test(3))
     ramped = static_test(1, driven="ramp", dt=_RAMP_STEP)
     stepped = static_test(1, driven="staircase")
-    comparison = static_comparison([forced, ramped, stepped])
-    add("static-test-1-steps", stepped, comparison)
+    add("static-test-1-steps", stepped, lambda: static_comparison([forced, ramped, stepped]))
     add("dahl-on-static-test-1", dahl_on_static_1())
     add("metal-contact", metal_contact())
     add("hardening-cycles", hardening_cycles())
@@ -151,7 +158,7 @@ def paper_command(out: Path) -> list[Section]:
 def _write_numbers(out: Path, sections: Sequence[Section]) -> None:
     text = json_of(render_json(sections)) + "\n"
     with written(out):
-        (out / "numbers.json").write_text(text, encoding="utf-8")
+        write_text(out / "numbers.json", text)
 
 
 def render_text(sections: Iterable[Section]) -> str:
@@ -159,7 +166,7 @@ def render_text(sections: Iterable[Section]) -> str:
     blocks = [NOTE]
     for section in sections:
         names = ", ".join(str(path) for path in section.figures)
-        blocks.append(f"{section.result!r}\n  figure: {names}")
+        blocks.append(f"{section.result!r}\n  figure: {section.failure or names}")
     return "\n\n".join(blocks)
 
 
@@ -173,15 +180,19 @@ def render_json(sections: Sequence[Section]) -> dict[str, Any]:
                 "name": section.name,
                 **section.result.to_dict(),
                 "figures": [path.name for path in section.figures],
+                **({"not_drawn": section.failure} if section.failure else {}),
             }
             for section in sections
         ],
     }
 
 
-def write_figure(out: Path, name: str, figure: Figure) -> tuple[Path, ...]:
-    """Write a figure as SVG and PNG; returns both paths."""
-    from ..plot import save
+def drawn(out: Path, name: str, result: Result, make: Callable[[], Figure]) -> Section:
+    """Write a figure of a result as SVG and PNG, or say why it cannot be drawn."""
+    from ..plot import save_or_say
 
+    phase(_logger, "drawing %s", name)
+    paths = tuple(out / f"{name}{ending}" for ending in (".svg", ".png"))
     with written(out):
-        return tuple(save(figure, out / f"{name}{ending}") for ending in (".svg", ".png"))
+        failure = save_or_say(f"the figure {name}", make, *paths)
+    return Section(name, result, () if failure else paths, failure)

@@ -13,6 +13,7 @@ from ..plan.result import FILLED_IN
 from ..plant import Plant
 from .answer import answer, folder, written
 from .given import Whole
+from .progress import progress
 
 __all__ = ["plan"]
 
@@ -57,17 +58,18 @@ def plan(
     where = Path(f"{plant.stem}-plan") if out is None else out
     # Better said before the work than after it.
     vacant(where, FILLED_IN, "another folder with --out")
-    made = run(
-        Plant.load(plant),
-        position=position,
-        speed=speed,
-        effort=effort,
-        rate=rate,
-        only=only,
-        seed=seed,
-    )
-    where = folder(where)
-    with written(where):
-        made.save(where)
+    with progress():
+        made = run(
+            Plant.load(plant),
+            position=position,
+            speed=speed,
+            effort=effort,
+            rate=rate,
+            only=only,
+            seed=seed,
+        )
+        where = folder(where)
+        with written(where):
+            made.save(where)
     text = f"{made!r}\n\nsignals: {where / 'signals'}\nfill in: {where / 'session.toml'}"
     answer(text, made.to_dict(), as_json=json)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,10 +14,12 @@ from cyclopts import Parameter
 from .. import closed_loop, residual, session
 from ..errors import InputError
 from ..plant import Plant
+from ..progress import phase, steps
 from ..recording import Recording
 from ..recording.checks import check, impulse_checks
 from ..recording.names import names_of
 from .answer import answer, folder, written
+from .progress import progress
 from .trajectory_csv import save_trajectory
 
 if TYPE_CHECKING:
@@ -25,6 +28,8 @@ if TYPE_CHECKING:
     from ..trajectory import Trajectory
 
 __all__ = ["simulate"]
+
+_logger = logging.getLogger(__name__)
 
 
 def simulate(
@@ -61,19 +66,22 @@ def simulate(
         Print JSON.
     """
     machine = Plant.load(plant)
-    if recording.suffix.lower() == ".toml":
-        if columns is not None:
-            raise InputError("--columns belongs to a single file; the session states its own")
-        recordings = list(session.load(recording, plant=machine))
-    else:
-        mapped = None if columns is None else read_columns(columns)
-        recordings = [session.load_recording(recording, machine, mapped, where="--columns")]
-    where = folder(out)
-    with written(where):
-        results = [
-            _named(machine, each, where / stem, support)
-            for each, stem in zip(recordings, stems_of(recordings), strict=True)
-        ]
+    with progress():
+        if recording.suffix.lower() == ".toml":
+            if columns is not None:
+                raise InputError("--columns belongs to a single file; the session states its own")
+            recordings = list(session.load(recording, plant=machine))
+        else:
+            mapped = None if columns is None else read_columns(columns)
+            recordings = [session.load_recording(recording, machine, mapped, where="--columns")]
+        where = folder(out)
+        stems = [where / stem for stem in stems_of(recordings)]
+        with written(where):
+            phase(_logger, "simulating")
+            results = [
+                _named(machine, each, stem, support)
+                for each, stem in steps(list(zip(recordings, stems, strict=True)), "recording")
+            ]
     text = "\n\n".join(result.pop("text") for result in results)
     answer(text, results[0] if len(results) == 1 else results, as_json=json)
 
@@ -180,8 +188,10 @@ def _one(plant: Plant, recording: Recording, stem: Path, support: float | None) 
             '"position=x" or under [columns] of a session, or call it position_rad or '
             "position_m"
         )
+    lines += drawn.failures
     lines += [f"wrote {file}" for file in drawn.files]
     result["files"] = [str(file) for file in drawn.files]
+    result["not_drawn"] = drawn.failures
     return {"text": "\n".join(lines), **result}
 
 
@@ -192,22 +202,31 @@ class _Drawn:
     ----------
     files : list of Path
         That were written, in their order.
+    failures : list of str
+        Why a figure was not, a sentence each.
     """
 
     def __init__(self, stem: Path) -> None:
         self._stem = stem
         self.files: list[Path] = []
+        self.failures: list[str] = []
 
     def trajectory(self, plant: Plant, recording: Recording, trajectory: Trajectory) -> None:
         """Write what was simulated."""
         path = self._named("trajectory.csv")
         self.files.append(save_trajectory(path, plant, recording, trajectory))
 
-    def figure(self, figure: Figure, name: str) -> None:
-        """Write a figure in both formats."""
-        from ..plot import save
+    def figure(self, make: Callable[[], Figure], name: str) -> None:
+        """Write a figure in both formats, or note why it cannot be drawn."""
+        from ..plot import save_or_say
 
-        self.files += [save(figure, self._named(f"{name}{ending}")) for ending in (".svg", ".png")]
+        paths = [self._named(f"{name}{ending}") for ending in (".svg", ".png")]
+        # Of one recording among many: which one is told as well.
+        failure = save_or_say(f"the figure {self._stem.name}-{name}", make, *paths)
+        if failure:
+            self.failures.append(failure)
+        else:
+            self.files += paths
 
     def _named(self, name: str) -> Path:
         return self._stem.with_name(f"{self._stem.name}-{name}")
@@ -225,7 +244,7 @@ def _beside_the_motion(
     if not plant.prescribed_motion and recording.input is not None:
         run = residual.free_run(plant, recording)
         drawn.trajectory(plant, recording, run.trajectory)
-        drawn.figure(run.plot(), "free-run")
+        drawn.figure(run.plot, "free-run")
         lines.append(
             f"free run: position error {run.rms:.4g} {run.unit} rms, "
             f"{run.mean_absolute:.4g} {run.unit} mean, greatest {run.greatest:.4g} {run.unit}"
@@ -238,7 +257,7 @@ def _beside_the_motion(
             lines.append(f"closed loop: {error}")
             result["closed_loop"] = {"error": str(error)}
         else:
-            drawn.figure(loop.plot(), "closed-loop")
+            drawn.figure(loop.plot, "closed-loop")
             lines += _loop_lines(loop)
             result["closed_loop"] = loop.to_dict()
     effort = residual.effort_residual(plant, recording, support=support)
@@ -247,7 +266,7 @@ def _beside_the_motion(
             "the effort residual is not a finite number; check units, and cells far beyond what "
             "the machine can do"
         )
-    drawn.figure(effort.plot(), "effort-residual")
+    drawn.figure(effort.plot, "effort-residual")
     lines.append(
         f"effort along the measured motion: error {100 * effort.relative:.3f} % "
         f"(relative 2-norm), {effort.rms:.4g} {effort.unit} rms, "

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from .. import catalogue
+from ..atomic_files import write_text
 from ..errors import InputError
 from .figures import law_figures, name_of
 from .result import CONDITIONAL, YES, Comparison
@@ -89,7 +90,7 @@ def write(docs: Path, comparison: Comparison) -> list[Path]:
         text = path.read_text("utf-8")
         for name, block in blocks.items():
             text = filled(text, name, block, path)
-        path.write_text(text, encoding="utf-8")
+        write_text(path, text)
     return [*pages, *law_figures(docs / "figures"), *_lines(docs)]
 
 
@@ -162,7 +163,7 @@ def _lines(docs: Path) -> Iterator[Path]:
             rf"\n!\[[^\]]*\]\(\.\./figures/{re.escape(name_of(record.name))}\)\n", "", text
         )
         heading, _, rest = bare.partition("\n")
-        page.write_text(f"{heading}\n\n{figure_line(record.name)}\n{rest}", encoding="utf-8")
+        write_text(page, f"{heading}\n\n{figure_line(record.name)}\n{rest}")
         yield page
 
 

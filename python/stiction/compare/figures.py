@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from .. import catalogue
+from ..atomic_files import replacing
 from ..plot import ACCENT, FAINT, MEASURED, SIMULATED, SMALL, figure, legend
 from ..trajectory import FloatArray
 from .subject import Subject, variants
@@ -84,7 +85,8 @@ def _small(drawn: Figure, path: Path) -> Path:
     drawn.savefig(target, format="png", metadata={"Software": None})
     with Image.open(target) as picture:
         few = picture.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)
-        few.save(path, optimize=True)
+        with replacing(path) as file:
+            few.save(file, format="png", optimize=True)
     return path
 
 

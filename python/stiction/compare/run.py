@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
@@ -9,6 +10,8 @@ from .. import catalogue
 from ..catalogue import LawRecord
 from ..errors import InputError
 from ..given import names, whole
+from ..progress import phase
+from ..progress import steps as each_step
 from ..wording import did_you_mean, listed
 from .cost import BESIDE, costs
 from .draws import DRAWS
@@ -19,6 +22,8 @@ from .result import CONDITIONAL, Cell, Comparison, Row, verdict_of
 from .subject import Subject, variants
 
 __all__ = ["compare"]
+
+_logger = logging.getLogger(__name__)
 
 
 def compare(
@@ -67,7 +72,8 @@ def compare(
     )
     rows = []
     spent = costs([record.name for record in records])
-    for record in records:
+    for record in each_step(records, "law"):
+        phase(_logger, "comparing %s", record.name)
         if progress is not None:
             progress(record.name)
         rows.append(_row(record, steps, draws, spent))

@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from .. import session as sessions
+from ..atomic_files import create_text, subfolder
 from ..errors import InputError
 from ..given import vacant
 from ..session import Session
@@ -62,10 +63,10 @@ def copy(folder: str | Path) -> list[Path]:
         texts[f"recordings/{path.stem}.csv"] = _as_csv(path)
     vacant(folder, texts)
     try:
-        (folder / "recordings").mkdir(parents=True, exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
+        subfolder(folder, "recordings")
         for name, text in texts.items():
-            with (folder / name).open("x", encoding="utf-8", newline="\n") as file:
-                file.write(text)
+            create_text(folder / name, text)
     except OSError as error:
         raise InputError(
             f"{folder}: cannot be written to ({error.strerror}); give another folder"

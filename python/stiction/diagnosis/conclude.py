@@ -10,6 +10,7 @@ from typing import Final
 
 from ..compared import compared_by
 from ..fitting.rows import Rows
+from ..progress import phase
 from ..recording import Check
 from ..session import Session
 from ..trajectory import FloatArray
@@ -155,7 +156,7 @@ class Conclusion:
     @cached_property
     def opened(self) -> list[Rows]:
         """The rows that test."""
-        _logger.info("opening the test rows")
+        phase(_logger, "opening the test rows")
         return self.evidence.open_test()
 
     @cached_property

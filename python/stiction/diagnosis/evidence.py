@@ -17,6 +17,7 @@ from ..fitting.pushes import Watch
 from ..fitting.rows import Mask, Nuisances, Rows, require_motion, rows_of
 from ..fitting.starts import started
 from ..plant import Plant
+from ..progress import steps
 from ..recording import Part, Recording
 from ..recording.names import names_of, places_in_session
 from ..recording.split import BLOCK_S, Split, split
@@ -183,9 +184,9 @@ class Evidence:
     def each(self, work: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
         """Results of some work on each item, in their order, on as many threads as allowed."""
         if self.threads == 1 or len(items) < 2:
-            return [work(item) for item in items]
+            return [work(item) for item in steps(items, "recording")]
         with ThreadPoolExecutor(self.threads) as pool:
-            return list(pool.map(work, items))
+            return list(steps(pool.map(work, items), "recording", len(items)))
 
     def residual(self, plant: Plant, nuisances: Nuisances) -> FloatArray:
         """Weighted residual of all rows that may be looked at; shape (n,)."""

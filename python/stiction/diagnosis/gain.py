@@ -16,6 +16,8 @@ from .evidence import Cells, Evidence
 __all__ = ["Gain", "HeldOut", "gain_of", "residuals_of"]
 
 RESAMPLES: Final = 2000
+MOST_LEFT: Final = 1e100
+"""Beyond any residual, weighted."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,8 @@ def residuals_of(
 
     def left(plant: Plant, nuisances: Nuisances) -> FloatArray:
         own = evidence.each(lambda e: e.weight * e.residual(plant, nuisances)[e.mask], rows)
-        return np.nan_to_num(np.concatenate(own), nan=1e6)
+        # What runs away leaves much, and a number: its square is one as well.
+        return np.clip(np.nan_to_num(np.concatenate(own), nan=1e6), -MOST_LEFT, MOST_LEFT)
 
     # What a contact brought along into these recordings is no part of a plant. Of each law the
     # first model tells where it is looked for, and the others go on from there.

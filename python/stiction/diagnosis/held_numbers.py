@@ -9,6 +9,7 @@ from typing import Final
 
 from ..errors import InputError
 from ..fitting.variables import unit_of
+from ..progress import phase
 from ..recording import Check
 from .decide import LEAST_GAIN, LEAST_STRENGTH, LEAST_Z
 from .gains import heldout_gain
@@ -127,7 +128,7 @@ def _first(model: Model, name: str, causes: Sequence[str]) -> Held | None:
     """The number in the place of all causes, of the latest that it does as well as, or beside."""
     if name == "inertia" and model.plant.prescribed_motion:
         return None
-    _logger.info("asking whether %s fits", name)
+    phase(_logger, "asking whether %s fits", name)
     places = dict.fromkeys([tuple(causes), *((each,) for each in reversed(causes)), ()])
     return next(filter(None, (_asked(model, name, place) for place in places)), None)
 

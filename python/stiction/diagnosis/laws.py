@@ -6,10 +6,12 @@ import logging
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final
 
 import numpy as np
 
+from ..best_effort import Failure, attempt
 from ..catalogue import effects
 from ..catalogue import laws as all_laws
 from ..errors import InputError
@@ -18,6 +20,7 @@ from ..fitting.forms import followable, horizon_of
 from ..fitting.minimise import MOST_EVALUATIONS
 from ..fitting.starts import with_turns
 from ..parameter import Parameter
+from ..progress import phase, steps
 from ..stated import Friction
 from ..wording import did_you_mean, listed
 from .candidates import scales_of
@@ -70,6 +73,9 @@ ALIKE: Final = 1.005
 MOST_TOLD: Final = 100.0
 """Beyond so many times the power a number says nothing: the fit of the law has failed."""
 
+RUNS_AWAY: Final = "what it leaves are no finite numbers"
+"""Why a law is not compared that was fitted."""
+
 TOO_COARSE: Final = (
     "cannot be compared here: it yields within a few counts of the position, which are too coarse "
     "to drive it; state it in the plant file and diagnose with that, then it is simulated"
@@ -90,6 +96,8 @@ class Rival:
         Whether somebody wanted to see it.
     model : Model or None
         None where it could not be fitted.
+    why : str
+        Why it could not, "" where it leads nowhere.
     beside : float
         Share that it removes, on rows that decide, of what the plant leaves with all its effects;
         with those of them that are no part of any law, where that is more.
@@ -105,6 +113,7 @@ class Rival:
     beside: float = 0.0
     z: float = 0.0
     kept: tuple[str, ...] = ()
+    why: str = ""
 
     @property
     def better(self) -> bool:
@@ -169,23 +178,39 @@ def rivals_of(selection: Search, wanted: Sequence[str]) -> list[Rival]:
     wanted : sequence of str
         Names of laws that were asked for.
     """
-    base, final = selection.models[0], selection.models[-1]
     names = list(wanted)
-    rigid = not base.plant.friction.springy
+    rigid = not selection.models[0].plant.friction.springy
     if rigid and selection.choices and YIELDING not in names:
         names.append(YIELDING)
     rivals = []
-    for law in names:
-        model = _fitted(base, law, math.inf if law in wanted else HOPELESS * final.power)
-        if model is not None and law in wanted and not model.solution.interrupted:
-            model = _falling(model)
-        if model is not None and model.solution.interrupted:
+    for law in steps(names, "law"):
+        made = attempt(f"the comparison with {law}", partial(_rival, selection, law, law in wanted))
+        rival = (
+            Rival(law, law in wanted, None, why=str(made)) if isinstance(made, Failure) else made
+        )
+        if rival.model is not None and rival.model.solution.interrupted:
             # Half a fit is no fair comparison: what is known of the effects stays.
             selection.interrupted = True
             break
-        rival = Rival(law, law in wanted, model)
-        rivals.append(rival if model is None else _beside(final, model, rival, selection))
+        rivals.append(rival)
     return rivals
+
+
+def _rival(selection: Search, law: str, asked: bool) -> Rival:
+    """Another law, fitted, with what it is worth; where it cannot be, with the reason."""
+    base, final = selection.models[0], selection.models[-1]
+    try:
+        model = _fitted(base, law, math.inf if asked else HOPELESS * final.power)
+        if model is not None and asked and not model.solution.interrupted:
+            model = _falling(model)
+    except InputError as error:
+        _logger.info("%s: %s", law, error)
+        return Rival(law, asked, None, why=str(error))
+    if model is None or model.solution.interrupted:
+        return Rival(law, asked, model)
+    if not math.isfinite(model.power):
+        return Rival(law, asked, None, why=RUNS_AWAY)
+    return _beside(final, model, Rival(law, asked, model), selection)
 
 
 def _beside(final: Model, model: Model, rival: Rival, selection: Search) -> Rival:
@@ -205,7 +230,11 @@ def _beside(final: Model, model: Model, rival: Rival, selection: Search) -> Riva
     if not kept:
         return alone
     both = replace(model.plant, effects=(*model.plant.effects, *kept))
-    found = fitted(model.evidence, both, model.nuisances)
+    try:
+        found = fitted(model.evidence, both, model.nuisances)
+    except InputError as error:
+        _logger.info("%s beside %s: %s", joined([effect.name for effect in kept]), rival.law, error)
+        return alone
     if found.solution.interrupted:
         # What is known of the law alone stays.
         selection.interrupted = True
@@ -251,19 +280,23 @@ def better_laws(rivals: Sequence[Rival], own: int, test: HeldOut | None, seed: i
 
 
 def _fitted(base: Model, law: str, hopeless: float) -> Model | None:
-    """The plant with another law, fitted with the same weights; None where it cannot be.
+    """The plant with another law, fitted with the same weights.
 
-    Nor where it leaves more than ``hopeless``, a power, after a few steps.
+    None where it leaves more than ``hopeless``, a power, after a few steps.
 
     Terms of the law that a fit leaves alone and no effect would offer, such as the compliance of a
     rig, are tried as well, and stay where they leave less.
     """
-    _logger.info("fitting law %s", law)
+    phase(_logger, "fitting law %s", law)
     more = _left_alone(law)
     plain = _launched(base, Friction(law), hopeless)
     if not more or plain is None or plain.solution.interrupted:
         return plain
-    full = _launched(base, Friction(law, {**plain.plant.friction.parameters, **more}), hopeless)
+    try:
+        full = _launched(base, Friction(law, {**plain.plant.friction.parameters, **more}), hopeless)
+    except InputError as error:
+        _logger.info("%s with all of its terms: %s", law, error)
+        return plain
     return plain if full is None else _worth_its_terms(full, plain)
 
 
@@ -285,6 +318,9 @@ def _falling(plain: Model) -> Model:
         return plain
     low, high = scales_of(plain.evidence, plain.plant).speeds
     level = friction.parameters["coulomb"].value
+    if not level > 0.0:
+        # A level that is not there cannot fall.
+        return plain
     plants = [
         replace(
             plain.plant,
@@ -299,8 +335,12 @@ def _falling(plain: Model) -> Model:
         )
         for share in FALLS_AT
     ]
-    begin = min(plants, key=lambda plant: power_of(plain.evidence, plant, plain.nuisances))
-    return _worth_its_terms(fitted(plain.evidence, begin, plain.nuisances), plain)
+    try:
+        begin = min(plants, key=lambda plant: power_of(plain.evidence, plant, plain.nuisances))
+        return _worth_its_terms(fitted(plain.evidence, begin, plain.nuisances), plain)
+    except InputError as error:
+        _logger.info("%s that falls with speed: %s", friction.law, error)
+        return plain
 
 
 def _left_alone(law: str) -> dict[str, Parameter]:
@@ -316,21 +356,17 @@ def _left_alone(law: str) -> dict[str, Parameter]:
 
 def _launched(base: Model, friction: Friction, hopeless: float) -> Model | None:
     evidence = base.evidence
-    try:
-        bare = replace(base.plant, friction=friction)
-        _, found = launched(
-            bare,
-            evidence.train,
-            most=MOST_EVALUATIONS,
-            within=lambda start: followable(start, evidence.forms),
-            hopeless=hopeless,
-        )
-        if found.power > hopeless and not found.interrupted:
-            return None
-        return Model(evidence, with_turns(found, evidence.train, most=MOST_EVALUATIONS))
-    except InputError as error:
-        _logger.info("%s: %s", friction.law, error)
+    bare = replace(base.plant, friction=friction)
+    _, found = launched(
+        bare,
+        evidence.train,
+        most=MOST_EVALUATIONS,
+        within=lambda start: followable(start, evidence.forms),
+        hopeless=hopeless,
+    )
+    if found.power > hopeless and not found.interrupted:
         return None
+    return Model(evidence, with_turns(found, evidence.train, most=MOST_EVALUATIONS))
 
 
 def _fitted_power(model: Model) -> float:
@@ -366,7 +402,8 @@ def law_rows(
     for rival in rivals:
         if rival.model is None:
             if rival.asked:
-                row = LawRow(rival.law, None, "could not be fitted to these data")
+                why = f": {rival.why}" if rival.why else ""
+                row = LawRow(rival.law, None, f"could not be fitted to these data{why}")
                 rows.append((-math.inf, row))
             continue
         gain: Gain | None = None if test is None else gain_of(test, 0, index, seed)

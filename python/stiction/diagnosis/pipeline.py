@@ -17,6 +17,7 @@ from ..fitting.forms import told as residual_told
 from ..given import instance, whole
 from ..plant import Plant
 from ..products import on_one_thread
+from ..progress import phase
 from ..recording import Check, Recording
 from ..recording.checks import DOUBTED, without_failures
 from ..recording.names import names_of
@@ -215,23 +216,22 @@ def _testable(
     checks: Sequence[tuple[str, Check]],
 ) -> Diagnosis:
     """The diagnosis of data that can be used."""
-    _logger.info("looking through %d recordings", len(session))
-    _logger.info("fitting the base")
+    phase(_logger, "looking through %d recordings and fitting the base", len(session))
     evidence, base = based(found.plant, session.recordings, threads=threads)
     found, null = _replayed(found, evidence, base, surrogates)
     if null is None:
         return base_alone(found, evidence, base)
-    _logger.info("screening the effects")
+    phase(_logger, "screening the effects")
     look = _Searched(found, evidence, base, null, search(evidence, base, null, without=without))
     again = partial(_again, surrogates=surrogates, without=without)
     if not look.selection.interrupted:
         final = look.selection.models[-1]
         wider = based_wider(found.plant, session.recordings, evidence, final, threads=threads)
         if wider is not None:
-            _logger.info("screening the effects again, through wider kernels")
+            phase(_logger, "screening the effects again, through wider kernels")
             look = again(look, wider) or look
     if acts_for_seconds(look.evidence, look.selection, look.null):
-        _logger.info("screening limits again, over the rows that decide as well")
+        phase(_logger, "screening limits again, over the rows that decide as well")
         joined = based_joined(found.plant, session.recordings, look.evidence, threads=threads)
         before = look.selection
         second = joined and again(look, joined, without=(*without, *asked_before(before)))
@@ -296,7 +296,7 @@ def _replayed(
     try:
         if base.solution.interrupted:
             raise KeyboardInterrupt
-        _logger.info("replaying it with noise, %d times", surrogates)
+        phase(_logger, "replaying it with noise, %d times", surrogates)
         null, noises = surrogates_of(evidence, base, surrogates, found.seed)
     except KeyboardInterrupt:
         return found, None

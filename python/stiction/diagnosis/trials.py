@@ -13,6 +13,7 @@ from ..finite import finite
 from ..fitting.minimise import from_elsewhere
 from ..fitting.rows import Nuisances
 from ..plant import Plant
+from ..progress import phase
 from ..trajectory import FloatArray
 from .candidates import Candidate
 from .decide import Trial, judge
@@ -146,7 +147,7 @@ class Screening:
         return trial
 
     def _tried(self, base: Model, score: Score, best: float) -> Trial:
-        _logger.info("refitting with %s", score.candidate.name)
+        phase(_logger, "refitting with %s", score.candidate.name)
         model = _refit(self.evidence, base, self.signatures, score, best)
         explained = self.contributed(score, model)
         trial = self.judged(base, score, model, explained)

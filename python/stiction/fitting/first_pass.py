@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..plant import Plant
+from ..progress import phase
 from ..recording.names import names_of
 from ..weak_form import WeakForm
 from .forms import (
@@ -230,7 +231,7 @@ def _simulated(
     horizon = horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
     servo = plant.servo
     if horizon is not None or servo:
-        _logger.info("fitting it again, simulated")
+        phase(_logger, "fitting it again, simulated")
         other = again(found.plant, Through(horizon=horizon, loop=servo), seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
         begun = [found.plant, start] if servo else [found.plant]
@@ -271,7 +272,7 @@ def _wider(
     support = wider_of(found.plant, found.nuisances, seen.train, seen.forms)
     if support is None or "body.inertia" not in found.variables.paths:
         return known
-    _logger.info("fitting it again, through wider kernels")
+    phase(_logger, "fitting it again, through wider kernels")
     try:
         other = again(found.plant, Through(support=support), seen.watch)
         start, wide = launched(plant, other.train, most=most)

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..finite import finite
 from ..plant import Plant
+from ..progress import steps
 from ..trajectory import FloatArray
 from .levenberg import FIRST_DAMPING, Minimum, escaped, levenberg_marquardt
 from .rows import Nuisances, Rows, Start, numbers, primed, start_quantities, timing_bound
@@ -474,7 +475,10 @@ class _Minimiser:
         """What is left of the rows; kept, for a descent asks for its start once more."""
         if self._last is None or not np.array_equal(self._last[0], full):
             plant, nuisances = self.split(full)
-            rows = [each.weight * each.residual(plant, nuisances)[each.mask] for each in self.rows]
+            rows = [
+                each.weight * each.residual(plant, nuisances)[each.mask]
+                for each in steps(self.rows, "recording")
+            ]
             # A runaway trial must look bad, not break the optimiser.
             left = finite(np.concatenate(rows), RUNAWAY)
             self._last = np.array(full), left
@@ -483,7 +487,9 @@ class _Minimiser:
     def jacobian(self, full: FloatArray) -> FloatArray:
         plant, nuisances = self.split(full)
         count, paths = len(self.begin), self.variables.paths
-        self._slopes = np.vstack([slopes(each, plant, paths, nuisances) for each in self.rows])
+        self._slopes = np.vstack(
+            [slopes(each, plant, paths, nuisances) for each in steps(self.rows, "recording")]
+        )
         found: FloatArray = self._slopes.copy()
         found[:, :count] = self.variables.chain(found[:, :count], full[:count])
         if len(self.shrunk):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -13,6 +14,7 @@ from ..errors import InputError
 from ..given import instance, whole
 from ..plant import Plant
 from ..products import on_one_thread
+from ..progress import phase, steps
 from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.checks import without_failures
@@ -43,6 +45,8 @@ from .statistics import (
 from .variables import RATIOS, Variables, states_bound, unit_of, with_effort_in
 
 __all__ = ["evaluate", "fit", "reweighted", "settled"]
+
+_logger = logging.getLogger(__name__)
 
 AT_BOUND: Final = 1e-6
 """A value that has come this much of the way to its bound stands at it."""
@@ -79,7 +83,7 @@ class _Seen:
         self.forms = forms_of(
             plant,
             recordings,
-            lambda work, items: [work(item) for item in items],
+            lambda work, items: [work(item) for item in steps(items, "recording")],
             through,
         )
         self.parts = _deal(recordings, max(form.kernel.support for form in self.forms))
@@ -143,9 +147,11 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         raise InputError("there are no recordings to fit; give at least one")
     max_evaluations = whole(max_evaluations, "max_evaluations", least=0)
     recordings, faults = _without_faults(recordings)
+    phase(_logger, "looking through %d recordings", len(recordings))
     seen = _Seen(plant, recordings)
     if not free_paths(plant) and not free_paths(complete(plant, [r.form for r in seen.train])[0]):
         raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
+    phase(_logger, "fitting %s", plant.friction.law)
     first = first_pass(
         plant,
         seen,
@@ -154,6 +160,7 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     )
     seen, train = first.seen, first.seen.train
     begin, evaluations = first.solution.begin, first.solution.evaluations
+    phase(_logger, "fitting it again, each recording with a weight of its own")
     solution = settled(first.solution, train, most=max_evaluations)
     if solution is not first.solution:
         evaluations += solution.evaluations

@@ -183,7 +183,10 @@ class Variables:
         """The vector for these parameter values, moved inside the bounds."""
         vector = np.array(values, dtype=np.float64)
         for child, parent in self.ratio_of.items():
-            vector[child] = values[child] / values[parent]
+            lesser, greater = float(values[child]), float(values[parent])
+            # Where both are 0 (or both without end) one is no share of the other: they are equal.
+            told = greater > 0.0 and not math.isinf(lesser)
+            vector[child] = lesser / greater if told else SHARES[1]
         own = np.maximum(vector[self.logarithmic], self.lower[self.logarithmic])
         vector[self.logarithmic] = np.log(own)
         return np.asarray(np.clip(vector, *self.bounds()))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .. import given
+from ..atomic_files import replacing, subfolder, write_text
 from ..errors import InputError, UnknownName
 from ..plant import Plant
 from ..recording.recording import SPLIT_ROLES
@@ -79,8 +80,8 @@ class Signal:
         """Write it as CSV into a folder; returns the path."""
         path = Path(where) / f"{self.name}.csv"
         rows = np.column_stack([self.time, self.values])
-        with path.open("w", encoding="utf-8", newline="\n") as file:
-            file.write(f"time_s,{self.column}\n")
+        with replacing(path) as file:
+            file.write(f"time_s,{self.column}\n".encode())
             np.savetxt(file, rows, fmt="%.9g", delimiter=",")
         return path
 
@@ -185,13 +186,16 @@ class Plan:
         folder = given.path(where, "Plan.save")
         given.vacant(folder, FILLED_IN)
         try:
-            (folder / "signals").mkdir(parents=True, exist_ok=True)
+            folder.mkdir(parents=True, exist_ok=True)
+            signals = subfolder(folder, "signals")
             for signal in self.signals:
-                signal.save(folder / "signals")
-                plot.save(signal.plot(), folder / "signals" / f"{signal.name}.svg")
-            (folder / "plan.json").write_text(json_of(self.to_dict()) + "\n", encoding="utf-8")
-            (folder / "session.toml").write_text(self._session(), encoding="utf-8")
+                signal.save(signals)
+            write_text(folder / "plan.json", json_of(self.to_dict()) + "\n")
             self.plant.save(folder / "plant.toml")
+            write_text(folder / "session.toml", self._session())
+            for signal in self.signals:
+                drawn = signals / f"{signal.name}.svg"
+                plot.save_or_say(f"the figure of {signal.name}", signal.plot, drawn)
         except OSError as error:
             raise InputError(
                 f"{folder}: cannot be written ({error.strerror}); give another folder with --out"

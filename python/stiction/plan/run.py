@@ -14,6 +14,7 @@ from ..errors import InputError
 from ..given import instance, names, whole
 from ..parameter import number
 from ..plant import Plant
+from ..progress import phase
 from ..recording.recording import SPLIT_ROLES
 from ..trajectory import FloatArray
 from ..wording import did_you_mean, listed
@@ -101,7 +102,7 @@ def plan(
                 "loops are left out: the law of this plant does not yield before it slides"
             )
             continue
-        _logger.info("planning %s", experiment.name)
+        phase(_logger, "planning %s", experiment.name)
         made = [
             _signal(
                 plant,

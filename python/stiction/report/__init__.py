@@ -5,14 +5,17 @@ A section is a builder in ``sections`` and a template of the same name in ``temp
 
 from __future__ import annotations
 
+from html import escape
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
-from .files import encoded, made, moved, refused
+from ..atomic_files import subfolder, write_text
+from ..best_effort import Failure, attempt
+from .files import made, refused, without_others
 
 if TYPE_CHECKING:
     from ..diagnosis import Diagnosis
+    from .drawings import Drawings
 
 __all__ = ["write"]
 
@@ -22,15 +25,16 @@ REPORT: Final = "report.html"
 def write(diagnosis: Diagnosis, folder: Path) -> Path:
     """Write report.html, findings.json, plant.toml and figures/*.svg.
 
-    Every file is written under another name and then moved to its own, the report last: whatever
-    stops this, no file is half there. The same diagnosis gives the same bytes, except for
-    ``seconds`` in findings.json, which is how long it took.
+    The numbers are on the disk before anything is drawn, and no file is ever half there. A figure
+    or a section that fails is a sentence in its place. The same diagnosis gives the same bytes,
+    except for ``seconds`` in findings.json, which is how long it took.
 
     Parameters
     ----------
     diagnosis : Diagnosis
     folder : Path
-        Made where it is not there; files of an earlier report in it are replaced.
+        Made where it is not there; files of an earlier report in it are replaced, also where one
+        is a link.
 
     Returns
     -------
@@ -42,18 +46,42 @@ def write(diagnosis: Diagnosis, folder: Path) -> Path:
     InputError
         The folder cannot be made or written to.
     """
-    from .drawings import draw
-    from .page import render
-
     made(folder)
     try:
-        with TemporaryDirectory(dir=folder, prefix=".writing-") as name:
-            drafts = Path(name)
-            drawings = draw(diagnosis, made(drafts / "figures"))
-            diagnosis.plant.save(drafts / "plant.toml")
-            (drafts / "findings.json").write_bytes(encoded(diagnosis.to_json() + "\n"))
-            (drafts / REPORT).write_bytes(encoded(render(diagnosis, drawings)))
-            moved(drafts, folder, ("plant.toml", "findings.json", REPORT))
+        write_text(folder / "findings.json", diagnosis.to_json() + "\n")
+        diagnosis.plant.save(folder / "plant.toml")
+        drawn = attempt("the figures", lambda: _drawn(diagnosis))
+        drawings = {} if isinstance(drawn, Failure) else drawn
+        figures = subfolder(folder, "figures")
+        kept = {f"{each.name}.svg": each.svg for each in drawings.values() if each.svg}
+        for name, svg in kept.items():
+            write_text(figures / name, svg)
+        without_others(figures, kept)
+        remarks = (str(drawn),) if isinstance(drawn, Failure) else ()
+        page = attempt("the page", lambda: _rendered(diagnosis, drawings, remarks))
+        write_text(folder / REPORT, _bare(diagnosis, page) if isinstance(page, Failure) else page)
     except OSError as error:
         raise refused(folder, "cannot be written to", error) from None
     return folder / REPORT
+
+
+def _drawn(diagnosis: Diagnosis) -> Drawings:
+    from .drawings import draw
+
+    return draw(diagnosis)
+
+
+def _rendered(diagnosis: Diagnosis, drawings: Drawings, remarks: tuple[str, ...]) -> str:
+    from .page import render
+
+    return render(diagnosis, drawings, remarks)
+
+
+def _bare(diagnosis: Diagnosis, failure: Failure) -> str:
+    """The page where there is none: the verdict, and why there is no more."""
+    return (
+        '<!doctype html><html lang="en"><head><meta charset="utf-8"><title>stiction diagnosis'
+        f"</title></head><body><h1>stiction diagnosis</h1><p>{escape(diagnosis.sentence)}</p>"
+        f'<p role="note">{escape(failure.sentence)}</p><p>All numbers are in '
+        '<a href="findings.json">findings.json</a>.</p></body></html>\n'
+    )

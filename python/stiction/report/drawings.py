@@ -2,27 +2,34 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
+from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
+from markupsafe import Markup
+
+from ..best_effort import Failure, attempt
 from ..compared import compared_by
+from ..progress import phase, steps
 from . import figures
 from .numbers import isolated, percent, plain
 from .scale import scale_of
 from .svg import inline, text_of
 
 if TYPE_CHECKING:
-    from markupsafe import Markup
     from matplotlib.figure import Figure
 
     from ..diagnosis.omnibus import View
     from ..diagnosis.result import Diagnosis
 
-__all__ = ["Drawing", "Drawings", "draw"]
+__all__ = ["Drawing", "Drawings", "Order", "draw", "orders"]
+
+
+_logger = logging.getLogger(__name__)
 
 
 class _Drawn(Protocol):
@@ -41,12 +48,18 @@ class Drawing:
         What to see in it.
     wide, narrow : Markup
         For screens and paper, and for phones.
+    svg : str
+        Text of its file; "" where it could not be drawn.
+    failure : str
+        Why it could not be drawn.
     """
 
     name: str
     caption: str
     wide: Markup
     narrow: Markup
+    svg: str = ""
+    failure: str = ""
 
 
 Drawings = dict[str, Drawing]
@@ -54,28 +67,43 @@ Drawings = dict[str, Drawing]
 
 
 @dataclass(frozen=True)
-class _Order:
-    """A figure to draw: its name, how, what it is called and what to see in it."""
+class _Shown:
+    """A figure to draw: how, what it is called and what to see in it."""
 
-    name: str
     draw: _Drawn
     label: str
     caption: str
 
 
-def draw(diagnosis: Diagnosis, folder: Path) -> Drawings:
-    """Draw every figure that the diagnosis has data for, and write each as SVG into ``folder``."""
-    made: Drawings = {}
-    for order in _orders(diagnosis):
-        wide = text_of(order.draw(diagnosis, narrow=False))
-        (folder / f"{order.name}.svg").write_text(wide, encoding="utf-8")
-        narrow = text_of(order.draw(diagnosis, narrow=True))
-        made[order.name] = Drawing(
-            order.name,
-            order.caption,
-            inline(wide, order.name, order.label),
-            inline(narrow, f"{order.name}-narrow", order.label),
+@dataclass(frozen=True)
+class Order:
+    """A figure that a diagnosis has data for."""
+
+    name: str
+    shown: Callable[[Diagnosis], _Shown]
+
+    def draw(self, diagnosis: Diagnosis) -> Drawing:
+        """Draw it, wide and narrow."""
+        shown = self.shown(diagnosis)
+        wide, narrow = (text_of(shown.draw(diagnosis, narrow=each)) for each in (False, True))
+        return Drawing(
+            self.name,
+            shown.caption,
+            inline(wide, self.name, shown.label),
+            inline(narrow, f"{self.name}-narrow", shown.label),
+            wide,
         )
+
+
+def draw(diagnosis: Diagnosis) -> Drawings:
+    """Draw every figure that the diagnosis has data for; of one that fails, say why."""
+    made: Drawings = {}
+    phase(_logger, "drawing the report")
+    for order in steps(orders(diagnosis), "figure"):
+        drawn = attempt(f"the figure {order.name}", partial(order.draw, diagnosis))
+        if isinstance(drawn, Failure):
+            drawn = Drawing(order.name, "", Markup(), Markup(), failure=drawn.sentence)
+        made[order.name] = drawn
     return made
 
 
@@ -84,39 +112,50 @@ def cause_name(index: int, name: str) -> str:
     return f"cause-{index + 1}-{re.sub(r'[^a-z0-9_]', '_', name.lower())}"
 
 
-def _orders(diagnosis: Diagnosis) -> Iterator[_Order]:
+def orders(diagnosis: Diagnosis) -> list[Order]:
+    """The figures that a diagnosis has data for."""
+    found = []
     pictures = diagnosis.pictures
     if pictures is not None:
         if pictures.stretches:
-            yield _headline(diagnosis)
-        for index in range(min(len(diagnosis.effects), len(pictures.causes))):
-            yield _cause(diagnosis, index)
+            found.append(Order("before-after", _headline))
+        for index, (cause, _) in enumerate(zip(diagnosis.effects, pictures.causes, strict=False)):
+            found.append(Order(cause_name(index, cause.name), partial(_cause, index=index)))
         if pictures.after.views:
-            yield _coordinates(diagnosis)
+            found.append(Order("coordinates", _coordinates))
         if pictures.tracking is not None:
-            yield _closed_loop(diagnosis)
+            found.append(Order("closed-loop", _closed_loop))
     if any(row.score is not None for row in diagnosis.candidates):
-        yield _Order(
-            "candidates",
-            figures.candidates,
-            "Bars of the share of the residual that each effect would explain, with a mark for "
-            "what noise alone reaches.",
-            "Blue: accepted. Grey: refused, for the reason in the table.",
-        )
+        found.append(Order("candidates", _candidates))
     models = (diagnosis.baseline, diagnosis.extended)
     fitted = all(model is not None and math.isfinite(model.train_rms) for model in models)
     if pictures is not None and fitted:
-        noise = scale_of(diagnosis).text(pictures.floor)
-        yield _Order(
-            "errors",
-            figures.errors,
-            "Residual before and after, by what rows are for and by recording, beside the noise.",
-            f"The grey zone is what noise alone would leave, about {noise} rms."
-            + (" Recordings by name are held out." if len(pictures.stretches) > 1 else ""),
-        )
+        found.append(Order("errors", _errors))
+    return found
 
 
-def _headline(diagnosis: Diagnosis) -> _Order:
+def _candidates(diagnosis: Diagnosis) -> _Shown:
+    return _Shown(
+        figures.candidates,
+        "Bars of the share of the residual that each effect would explain, with a mark for "
+        "what noise alone reaches.",
+        "Blue: accepted. Grey: refused, for the reason in the table.",
+    )
+
+
+def _errors(diagnosis: Diagnosis) -> _Shown:
+    pictures = diagnosis.pictures
+    assert pictures is not None
+    noise = scale_of(diagnosis).text(pictures.floor)
+    return _Shown(
+        figures.errors,
+        "Residual before and after, by what rows are for and by recording, beside the noise.",
+        f"The grey zone is what noise alone would leave, about {noise} rms."
+        + (" Recordings by name are held out." if len(pictures.stretches) > 1 else ""),
+    )
+
+
+def _headline(diagnosis: Diagnosis) -> _Shown:
     pictures = diagnosis.pictures
     assert pictures is not None
     stretch = pictures.stretches[0]
@@ -134,8 +173,7 @@ def _headline(diagnosis: Diagnosis) -> _Order:
     else:
         label = f"{what} the model does not explain of it, over time."
         shown = f"{what} {model} of it"
-    return _Order(
-        "before-after",
+    return _Shown(
         figures.headline,
         label,
         f"{shown}, in {isolated(stretch.name)}: {rows}. Gaps are rows used otherwise or left "
@@ -143,7 +181,7 @@ def _headline(diagnosis: Diagnosis) -> _Order:
     )
 
 
-def _cause(diagnosis: Diagnosis, index: int) -> _Order:
+def _cause(diagnosis: Diagnosis, index: int) -> _Shown:
     pictures = diagnosis.pictures
     assert pictures is not None
     cause = diagnosis.effects[index]
@@ -171,7 +209,7 @@ def _cause(diagnosis: Diagnosis, index: int) -> _Order:
         return figures.cause(diagnosis, index, narrow=narrow)
 
     label = f"{plain(cause.name)}: {what.lower()} against {over}, before and after."
-    return _Order(cause_name(index, cause.name), drawn, label, caption)
+    return _Shown(drawn, label, caption)
 
 
 def _followed(before: View, after: View, there: str, with_it: str) -> str:
@@ -190,11 +228,10 @@ def _followed(before: View, after: View, there: str, with_it: str) -> str:
     )
 
 
-def _coordinates(diagnosis: Diagnosis) -> _Order:
+def _coordinates(diagnosis: Diagnosis) -> _Shown:
     both = bool(diagnosis.effects)
     shares = "before → after" if both else "now"
-    return _Order(
-        "coordinates",
+    return _Shown(
         figures.coordinates,
         "Mean residual over the coordinates in which most shows"
         + (", before and after," if both else "")
@@ -208,13 +245,12 @@ def _coordinates(diagnosis: Diagnosis) -> _Order:
     )
 
 
-def _closed_loop(diagnosis: Diagnosis) -> _Order:
+def _closed_loop(diagnosis: Diagnosis) -> _Shown:
     pictures = diagnosis.pictures
     assert pictures is not None
     assert pictures.tracking is not None
     both = ", before and after" if diagnosis.effects else ""
-    return _Order(
-        "closed-loop",
+    return _Shown(
         figures.closed_loop,
         f"Tracking error over time, measured and simulated{both}, and their difference.",
         "Position less reference, measured and simulated under the same controller, in "

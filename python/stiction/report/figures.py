@@ -190,7 +190,7 @@ def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     parts = [part for view in shown for part in (view.mean, view.low, view.high)]
     span = scale.factor * _extent(parts)
     for position, (panel, view) in enumerate(zip(panels, views, strict=False)):
-        first = before[view.coordinate.name]
+        first = before.get(view.coordinate.name, view)
         _curves(panel, first if both else view, view if both else None, scale, size=2.0)
         panel.set_ylim(-1.1 * span, 1.1 * span)
         ticks(panel, 2 if narrow else 4, 4)
@@ -217,7 +217,7 @@ def most_shown(pictures: Pictures) -> list[View]:
     before = {view.coordinate.name: view.share for view in pictures.before.views}
 
     def shows(view: View) -> tuple[bool, float]:
-        return view.flagged(), max(view.share, before[view.coordinate.name])
+        return view.flagged(), max(view.share, before.get(view.coordinate.name, view.share))
 
     chosen = sorted(pictures.after.views, key=shows, reverse=True)[:MOST_PANELS]
     names = {view.coordinate.name for view in chosen}
@@ -364,8 +364,8 @@ def _pictures(diagnosis: Diagnosis) -> Pictures:
 
 def _curves(panel: Axes, before: View, after: View | None, scale: Scale, *, size: float) -> None:
     """Mean residuals and the band of the surrogates, over one coordinate."""
-    at, *curves = _merged(before, after)
-    low, high, *means = (scale.factor * curve for curve in curves)
+    across = _across(before)[0]
+    at, low, high, mean = _merged(before, across)
     if _logarithmic(before):
         # A coordinate that begins at 0 is linear up to the first stretch that does not.
         least = float(at[at > 0.0].min())
@@ -374,28 +374,29 @@ def _curves(panel: Axes, before: View, after: View | None, scale: Scale, *, size
             **({} if at.min() > 0.0 else {"linthresh": least, "linscale": 0.3}),
         )
     panel.axhline(0.0, color=FAINT, linewidth=0.7)
-    panel.fill_between(at, low, high, color=BAND, linewidth=0.0, label="noise alone, 95 %")
+    band = scale.factor * low, scale.factor * high
+    panel.fill_between(at, *band, color=BAND, linewidth=0.0, label="noise alone, 95 %")
     keywords: dict[str, Any] = {"ms": size, "linewidth": 1.1}
     if after is None:
-        panel.plot(at, means[0], "-s", color=AFTER, label="what is left", **keywords)
+        panel.plot(at, scale.factor * mean, "-s", color=AFTER, label="what is left", **keywords)
         return
-    panel.plot(at, means[0], "-o", color=BEFORE, label="before", **keywords)
-    panel.plot(at, means[1], "-s", color=AFTER, label="after", **keywords)
+    panel.plot(at, scale.factor * mean, "-o", color=BEFORE, label="before", **keywords)
+    # Each model may lay its stretches elsewhere: an effort is the modelled one where it is noisy.
+    at, _, _, mean = _merged(after, across)
+    panel.plot(at, scale.factor * mean, "-s", color=AFTER, label="after", **keywords)
 
 
-def _merged(before: View, after: View | None) -> list[np.ndarray]:
-    """Centres, band and means, with stretches that would lie on one another drawn as their mean.
+def _merged(view: View, across: float) -> tuple[np.ndarray, ...]:
+    """Centres times ``across``, band and means, with stretches that lie on one another as one.
 
     Stretches hold equally many rows each, so that where a machine runs at one speed many of them
-    have the same place.
+    have the same place: they are drawn as their mean.
     """
-    parts = [_across(before)[0] * before.at, before.low, before.high, before.mean]
-    if after is not None:
-        parts.append(after.mean)
-    seen = np.isfinite(before.at)
+    seen = np.isfinite(view.at)
+    parts = (across * view.at, view.low, view.high, view.mean)
     columns = np.array([part[seen] for part in parts])
     along = columns[0]
-    if _logarithmic(before):
+    if _logarithmic(view):
         along = np.log(np.maximum(along, float(along[along > 0.0].min())))
     reach = TOGETHER * float(np.ptp(along)) if along.size else 0.0
     group = np.zeros(along.size, dtype=np.int64)
@@ -405,7 +406,7 @@ def _merged(before: View, after: View | None) -> list[np.ndarray]:
             first = k
         group[k] = group[k - 1] + (first == k)
     counts = np.maximum(np.bincount(group), 1)
-    return [np.bincount(group, weights=column) / counts for column in columns]
+    return tuple(np.bincount(group, weights=column) / counts for column in columns)
 
 
 def _logarithmic(view: View) -> bool:

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
-from .sections import BUILDERS
+from markupsafe import Markup, escape
+
+from ..best_effort import Failure, attempt
+from .sections import BUILDERS, Builder, name_of
 
 if TYPE_CHECKING:
-    from markupsafe import Markup
+    from jinja2 import Environment
 
     from ..diagnosis.result import Diagnosis
     from .drawings import Drawings
@@ -16,13 +22,25 @@ if TYPE_CHECKING:
 __all__ = ["render"]
 
 
-def render(diagnosis: Diagnosis, drawings: Drawings) -> str:
+@dataclass(frozen=True)
+class _Rendered:
+    """A section as an element of the page; ``kind`` is the class of the first one."""
+
+    name: str
+    title: str
+    body: Markup
+    kind: str = ""
+
+
+def render(diagnosis: Diagnosis, drawings: Drawings, remarks: Sequence[str] = ()) -> str:
     """The text of report.html.
 
     Parameters
     ----------
     diagnosis : Diagnosis
     drawings : dict of str to Drawing
+    remarks : sequence of str
+        What could not be made, where no section says so.
 
     Returns
     -------
@@ -39,12 +57,48 @@ def render(diagnosis: Diagnosis, drawings: Drawings) -> str:
         lstrip_blocks=True,
     )
     environment.filters["breakable"] = _breakable
-    built = (builder(diagnosis, drawings) for builder in BUILDERS)
-    sections = [section for section in built if section is not None]
+    found = [_section(builder, diagnosis, drawings, environment) for builder in BUILDERS]
+    sections = [section for section in found if section is not None]
+    # The section that would show a figure may not be there itself.
+    unsaid = [
+        each.failure
+        for each in drawings.values()
+        if each.failure and not any(escape(each.failure) in section.body for section in sections)
+    ]
     page: str = environment.get_template("page.html").render(
-        diagnosis=diagnosis, drawings=drawings, sections=sections
+        diagnosis=diagnosis,
+        drawings=drawings,
+        sections=sections,
+        remarks=[*remarks, *unsaid],
     )
     return labelled(page)
+
+
+def _section(
+    builder: Builder, diagnosis: Diagnosis, drawings: Drawings, environment: Environment
+) -> _Rendered | None:
+    """A section; where it fails, its name and why, with the verdict where that is lost."""
+    name = name_of(builder)
+    made = attempt(
+        f"the section {name}", partial(_built, builder, diagnosis, drawings, environment)
+    )
+    if not isinstance(made, Failure):
+        return made
+    first = builder is BUILDERS[0]
+    verdict = f'<p class="sentence">{escape(diagnosis.sentence)}</p>\n' if first else ""
+    body = Markup(f'{verdict}<p class="banner" role="note">{escape(made.sentence)}</p>')
+    return _Rendered(name, name.capitalize(), body)
+
+
+def _built(
+    builder: Builder, diagnosis: Diagnosis, drawings: Drawings, environment: Environment
+) -> _Rendered | None:
+    section = builder(diagnosis, drawings)
+    if section is None:
+        return None
+    body = environment.get_template(f"{section.name}.html").render(content=section.content)
+    kind = str(section.content.get("verdict", ""))
+    return _Rendered(section.name, section.title, Markup(body), kind)
 
 
 def labelled(page: str) -> str:
@@ -72,7 +126,5 @@ _TAG = re.compile(r"<[^>]*>")
 
 def _breakable(path: str) -> Markup:
     """A path of a parameter that may break behind its dots and underscores."""
-    from markupsafe import Markup, escape
-
     words = re.split(r"(?<=[._])", path)
     return Markup("<wbr>").join(escape(word) for word in words)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...wording import nearest
+from ..row_count import complete
 from ..table import Table
 from . import delimited, json_records, mat, npz, parquet
 from .format import Format
@@ -40,7 +41,8 @@ def read_table(path: str | os.PathLike[str]) -> Table:
     Raises
     ------
     InputError
-        If the file is missing, empty, a folder, of an unknown kind, or not what its ending says.
+        If the file is missing, empty, a folder, of an unknown kind, or not what its ending says;
+        if it says how many rows it has, and has others.
     """
     file = Path(path)
     # Asking for a file of an overlong name fails as reading one does.
@@ -52,7 +54,7 @@ def read_table(path: str | os.PathLike[str]) -> Table:
         chosen = _format_of(file)
         if file.stat().st_size == 0:
             raise InputError(f"{file}: the file is empty; record it again or name another")
-        return chosen.read(file)
+        return complete(chosen.read(file))
     except OSError as error:
         reason = error.strerror or "the system refuses"
         raise InputError(

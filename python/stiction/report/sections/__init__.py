@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from . import advice, candidates, data, findings, laws, loop, method, models, rest, verdict
 from .section import Section
@@ -12,9 +12,11 @@ if TYPE_CHECKING:
     from ...diagnosis.result import Diagnosis
     from ..drawings import Drawings
 
-__all__ = ["BUILDERS", "Section"]
+__all__ = ["BUILDERS", "Builder", "Section", "name_of"]
 
-BUILDERS: Final[tuple[Callable[[Diagnosis, Drawings], Section | None], ...]] = (
+Builder: TypeAlias = "Callable[[Diagnosis, Drawings], Section | None]"
+
+BUILDERS: Final[tuple[Builder, ...]] = (
     verdict.build,
     findings.build,
     rest.build,
@@ -26,3 +28,8 @@ BUILDERS: Final[tuple[Callable[[Diagnosis, Drawings], Section | None], ...]] = (
     data.build,
     method.build,
 )
+
+
+def name_of(builder: Builder) -> str:
+    """Name of the section that a builder makes: that of its file."""
+    return builder.__module__.rpartition(".")[2]

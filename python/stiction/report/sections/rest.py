@@ -37,7 +37,7 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
     rows = [
         {
             "coordinate": view.coordinate.name,
-            "before": percent(max(before[view.coordinate.name].share, 0.0)),
+            "before": percent(max(before.get(view.coordinate.name, view).share, 0.0)),
             "after": percent(max(view.share, 0.0)),
             "limit": percent(max(view.threshold, 0.0)),
             "flagged": view.flagged(),
