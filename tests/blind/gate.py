@@ -16,6 +16,7 @@ import shlex
 import shutil
 import sys
 import time
+import tomllib
 from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -35,7 +36,7 @@ from .draw import library
 from .real import data_folder, lay, machines
 from .way import Answer, walked
 
-PATIENCE = 240.0
+PATIENCE = 600.0
 """s of one command: of these sessions none takes a tenth of it on a machine that is not busy."""
 SECONDS = (8.0, 18.0)
 """Of an ordinary session."""
@@ -44,6 +45,7 @@ PLANNED = {"kinds": ("tracking", "ramps", "dwell"), "seconds": 18.0}
 """Of a planned session: half of the experiments, each once for each role."""
 SIZES = (0.004, 0.03)
 """Of what planned sessions hide."""
+KEPT = Path(__file__).with_name("kept.toml")
 UNTRIED = ("lugre", "leuven")
 """Laws whose diagnosis takes minutes, which a gate has not."""
 
@@ -68,7 +70,7 @@ class Entry:
 
 
 def entries(seed: int) -> list[Entry]:
-    """Sessions of every family, drawn from a seed, and every real machine that is there."""
+    """Every real machine that is there, what was lost once, and fresh ones of every family."""
     rng = np.random.default_rng([seed, 24])
     found = [
         *_planned("planned null", rng, 2, lambda: ()),
@@ -89,7 +91,21 @@ def entries(seed: int) -> list[Entry]:
         Entry(machine.name, lambda where, machine=machine: lay(machine, folder, where))
         for machine in machines(folder)
     ]
-    return real + found
+    return real + kept() + found
+
+
+def kept() -> list[Entry]:
+    """Ordinary sessions that were lost once."""
+    found = []
+    for each in tomllib.loads(KEPT.read_text(encoding="utf-8")).get("sessions", ()):
+        given = {name: value for name, value in each.items() if name != "why"}
+        spec = Spec(**given)
+        found.append(Entry(f"kept {spec.seed}", lambda where, spec=spec: _made(spec, where)))
+    return found
+
+
+def _made(spec, where):
+    return write(ordinary(spec), where)
 
 
 def _some(rng, names, number):
@@ -132,7 +148,7 @@ def _ordinary(name, rng, number, given):
         }
         spec = Spec(**usual | given())
         made = f"{name} {k + 1} ({spec.law}{' ' + spec.hidden if spec.hidden else ''})"
-        yield Entry(made, lambda where, spec=spec: write(ordinary(spec), where))
+        yield Entry(made, lambda where, spec=spec: _made(spec, where))
 
 
 def _hidden(rng, names):

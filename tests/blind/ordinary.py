@@ -15,6 +15,7 @@ import tempfile
 import zlib
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ import stiction as st
 from .__main__ import read_rows, state_of
 from .ordinary_table import report
 from .score import families_of, told
-from .way import walked
+from .way import PATIENCE, walked
 
 CASES = ("grid", "null", "hidden")
 FIRST_SEED = 5_000_000
@@ -59,7 +60,8 @@ def cases(kinds, number, seed):
     laws, effects = _deck(rng, [law.name for law in st.laws()]), _deck(rng, HIDDEN)
     for k in range(number if drawn else 0):
         contact = str(rng.choice(["dry", "dry", "bristle"]))
-        law = str(rng.choice(TRUE_LAWS[contact])) if rng.random() < OWN_LAW else next(laws)
+        # The first of the laws that are right: others have their turn with all.
+        law = TRUE_LAWS[contact][0] if rng.random() < OWN_LAW else next(laws)
         kind = drawn[k % len(drawn)]
         spec = Spec(FIRST_SEED + SEEDS_EACH * seed + k, law=law, contact=contact)
         if kind == "hidden":
@@ -75,13 +77,12 @@ def _deck(rng, cards):
             yield cards[index]
 
 
-def judged(case, threads=1, options=()):
+def judged(case, patience=PATIENCE):
     """One case, the user's way: a line of the results."""
     made = ordinary(case.spec)
     with tempfile.TemporaryDirectory(prefix="stiction-ordinary-") as name:
         path = write(made, Path(name) / "session")
-        words = ["--threads", str(threads), *options]
-        row = told(walked(path, Path(name) / "out", words))
+        row = told(walked(path, Path(name) / "out", ["--threads", "1"], patience=patience))
     families, spec = families_of(), made.spec
     return {
         "key": case.key,
@@ -108,7 +109,7 @@ def main():
     plan = [c for c in cases(args.cases, args.number, args.seed) if c.key not in done]
     try:
         with ThreadPoolExecutor(args.jobs) as pool:
-            for row in pool.map(judged, plan):
+            for row in pool.map(partial(judged, patience=args.patience), plan):
                 row = {"state": state} | row
                 with args.out.open("a", encoding="utf-8") as file:
                     file.write(json.dumps(row) + "\n")
@@ -141,6 +142,7 @@ def _arguments():
     parser.add_argument("--number", type=int, default=48, help="drawn sessions; 0 counts only")
     parser.add_argument("--seed", type=int, default=0, help="of the draw, from 0")
     parser.add_argument("--jobs", type=int, default=1, help="sessions side by side")
+    parser.add_argument("--patience", type=float, default=PATIENCE, help="s, of one command")
     parser.add_argument("--out", type=Path, default=Path("ordinary.jsonl"), help="a line a session")
     return parser.parse_args()
 

@@ -9,11 +9,17 @@ from typing import Any
 
 import pytest
 
+from .gate import entries, kept
 from .ordinary_table import report as ordinary_report
+from .real import data_folder, machines
 from .score import told
 from .table import report
 from .way import Answer, Loss, finite, judged, walked
 
+FAMILIES = (
+    *("planned null", "planned single", "planned pair", "planned foreign", "planned, left out"),
+    *("ordinary null", "ordinary hidden", "servo", "moved", "data fault", "not testable"),
+)
 FAKE = """
 import json, sys, time
 from pathlib import Path
@@ -238,3 +244,15 @@ def test_tables_begin_with_what_was_lost() -> None:
     lines = ordinary_report(rows).splitlines()
     assert lines[2].startswith("| **lost**: no whole answer | 1/2 = 50.0 %")
     assert "| right: nothing is missing | 1/1 = 100.0 % (20.7–100.0) |" in lines
+
+
+def test_the_gate_has_every_family_and_is_the_same_again() -> None:
+    names = [entry.name for entry in entries(7)]
+    assert names == [entry.name for entry in entries(7)]
+    assert names != [entry.name for entry in entries(8)]
+    assert len(set(names)) == len(names)
+    real = {machine.name for machine in machines(data_folder())} | {e.name for e in kept()}
+    fresh = [name for name in names if name not in real]
+    assert len(fresh) >= 24
+    for family in FAMILIES:
+        assert any(name.startswith(family) for name in fresh), family
