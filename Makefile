@@ -11,6 +11,8 @@ BIN := $(VENV)/bin
 READY := $(VENV)/ready
 OUT ?= stiction-demo
 BLIND ?= target/blind
+GATE ?= target/gate
+JOBS ?= 2
 NUMBER ?= 200
 SEED ?= 0
 EDITION := $(shell sed -n 's/^edition = "\(.*\)"/\1/p' Cargo.toml)
@@ -21,7 +23,7 @@ export PYO3_PYTHON := $(abspath $(BIN)/python)
 export CARGO_TERM_PROGRESS_WHEN := never
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test lint rust-tests python-tests blind wheel bench format clean toolchain
+.PHONY: demo test lint rust-tests python-tests gate blind ordinary wheel bench format clean toolchain
 
 demo: $(READY)
 	$(BIN)/stiction demo --out $(OUT)
@@ -64,10 +66,19 @@ rust-tests: $(READY)
 python-tests: $(READY)
 	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --maxprocesses 8 --dist loadfile
 
+# Fresh sessions of every family and all real recordings, the way that a user goes: none may be lost.
+gate: $(READY)
+	$(BIN)/python -m tests.blind.gate --jobs $(JOBS) --out $(GATE)
+
 # Scores of the diagnosis on sessions with a hidden truth; goes on where it was interrupted.
 blind: $(READY)
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.blind --number $(NUMBER) --seed $(SEED) \
 		--out $(BLIND)/scores.jsonl
+
+# The same on ordinary sessions: any encoder, clock, drive, loop and stated law.
+ordinary: $(READY)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.blind.ordinary --cases grid,null,hidden \
+		--number $(NUMBER) --seed $(SEED) --jobs $(JOBS) --out $(BLIND)/ordinary.jsonl
 
 wheel: $(READY)
 	$(BIN)/maturin build --quiet --release --out dist

@@ -20,12 +20,12 @@ TOGETHER = 8
 
 def main():
     args = _arguments()
-    rows = _read(args.out)
+    rows = read_rows(args.out)
     done = {row["key"] for row in rows}
     plan = cases(args.number, args.seed, args.base, args.sizes, args.kinds, args.effects)
     plan = [replace(case, flicker=args.flicker, log_noise=args.log_noise) for case in plan]
     plan = [case for case in plan if case.key not in done]
-    state = _state()
+    state = state_of()
     try:
         for begin in range(0, len(plan), TOGETHER):
             some = plan[begin : begin + TOGETHER]
@@ -42,7 +42,7 @@ def main():
     print(text)
 
 
-def _read(path):
+def read_rows(path):
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
         return []
@@ -50,7 +50,7 @@ def _read(path):
     return [json.loads(line) for line in lines]
 
 
-def _state():
+def state_of():
     """The commit that was measured, with a + where files differ from it."""
     git = ("git", "describe", "--always", "--abbrev=7", "--dirty=+")
     told = subprocess.run(git, capture_output=True, text=True, check=False)
@@ -61,10 +61,13 @@ def _line(row):
     hidden = " + ".join(
         f"{h['name']}:{h['form']} {100 * h['reached']:.2f} %" for h in row["hidden"]
     )
+    if "verdict" not in row:
+        return f"{row['seed']} {row['kind']:8} {hidden or '-'}: LOST, {row['lost_kinds']}"
+    lost = f" LOST, {row['lost_kinds']}" if row["lost"] else ""
     found = ", ".join(c["name"] + ("" if c["decided"] else "?") for c in row["found"])
     return (
         f"{row['seed']} {row['kind']:8} {hidden or '-'}: {row['verdict']} [{found}] "
-        f"clair {row['clair']:.3f} gain {row['gain'] or 0.0:.3f} {row['seconds']:.1f} s"
+        f"clair {row['clair']:.3f} gain {row['gain'] or 0.0:.3f} {row['seconds']:.1f} s{lost}"
     )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,8 +20,9 @@ import stiction as st
 from stiction.plan import plan
 from stiction.plan.experiments import EXPERIMENTS
 
-from .score import as_plant, as_session
+from .score import told
 from .table import wilson
+from .way import walked
 
 PAIRED = (
     "torque_bias",
@@ -45,18 +47,19 @@ NIGHT_S = 50_000.0
 """Until a machine is cold again."""
 
 
-def advised(found):
+def advised(findings):
     """Names of the planned experiments that tell undecided causes apart, the first one first."""
-    names = [advice.experiment.split(":")[0] for advice in found.advice if advice.separates]
+    advice = [each for each in findings["advice"] if each["separates"]]
+    names = [each["experiment"].split(":")[0] for each in advice]
     return [name for name in dict.fromkeys(names) if name in PLANNED]
 
 
-def recorded(made, found, name):
+def recorded(made, plant, name):
     """The session with the advised experiment recorded after it, a cycle once it is cold again."""
-    gain = float(found.plant.drive.get("gain", 1.0))
+    gain = float(plant.drive.get("gain", 1.0))
     cold = name == "cycle"
     names = ("cycle", "fast") if cold else (name,)
-    signals = plan(found.plant, position=REACH, only=names).signals
+    signals = plan(plant, position=REACH, only=names).signals
     order = COLD if cold else (name,)
     end = max(r.start_s + r.time_s[-1] for r in made.recordings) + PAUSE_S
     at = 0.0 if cold else end
@@ -77,25 +80,28 @@ def recorded(made, found, name):
     return replace(made, recordings=[*made.recordings, *more])
 
 
-def resolved(made):
-    """Verdicts before and after; None where nothing was undecided."""
+def resolved(made, folder):
+    """Verdicts before and after; None where nothing was undecided, or an answer was lost."""
     names = [effect.name for effect in made.effects]
-    before = st.diagnose(as_plant(made), as_session(made), threads=1)
-    told = advised(before)
-    if before.verdict != "ambiguous" or not told:
-        return {"hidden": names, "before": before.verdict, "advised": told, "resolved": None}
-    session = recorded(made, before, told[0])
-    after = st.diagnose(as_plant(made), as_session(session), threads=1)
-    causes = [(cause.name, cause.decided) for cause in after.effects]
-    return {
-        "hidden": names,
-        "before": before.verdict,
-        "said": [[c.name, *c.look_alikes] for c in before.effects],
-        "advised": told,
-        "after": after.verdict,
-        "found": causes,
-        "resolved": after.verdict == "missing_effect" and [n for n, _ in causes] == names,
-    }
+    before = _diagnosed(made, folder / "before")
+    row = {"hidden": names, "before": told(before), "advised": [], "resolved": None}
+    if before.findings is None or before.findings["verdict"] != "ambiguous":
+        return row
+    row["advised"] = advised(before.findings)
+    if not row["advised"] or not (before.folder / "plant.toml").is_file():
+        return row
+    plant = st.Plant.load(before.folder / "plant.toml")
+    after = _diagnosed(recorded(made, plant, row["advised"][0]), folder / "after")
+    row["after"] = told(after)
+    if after.findings is not None:
+        causes = [cause["name"] for cause in after.findings["effects"]]
+        row["resolved"] = after.findings["verdict"] == "missing_effect" and causes == names
+    return row
+
+
+def _diagnosed(made, folder):
+    path = made.write(folder / "session") / "session.toml"
+    return walked(path, folder / "diagnosis", ["--threads", "1"])
 
 
 def main():
@@ -113,7 +119,8 @@ def main():
         seed = FIRST_SEED + 10_000 * args.seed + k
         hidden = ((names[k % len(names)], args.size),)
         (made,) = make_sessions([{"seed": seed, "base": args.base, "hidden": hidden}])
-        row = {"seed": seed, "base": args.base} | resolved(made)
+        with tempfile.TemporaryDirectory(prefix="stiction-resolve-") as name:
+            row = {"seed": seed, "base": args.base} | resolved(made, Path(name))
         rows.append(row)
         with args.out.open("a", encoding="utf-8") as file:
             file.write(json.dumps(row) + "\n")

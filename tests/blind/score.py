@@ -1,19 +1,17 @@
-"""Diagnoses one session and compares what it says with what was hidden."""
+"""Diagnoses one session as a user does and compares what its files say with what was hidden."""
 
 from __future__ import annotations
 
 import math
+import tempfile
 from datetime import UTC, datetime
-from typing import NamedTuple
-
-import numpy as np
+from pathlib import Path
 
 import stiction as st
-from stiction.diagnosis.evidence import Evidence
-from stiction.diagnosis.gain import residuals_of
-from stiction.diagnosis.model import fitted
-from stiction.fitting.solve import reweighted
-from stiction.session import Session
+
+from .oracle import Known, oracle
+from .stated import as_plant, as_session
+from .way import walked
 
 # Gains of the library's effects from amplitude and shape of the reference plant's.
 STRENGTHS = {
@@ -54,52 +52,17 @@ def _wave(amplitude, shape):
     return {"cosine": amplitude * math.cos(phase), "sine": amplitude * math.sin(phase)}
 
 
-def as_session(made, torque=None):
-    """A reference session as a user would have it; `torque` takes the place of what was logged."""
-    recordings = []
-    for index, r in enumerate(made.recordings):
-        effort = r.torque_nm if torque is None else torque[index]
-        known = {"reference": r.reference_rad, "load": r.load_nm}
-        if r.temperature_c is not None:
-            known["temperature"] = r.temperature_c
-        known = {name: values for name, values in known.items() if values is not None}
-        recordings.append(
-            st.Recording(
-                r.time_s,
-                effort,
-                r.position_rad,
-                role=r.role,
-                kind=r.kind,
-                start_s=r.start_s,
-                cold=r.cold,
-                **known,
-            )
-        )
-    return Session(recordings)
-
-
-def as_plant(made):
-    """What a user states of the machine: the law, the drive and the encoder."""
-    return st.Plant.from_dict(
-        {
-            "motion": {"kind": "rotary"},
-            "drive": {"input": "torque_nm", "gain": 1.0},
-            "friction": {"law": made.spec.base},
-            "sensor": {"counts_per_rev": made.spec.counts_per_rev},
-        }
-    )
-
-
 def scored(case, made, threads=1):
     """Verdict, truth and comparison of one case: a line of the results."""
-    plant, session = as_plant(made), as_session(made)
-    found = st.diagnose(plant, session, without=case.without, threads=threads)
-    families = {record.name: record.family for record in st.effects()}
+    with tempfile.TemporaryDirectory(prefix="stiction-blind-") as name:
+        folder = made.write(Path(name) / "session")
+        options = ["--threads", str(threads)]
+        options += [word for effect in case.without for word in ("--without", effect)]
+        answer = walked(folder / "session.toml", Path(name) / "out", options)
+    families = families_of()
     names = [effect.name for effect in made.effects]
-    known = oracle(plant, session, made, found.baseline) if names else Known(0.0, [], 0.0)
-    return {
+    row = {
         "key": case.key,
-        "at": datetime.now(UTC).isoformat(timespec="seconds"),
         "kind": case.kind,
         "base": case.base,
         "seed": case.seed,
@@ -107,83 +70,65 @@ def scored(case, made, threads=1):
         "hidden": [_truth(effect) for effect in made.effects],
         "names": names,
         "classes": sorted({families.get(name, "foreign") for name in names}),
-        "verdict": found.verdict,
-        "found": [_cause(cause, families) for cause in found.effects],
-        "unexplained": [[each.coordinate, each.share] for each in found.unexplained],
-        "gain": None if found.gain is None else found.gain.value,
+        **told(answer),
+    }
+    if answer.findings is None:
+        return row
+    known = _known(made, answer.findings) if names else Known(0.0, [], 0.0)
+    return row | {
         "clair": known.clair,
         "own_clairs": known.own_clairs,
         "distance": known.distance,
-        "intervals": _intervals(made, found),
-        "left": _left(found),
-        "candidates": [row.to_dict() for row in found.candidates],
-        "base_rms": found.baseline.train_rms,
-        "floor_rms": found.baseline.noise_floor_rms,
-        "seconds": found.seconds,
+        "intervals": _intervals(made, answer.findings),
     }
 
 
-class Known(NamedTuple):
-    """What can be gained and seen by who knows the hidden torque."""
-
-    clair: float
-    """Gain once the hidden torque is taken off the input and the base is refitted; same weights,
-    test rows."""
-    own_clairs: list[float]
-    """That of each effect alone, the others taken off already."""
-    distance: float
-    """Signal-to-noise ratio of the hidden torque over the rows of train, the base projected off:
-    the square root of its power per sample over the noise of the torque."""
+def families_of():
+    """Class of each effect of the library."""
+    return {record.name: record.family for record in st.effects()}
 
 
-def oracle(plant, session, made, baseline):
-    """What there is to be found in a session; `baseline` is where fits start from."""
-    seen = Evidence(plant, session.recordings, threads=1)
-    clean = _without_hidden(plant, made)
-    base = fitted(seen, baseline.plant)
-    reweighted(seen.train, base.plant, base.nuisances)
-    seen.weigh()
-    base = fitted(seen, base.plant, base.nuisances)
-
-    def power(evidence):
-        for rows, own in zip(evidence.train, seen.train, strict=True):
-            rows.weight = own.weight
-        evidence.weigh()
-        best = fitted(evidence, base.plant, base.nuisances)
-        opened = residuals_of(evidence, evidence.open_test(), [(best.plant, best.nuisances)])
-        return float(np.sum(opened.residuals[0] ** 2))
-
-    least = power(clean)
-    clair = 1.0 - least / power(seen)
-    kept = range(len(made.effects)) if len(made.effects) > 1 else ()
-    own = [1.0 - least / power(_without_hidden(plant, made, kept=k)) for k in kept] or [clair]
-    return Known(clair, own, _distance(made, seen, clean, base))
-
-
-def _without_hidden(plant, made, kept=None):
-    """The session with hidden torques taken off the input, all but that of effect `kept`."""
-    torque = []
-    for r in made.recordings:
-        hidden = r.truth["hidden"]
-        torque.append(r.torque_nm + (hidden if kept is None else hidden - r.truth["parts"][kept]))
-    return Evidence(plant, as_session(made, torque).recordings, threads=1)
+def told(answer):
+    """What a diagnosis left on the disk, as part of a line of the results."""
+    lost = [str(loss) for loss in answer.losses]
+    row = {
+        "at": datetime.now(UTC).isoformat(timespec="seconds"),
+        "lost": lost,
+        "lost_kinds": list(dict.fromkeys(loss.kind for loss in answer.losses)),
+        "walk_seconds": round(answer.seconds, 2),
+    }
+    findings = answer.findings
+    if findings is None:
+        return row
+    families = families_of()
+    base = findings["baseline"] or {}
+    return row | {
+        "verdict": findings["verdict"],
+        "found": [_cause(cause, families) for cause in findings["effects"]],
+        "unexplained": [[each["coordinate"], each["share"]] for each in findings["unexplained"]],
+        "gain": None if findings["gain"] is None else findings["gain"]["value"],
+        "candidates": findings["candidates"],
+        "base_rms": base.get("train_rms"),
+        "floor_rms": base.get("noise_floor_rms"),
+        "seconds": findings["seconds"],
+    }
 
 
-def _distance(made, seen, clean, base):
-    signal, columns = [], []
-    for own, other in zip(seen.train, clean.train, strict=True):
-        moved = own.residual(base.plant, base.nuisances) - other.residual(
-            base.plant, base.nuisances
-        )
-        # Every sample has the same noise: weights of recordings are of no use here.
-        signal.append(np.sqrt(own.form.stride) * moved[own.mask])
-    weights = np.concatenate([np.full(int(r.mask.sum()), r.weight) for r in seen.train])
-    columns = base.fitted_columns / weights[:, None]
-    signal = np.concatenate(signal)
-    scale = np.sqrt(np.sum(columns**2, axis=0))
-    live = columns[:, scale > 0.0] / scale[scale > 0.0]
-    left = signal - live @ np.linalg.lstsq(live, signal, rcond=1e-8)[0]
-    return float(np.linalg.norm(left)) / (made.spec.noise * made.plant["coulomb"])
+def _known(made, findings):
+    """What there is to be found, with fits that start where the baseline ended."""
+    plant = as_plant(made)
+    if findings["baseline"] is None:
+        return Known(0.0, [0.0] * len(made.effects), 0.0)
+    return oracle(plant, as_session(made), made, baseline_of(plant, findings))
+
+
+def baseline_of(plant, findings):
+    """The plant with the values that findings.json gives its baseline."""
+    table = plant.to_dict()
+    for path, parameter in findings["baseline"]["parameters"].items():
+        part, name = path.split(".")
+        table.setdefault(part, {})[name] = parameter["value"]
+    return st.Plant.from_dict(table)
 
 
 def _truth(effect):
@@ -199,34 +144,37 @@ def _truth(effect):
 
 
 def _cause(cause, families):
-    alike = [families[name] for name in (cause.name, *cause.look_alikes)]
+    alike = [families[name] for name in (cause["name"], *cause["look_alikes"])]
     return {
-        "name": cause.name,
-        "decided": cause.decided,
-        "look_alikes": list(cause.look_alikes),
-        "class": cause.family,
+        "name": cause["name"],
+        "decided": cause["decided"],
+        "look_alikes": cause["look_alikes"],
+        "class": cause["class"],
         "classes": sorted(set(alike)),
-        "gain": None if cause.gain is None else cause.gain.value,
-        "parameters": {path: [p.value, *p.ci95] for path, p in cause.parameters.items()},
+        "gain": cause["heldout_gain"],
+        "parameters": {
+            path: [p["value"], *_interval(p["ci95"])] for path, p in cause["parameters"].items()
+        },
     }
 
 
-def _left(found):
-    """What is left above noise in each coordinate, whether it matters or not."""
-    views = [view for view in found.pictures.after.views if view.share > view.threshold]
-    return [[v.coordinate.name, v.share, v.threshold, v.size] for v in views]
+def _interval(ci95):
+    """Ends of an interval; findings.json has null for one that the data leave open."""
+    low, high = ci95
+    return (-math.inf if low is None else low, math.inf if high is None else high)
 
 
-def _intervals(made, found):
+def _intervals(made, findings):
     """Truth and 95 % interval of each gain of a named effect that has the library's form."""
-    causes = {cause.name: cause for cause in found.effects}
+    causes = {cause["name"]: cause for cause in findings["effects"]}
     intervals = []
     for effect in made.effects:
         known = STRENGTHS.get(effect.name)
         if known is None or effect.form != "library" or effect.name not in causes:
             continue
-        parameters = causes[effect.name].parameters
+        parameters = causes[effect.name]["parameters"]
         for name, true in known(effect.amplitude, effect.shape).items():
             fit = parameters[f"effects.{effect.name}.{name}"]
-            intervals.append([f"{effect.name}.{name}", float(true), fit.value, *fit.ci95])
+            ends = _interval(fit["ci95"])
+            intervals.append([f"{effect.name}.{name}", float(true), fit["value"], *ends])
     return intervals

@@ -118,7 +118,7 @@ def _share(count, number):
     return f"{count}/{number} = {100 * count / number:.1f} % ({100 * low:.1f}–{100 * high:.1f})"
 
 
-def _table(head, lines):
+def table(head, lines):
     rule = "|".join("---" for _ in head)
     return "\n".join(f"| {' | '.join(map(str, line))} |" for line in (head, *lines)).replace(
         "\n", f"\n|{rule}|\n", 1
@@ -137,20 +137,29 @@ def _sized(rows, low, high):
 
 
 def report(rows):
-    """Everything that was counted, as Markdown."""
-    rows = [_rightly_named(row) for row in rows]
+    """Everything that was counted, as Markdown: what was lost, then those that had an answer."""
+    lost = of_lost(rows)
+    rows = [_rightly_named(row) for row in rows if "verdict" in row]
     kinds = {kind: [row for row in rows if row["kind"] == kind] for kind in _kinds(rows)}
     single = kinds.get("single", [])
     forms = {
         form: [row for row in single if row["hidden"][0]["form"] == form]
         for form in ("library", "foreign")
     }
-    parts = [_rates(kinds), _answers(single)]
+    parts = [lost, _rates(kinds), _answers(single)]
     for form, some in forms.items():
         if some:
             parts += [f"Single effects in the {form} form, by clair:", _by_clair(some)]
     parts += [_by_effect(single), _foreign(kinds.get("foreign", [])), _errors(rows)]
     return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def of_lost(rows):
+    """What was lost, by kind: no answer, or one that a user cannot go on with."""
+    kinds = Counter(kind for row in rows for kind in row.get("lost_kinds", ()))
+    lines = [("**lost**: no whole answer", rate(rows, lambda row: row.get("lost")))]
+    lines += [(f"lost: {kind}", number) for kind, number in kinds.most_common()]
+    return table(("what", "measured (95 % Wilson interval)"), lines)
 
 
 def _rightly_named(row):
@@ -221,7 +230,7 @@ def _rates(kinds):
         ("seconds for a diagnosis", _quantiles([row["seconds"] for row in every])),
     ]
     lines = [line for line in lines if line[1] != NOTHING]
-    return _table(("what", "measured (95 % Wilson interval)"), lines)
+    return table(("what", "measured (95 % Wilson interval)"), lines)
 
 
 def _is(verdict):
@@ -300,7 +309,7 @@ def _answers(single):
     for name in names:
         counts = Counter(answer(row) for row in seen if row["names"][0] == name)
         lines.append((name, *(counts[column] or "" for column in columns), counts.total()))
-    return "Single effects with clair ≥ .02, hidden by row, answered by column:\n\n" + _table(
+    return "Single effects with clair ≥ .02, hidden by row, answered by column:\n\n" + table(
         ("hidden", *columns, "n"), lines
     )
 
@@ -321,7 +330,7 @@ def _by_clair(single):
         )
         lines.append((f"{low:g}–{high:g}", len(some), *(_counted(some, test) for test in tests)))
     head = "clair n detected name class wrong-name wrong-class ambiguous unexplained"
-    return _table(tuple(word.replace("-", " ") for word in head.split()), lines)
+    return table(tuple(word.replace("-", " ") for word in head.split()), lines)
 
 
 def _counted(rows, test):
@@ -342,7 +351,7 @@ def _by_effect(single):
         lines.append(
             (name, rate(own, named), rate(own, classed), median, f"{covered}/{len(intervals)}")
         )
-    return "Single effects with clair ≥ .1:\n\n" + _table(
+    return "Single effects with clair ≥ .1:\n\n" + table(
         ("hidden", "name", "class", "gain ÷ clair", "intervals that cover"), lines
     )
 
@@ -356,7 +365,7 @@ def _foreign(foreign):
         verdicts = Counter(row["verdict"] for row in own)
         told = Counter(cause for row in own for cause in confident(row))
         lines.append((name, len(own), _tally(verdicts), _tally(told), _counted(own, shown)))
-    return "Foreign effects with clair ≥ .15:\n\n" + _table(
+    return "Foreign effects with clair ≥ .15:\n\n" + table(
         ("hidden", "n", "verdicts", "confident names", "coordinate in the first two"), lines
     )
 
@@ -379,4 +388,4 @@ def _errors(rows):
     if not lines:
         return ""
     head = ("base", "seed", "kind", "hidden", "size", "clair", "named (? undecided)")
-    return "Wrong names:\n\n" + _table(head, lines)
+    return "Wrong names:\n\n" + table(head, lines)
