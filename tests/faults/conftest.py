@@ -5,30 +5,45 @@ from __future__ import annotations
 import os
 import subprocess
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
-
-from .verbs import Ended, arguments, contents, desk, run_verb
+from tests.faults.verbs import Ended, arguments, contents, desk, limited, run_verb
 
 
 @pytest.fixture
-def mounted(tmp_path: Path) -> Iterator[Callable[[str], Path]]:
-    """A small file system of its own with these options; needs the rights to mount one."""
+def mounted(tmp_path: Path) -> Iterator[Callable[[str], Path | None]]:
+    """A small file system of its own with these options; None without the rights to mount one."""
     made: list[Path] = []
 
-    def mount(options: str) -> Path:
+    def mount(options: str) -> Path | None:
         where = tmp_path / f"mount{len(made)}"
         where.mkdir()
         words = ["mount", "-t", "tmpfs", "-o", options, "tmpfs", str(where)]
         if os.geteuid() != 0 or subprocess.run(words, capture_output=True, check=False).returncode:
-            pytest.skip("nothing can be mounted here")
+            return None
         made.append(where)
         return where
 
     yield mount
     for where in made:
         subprocess.run(["umount", "-l", str(where)], check=False)
+
+
+@pytest.fixture
+def full(
+    tmp_path: Path, mounted: Callable[[str], Path | None]
+) -> tuple[Path, Callable[[], None] | None]:
+    """A folder without room, and what a process does first that is to find none."""
+    where = mounted("size=4k")
+    if where is None:
+        where = tmp_path / "small"
+        where.mkdir()
+        # Less than the smallest file that any verb writes.
+        return where, partial(limited, 100)
+    (where / "filler").write_bytes(b"x" * 4096)
+    return where, None
 
 
 @pytest.fixture(scope="session")

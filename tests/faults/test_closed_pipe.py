@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from tests.faults.verbs import desk, shell
 
-from .verbs import desk, shell
-
-LONG_TEXTS = ("laws", "--help", "effects", "laws --json", "diagnose --help", "simulate --help")
+LONG_TEXTS = ("laws", "--help", "diagnose --help", "laws --json")
 
 
 @pytest.mark.parametrize("words", LONG_TEXTS)
@@ -18,18 +17,18 @@ def test_a_reader_that_leaves_after_a_line_is_no_error(words: str, tmp_path: Pat
     assert done.stderr == ""
 
 
-@pytest.mark.parametrize("words", ["laws", "--help"])
-def test_a_reader_that_never_was_is_no_error(words: str, tmp_path: Path) -> None:
-    done = shell(f"stiction {words} | true; echo ${{PIPESTATUS[0]}}", tmp_path)
+def test_a_reader_that_never_was_is_no_error(tmp_path: Path) -> None:
+    done = shell("stiction --help | true; echo ${PIPESTATUS[0]}", tmp_path)
     assert done.stdout.splitlines()[-1] == "0", done
     assert done.stderr == ""
 
 
-@pytest.mark.parametrize("words", ["laws", "--help", "--version", "plan plant.toml --only turns"])
-@pytest.mark.parametrize("closed", [">&-", ">&- 2>&-", "<&- >&-"])
-def test_closed_streams_are_no_error(words: str, closed: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "words", ["laws >&-", "--help >&- 2>&-", "--version <&- >&-", "fit session.toml >&- 2>&-"]
+)
+def test_closed_streams_are_no_error(words: str, tmp_path: Path) -> None:
     folder = desk(tmp_path / "desk")
-    done = shell(f"stiction {words} {closed}", folder)
+    done = shell(f"stiction {words}", folder)
     assert done.returncode == 0, done
     assert done.stderr == ""
 

@@ -16,11 +16,18 @@ import stiction as st
 def motor(law):
     return st.Motor(0.0076, friction=st.FrictionModel(law))
 
+busy = motor("hsieh_pan")
+
+def asked(motor):
+    try:
+        motor.step(0.3, 1e-4)
+    except st.InputError:
+        pass
+
 def work():
-    own = motor("hsieh_pan")
     fleet = st.Ensemble(motor("coulomb"), 64)
     while True:
-        own.simulate(np.full(20000, 0.3), 1e-4)
+        busy.simulate(np.full(20000, 0.3), 1e-4)
         fleet.simulate(np.full(2000, 0.3), 1e-4, threads=2)
 
 shared = motor("lugre")
@@ -54,6 +61,7 @@ os._exit(0)
 CALLS = {
     "a step of a new motor": 'motor("coulomb").step(0.3, 1e-4)',
     "a step of a motor from before": "shared.step(0.3, 1e-4)",
+    "a step of the motor that the thread moved": "asked(busy)",
     "a run": 'motor("hsieh_pan").simulate(np.ones(100), 1e-4)',
     "an ensemble on threads": (
         'st.Ensemble(motor("coulomb"), 16).simulate(np.ones(50), 1e-4, threads=2)'

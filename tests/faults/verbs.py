@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import multiprocessing
 import os
+import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -94,6 +96,8 @@ class Running:
 def _forks() -> multiprocessing.context.ForkServerContext:
     """Processes that have all imports from the start, and no threads."""
     context = multiprocessing.get_context("forkserver")
+    # The server imports before it is told where from.
+    os.environ["PYTHONPATH"] = os.pathsep.join(path for path in sys.path if path)
     context.set_forkserver_preload(["tests.faults.verbs", "stiction.cli.app"])
     return context
 
@@ -137,11 +141,29 @@ def shell(script: str, folder: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
+def limited(size: int) -> None:
+    """No file may become longer than this."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
+
+
+def gone() -> None:
+    """The folder in which the process stands, removed."""
+    shutil.rmtree(os.getcwd())
+
+
 def desk(folder: Path) -> Path:
     """A folder with a good session in it."""
     folder.mkdir(parents=True)
     Desk(folder)
     return folder
+
+
+def lay(files: dict[str, bytes], folder: Path) -> None:
+    """Write files into a folder."""
+    for name, content in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(content)
 
 
 def contents(folder: Path) -> dict[str, bytes]:
