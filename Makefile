@@ -15,6 +15,7 @@ GATE ?= target/gate
 JOBS ?= 2
 NUMBER ?= 200
 SEED ?= 0
+SECONDS ?= 3600
 EDITION := $(shell sed -n 's/^edition = "\(.*\)"/\1/p' Cargo.toml)
 # cargo fmt follows `mod` lines; those of laws and effects stand in macros, which it does not enter.
 RUST := $(shell find crates benches -name '*.rs')
@@ -23,7 +24,10 @@ export PYO3_PYTHON := $(abspath $(BIN)/python)
 export CARGO_TERM_PROGRESS_WHEN := never
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test lint rust-tests python-tests gate blind ordinary wheel bench format clean toolchain
+# Fuzzing takes a fresh seed where none is given.
+GIVEN_SEED = $(if $(filter-out file,$(origin SEED)),--seed $(SEED))
+
+.PHONY: demo test lint rust-tests python-tests gate blind ordinary fuzz wheel bench format clean toolchain
 
 demo: $(READY)
 	$(BIN)/stiction demo --out $(OUT)
@@ -79,6 +83,11 @@ blind: $(READY)
 ordinary: $(READY)
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.blind.ordinary --cases grid,null,hidden \
 		--number $(NUMBER) --seed $(SEED) --jobs $(JOBS) --out $(BLIND)/ordinary.jsonl
+
+# Every public call and every file format, with whatever breaks them, on all cores; prints finds as
+# they come, each with the seed that repeats it.
+fuzz: $(READY)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.fuzz --seconds $(SECONDS) $(GIVEN_SEED)
 
 wheel: $(READY)
 	$(BIN)/maturin build --quiet --release --out dist

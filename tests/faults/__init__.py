@@ -1,0 +1,1 @@
+"""What a command meets outside itself: full disks, signals, closed pipes, folders that vanish."""

@@ -1,0 +1,118 @@
+"""Ctrl-C and SIGTERM at any moment: nothing is half there, and Ctrl-C is answered."""
+
+from __future__ import annotations
+
+import random
+import signal
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from tests.faults.verbs import (
+    KEEPERS,
+    PATIENCE_S,
+    Running,
+    arguments,
+    assert_whole,
+    contents,
+    desk,
+    lay,
+    run_verb,
+    shell,
+)
+
+VERBS = ("simulate", "fit", "diagnose", "plan", "demo")
+MOMENTS = 2
+"""Of each verb: what is missed by one run is met by the next, for the seed differs."""
+SHORTEST_S = 0.02
+
+
+@pytest.fixture(scope="module")
+def lasts(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], float]:
+    """How long a verb works where nobody stops it, s."""
+    known: dict[str, float] = {"demo": 5.0}
+
+    def measured(verb: str) -> float:
+        if verb not in known:
+            folder = desk(tmp_path_factory.mktemp("lasts") / verb)
+            began = time.monotonic()
+            assert run_verb(arguments(verb, folder / "out"), folder).status == 0
+            known[verb] = time.monotonic() - began
+        return known[verb]
+
+    return measured
+
+
+def moments(verb: str, lasts: float) -> list[float]:
+    """Early, in the middle and late; drawn anew for each test."""
+    source = random.Random()
+    number = 1 if verb == "demo" else MOMENTS
+    return [SHORTEST_S + lasts * (k + source.random()) / number for k in range(number)]
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_an_interrupted_command_says_so_and_leaves_whole_files(
+    verb: str, tmp_path: Path, lasts: Callable[[str], float]
+) -> None:
+    answers = []
+    for k, moment in enumerate(moments(verb, lasts(verb))):
+        folder = desk(tmp_path / f"desk{k}")
+        running = Running(arguments(verb, folder / "out"), folder)
+        time.sleep(moment)
+        running.strike(signal.SIGINT)
+        ended = running.ended()
+        told = f"after {moment:.3f} s: {ended}"
+        assert "Traceback" not in ended.error, told
+        assert ended.status in (0, 130), told
+        if ended.status == 130:
+            assert "interrupted" in ended.error + ended.out, told
+        assert_whole(folder)
+        answers.append(ended.status)
+    assert 130 in answers, "it was over before it was interrupted"
+
+
+@pytest.mark.parametrize("verb", [verb for verb in VERBS if verb not in (*KEEPERS, "demo")])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_old_files_or_new_ones_are_there_after_a_signal(
+    verb: str,
+    number: int,
+    tmp_path: Path,
+    lasts: Callable[[str], float],
+    good: Callable[[str], dict[str, bytes]],
+) -> None:
+    folder = desk(tmp_path / "desk")
+    out = folder / "out"
+    lay(good(verb), out)
+    running = Running(arguments(verb, out), folder)
+    # Files are written at the end.
+    time.sleep(random.Random().uniform(0.8, 1.05) * lasts(verb))
+    running.strike(number)
+    ended = running.ended()
+    assert ended.status in (0, 130, -signal.SIGTERM), ended
+    assert "Traceback" not in ended.error
+    now = contents(out)
+    assert set(now) >= set(good(verb))
+    # What was being written beside when the process was ended is no file of the answer.
+    lay({name: now[name] for name in good(verb)}, tmp_path / "answer")
+    assert_whole(tmp_path / "answer")
+
+
+def test_ctrl_c_while_the_program_starts_is_heard(tmp_path: Path) -> None:
+    """Where imports are not done yet; too early for Python itself to hear it, it just ends."""
+    folder = desk(tmp_path / "desk")
+    for _ in range(2):
+        moment = random.Random().uniform(0.2, 1.5)
+        done = shell(
+            f"$STICTION diagnose session.toml --out out & p=$!; sleep {moment:.3f}; "
+            "kill -INT $p; wait $p; echo $?",
+            folder,
+        )
+        # In the background a shell lets a command ignore Ctrl-C: then it answers.
+        assert done.stdout.splitlines()[-1] in ("0", "130"), (moment, done)
+        if (folder / "out").exists():
+            assert_whole(folder / "out")
+
+
+def test_patience_is_more_than_any_verb_takes(lasts: Callable[[str], float]) -> None:
+    assert max(lasts(verb) for verb in VERBS) < 0.9 * PATIENCE_S

@@ -1,0 +1,309 @@
+"""Files of every format: good ones written here, and the damage that is done to them."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stiction.recording.formats import FORMATS
+
+ROWS = 220
+PLANT = """\
+[motion]
+kind = "rotary"
+[drive]
+input = "torque_nm"
+gain = 1.0
+[body]
+inertia = { value = 0.01, min = 1e-4, max = 1.0 }
+[friction]
+law = "hsieh_pan"
+breakaway = 0.2
+viscous = 0.05
+virgin_curve = "same"
+[[effects]]
+name = "cogging"
+order = 7.0
+sine = 0.01
+[sensor]
+counts_per_rev = 4096
+[controller]
+kind = "pid"
+kp = 2.0
+ki = 0.1
+"""
+SERVO = """\
+[drive]
+kind = "servo"
+proportional = 3.0
+supply_v = 12.0
+resistance_ohm = 4.0
+torque_constant = 0.8
+current_limit_a = 2.0
+[body]
+inertia = 0.01
+payload_kg = 0.5
+payload_m = 0.1
+[friction]
+law = "coulomb"
+coulomb = 0.1
+"""
+SESSION = """\
+plant = "plant.toml"
+[columns]
+time = "t"
+input = { name = "u", unit = "Nm", scale = 1.0, offset = 0.0 }
+position = { name = "q", unit = "rad" }
+[[recordings]]
+file = "run.csv"
+kind = "sine"
+start_s = 0.0
+[[recordings]]
+file = "run.npz"
+role = "test"
+cold = true
+replicate_of = "run.csv"
+"""
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?(?![\w.])")
+WORD = re.compile(r"[A-Za-z_]{1,20}")
+
+Writer = Callable[[Path, int], None]
+Damage = Sequence[Any]
+
+
+def columns(seed: int) -> dict[str, np.ndarray]:
+    """A shaft that swings; the seed says what is odd about the arrays."""
+    rng = np.random.default_rng(seed)
+    t = 1e-2 * np.arange(ROWS)
+    q = 0.4 * np.sin(5.0 * t + seed) + 1e-5 * rng.standard_normal(ROWS)
+    u = np.sign(np.cos(5.0 * t + seed)) * 0.2
+    return {"t": t, "u": u, "q": q}
+
+
+def odd(seed: int) -> dict[str, Any]:
+    """Columns among which something is no plain vector."""
+    plain: dict[str, Any] = dict(columns(seed))
+    t = plain["t"]
+    kinds: list[Any] = [
+        t.astype(np.float32), (1000 * t).astype(np.int64), t > 1.0, t + 0j, t.reshape(-1, 1),
+        t.reshape(2, -1), t[:5], np.array(3.0), np.array([]), t.astype(str), t.astype(np.float16),
+        np.full(ROWS, np.nan), np.array(["a", "b"]), t.astype(">f8"), t.astype(np.uint8),
+    ]  # fmt: skip
+    name = ("t", "u", "q", "more")[seed % 4]
+    plain[name] = kinds[(seed // 4) % len(kinds)]
+    return plain
+
+
+def write_delimited(path: Path, seed: int) -> None:
+    table, sign = columns(seed), ",;\t"[seed % 3]
+    names = list(table) if seed % 2 else ["time_s", "torque_nm", "position_rad"]
+    rows = [sign.join(map(repr, map(float, row))) for row in zip(*table.values(), strict=True)]
+    head = [sign.join(names)] + ([sign.join(("s", "Nm", "rad"))] if seed % 5 == 0 else [])
+    path.write_text("\n".join([*head, *rows, ""]), encoding="utf-8")
+
+
+def write_npz(path: Path, seed: int) -> None:
+    (np.savez_compressed if seed % 2 else np.savez)(path, **(odd(seed) if seed % 3 else columns(0)))
+
+
+def write_mat(path: Path, seed: int) -> None:
+    table = odd(seed) if seed % 3 else columns(seed)
+    if seed % 2:
+        _write_hdf5(path, seed, table)
+        return
+    from scipy.io import savemat
+
+    savemat(path, {"log": table} if seed % 5 == 0 else table, do_compression=seed % 4 == 0)
+    content = path.read_bytes()
+    # The header holds the time of day.
+    path.write_bytes(b"MATLAB 5.0 MAT-file".ljust(116) + content[116:])
+
+
+def _write_hdf5(path: Path, seed: int, table: dict[str, Any]) -> None:
+    import h5py
+
+    with h5py.File(path, "w", userblock_size=512, libver=("earliest", "latest")) as file:
+        for name, values in table.items():
+            array = np.asarray(values)
+            if array.dtype.kind != "U":
+                file[name] = array[np.newaxis] if array.ndim == 1 else array
+        if seed % 7 == 1:
+            file["link"] = h5py.ExternalLink("/etc/passwd", "/x")
+        if seed % 7 == 3:
+            file["soft"] = h5py.SoftLink("/nowhere")
+        if seed % 7 == 5:
+            file["again"] = file["/"]
+    with path.open("r+b") as raw:
+        raw.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM")
+
+
+def write_json(path: Path, seed: int) -> None:
+    table = {name: values.tolist() for name, values in columns(seed).items()}
+    rows = [dict(zip(table, row, strict=True)) for row in zip(*table.values(), strict=True)]
+    forms: list[Any] = [rows, table, {"data": rows}, {"meta": {"gain": 1}, **table}]
+    if seed % 5 == 4:
+        path.write_text("\n".join(map(json.dumps, rows)), encoding="utf-8")
+        return
+    path.write_text(json.dumps(forms[seed % 4]), encoding="utf-8")
+
+
+def write_parquet(path: Path, seed: int) -> None:
+    import pyarrow
+    from pyarrow import parquet
+
+    table = odd(seed) if seed % 3 else columns(seed)
+    fit = {k: v for k, v in table.items() if np.shape(v) == (ROWS,) and v.dtype.kind != "c"}
+    fit = {k: v.astype(v.dtype.newbyteorder("=")) for k, v in fit.items()}
+    parquet.write_table(pyarrow.table(fit), path, compression=("snappy", "none", "zstd")[seed % 3])
+
+
+def write_checkpoint(path: Path, seed: int) -> None:
+    import stiction as st
+
+    motor = st.Motor(0.0076, friction=st.FrictionModel(("coulomb", "hsieh_pan")[seed % 2]))
+    chunks = [np.full(5, 0.4), np.full(5, -0.3)]
+    list(st.stream(motor, chunks, 1e-3, checkpoint=path))
+
+
+def write_plant(path: Path, seed: int) -> None:
+    path.write_text((PLANT, SERVO)[seed % 2], encoding="utf-8")
+
+
+def write_session(path: Path, seed: int) -> None:
+    write_plant(path.with_name("plant.toml"), 0)
+    write_delimited(path.with_name("run.csv"), 1)
+    write_npz(path.with_name("run.npz"), 6)
+    path.write_text(SESSION, encoding="utf-8")
+
+
+WRITERS: dict[str, Writer] = {
+    ".csv": write_delimited,
+    ".mat": write_mat,
+    ".npz": write_npz,
+    ".json": write_json,
+    ".parquet": write_parquet,
+    "checkpoint": write_checkpoint,
+    "plant.toml": write_plant,
+    "session.toml": write_session,
+}
+
+
+def kinds() -> list[str]:
+    """Every kind of file: endings of recordings, and the names of the others."""
+    endings = [suffix for known in FORMATS for suffix in known.suffixes]
+    return [*endings, *(kind for kind in WRITERS if kind not in endings)]
+
+
+def writer(kind: str) -> Writer:
+    """What writes good files of a kind; of an ending that nobody knows, text."""
+    if kind in WRITERS:
+        return WRITERS[kind]
+    alike = next((known for known in FORMATS if kind in known.suffixes), None)
+    endings = () if alike is None else alike.suffixes
+    return next((WRITERS[each] for each in endings if each in WRITERS), write_delimited)
+
+
+class Shelf:
+    """A folder in which programs find the files that they name."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def file(self, kind: str, seed: int = 0, *damages: Damage) -> str:
+        """A good file of a kind, then damaged; its path."""
+        path = self._folder / (kind if "." in kind[1:] else f"{seed % 97}{kind}")
+        writer(kind)(path, seed)
+        content = path.read_bytes()
+        for name, *how in damages:
+            content = DAMAGES[name](content, *how)
+        path.write_bytes(content)
+        return str(path)
+
+
+def at(content: bytes, share: float) -> int:
+    return min(int(share * len(content)), len(content))
+
+
+def cut(content: bytes, share: float) -> bytes:
+    return content[: at(content, share)]
+
+
+def flip(content: bytes, share: float, bits: int) -> bytes:
+    k = at(content, share)
+    return content[:k] + bytes(b ^ bits for b in content[k : k + 1]) + content[k + 1 :]
+
+
+def fill(content: bytes, share: float, length: int, byte: int) -> bytes:
+    k = at(content, share)
+    return content[:k] + bytes([byte]) * len(content[k : k + length]) + content[k + length :]
+
+
+def drop(content: bytes, share: float, length: int) -> bytes:
+    k = at(content, share)
+    return content[:k] + content[k + length :]
+
+
+def twice(content: bytes, share: float, length: int) -> bytes:
+    k = at(content, share)
+    return content[: k + length] + content[k:]
+
+
+def swap(content: bytes, one: float, other: float, length: int) -> bytes:
+    """Splice a piece from elsewhere in."""
+    k, j = at(content, one), at(content, other)
+    return content[:k] + content[j : j + length] + content[k + length :]
+
+
+def put(content: bytes, share: float, text: str) -> bytes:
+    k = at(content, share)
+    return content[:k] + _bytes(text) + content[k:]
+
+
+def number(content: bytes, place: int, text: str) -> bytes:
+    """Another text where a number stands."""
+    return _instead(content, NUMBER, place, lambda old: text)
+
+
+def word(content: bytes, place: int, text: str) -> bytes:
+    """Another text where a word stands."""
+    return _instead(content, WORD, place, lambda old: text)
+
+
+def nest(content: bytes, place: int, depth: int, brackets: str) -> bytes:
+    """A number within many brackets."""
+    left, right = brackets.split("|")
+    return _instead(content, NUMBER, place, lambda old: left * depth + old + right * depth)
+
+
+def line(content: bytes, place: int, times: int) -> bytes:
+    """A line that is left out, or there several times."""
+    lines = content.split(b"\n")
+    k = place % len(lines)
+    return b"\n".join([*lines[:k], *[lines[k]] * times, *lines[k + 1 :]])
+
+
+def _instead(
+    content: bytes, pattern: re.Pattern[str], place: int, new: Callable[[str], str]
+) -> bytes:
+    text = content.decode("utf-8", "surrogateescape")
+    found = list(pattern.finditer(text))
+    if not found:
+        return content
+    hit = found[place % len(found)]
+    return _bytes(text[: hit.start()] + new(hit[0]) + text[hit.end() :])
+
+
+def _bytes(text: str) -> bytes:
+    return text.encode("utf-8", "surrogatepass" if any("\ud800" <= c < "\udc80" for c in text)
+                       else "surrogateescape")  # fmt: skip
+
+
+DAMAGES: dict[str, Callable[..., bytes]] = {
+    each.__name__: each
+    for each in (cut, flip, fill, drop, twice, swap, put, number, word, nest, line)
+}
