@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..wording import counted, did_you_mean, listed
+from .text.lines import LineNumbers
 from .units import FloatArray, bracketed_unit
 
 # Of each column, this many cells that are not numbers are kept; one is enough for an error.
@@ -43,7 +44,7 @@ class Table:
         Cells holding text, the first 20 of each column, by row.
     unusable : dict of str to str
         What else the file holds, and why it cannot be a column ("is a scalar").
-    lines : ndarray of int, shape (rows,), optional
+    lines : sequence of int, optional
         1-based line number of each row, for formats that have lines.
     units : dict of str to str
         Units that stand in a line of their own below the names, by column.
@@ -53,7 +54,7 @@ class Table:
     columns: dict[str, FloatArray]
     cells: tuple[Cell, ...] = ()
     unusable: dict[str, str] = field(default_factory=dict)
-    lines: npt.NDArray[np.int64] | None = None
+    lines: LineNumbers | None = None
     units: dict[str, str] = field(default_factory=dict)
 
     def heading(self, name: str) -> str:
