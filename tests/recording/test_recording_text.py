@@ -88,6 +88,7 @@ line = st.lists(cell, min_size=2, max_size=3)
     st.booleans(),
     st.sampled_from([1, 7, 64, 2**22]),
 )
+@example([["1", "2"], ["", ""]], "\t", "\n", False, False, 7)
 @example([["1,5", "2"], ["1.5", "1,234"]] * 3, ";", "\n", False, True, 7)
 @example([["1", "2"]] * 40 + [["3"]], " ", "\n", False, False, 7)
 @example([["1", "2", ""]] * 9, ",", "\n", True, False, 64)

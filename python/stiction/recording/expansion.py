@@ -8,7 +8,7 @@ from typing import Final
 
 from ..errors import InputError
 
-__all__ = ["BYTES_OF_A_NUMBER", "VARIABLE", "check_expansion", "most_bytes"]
+__all__ = ["BYTES_OF_A_NUMBER", "VARIABLE", "Expansion", "check_expansion", "most_bytes"]
 
 VARIABLE: Final = "STICTION_MOST_BYTES"
 """The environment variable that sets another ceiling, in bytes."""
@@ -60,6 +60,29 @@ def check_expansion(path: Path, what: str, size: int) -> None:
             f"allowed; leave out what is not needed, or, if you trust the file, set the "
             f"environment variable {VARIABLE} to more bytes than that"
         )
+
+
+class Expansion:
+    """What a file has asked for so far.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._size = 0
+
+    def numbers(self, what: str, number: int) -> None:
+        """Take so many numbers into account, as `check_expansion` does."""
+        self.bytes(what, number * BYTES_OF_A_NUMBER)
+
+    def bytes(self, what: str, size: int) -> None:
+        """Take so many bytes into account, as `check_expansion` does."""
+        self._size += size
+        check_expansion(self._path, what, self._size)
 
 
 def _gib(size: int) -> str:

@@ -5,12 +5,15 @@ Files of version 7.3 are HDF5 and are read through h5py, an optional extra.
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...errors import InputError
+from ..hdf5 import Hdf5
+from ..mat_elements import walk
 from ..table import Table, table_of_arrays, vector
 from ..units import FloatArray
 from .format import Format
@@ -49,7 +52,15 @@ def _read_classic(path: Path, found: _Found) -> None:
     import scipy.io
 
     try:
-        variables = scipy.io.loadmat(str(path), appendmat=False)
+        with path.open("rb") as file, warnings.catch_warnings():
+            if 0 not in file.read(4):  # version 4 has no text in front, and nothing in it is packed
+                walk(path, file)
+            file.seek(0)
+            # What cannot be read stands in its place.
+            warnings.simplefilter("ignore")
+            variables = scipy.io.loadmat(file, appendmat=False)
+    except InputError:
+        raise
     except Exception as error:  # a damaged file makes the reader fail in ways it does not list
         if isinstance(error, OSError) and error.errno is not None:
             raise  # the disk's fault, not the file's
@@ -83,24 +94,8 @@ def _read_hdf5(path: Path, found: _Found) -> None:
         ) from error
     try:
         with h5py.File(path, "r") as file:
-            _add_hdf5("", file, found, h5py)
+            Hdf5(path, h5py, found).add("", file)
+    except InputError:
+        raise
     except Exception as error:  # h5py reports damage as OSError, RuntimeError or KeyError
         raise _unreadable(path, error) from error
-
-
-def _add_hdf5(name: str, node: Any, found: _Found, h5py: Any) -> None:
-    if isinstance(node, h5py.Group):
-        for key, child in node.items():
-            # #refs# and #subsystem# hold what cells and objects point to.
-            if not key.startswith("#"):
-                _add_hdf5(f"{name}.{key}" if name else key, child, found, h5py)
-        return
-    kind = node.attrs.get("MATLAB_class", b"double")
-    if kind == b"char":
-        found[name] = "holds text or cells, not numbers"
-    elif "MATLAB_empty" in node.attrs:
-        found[name] = "is empty"
-    elif node.dtype.names is not None:
-        found[name] = "holds complex numbers"
-    else:
-        found[name] = vector(node[()])

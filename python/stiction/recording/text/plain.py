@@ -77,7 +77,7 @@ def _without_blanks(data: bytes, between: bytes) -> bytes:
     return data.replace(b" \n", b"\n").replace(b"\n ", b"\n").removeprefix(b" ")
 
 
-def _filled(data: bytes, width: int, between: bytes) -> bytes:
+def _filled(data: bytes, width: int, between: bytes) -> bytes | None:
     """With nan in empty cells, and without a delimiter behind the last column."""
     if between + b"\n" in data:
         rows = data.count(b"\n")
@@ -89,6 +89,8 @@ def _filled(data: bytes, width: int, between: bytes) -> bytes:
         for _ in range(2):
             data = data.replace(between * 2, between + b"nan" + between)
     if data.startswith(between) or b"\n" + between in data:
+        if between == b"\t":  # a line of tabs alone is an empty one
+            return None
         data = (b"\n" + data).replace(b"\n" + between, b"\nnan" + between)[1:]
     return data
 
