@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from ..errors import InputError
+from ..wording import printable
 from .expansion import Expansion, most_bytes
-from .table import printable, unfit, vector
+from .table import unfit, vector
 from .units import FloatArray
 
 _DEEPEST: Final = 64

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import unicodedata
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
-from ..wording import counted, did_you_mean, listed
+from ..wording import counted, did_you_mean, listed, printable
 from .text.lines import LineNumbers
 from .units import FloatArray, bracketed_unit
 
@@ -154,22 +153,6 @@ def vector(array: npt.NDArray[np.generic]) -> FloatArray | str:
     """A stored array as a column, or the reason why it cannot be one."""
     reason = unfit(array.dtype.kind, array.shape)
     return np.ascontiguousarray(array.ravel(), dtype=np.float64) if reason is None else reason
-
-
-def printable(name: str) -> str:
-    """A foreign name, with what no terminal and no file can show escaped.
-
-    Control characters would act on the terminal that a sentence is shown on, and halves of a
-    character (lone surrogates) cannot be written at all.
-    """
-    if name.isprintable():
-        return name
-    return "".join(
-        letter.encode("unicode_escape").decode()
-        if unicodedata.category(letter) in ("Cc", "Cs") and letter != "\t"
-        else letter
-        for letter in name
-    )
 
 
 def table_of_arrays(path: Path, arrays: dict[str, FloatArray | str], what: str) -> Table:

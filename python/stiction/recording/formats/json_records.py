@@ -10,9 +10,9 @@ from typing import Any, Final
 import numpy as np
 
 from ...errors import InputError
-from ...wording import counted, listed
+from ...wording import counted, listed, printable
 from ..expansion import Expansion
-from ..table import CELLS_KEPT, Cell, Table, printable
+from ..table import CELLS_KEPT, Cell, Table
 from .format import Format
 
 # Bytes that Python takes for an object, a list and a value: a file of brackets grows fiftyfold.
@@ -67,8 +67,11 @@ def _content(path: Path, expansion: Expansion) -> Any:
         ) from error
     except InputError:
         raise
-    except ValueError as error:  # an integer of thousands of digits
-        raise InputError(f"{path}: the JSON cannot be read ({error})") from error
+    except ValueError as error:
+        raise InputError(
+            f"{path}: the JSON cannot be read, for a number in it has thousands of digits; write "
+            "it as a decimal number"
+        ) from error
     except RecursionError as error:
         raise InputError(f"{path}: the JSON is nested too deeply; {_SHAPE}") from error
 
