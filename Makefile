@@ -21,7 +21,7 @@ export PYO3_PYTHON := $(abspath $(BIN)/python)
 export CARGO_TERM_PROGRESS_WHEN := never
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test lint rust-tests python-tests blind wheel bench format clean toolchain
+.PHONY: demo test lint rust-tests python-tests blind wheel bench format audit clean toolchain
 
 demo: $(READY)
 	$(BIN)/stiction demo --out $(OUT)
@@ -82,6 +82,20 @@ format: $(READY)
 	rustfmt --edition $(EDITION) $(RUST)
 	$(BIN)/ruff format python tests examples benches
 	$(BIN)/ruff check --fix python tests examples benches
+
+# No part of `make test`: the answer changes while the code does not, and asks the network.
+audit: $(READY)
+	@cargo deny --version >/dev/null 2>&1 || { \
+		echo "cargo-deny is missing; run: cargo install --locked cargo-deny" >&2; exit 1; }
+	cargo deny --offline check licenses bans sources
+	@cargo deny fetch db || { \
+		echo "the database of advisories cannot be reached; run this where there is a network" >&2; exit 1; }
+	cargo deny check --disable-fetch advisories
+	@$(BIN)/pip-audit --version >/dev/null 2>&1 || $(BIN)/python -m pip install --quiet 'pip-audit>=2.7'
+	@$(BIN)/pip-audit --local --skip-editable --progress-spinner off || { \
+		echo "pip-audit names a package above, or could not ask; mend it, or run this where there is a network" >&2; \
+		exit 1; }
+	@echo "nothing is known against the dependencies"
 
 clean:
 	rm -rf $(VENV) target dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -50,9 +50,14 @@ def sentence(text: str) -> str:
 
     What it begins and ends with is kept: where the fault is, and what to do.
     """
-    if len(text) > _LONGEST:
-        text = f"{text[: _LONGEST // 2]} ... {text[-_LONGEST // 4 :]}"
-    return printable(text)
+    # Cut again, for what is escaped is longer.
+    return _cut(printable(_cut(text)))
+
+
+def _cut(text: str) -> str:
+    if len(text) <= _LONGEST:
+        return text
+    return f"{text[: _LONGEST // 2]} ... {text[-_LONGEST // 4 :]}"
 
 
 def nearest(word: str, words: Iterable[str]) -> str | None:
