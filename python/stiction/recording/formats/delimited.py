@@ -73,6 +73,8 @@ def _first_lines(path: Path) -> tuple[list[_Line], Iterable[_Line]]:
     lines: list[_Line] = []
     comments: deque[_Line] = deque(maxlen=_COMMENTS_KEPT)
     for block in blocks(path):
+        if not block.data.strip():
+            continue
         for number, line in block.lines():
             bare = line.strip()
             if not bare:

@@ -24,7 +24,7 @@ _AS_TEXT: Final = 2**20
 _BYTE_ORDER_MARKS_16: Final = (b"\xff\xfe", b"\xfe\xff")
 _BYTE_ORDER_MARK_8: Final = b"\xef\xbb\xbf"
 
-_Runs = npt.NDArray[np.int64]
+IntArray = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -53,6 +53,17 @@ class Block:
             if not begin:
                 return None
         return Block(line + 1, data[begin:]) if begin < len(data) else None
+
+    def without_empty(self) -> tuple[bytes, range | IntArray]:
+        """The lines that are not empty, and their numbers."""
+        data = self.data if self.data.endswith(b"\n") else self.data + b"\n"
+        if not data.startswith(b"\n") and b"\n\n" not in data:
+            return data, range(self.first, self.first + data.count(b"\n"))
+        ends = np.flatnonzero(np.frombuffer(data, np.uint8) == ord("\n"))
+        lengths = np.diff(ends, prepend=-1) - 1
+        while b"\n\n" in data:
+            data = data.replace(b"\n\n", b"\n")
+        return data.removeprefix(b"\n"), self.first + np.flatnonzero(lengths)
 
     def lines(self) -> Iterator[tuple[int, str]]:
         """Every line with its number, without its end."""
@@ -123,7 +134,7 @@ def _without_mark(path: Path, piece: bytes) -> bytes:
 
 def _end_of_lines(data: bytes) -> int:
     """Where the last whole line ends; a last ``"\\r"`` may be half of a line's end."""
-    return data.rfind(b"\n") + 1 or data.rfind(b"\r", 0, len(data) - 1) + 1
+    return max(data.rfind(b"\n"), data.rfind(b"\r", 0, len(data) - 1)) + 1
 
 
 def _plain_ends(data: bytes) -> bytes:
@@ -155,11 +166,11 @@ class LineNumbers:
     """1-based line number of each row: runs of lines that follow each other, as most do."""
 
     def __init__(self) -> None:
-        self._runs: list[_Runs] = []  # each run's first row and its line
+        self._runs: list[IntArray] = []  # each run's first row and its line
         self._length = 0
         self._next = 0
 
-    def add(self, lines: range | npt.NDArray[np.int64]) -> None:
+    def add(self, lines: range | IntArray) -> None:
         """Append the line numbers of the rows that come next, increasing."""
         if not len(lines):
             return

@@ -26,7 +26,7 @@ def plain_numbers(data: bytes, width: int, delimiter: str) -> list[FloatArray] |
     Parameters
     ----------
     data : bytes
-        Whole lines.
+        Whole lines with their ends, none of them empty.
     width : int
         Columns.
     delimiter : str
@@ -53,8 +53,6 @@ def _cleaned(data: bytes, width: int, between: bytes) -> bytes | None:
     # Deleting is the fastest question about all bytes there is.
     if data.translate(None, _ALPHABET + between + b" \t"):
         return None
-    if not data.endswith(b"\n"):
-        data += b"\n"
     if between == b" ":
         data = data.replace(b"\t", b" ")
     elif between != b"\t" and b"\t" in data:

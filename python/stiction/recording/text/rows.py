@@ -14,7 +14,7 @@ from ..expansion import BYTES_OF_A_NUMBER, check_expansion
 from ..table import CELLS_KEPT, Cell
 from ..units import FloatArray
 from .cells import BLANKS, DECIMAL_COMMA, number, split
-from .lines import Block, LineNumbers, check_length
+from .lines import Block, IntArray, LineNumbers, check_length
 from .plain import plain_numbers
 
 _CELLS_AT_ONCE: Final = 2**18
@@ -85,8 +85,11 @@ class Rows:
         InputError
             A line with too many cells or, between blanks, too few, or more numbers than may be.
         """
-        if self._broken is None and (columns := self._plainly(block.data)) is not None:
-            self._append(columns, range(block.first, block.first + len(columns[0])))
+        data, lines = block.without_empty()
+        if not data:
+            return
+        if self._broken is None and (columns := self._plainly(data)) is not None:
+            self._append(columns, lines)
             return
         taken: list[tuple[int, list[str]]] = []
         for line, text in block.lines():
@@ -180,7 +183,7 @@ class Rows:
                 cells.append(Cell(len(self.lines) + row, self._head.names[index], text))
         return values
 
-    def _append(self, columns: list[FloatArray], lines: range | np.ndarray) -> None:
+    def _append(self, columns: list[FloatArray], lines: range | IntArray) -> None:
         rows = len(self.lines) + len(lines)
         size = rows * self._width * BYTES_OF_A_NUMBER
         check_expansion(self._path, f"{rows} rows of {counted(self._width, 'column')}", size)
