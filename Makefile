@@ -27,7 +27,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # Fuzzing takes a fresh seed where none is given.
 GIVEN_SEED = $(if $(filter-out file,$(origin SEED)),--seed $(SEED))
 
-.PHONY: demo test lint rust-tests python-tests gate blind ordinary fuzz wheel bench format clean toolchain
+.PHONY: demo test lint rust-tests python-tests gate blind ordinary fuzz wheel bench format audit clean toolchain
 
 demo: $(READY)
 	$(BIN)/stiction demo --out $(OUT)
@@ -102,6 +102,20 @@ format: $(READY)
 	rustfmt --edition $(EDITION) $(RUST)
 	$(BIN)/ruff format python tests examples benches
 	$(BIN)/ruff check --fix python tests examples benches
+
+# No part of `make test`: the answer changes while the code does not, and asks the network.
+audit: $(READY)
+	@cargo deny --version >/dev/null 2>&1 || { \
+		echo "cargo-deny is missing; run: cargo install --locked cargo-deny" >&2; exit 1; }
+	cargo deny --offline check licenses bans sources
+	@cargo deny fetch db || { \
+		echo "the database of advisories cannot be reached; run this where there is a network" >&2; exit 1; }
+	cargo deny check --disable-fetch advisories
+	@$(BIN)/pip-audit --version >/dev/null 2>&1 || $(BIN)/python -m pip install --quiet 'pip-audit>=2.7'
+	@$(BIN)/pip-audit --local --skip-editable --progress-spinner off || { \
+		echo "pip-audit names a package above, or could not ask; mend it, or run this where there is a network" >&2; \
+		exit 1; }
+	@echo "nothing is known against the dependencies"
 
 clean:
 	rm -rf $(VENV) target dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from .wording import sentence
+
 __all__ = ["InputError", "NotEnoughData", "UnknownName"]
 
 
@@ -10,7 +12,12 @@ class InputError(ValueError):
 
     The message is one plain sentence: where the fault is, what was given, what is allowed and
     what to do about it.  The command line prints that sentence alone and exits with status 2.
+    Names and values in it are those of the file, whoever wrote it: what would act on a terminal is
+    escaped.
     """
+
+    def __init__(self, *args: object) -> None:
+        super().__init__(*(sentence(arg) if isinstance(arg, str) else arg for arg in args))
 
 
 class NotEnoughData(InputError):  # noqa: N818 (it is raised and named as what is the matter)

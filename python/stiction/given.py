@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,6 +21,7 @@ __all__ = [
     "names",
     "numbers",
     "path",
+    "regular",
     "unmasked",
     "vacant",
     "whole",
@@ -27,6 +29,12 @@ __all__ = [
 ]
 
 T = TypeVar("T")
+_NO_FILES: Final = {
+    stat.S_IFIFO: "pipe",
+    stat.S_IFSOCK: "socket",
+    stat.S_IFCHR: "device",
+    stat.S_IFBLK: "device",
+}
 _WORTH_ASKING: Final = 2.0**26
 """Bytes."""
 
@@ -90,6 +98,29 @@ def memory_for(size: float, what: str) -> None:
         np.empty(int(size), dtype=np.uint8)
     except (MemoryError, OverflowError, ValueError):
         raise InputError(f"there is no memory ({size / 2**30:.3g} GiB) for {what}") from None
+
+
+def regular(file: Path) -> os.stat_result:
+    """What the system says of a file that can be read to its end.
+
+    Reading a pipe or a device may wait for ever, or never come to an end.
+
+    Parameters
+    ----------
+    file : Path
+        Follows links.
+
+    Raises
+    ------
+    InputError
+        A pipe, a socket or a device.
+    OSError
+        It cannot be looked at.
+    """
+    found = file.stat()
+    if kind := _NO_FILES.get(stat.S_IFMT(found.st_mode)):
+        raise InputError(f"{file}: this is a {kind} and no file; save what comes from it to a file")
+    return found
 
 
 def names(given: Any, where: str) -> list[str]:

@@ -148,17 +148,18 @@ def noise_of(position: FloatArray, count: float | None = None) -> float:
 
 def count_of(position: FloatArray) -> float:
     """Size of the steps that the readings are made of, 0 where they have no common step."""
-    steps = np.abs(np.diff(position))
     scale = float(np.max(np.abs(position), initial=0.0))
+    steps = np.diff(position)
+    np.abs(steps, out=steps)
     steps = steps[steps > 1e-12 * max(scale, 1e-300)]
     if len(steps) == 0:
         return 0.0
     count = float(np.min(steps))
-    whole = steps / count
-    fits = np.abs(whole - np.round(whole)) < 0.02 * np.maximum(1.0, np.minimum(whole, 10.0))
     # Steps above some tens of counts fit anything: only the small ones tell.
-    small = whole < 20.0
-    return count if small.sum() > 20 and fits[small].mean() > 0.95 else 0.0
+    steps /= count
+    whole = steps[steps < 20.0]
+    fits = np.abs(whole - np.round(whole)) < 0.02 * np.maximum(1.0, np.minimum(whole, 10.0))
+    return count if len(whole) > 20 and fits.mean() > 0.95 else 0.0
 
 
 def rested(

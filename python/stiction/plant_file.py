@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import Any, Final
 
 from .drive import read_drive
 from .errors import InputError
+from .given import regular
 from .keys import choice, known
 from .parameter import Parameter, number
 from .recording.units import Motion
@@ -19,6 +21,11 @@ from .wording import listed
 __all__ = ["Parts", "check_payload", "parse", "read", "read_toml", "render"]
 
 MOTIONS: Final = ("rotary", "linear")
+_LARGEST: Final = 2**21
+_DEEPEST: Final = 64
+_WORD: Final = re.compile(r"[^\s.=,\[\]{}#]+")
+# In decimal digits Python itself refuses it.
+_LONG_NUMBER: Final = re.compile(r"\b0[xob][0-9a-fA-F_]{1000}")
 _TABLES: Final = ("motion", "drive", "body", "friction", "effects", "sensor", "controller")
 _BODY: Final = (
     "inertia",
@@ -66,10 +73,16 @@ def read_toml(path: Path, *, least: str = "[friction] law") -> dict[str, Any]:
     Raises
     ------
     InputError
-        Missing, a directory, not UTF-8, not TOML, empty.
+        Missing, no file that can be read to its end, not UTF-8, not TOML, too large, empty.
     """
     try:
+        if regular(path).st_size > _LARGEST:
+            raise InputError(
+                f"{path}: is larger than {_LARGEST // 2**20} MiB, and no plant or session file is; "
+                "check the path"
+            )
         text = path.read_bytes().decode("utf-8-sig")
+        _check_plain(path, text)
         table = tomllib.loads(text)
     except FileNotFoundError:
         raise InputError(f"{path}: there is no such file; check the path") from None
@@ -83,13 +96,33 @@ def read_toml(path: Path, *, least: str = "[friction] law") -> dict[str, Any]:
         raise InputError(f"{path}: is not text in UTF-8; save it as UTF-8") from None
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: is not TOML: {error}; mend that line") from None
-    except ValueError as error:  # an integer of thousands of digits
-        raise InputError(f"{path}: cannot be read as TOML ({error}); mend that number") from None
+    except InputError:
+        raise
+    except ValueError:
+        raise InputError(_too_long(path)) from None
     except RecursionError:
-        raise InputError(f"{path}: is nested too deeply; write plain tables") from None
+        raise InputError(_too_deep(path)) from None
     if not table:
         raise InputError(f"{path}: is empty; state at least {least}")
     return table
+
+
+def _check_plain(path: Path, text: str) -> None:
+    """Refuse what is TOML and takes hours to read, or cannot be shown."""
+    if _LONG_NUMBER.search(text):
+        raise InputError(_too_long(path))
+    # The time for a dotted key goes with the square of its parts.
+    words = _WORD.sub("k", text).replace(" ", "").replace("\t", "")
+    if "k." * _DEEPEST in words:
+        raise InputError(_too_deep(path))
+
+
+def _too_long(path: Path) -> str:
+    return f"{path}: cannot be read as TOML, for a number in it has thousands of digits; shorten it"
+
+
+def _too_deep(path: Path) -> str:
+    return f"{path}: is nested too deeply; write plain tables"
 
 
 def read(path: Path) -> tuple[dict[str, Any], str]:

@@ -289,8 +289,8 @@ def _replicates(path: Path, entries: list[dict[str, Any]], seen: dict[Path, int]
         if not isinstance(named, str):
             raise InputError(f'{where} is not a path; write replicate_of = "…"')
         of = seen.get(_beside(path, named, f"{path}: [[recordings]] {index + 1} replicate_of"))
-        files = [other["file"] for other in entries if other is not entry]
         if of is None:
+            files = [other["file"] for other in entries if other is not entry]
             raise InputError(
                 f"{where} is none of the recordings{did_you_mean(named, files)}; name the file of "
                 f"another one: {listed(files)}"

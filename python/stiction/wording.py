@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import difflib
+import unicodedata
 from collections.abc import Iterable
 
 # Below this similarity a suggestion misleads more often than it helps.
 _ALIKE = 0.55
 # A longer list than this hides what the reader looks for.
 _LISTED = 24
+
+_LONGEST = 4000
 
 NO_POSITION = (
     "there is no measured position to compare with; name its column under [columns], as in "
@@ -24,6 +27,37 @@ def listed(words: Iterable[str]) -> str:
     if len(all_words) > _LISTED:
         text += f" and {len(all_words) - _LISTED} more"
     return text or "nothing"
+
+
+def printable(text: str) -> str:
+    """Foreign text, with what no terminal and no file can show escaped.
+
+    Control characters would act on the terminal that a sentence is shown on, and halves of a
+    character (lone surrogates) cannot be written at all.
+    """
+    if text.isprintable():
+        return text
+    return "".join(
+        letter.encode("unicode_escape").decode()
+        if unicodedata.category(letter) in ("Cc", "Cs") and letter != "\t"
+        else letter
+        for letter in text
+    )
+
+
+def sentence(text: str) -> str:
+    """A sentence that holds foreign text: printable, and short enough to be read.
+
+    What it begins and ends with is kept: where the fault is, and what to do.
+    """
+    # Cut again, for what is escaped is longer.
+    return _cut(printable(_cut(text)))
+
+
+def _cut(text: str) -> str:
+    if len(text) <= _LONGEST:
+        return text
+    return f"{text[: _LONGEST // 2]} ... {text[-_LONGEST // 4 :]}"
 
 
 def nearest(word: str, words: Iterable[str]) -> str | None:

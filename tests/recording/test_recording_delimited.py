@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +11,20 @@ from hypothesis import strategies as st
 
 from stiction.errors import InputError
 from stiction.recording import read_table
+from stiction.recording.text import plain
 
 Written = Callable[..., Path]
+
+
+@pytest.fixture(params=["pyarrow", "numpy"], autouse=True, scope="module")
+def reader(request: pytest.FixtureRequest) -> Iterator[None]:
+    """All of this holds with pyarrow and without."""
+    if request.param == "pyarrow":
+        pytest.importorskip("pyarrow", reason="pyarrow, which reads faster, is not installed")
+    with pytest.MonkeyPatch.context() as patched:
+        if request.param == "numpy":
+            patched.setattr(plain, "_arrow", lambda: None)
+        yield
 
 
 def columns_of(path: Path) -> dict[str, list[float]]:

@@ -85,11 +85,11 @@ def test_a_file_that_may_not_be_read_says_why(
 ) -> None:
     path = written(lines)
 
-    def refuse(_: Path) -> bytes:
+    def refuse(*_: object) -> bytes:
         raise PermissionError(13, "Permission denied")
 
     with monkeypatch.context() as patched:
-        patched.setattr(Path, "read_bytes", refuse)
+        patched.setattr(Path, "open", refuse)
         with pytest.raises(InputError, match=r"cannot be read \(Permission denied\)"):
             read_table(path)
     assert read_table(path).columns

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 from .. import session as sessions
 from ..errors import InputError
 from ..plant import Plant
+from ..plant_file import read_toml
 from ..recording.formats import FORMATS
 from ..recording.names import names_of
 from ..session import Session
@@ -45,8 +45,8 @@ def _kind_of(path: Path) -> str:
     if path.suffix.casefold() in endings and os.path.isfile(path):
         return "recording"
     try:
-        keys = tomllib.loads(path.read_text("utf-8")).keys()
-    except (OSError, ValueError):
+        keys = read_toml(path).keys()
+    except InputError:
         # What is wrong with it is told where it is read.
         return ""
     plant = {"drive", "friction"} & keys and not {"plant", "columns", "recordings"} & keys

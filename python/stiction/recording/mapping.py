@@ -319,9 +319,13 @@ def _converted(table: Table, role: str, choice: _Chosen, count_size: float | Non
     raw = table.find(column.name, role)
     # Infinite cells are dealt with later, as cells, not as warnings.
     with np.errstate(over="ignore", invalid="ignore"):
-        if choice.unit is not None:
-            raw = to_si(raw, choice.unit, count_size=count_size, where=choice.where)
-        return column.scale * raw + column.offset
+        if choice.unit is None:
+            values = column.scale * raw
+        else:
+            values = to_si(raw, choice.unit, count_size=count_size, where=choice.where)
+            values *= column.scale
+        values += column.offset
+    return values
 
 
 def _si_unit(role: str, unit: Unit | None, drive: str | None, motion: Motion | None) -> str:

@@ -7,7 +7,7 @@ import math
 import os
 from collections.abc import Iterable, Mapping
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -197,6 +197,8 @@ class Recording:
             raise InputError(f"count_size = {count_size!r} is not a finite number above 0")
         table = read_table(file_path(path, "Recording.load"))
         channels = read_channels(table, mapped, drive=drive, motion=motion, count_size=count_size)
+        # The columns have been copied, and may be a good part of the memory at hand.
+        table = replace(table, columns={})
         recording = cls.__new__(cls)
         recording._fill(
             channels.values,

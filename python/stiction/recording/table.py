@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -9,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
-from ..wording import counted, did_you_mean, listed
+from ..wording import counted, did_you_mean, listed, printable
+from .text.lines import LineNumbers
 from .units import FloatArray, bracketed_unit
 
 # Of each column, this many cells that are not numbers are kept; one is enough for an error.
@@ -43,7 +45,7 @@ class Table:
         Cells holding text, the first 20 of each column, by row.
     unusable : dict of str to str
         What else the file holds, and why it cannot be a column ("is a scalar").
-    lines : ndarray of int, shape (rows,), optional
+    lines : sequence of int, optional
         1-based line number of each row, for formats that have lines.
     units : dict of str to str
         Units that stand in a line of their own below the names, by column.
@@ -53,8 +55,15 @@ class Table:
     columns: dict[str, FloatArray]
     cells: tuple[Cell, ...] = ()
     unusable: dict[str, str] = field(default_factory=dict)
-    lines: npt.NDArray[np.int64] | None = None
+    lines: LineNumbers | None = None
     units: dict[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for names in (self.columns, self.unusable, self.units):
+            if not all(name.isprintable() for name in names):
+                renamed = {printable(name): value for name, value in names.items()}
+                names.clear()
+                names.update(renamed)  # type: ignore[arg-type]
 
     def heading(self, name: str) -> str:
         """A column's name, with the unit below it in brackets where it has none itself."""
@@ -114,22 +123,36 @@ def is_missing(text: str) -> bool:
     return text.strip().casefold() in _MISSING
 
 
+def unfit(kind: str, shape: tuple[int, ...]) -> str | None:
+    """Why an array that is stored so cannot be a column, told before it is read.
+
+    Parameters
+    ----------
+    kind : str
+        Of its NumPy type: "f" for floats.
+    shape : tuple of int
+    """
+    if kind in "USO":
+        return "holds text or cells, not numbers"
+    if kind == "c":
+        return "holds complex numbers"
+    if kind not in "biuf":
+        return "does not hold numbers"
+    size = math.prod(shape)
+    if size == 0:
+        return "is empty"
+    if size == 1:
+        return "is a scalar"
+    if sum(length > 1 for length in shape) > 1:
+        lengths = " x ".join(str(length) for length in shape)
+        return f"is a {lengths} matrix, and a column must be a vector (save its columns apart)"
+    return None
+
+
 def vector(array: npt.NDArray[np.generic]) -> FloatArray | str:
     """A stored array as a column, or the reason why it cannot be one."""
-    if array.dtype.kind in "USO":
-        return "holds text or cells, not numbers"
-    if array.dtype.kind == "c":
-        return "holds complex numbers"
-    if array.dtype.kind not in "biuf":
-        return "does not hold numbers"
-    if array.size == 0:
-        return "is empty"
-    if array.size == 1:
-        return "is a scalar"
-    if sum(length > 1 for length in array.shape) > 1:
-        shape = " x ".join(str(length) for length in array.shape)
-        return f"is a {shape} matrix, and a column must be a vector (save its columns apart)"
-    return np.ascontiguousarray(array.ravel(), dtype=np.float64)
+    reason = unfit(array.dtype.kind, array.shape)
+    return np.ascontiguousarray(array.ravel(), dtype=np.float64) if reason is None else reason
 
 
 def table_of_arrays(path: Path, arrays: dict[str, FloatArray | str], what: str) -> Table:

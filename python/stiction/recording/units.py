@@ -155,7 +155,10 @@ def to_si(
     InputError
         If the unit is ``count`` and no usable ``count_size`` is given.
     """
-    return np.asarray(values, dtype=np.float64) * _factor(unit, count_size, where) + unit.offset
+    # In place, for a column may be a good part of the memory at hand.
+    converted = np.asarray(values, dtype=np.float64) * _factor(unit, count_size, where)
+    converted += unit.offset
+    return converted
 
 
 def _factor(unit: Unit, count_size: float | None, where: str) -> float:

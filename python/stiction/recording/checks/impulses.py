@@ -30,6 +30,7 @@ AROUND: Final = 2 * LONGEST + 1
 """Samples whose median is what the input would be without it."""
 STEP_TIMES: Final = 5.0
 """Both edges of an impulse are so many times the usual step about it."""
+_AT_ONCE: Final = 2**16
 BESIDE: Final = 0.1
 """Share of the height of an impulse that belongs to it."""
 LEAST_SHARE: Final = 1e-3
@@ -170,7 +171,7 @@ def _apart(values: FloatArray) -> IntArray:
         about = np.abs(steps[max(first - 1 - AROUND, 0) : last + AROUND])
         return bool(edges > max(least, STEP_TIMES * float(np.median(about))))
 
-    away = np.abs(values - np.median(_windows(values), axis=1))
+    away = np.abs(values - _medians(values))
     # Beside an impulse the median is off by a little, and a corner is off its own, but nothing
     # jumps there.
     far = away > np.maximum(least, BESIDE * np.max(_windows(away), axis=1))
@@ -186,6 +187,14 @@ def _windows(values: FloatArray) -> FloatArray:
     """What lies about each value; shape (n, 7)."""
     padded = np.pad(values, AROUND // 2, "edge")
     return np.lib.stride_tricks.sliding_window_view(padded, AROUND)
+
+
+def _medians(values: FloatArray) -> FloatArray:
+    """The median of what lies about each value."""
+    windows = _windows(values)
+    # A part at a time, for it copies them.
+    parts = [np.median(windows[k : k + _AT_ONCE], axis=1) for k in range(0, len(values), _AT_ONCE)]
+    return np.concatenate(parts)
 
 
 def _most(values: FloatArray) -> float:

@@ -9,6 +9,7 @@ import os
 from pathlib import Path
 
 from ...errors import InputError
+from ...given import regular
 from ...wording import nearest
 from ..row_count import complete
 from ..table import Table
@@ -52,14 +53,26 @@ def read_table(path: str | os.PathLike[str]) -> Table:
         if not file.exists():
             raise InputError(f"{file}: there is no such file{_near_by(file)}")
         chosen = _format_of(file)
-        if file.stat().st_size == 0:
+        before = regular(file)
+        if before.st_size == 0:
             raise InputError(f"{file}: the file is empty; record it again or name another")
-        return complete(chosen.read(file))
+        table = chosen.read(file)
+        after = file.stat()
     except OSError as error:
         reason = error.strerror or "the system refuses"
         raise InputError(
             f"{file}: the file cannot be read ({reason}); check the path, its rights and the disk"
         ) from error
+    except MemoryError as error:
+        raise InputError(
+            f"{file}: there is not enough memory to read the file; leave out columns that are not "
+            "needed, or split it"
+        ) from error
+    if (after.st_size, after.st_mtime_ns) != (before.st_size, before.st_mtime_ns):
+        raise InputError(
+            f"{file}: the file changed while it was read; wait until it is complete, or copy it"
+        )
+    return complete(table)
 
 
 def _format_of(file: Path) -> Format:

@@ -5,12 +5,15 @@ Files of version 7.3 are HDF5 and are read through h5py, an optional extra.
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
-from typing import Any
+from typing import IO
 
 import numpy as np
 
 from ...errors import InputError
+from ..hdf5 import Hdf5
+from ..mat5 import read_variables
 from ..table import Table, table_of_arrays, vector
 from ..units import FloatArray
 from .format import Format
@@ -46,31 +49,33 @@ def _unreadable(path: Path, error: Exception) -> InputError:
 
 
 def _read_classic(path: Path, found: _Found) -> None:
-    import scipy.io
-
     try:
-        variables = scipy.io.loadmat(str(path), appendmat=False)
-    except Exception as error:  # a damaged file makes the reader fail in ways it does not list
+        with path.open("rb") as file:
+            if 0 in file.read(4):  # version 4 has no text in front
+                _read_oldest(file, found)
+            else:
+                read_variables(path, file, found)
+    except InputError:
+        raise
+    except Exception as error:  # a damaged file makes readers fail in ways they do not list
         if isinstance(error, OSError) and error.errno is not None:
             raise  # the disk's fault, not the file's
         raise _unreadable(path, error) from error
+
+
+def _read_oldest(file: IO[bytes], found: _Found) -> None:
+    """Version 4, in which nothing is packed: there is no more of it than the file is long."""
+    import scipy.io
+
+    file.seek(0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        variables = scipy.io.loadmat(file, appendmat=False)
     for name, value in variables.items():
-        if not name.startswith("__"):
-            _add_classic(name, value, found)
-
-
-def _add_classic(name: str, value: Any, found: _Found) -> None:
-    if not isinstance(value, np.ndarray):
-        found[name] = "is stored as a sparse matrix or an object; save it as a plain vector"
-    elif type(value).__name__ == "MatlabOpaque" or type(value).__name__ == "MatlabFunction":
-        found[name] = "is a MATLAB object; save its contents as plain vectors"
-    elif value.dtype.names is None:
-        found[name] = vector(value)
-    elif value.size != 1:
-        found[name] = f"is an array of {value.size} structs, and only a single struct is read"
-    else:
-        for field in value.dtype.names:
-            _add_classic(f"{name}.{field}", value.flat[0][field], found)
+        if isinstance(value, np.ndarray):
+            found[name] = vector(value)
+        elif not name.startswith("__"):
+            found[name] = "is stored as a sparse matrix or an object; save it as a plain vector"
 
 
 def _read_hdf5(path: Path, found: _Found) -> None:
@@ -83,24 +88,8 @@ def _read_hdf5(path: Path, found: _Found) -> None:
         ) from error
     try:
         with h5py.File(path, "r") as file:
-            _add_hdf5("", file, found, h5py)
+            Hdf5(path, h5py, found).add("", file)
+    except InputError:
+        raise
     except Exception as error:  # h5py reports damage as OSError, RuntimeError or KeyError
         raise _unreadable(path, error) from error
-
-
-def _add_hdf5(name: str, node: Any, found: _Found, h5py: Any) -> None:
-    if isinstance(node, h5py.Group):
-        for key, child in node.items():
-            # #refs# and #subsystem# hold what cells and objects point to.
-            if not key.startswith("#"):
-                _add_hdf5(f"{name}.{key}" if name else key, child, found, h5py)
-        return
-    kind = node.attrs.get("MATLAB_class", b"double")
-    if kind == b"char":
-        found[name] = "holds text or cells, not numbers"
-    elif "MATLAB_empty" in node.attrs:
-        found[name] = "is empty"
-    elif node.dtype.names is not None:
-        found[name] = "holds complex numbers"
-    else:
-        found[name] = vector(node[()])

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
+from typing import IO, Any, Final
+from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
 import numpy as np
+from numpy.lib import format as npy
 
 from ...errors import InputError
-from ..table import Table, table_of_arrays, vector
+from ..expansion import Expansion
+from ..table import Table, table_of_arrays, unfit, vector
 from ..units import FloatArray
 from .format import Format
 
-_ZIP_SIGNATURE = b"PK"
+_ZIP_SIGNATURE: Final = b"PK"
+_ENDING: Final = ".npy"
+# Other ways of packing are no NumPy's, and a few bytes of them may be gigabytes at once.
+_PACKED: Final = (ZIP_STORED, ZIP_DEFLATED)
+
+_Header = tuple[tuple[int, ...], bool, np.dtype[Any]]
 
 
 def read(path: Path) -> Table:
@@ -24,14 +34,22 @@ def read(path: Path) -> Table:
             "file's ending"
         )
     found: dict[str, FloatArray | str] = {}
+    expansion = Expansion(path)
     try:
-        # Opened here, for NumPy leaves a damaged archive open.
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
-            for name in stored.files:
-                found[name] = _column(name, stored)
+        with path.open("rb") as file, ZipFile(file) as stored:
+            for member in stored.infolist():
+                name = member.filename.removesuffix(_ENDING)
+                if name in found:
+                    raise InputError(
+                        f"{path}: the array '{name}' stands there twice; rename one of them"
+                    )
+                found[name] = _column(name, stored, member, expansion)
+    except InputError:
+        raise
     except Exception as error:  # damage shows as BadZipFile, zlib.error, ValueError or EOFError
+        reason = " ".join(str(error).split()) or type(error).__name__
         raise InputError(
-            f"{path}: the NPZ archive is damaged ({error}); write it again with numpy.savez"
+            f"{path}: the NPZ archive is damaged ({reason[:120]}); write it again with numpy.savez"
         ) from error
     return table_of_arrays(path, found, "array")
 
@@ -39,12 +57,36 @@ def read(path: Path) -> Table:
 FORMAT = Format("NPZ", (".npz",), read)
 
 
-def _column(name: str, stored: np.lib.npyio.NpzFile) -> FloatArray | str:
-    try:
-        array = stored[name]
-    except ValueError as error:
-        # Pickled objects could run code on loading; they are never opened.
-        if "allow_pickle" not in str(error):
-            raise
-        return "holds Python objects, not numbers"
-    return vector(array) if isinstance(array, np.ndarray) else "is no array"
+def _column(name: str, stored: ZipFile, member: ZipInfo, expansion: Expansion) -> FloatArray | str:
+    if not member.filename.endswith(_ENDING):
+        return "is no array"
+    if member.compress_type not in _PACKED:
+        return "is packed in a way that NumPy does not write"
+    with stored.open(member) as file:
+        if (header := _header(file)) is None:
+            return "does not hold numbers"
+        shape, _, kind = header
+        if kind.hasobject:
+            # Pickled objects could run code on loading; they are never opened.
+            return "holds Python objects, not numbers"
+        # What the header asks for is there, or nothing is made room for.
+        if min(shape, default=0) < 0 or math.prod(shape) * kind.itemsize > member.file_size:
+            raise ValueError(f"array '{name}' is longer than what is stored of it")
+        if reason := unfit(kind.kind, shape):
+            return reason
+        size = math.prod(shape)
+        expansion.bytes(f"array '{name}'", size * (kind.itemsize + 8))
+        data = file.read(size * kind.itemsize)
+    return vector(np.frombuffer(data, kind, size))
+
+
+def _header(file: IO[bytes]) -> _Header | None:
+    """Shape, order and type of a stored array, None of one that has named fields."""
+    version = npy.read_magic(file)
+    if version == (1, 0):
+        return npy.read_array_header_1_0(file)
+    if version == (2, 0):
+        return npy.read_array_header_2_0(file)
+    if version == (3, 0):
+        return None
+    raise ValueError(f"an array of format {version}")
