@@ -9,6 +9,8 @@ import pytest
 
 import stiction as st
 from stiction.diagnosis import laws
+from stiction.diagnosis.evidence import Cells
+from stiction.diagnosis.gain import MOST_LEFT, HeldOut, gain_of
 from stiction.errors import InputError
 from stiction.fitting.variables import Variables
 
@@ -103,3 +105,15 @@ def test_a_law_that_fails_is_an_entry_with_its_reason(
     # What a law cannot do with these data is said where it is asked for; a fault is logged.
     logged = any("comparison with load_dependent" in sentence for sentence in left_out)
     assert logged is not isinstance(fault, InputError)
+
+
+def test_a_gain_is_a_finite_number_whatever_runs_away() -> None:
+    block = np.repeat(np.arange(20), 50)
+    before = np.where(block < 1, 1.0, 0.0)
+    cells = Cells(block, np.zeros_like(block), np.zeros_like(block), ("sines",))
+    for most in (1e6, MOST_LEFT):
+        residuals = (before, np.full(len(block), most))
+        held = HeldOut(residuals, np.ones(len(block)), before, cells, ())
+        found = gain_of(held, 0, 1, 0)
+        assert np.all(np.isfinite([found.value, *found.ci95]))
+        assert found.value < 0.0
