@@ -52,6 +52,16 @@ def _nothing_is_left_out(_left_out: _Kept) -> Iterator[None]:
     assert not said, f"left out: {said}"
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _no_progress() -> Iterator[None]:
+    """On a busy machine a quick command is a slow one: what it says meanwhile would be a fault."""
+    from stiction.cli import progress
+
+    usual, progress.SELDOM = progress.SELDOM, 3600.0  # type: ignore[misc]
+    yield
+    progress.SELDOM = usual  # type: ignore[misc]
+
+
 @pytest.fixture
 def left_out(_left_out: _Kept, _nothing_is_left_out: None) -> Iterator[list[str]]:
     """For tests in which something is to fail: the sentences, which then count for nothing."""

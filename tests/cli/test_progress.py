@@ -83,7 +83,10 @@ def test_a_diagnosis_counts_its_recordings_and_says_when_it_draws(
     assert re.search(r"drawing the report, figure \d of \d", told)
 
 
-def test_a_quick_command_says_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_quick_command_says_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("stiction.cli.progress.SELDOM", 5.0)
     desk = Desk(tmp_path)
     began = time.monotonic()
     assert run(["simulate", str(desk.plant), str(desk.session), "-o", str(tmp_path / "out")]) == 0

@@ -164,6 +164,7 @@ class Killed:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             start_new_session=True,
+            cwd=Path(__file__).parents[2],
         )
 
 

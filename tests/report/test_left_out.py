@@ -241,3 +241,19 @@ def test_a_figure_of_the_paper_that_fails_leaves_its_numbers(
     assert list(tmp_path.iterdir()) == []
     assert sentence in render_text([section])
     assert render_json([section])["experiments"][0]["not_drawn"] == sentence
+
+
+@pytest.mark.parametrize("verb", ["diagnose", "fit"])
+def test_where_no_file_can_be_written_the_answer_is_printed_all_the_same(
+    verb: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    desk = Desk(tmp_path)
+    monkeypatch.setattr("stiction.cli.diagnose.run", lambda *_, **__: whole())
+    for name in ("findings.json", "fit.json"):
+        (tmp_path / "out" / name).mkdir(parents=True)
+    assert run([verb, str(desk.session), "-o", str(tmp_path / "out"), "--json"]) == 2
+    told = capsys.readouterr()
+    assert told.err.count("\n") == 1
+    assert "Is a directory" in told.err
+    answer = json.loads(told.out)
+    assert answer["sentence"] == whole().sentence if verb == "diagnose" else answer["parameters"]

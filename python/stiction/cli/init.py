@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from collections import Counter
 from collections.abc import Sequence
@@ -14,6 +15,7 @@ from .. import session as sessions
 from ..atomic_files import create_text
 from ..errors import InputError
 from ..given import vacant
+from ..progress import phase, steps
 from ..recording import Table, read_table
 from ..recording.formats import FORMATS
 from ..recording.guess import Guess, guess
@@ -21,8 +23,11 @@ from ..recording.repair import FEWEST_ROWS
 from ..wording import counted, listed
 from .answer import answer, folder, written
 from .draft import plant_text, session_text
+from .progress import progress
 
 __all__ = ["init"]
+
+_logger = logging.getLogger(__name__)
 
 _FILES = ("plant.toml", "session.toml")
 
@@ -50,8 +55,10 @@ def init(
         Print JSON.
     """
     vacant(out, _FILES, "another folder with --out")
-    tables, left_out = _read([data, *more])
-    found = guess(tables)
+    with progress():
+        tables, left_out = _read([data, *more])
+        phase(_logger, "guessing what each column is")
+        found = guess(tables)
     where = folder(out)
     files = [where / name for name in _FILES]
     texts = (plant_text(found), session_text(found, [t.path for t in tables], left_out, where))
@@ -82,6 +89,7 @@ def _read(paths: Sequence[Path]) -> tuple[list[Table], list[tuple[Path, str]]]:
     tables: list[Table] = []
     left_out: list[tuple[Path, str]] = []
     alone = len(paths) == 1
+    phase(_logger, "reading")
     for path in paths:
         # Not Path.is_dir, which fails on an overlong name.
         if not os.path.isdir(path):
@@ -89,7 +97,7 @@ def _read(paths: Sequence[Path]) -> tuple[list[Table], list[tuple[Path, str]]]:
             continue
         inside = _files_in(path)
         alone = alone and len(inside) == 1
-        for file in inside:
+        for file in steps(inside, "file"):
             try:
                 tables.append(_table(file))
             except InputError as error:

@@ -126,10 +126,11 @@ def paper_command(out: Path) -> list[Section]:
     from ..paper.figures import static_comparison
 
     out = folder(Path(out))
-    sections = []
+    made: list[tuple[Section, Callable[[], Figure]]] = []
 
     def add(name: str, result: Result, figure: Callable[[], Figure] | None = None) -> None:
-        sections.append(drawn(out, name, result, figure or result.plot))
+        phase(_logger, "running the experiments, %s is done", name)
+        made.append((Section(name, result, _paths(out, name)), figure or result.plot))
 
     add("experiment-1", experiment_1())
     add("experiment-2", experiment_2())
@@ -151,7 +152,11 @@ def paper_command(out: Path) -> list[Section]:
     add("loop-areas", loop_areas())
     add("local-variation", local_variation())
     add("stick-slip", stick_slip())
-    _write_numbers(out, sections)
+    # The numbers first: no figure can cost them.
+    _write_numbers(out, [section for section, _ in made])
+    sections = [drawn(out, section.name, section.result, make) for section, make in made]
+    if any(section.failure for section in sections):
+        _write_numbers(out, sections)
     return sections
 
 
@@ -187,12 +192,16 @@ def render_json(sections: Sequence[Section]) -> dict[str, Any]:
     }
 
 
+def _paths(out: Path, name: str) -> tuple[Path, ...]:
+    return tuple(out / f"{name}{ending}" for ending in (".svg", ".png"))
+
+
 def drawn(out: Path, name: str, result: Result, make: Callable[[], Figure]) -> Section:
     """Write a figure of a result as SVG and PNG, or say why it cannot be drawn."""
     from ..plot import save_or_say
 
     phase(_logger, "drawing %s", name)
-    paths = tuple(out / f"{name}{ending}" for ending in (".svg", ".png"))
+    paths = _paths(out, name)
     with written(out):
         failure = save_or_say(f"the figure {name}", make, *paths)
     return Section(name, result, () if failure else paths, failure)

@@ -37,7 +37,8 @@ def progress() -> Iterator[None]:
                 yield
         finally:
             ended.set()
-            reporter.join()
+            # Whoever reads stderr may have stopped reading: nothing waits for that.
+            reporter.join(OFTEN)
             shown.end()
 
 

@@ -18,6 +18,8 @@ __all__ = ["Gain", "HeldOut", "gain_of", "residuals_of"]
 RESAMPLES: Final = 2000
 MOST_LEFT: Final = 1e100
 """Beyond any residual, weighted."""
+WORST: Final = -1e12
+"""A gain below this says no more, and is a number all the same."""
 
 
 @dataclass(frozen=True)
@@ -121,10 +123,12 @@ def gain_of(test: HeldOut, before: int, after: int, seed: int) -> Gain:
     two = np.bincount(block, test.residuals[after] ** 2, number)
     if one.sum() <= 0.0:
         return Gain(0.0, (0.0, 0.0))
-    value = 1.0 - float(two.sum() / one.sum())
+    value = max(1.0 - float(two.sum() / one.sum()), WORST)
     source = np.random.default_rng([seed, before, after])
     drawn = source.integers(0, number, (RESAMPLES, number))
     sums = one[drawn].sum(axis=1)
-    ratios = 1.0 - two[drawn].sum(axis=1) / np.maximum(sums, 1e-300)
+    # Draws may hold next to nothing of what was left before.
+    with np.errstate(over="ignore"):
+        ratios = np.maximum(1.0 - two[drawn].sum(axis=1) / np.maximum(sums, 1e-300), WORST)
     low, high = np.quantile(ratios, [0.025, 0.975])
     return Gain(value, (float(low), float(high)))

@@ -26,6 +26,7 @@ from ..recording.session_clock import remaining
 from ..recording.usable import checks_of, usable
 from ..session import Session
 from ..trajectory import FloatArray
+from ..wording import counted
 from .advice import advise
 from .base import based, based_joined, based_wider
 from .candidates import left_out
@@ -216,7 +217,8 @@ def _testable(
     checks: Sequence[tuple[str, Check]],
 ) -> Diagnosis:
     """The diagnosis of data that can be used."""
-    phase(_logger, "looking through %d recordings and fitting the base", len(session))
+    number = counted(len(session), "recording")
+    phase(_logger, "looking through %s and fitting the base", number)
     evidence, base = based(found.plant, session.recordings, threads=threads)
     found, null = _replayed(found, evidence, base, surrogates)
     if null is None:

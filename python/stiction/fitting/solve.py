@@ -24,6 +24,7 @@ from ..recording.session_clock import remaining
 from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
+from ..wording import counted
 from .first_pass import first_pass
 from .forms import KERNELS, Through, as_session, as_stated, forms_of
 from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stopped
@@ -147,7 +148,7 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         raise InputError("there are no recordings to fit; give at least one")
     max_evaluations = whole(max_evaluations, "max_evaluations", least=0)
     recordings, faults = _without_faults(recordings)
-    phase(_logger, "looking through %d recordings", len(recordings))
+    phase(_logger, "looking through %s", counted(len(recordings), "recording"))
     seen = _Seen(plant, recordings)
     if not free_paths(plant) and not free_paths(complete(plant, [r.form for r in seen.train])[0]):
         raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
