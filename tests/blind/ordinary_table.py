@@ -7,6 +7,9 @@ from .table import answer, classed, confident, named, of_lost, rate, table, wron
 CLEAR = 0.03
 """Hidden effort, share of the dry friction, from which a name is asked for."""
 
+OWN_LAWS = {("dry", "coulomb"), ("bristle", "lugre")}
+"""Contacts of the machine and the laws that have the same form."""
+
 
 def report(rows):
     """Everything that was counted, as Markdown."""
@@ -18,12 +21,18 @@ def report(rows):
     ):
         some = [row for row in rows if row["kind"] == kind]
         for own in (True, False):
-            part = [row for row in some if row["own_law"] is own]
+            part = [row for row in some if has_own_law(row) is own]
             if part:
                 law = "the machine's own law stated" if own else "another law stated"
                 parts += [f"{what}, {law}:", _counts(part)]
     parts += [_each(rows)]
     return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def has_own_law(row):
+    """Whether the plant file states the law that the machine has, in every detail."""
+    spec = row["spec"]
+    return (spec["contact"], spec["law"]) in OWN_LAWS and spec["kind"] == "driven"
 
 
 def _counts(rows):

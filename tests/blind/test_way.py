@@ -238,9 +238,9 @@ def test_tables_begin_with_what_was_lost() -> None:
     assert lines[3] == "| lost: traceback IndexError | 1 |"
     assert "| null: a confident name | 0/1 = 0.0 % (0.0–79.3) |" in lines
     spec = {"law": "coulomb", "contact": "dry", "recordings": 1, "dt": 1e-3, "counts": 1024}
-    spec |= {"log_noise": 0.0, "loop": "open", "drive": "torque"}
+    spec |= {"log_noise": 0.0, "loop": "open", "drive": "torque", "kind": "driven"}
     for row in rows:
-        row |= {"own_law": True, "spec": spec, "reached": 0.0}
+        row |= {"spec": spec, "reached": 0.0}
     lines = ordinary_report(rows).splitlines()
     assert lines[2].startswith("| **lost**: no whole answer | 1/2 = 50.0 %")
     assert "| right: nothing is missing | 1/1 = 100.0 % (20.7–100.0) |" in lines

@@ -306,8 +306,12 @@ def simulate(
         missing = 0.0
         for length, value in pieces:
             body.commanded = body.given(value)
-            fast = abs(state[1]) / machine.bristle if body.bristle else 0.0
-            steps = max(1, math.ceil(length / finest), math.ceil(length * fast / STEEPEST))
+            steps = max(1, math.ceil(length / finest))
+            if body.bristle:
+                # It turns over as fast as the body may be by the end of this.
+                gained = length * (abs(body.commanded) + machine.coulomb) / body.inertia
+                turning = (abs(state[1]) + gained) / machine.bristle
+                steps = max(steps, math.ceil(length * turning / STEEPEST))
             for _ in range(steps):
                 state = _advanced(body, state, length / steps)
             missing += length / dt * _hidden(body, state, held[-1])

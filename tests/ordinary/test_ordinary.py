@@ -59,6 +59,13 @@ def test_a_bristle_bends_and_creeps_no_further() -> None:
     assert bent[round(1.9 / DT)] == pytest.approx(bent[round(1.0 / DT)], abs=1e-8)
 
 
+def test_a_bristle_that_turns_over_fast_between_rare_samples_stays_finite() -> None:
+    machine = Machine(inertia=1e-3, coulomb=0.3, viscous=0.003, bristle=1e-3)
+    usual, fine = (simulate(machine, lambda k, x: 0.9, 12, 1e-2, finest=h) for h in (5e-4, 1e-4))
+    assert max(usual.velocity) > 20.0
+    assert usual.position[-1] == pytest.approx(fine.position[-1], rel=1e-5)
+
+
 @pytest.mark.parametrize(
     "effects",
     [
