@@ -20,7 +20,7 @@ fn laws(criterion: &mut Criterion) {
             bench.iter(|| {
                 let mut model = start.clone();
                 let channels = |_| Channels::default();
-                model.simulate(black_box(&velocity), DT, channels, &mut friction);
+                model.simulate(black_box(&velocity), DT, channels, &mut friction).unwrap();
                 black_box(friction[SAMPLES - 1])
             });
         });

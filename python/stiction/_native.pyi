@@ -145,13 +145,27 @@ class Motor:
         outputs: Sequence[str] | None = None,
     ) -> tuple[_Floats, dict[str, _Floats], dict[str, int]]: ...
     def follow(
-        self, motion: Motion, *, start: dict[str, float] | None = None
+        self,
+        motion: Motion,
+        *,
+        start: dict[str, float] | None = None,
+        strict: bool = True,
     ) -> tuple[_Floats, _Floats, _Floats, _Floats]: ...
     def follow_rows(
-        self, motion: Motion, kernel: RowKernel, *, start: dict[str, float] | None = None
+        self,
+        motion: Motion,
+        kernel: RowKernel,
+        *,
+        start: dict[str, float] | None = None,
+        strict: bool = True,
     ) -> _Floats: ...
     def follow_sensitivity(
-        self, motion: Motion, parameters: Sequence[str], *, start: dict[str, float] | None = None
+        self,
+        motion: Motion,
+        parameters: Sequence[str],
+        *,
+        start: dict[str, float] | None = None,
+        strict: bool = True,
     ) -> tuple[_Floats, _Floats, _Floats]: ...
     def follow_columns(
         self,
@@ -160,6 +174,7 @@ class Motor:
         kernel: RowKernel,
         *,
         start: dict[str, float] | None = None,
+        strict: bool = True,
     ) -> _Floats: ...
     def signatures(
         self,
@@ -168,6 +183,7 @@ class Motor:
         *,
         start: dict[str, float] | None = None,
         threads: int = 1,
+        strict: bool = True,
     ) -> tuple[_Floats, _Floats, _Floats]: ...
     def signature_columns(
         self,
@@ -177,6 +193,7 @@ class Motor:
         *,
         start: dict[str, float] | None = None,
         threads: int = 1,
+        strict: bool = True,
     ) -> _Floats: ...
     def shoot(
         self,
@@ -185,6 +202,7 @@ class Motor:
         stride: int,
         *,
         start: dict[str, float] | None = None,
+        strict: bool = True,
     ) -> _Floats: ...
     def accompany(
         self,
@@ -193,6 +211,7 @@ class Motor:
         damping: float,
         *,
         start: dict[str, float] | None = None,
+        strict: bool = True,
     ) -> tuple[_Floats, _Floats]: ...
     def shoot_sensitivity(
         self,
@@ -202,6 +221,7 @@ class Motor:
         parameters: Sequence[str],
         *,
         start: dict[str, float] | None = None,
+        strict: bool = True,
     ) -> _Floats: ...
     def shoot_response(
         self,
@@ -211,6 +231,7 @@ class Motor:
         parts: int,
         *,
         start: dict[str, float] | None = None,
+        strict: bool = True,
     ) -> _Floats: ...
     def sensitivity(
         self,
@@ -222,10 +243,12 @@ class Motor:
         temperature: npt.ArrayLike | None = None,
         enabled: npt.ArrayLike | None = None,
         out: _Floats | None = None,
+        strict: bool = True,
     ) -> tuple[_Floats, _Floats]: ...
     def adopt(self, other: Motor) -> None: ...
     def settings(self) -> dict[str, Any]: ...
     def friction_settings(self) -> tuple[str, dict[str, Any]]: ...
+    def friction_state(self) -> dict[str, Any]: ...
     def reset(
         self,
         position: float = 0.0,

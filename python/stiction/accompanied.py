@@ -50,5 +50,7 @@ def accompanied(
     inertia = form.own(plant).inertia
     motor = form.begun(plant, target)
     motion = form.motion if position is None else form.moved(position)
-    readings, pull = motor.accompany(motion, inertia * rate**2, 2.0 * inertia * rate, start=start)
+    readings, pull = motor.accompany(
+        motion, inertia * rate**2, 2.0 * inertia * rate, start=start, strict=False
+    )
     return np.concatenate([target[:1], readings]), form.load[:-1] + pull

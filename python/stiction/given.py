@@ -152,6 +152,15 @@ def path(given: str | os.PathLike[str], where: str) -> Path:
     """
     if not isinstance(given, str | os.PathLike) or isinstance(os.fspath(given), bytes):
         raise InputError(f"{where}: {_shown(given)} is not a path; give the name of a file")
+    try:
+        nameable = b"\0" not in os.fsencode(given)
+    except UnicodeEncodeError:
+        nameable = False
+    if not nameable:
+        raise InputError(
+            f"{where}: {os.fspath(given)!r} is no name that a file can have; leave out what no "
+            "encoding knows, and zero bytes"
+        )
     return Path(given)
 
 

@@ -177,7 +177,7 @@ class LoopForm(WeakForm):
         motor = replace(self.own(plant), effects=()).follower()
         motor.reset(float(self.position[0]), 0.0)
         along = np.concatenate([self.position[:1], there])
-        drive: FloatArray = motor.follow(self.moved(along))[0]
+        drive: FloatArray = motor.follow(self.moved(along), strict=False)[0]
         return drive
 
     def jacobian(self, plant: Plant, paths: Sequence[str], start: Start = None) -> FloatArray:
@@ -190,7 +190,11 @@ class LoopForm(WeakForm):
         motor = self._begun(plant, start)
         try:
             moved, _ = motor.sensitivity(
-                self.input, self.steps, [paths[place] for place in own], **self.around
+                self.input,
+                self.steps,
+                [paths[place] for place in own],
+                strict=False,
+                **self.around,
             )
         except InputError:
             return columns

@@ -182,7 +182,7 @@ class Motor(_native.Motor):
         """A copy of the friction law in its present state."""
         law, keywords = self.friction_settings()
         model = FrictionModel(law, **keywords)
-        model.state = {name: self.state[name] for name in model.state}
+        model.state = self.friction_state()
         return model
 
     def copy(self) -> Self:

@@ -111,7 +111,7 @@ class ShootingForm(WeakForm):
         motor = self.begun(plant, self.position)
         try:
             moved = motor.shoot_sensitivity(
-                self.motion, self.kernel.second, self.stride, wanted, start=start
+                self.motion, self.kernel.second, self.stride, wanted, start=start, strict=False
             )
         except InputError:
             return np.zeros((len(self), len(wanted)))
@@ -133,12 +133,12 @@ class ShootingForm(WeakForm):
         Parameters and return value are those of ``WeakForm.signatures``.
         """
         needed, driven, ahead = self.begun(plant, self.position).signatures(
-            self.motion, list(candidates), start=start
+            self.motion, list(candidates), start=start, strict=False
         )
         weights = self.kernel.second
         number = min(RESPONSE_PARTS, len(weights))
         response = self.begun(plant, self.position).shoot_response(
-            self.motion, weights, self.stride, number, start=start
+            self.motion, weights, self.stride, number, start=start, strict=False
         )
         edges = [k * (len(weights) // number) for k in range(number)] + [len(weights)]
         starts = self.stride * np.arange(len(self))
@@ -189,7 +189,7 @@ class ShootingForm(WeakForm):
         motor = self.begun(plant, motion)
         try:
             moved = self.moved(motion, load=load)
-            return motor.shoot(moved, self.kernel.second, self.stride, start=start)
+            return motor.shoot(moved, self.kernel.second, self.stride, start=start, strict=False)
         except InputError:
             # A trial of a fit that is too stiff for the sample time: it must look bad, not end it.
             return np.full(len(self), np.nan)

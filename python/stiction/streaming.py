@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import zipfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, Final
@@ -65,8 +64,9 @@ def stream(
     Raises
     ------
     InputError
-        A checkpoint of another motor, ``dt`` or ``every``, or one that cannot be written; what
-        ``Motor.simulate`` refuses.
+        A checkpoint of another motor, ``dt`` or ``every``, one that is damaged or that goes beyond
+        the chunks, or one that cannot be written; a motion that runs away; what ``Motor.simulate``
+        refuses.
 
     Examples
     --------
@@ -136,6 +136,11 @@ def _streamed(
         first = done // every
         for piece in (inputs[k : k + PIECE] for k in range(0, len(inputs), PIECE)):
             run = motor.simulate(piece, dt, load=load, outputs=outputs)
+            if not run.success:
+                raise InputError(
+                    f"stream: the motion ran away within the {len(piece)} samples after the first "
+                    f"{done}; check inputs, units and inertia; the motor stands before them"
+                )
             for name in outputs:
                 rows[name].append(run[name][(-done - 1) % every :: every].copy())
             done += len(piece)
@@ -149,6 +154,11 @@ def _streamed(
         )
         if path is not None:
             _keep(motor, path, identity, done, start)
+    if done < passed:
+        raise InputError(
+            f"{path}: is the checkpoint of a run of {passed} samples, and the chunks end after "
+            f"{done}; give all of them from the beginning, or delete it"
+        )
 
 
 def _identity(motor: Motor, dt: float, every: int, load: float) -> str:
@@ -171,22 +181,40 @@ def _keep(motor: Motor, path: Path, identity: str, done: int, start: float) -> N
 def _resume(motor: Motor, path: Path, identity: str) -> tuple[int, float]:
     """Sets the state that was kept; samples done until then, and when the run began."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            kept = {name: file[name] for name in file.files}
-            belongs, done = str(kept["identity"]), int(kept["done"])
-            start = float(kept["start"])
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        raise InputError(
-            f"{path}: cannot be read as a checkpoint ({error}); delete it to start anew"
-        ) from None
+        belongs, done, start, state = _read(path)
+    # Whatever stands in a damaged file, a reader of zip archives and arrays may stumble over it.
+    except Exception as error:
+        raise _damaged(path, error) from None
     if belongs != identity:
         raise InputError(
             f"{path}: is the checkpoint of another motor, load, dt or every; delete it, or name "
             "another file"
         )
+    try:
+        motor.state = state
+    except InputError as error:
+        raise _damaged(path, error) from None
+    return done, start
+
+
+def _read(path: Path) -> tuple[str, int, float, dict[str, Any]]:
+    """What a checkpoint belongs to, samples done, when the run began, and the state."""
+    with np.load(path, allow_pickle=False) as file:
+        kept = {name: file[name] for name in file.files}
+    done, start = kept["done"], kept["start"]
+    if done.shape or done.dtype.kind not in "iu" or done < 0:
+        raise ValueError(f"done = {done}")
+    if start.shape or start.dtype.kind != "f" or not np.isfinite(start):
+        raise ValueError(f"start = {start}")
     state: dict[str, Any] = {}
     for name, value in kept.items():
         if name.startswith("state."):
+            if value.dtype != np.float64:
+                raise ValueError(f"{name} holds {value.dtype}")
             state[name.removeprefix("state.")] = float(value) if value.ndim == 0 else value
-    motor.state = state
-    return done, start
+    return str(kept["identity"]), int(done), float(start), state
+
+
+def _damaged(path: Path, error: Exception) -> InputError:
+    why = " ".join(str(error).split()) or type(error).__name__
+    return InputError(f"{path}: cannot be read as a checkpoint ({why}); delete it to start anew")

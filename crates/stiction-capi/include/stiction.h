@@ -51,7 +51,8 @@ enum stiction_status stiction_friction_new(const char *law,
 
 // One sample at a held velocity; `force` is friction at its end, positive when it resists positive
 // motion. `effort` is all other effort on the body, which a contact with true stick holds at rest;
-// `load` is the external part of it. Allocates nothing.
+// `load` is the external part of it. Allocates nothing but where numbers are so large that the force
+// may be none; then it is refused, and nothing has changed.
 //
 // # Safety
 // `friction` is a live handle of this library that no other thread uses; `force` may be written.
@@ -136,7 +137,8 @@ enum stiction_status stiction_motor_new(double inertia,
                                         struct stiction_friction *friction,
                                         struct stiction_motor **motor);
 
-// One sample with input and load held; position and velocity at its end. Allocates nothing.
+// One sample with input and load held; position and velocity at its end. Allocates nothing but where
+// numbers are so large that the motion may run away; then it is refused, and nothing has changed.
 //
 // # Safety
 // `motor` is a live handle of this library that no other thread uses; `position` and `velocity` may

@@ -67,7 +67,8 @@ fn channels(effort: f64, load: f64) -> Result<Channels<f64>, Problem> {
 
 /// One sample at a held velocity; `force` is friction at its end, positive when it resists positive
 /// motion. `effort` is all other effort on the body, which a contact with true stick holds at rest;
-/// `load` is the external part of it. Allocates nothing.
+/// `load` is the external part of it. Allocates nothing but where numbers are so large that the force
+/// may be none; then it is refused, and nothing has changed.
 ///
 /// # Safety
 /// `friction` is a live handle of this library that no other thread uses; `force` may be written.
@@ -87,7 +88,7 @@ pub unsafe extern "C" fn stiction_friction_step(
             return Err(Problem::Null("force"));
         }
         let (velocity, dt) = (bounded("velocity", velocity, FASTEST)?, duration(dt)?);
-        let result = model.0.step(velocity, dt, &channels(effort, load)?);
+        let result = model.0.step(velocity, dt, &channels(effort, load)?)?;
         // SAFETY: as promised by the caller.
         unsafe { put(force, result, "force") }
     })
@@ -116,7 +117,7 @@ pub unsafe extern "C" fn stiction_friction_trial(
             return Err(Problem::Null("force or slope"));
         }
         let (velocity, dt) = (bounded("velocity", velocity, FASTEST)?, duration(dt)?);
-        let (result, steepness) = model.0.trial(velocity, dt, &channels(effort, load)?);
+        let (result, steepness) = model.0.trial(velocity, dt, &channels(effort, load)?)?;
         // SAFETY: as promised by the caller.
         unsafe { put(force, result, "force").and_then(|()| put(slope, steepness, "slope")) }
     })

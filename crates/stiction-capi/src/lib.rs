@@ -36,6 +36,7 @@ pub extern "C" fn stiction_message() -> *const c_char {
 
 #[cfg(test)]
 mod tests {
+    use std::ffi::CString;
     use std::ptr::{null, null_mut};
 
     use super::friction::*;
@@ -102,6 +103,86 @@ mod tests {
             assert_eq!(position, 0.5);
             stiction_motor_free(motor);
             stiction_motor_free(other);
+            stiction_friction_free(friction);
+        }
+    }
+
+    /// A contact of any law with its defaults.
+    fn any_contact(law: &str) -> *mut Friction {
+        let (mut friction, law) = (null_mut(), CString::new(law).unwrap());
+        let new = |law, none| {
+            // SAFETY: the word ends in a zero byte, and there are no arrays.
+            unsafe { stiction_friction_new(law, null(), null(), 0, null(), null(), 0, none) }
+        };
+        assert_eq!(new(law.as_ptr(), &raw mut friction), Status::Ok);
+        friction
+    }
+
+    #[test]
+    fn a_state_of_every_law_goes_on_to_the_bit_in_another_handle() {
+        for record in stiction_core::friction::LAWS {
+            let (friction, fresh) = (any_contact(record.name), any_contact(record.name));
+            let (mut motor, mut other) = (null_mut(), null_mut());
+            let (mut x, mut v, mut y, mut w, mut length) = (0.0, 0.0, 0.0, 0.0, 0);
+            // SAFETY: handles are live until they are freed, all targets are locals of this test.
+            unsafe {
+                stiction_motor_new(0.0076, 1.0, friction, &raw mut motor);
+                stiction_motor_new(0.0076, 1.0, fresh, &raw mut other);
+                stiction_motor_reset(motor, 5.0, 0.0);
+                for k in 0..400 {
+                    let phase = f64::from(k) * 0.05;
+                    stiction_motor_step(motor, phase.sin(), 0.0, 1e-3, &raw mut x, &raw mut v);
+                    stiction_friction_step(friction, phase.cos(), 1e-3, 0.0, 0.0, &raw mut y);
+                }
+                stiction_motor_state_length(motor, &raw mut length);
+                let mut state = vec![0.0; length];
+                stiction_motor_get_state(motor, state.as_mut_ptr(), length);
+                let set = stiction_motor_set_state(other, state.as_ptr(), length);
+                assert_eq!(set, Status::Ok, "{}: {}", record.name, said());
+                stiction_motor_get_number(other, c"position".as_ptr(), &raw mut y);
+                assert_eq!(x, y, "{}", record.name);
+                for _ in 0..100 {
+                    stiction_motor_step(motor, 0.3, 0.0, 1e-3, &raw mut x, &raw mut v);
+                    stiction_motor_step(other, 0.3, 0.0, 1e-3, &raw mut y, &raw mut w);
+                    assert_eq!((x, v), (y, w), "{}", record.name);
+                }
+                stiction_friction_state_length(friction, &raw mut length);
+                let mut state = vec![0.0; length];
+                stiction_friction_get_state(friction, state.as_mut_ptr(), length);
+                let set = stiction_friction_set_state(fresh, state.as_ptr(), length);
+                assert_eq!(set, Status::Ok, "{}: {}", record.name, said());
+                stiction_friction_step(friction, -0.1, 1e-3, 0.0, 0.0, &raw mut x);
+                stiction_friction_step(fresh, -0.1, 1e-3, 0.0, 0.0, &raw mut y);
+                assert_eq!(x, y, "{}", record.name);
+                for handle in [motor, other] {
+                    stiction_motor_free(handle);
+                }
+                for handle in [friction, fresh] {
+                    stiction_friction_free(handle);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_motion_that_runs_away_is_refused_and_nothing_has_changed() {
+        let (friction, mut motor) = (any_contact("coulomb"), null_mut());
+        let (mut x, mut v, mut force) = (0.5, 0.5, 0.5);
+        // SAFETY: handles are live until they are freed, all targets are locals of this test.
+        unsafe {
+            stiction_motor_new(1e-5, 100.0, friction, &raw mut motor);
+            let away = stiction_motor_step(motor, 1e308, 0.0, 1e-4, &raw mut x, &raw mut v);
+            assert_eq!(away, Status::Refused);
+            assert!(said().contains("ran away"), "{}", said());
+            assert_eq!((x, v), (0.5, 0.5));
+            stiction_motor_get_number(motor, c"velocity".as_ptr(), &raw mut v);
+            assert_eq!(v, 0.0);
+            let step = |effort, force| {
+                stiction_friction_step(friction, 0.1, 1e-3, effort, f64::MAX, force)
+            };
+            let status = step(f64::MAX, &raw mut force);
+            assert!(force.is_finite() && (status == Status::Ok || force == 0.5));
+            stiction_motor_free(motor);
             stiction_friction_free(friction);
         }
     }

@@ -36,7 +36,8 @@ pub unsafe extern "C" fn stiction_motor_new(
     })
 }
 
-/// One sample with input and load held; position and velocity at its end. Allocates nothing.
+/// One sample with input and load held; position and velocity at its end. Allocates nothing but where
+/// numbers are so large that the motion may run away; then it is refused, and nothing has changed.
 ///
 /// # Safety
 /// `motor` is a live handle of this library that no other thread uses; `position` and `velocity` may
@@ -77,8 +78,7 @@ pub unsafe extern "C" fn stiction_motor_reset(
         // SAFETY: as promised by the caller.
         let machine = unsafe { held(motor, "motor") }?;
         let position = bounded("position", position, f64::MAX)?;
-        machine.0.reset(position, bounded("velocity", velocity, 1e6)?);
-        Ok(())
+        Ok(machine.0.reset(position, bounded("velocity", velocity, 1e6)?)?)
     })
 }
 

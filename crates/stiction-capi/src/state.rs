@@ -5,7 +5,7 @@ use stiction_core::friction::Entry;
 use crate::boundary::Problem;
 
 /// How many doubles the entries take: one a number; a count and two a row for a list.
-pub(crate) fn length(entries: &[(&'static str, Entry)]) -> usize {
+pub(crate) fn length(entries: &[(impl AsRef<str>, Entry)]) -> usize {
     let each = entries.iter().map(|(_, entry)| match entry {
         Entry::Number(_) => 1,
         Entry::Pairs(rows) => 1 + 2 * rows.len(),
@@ -18,7 +18,7 @@ pub(crate) fn length(entries: &[(&'static str, Entry)]) -> usize {
 /// # Safety
 /// `values` is NULL or has that room.
 pub(crate) unsafe fn copy(
-    entries: &[(&'static str, Entry)],
+    entries: &[(impl AsRef<str>, Entry)],
     values: *mut f64,
     room: usize,
 ) -> Result<(), Problem> {
@@ -41,7 +41,7 @@ pub(crate) unsafe fn copy(
     Ok(())
 }
 
-fn write(entries: &[(&'static str, Entry)], mut target: impl FnMut(f64)) {
+fn write(entries: &[(impl AsRef<str>, Entry)], mut target: impl FnMut(f64)) {
     for (_, entry) in entries {
         match entry {
             Entry::Number(x) => target(*x),
@@ -55,13 +55,14 @@ fn write(entries: &[(&'static str, Entry)], mut target: impl FnMut(f64)) {
 
 /// Entries of the names and kinds of `like` with the values of an array.
 pub(crate) fn read(
-    like: &[(&'static str, Entry)],
+    like: &[(impl AsRef<str>, Entry)],
     values: &[f64],
 ) -> Result<Vec<(String, Entry)>, Problem> {
     let mut left = values.iter().copied();
     let short = || Problem::Refused("the state is too short for this law".to_owned());
     let mut entries = Vec::with_capacity(like.len());
     for (name, kind) in like {
+        let name = name.as_ref();
         let first = left.next().ok_or_else(short)?;
         let entry = match kind {
             Entry::Number(_) => Entry::Number(first),
@@ -74,7 +75,7 @@ pub(crate) fn read(
                 Entry::Pairs(rows.collect::<Result<_, Problem>>()?)
             }
         };
-        entries.push(((*name).to_owned(), entry));
+        entries.push((name.to_owned(), entry));
     }
     if left.next().is_some() {
         return Err(Problem::Refused("the state is too long for this law".to_owned()));
@@ -83,14 +84,14 @@ pub(crate) fn read(
 }
 
 /// A number by its name.
-pub(crate) fn number(entries: &[(&'static str, Entry)], name: &str) -> Result<f64, Problem> {
+pub(crate) fn number(entries: &[(impl AsRef<str>, Entry)], name: &str) -> Result<f64, Problem> {
     let found = entries.iter().find_map(|(known, entry)| match entry {
-        Entry::Number(x) if *known == name => Some(*x),
+        Entry::Number(x) if known.as_ref() == name => Some(*x),
         Entry::Number(_) | Entry::Pairs(_) => None,
     });
     found.ok_or_else(|| {
         let numbers = entries.iter().filter(|(_, entry)| matches!(entry, Entry::Number(_)));
-        let known: Vec<&str> = numbers.map(|(known, _)| *known).collect();
+        let known: Vec<&str> = numbers.map(|(known, _)| known.as_ref()).collect();
         Problem::Refused(format!("state '{name}' is unknown; known: {}", known.join(", ")))
     })
 }

@@ -77,7 +77,7 @@ fn a_c_program_steps_to_the_bit() {
     let hex = |x: f64| format!("{:016x}", x.to_bits());
     for k in 0..2000 {
         let around = stiction_core::friction::Channels::default();
-        let force = friction.step(if k < 1000 { 1e-3 } else { -1e-3 }, 1e-3, &around);
+        let force = friction.step(if k < 1000 { 1e-3 } else { -1e-3 }, 1e-3, &around).unwrap();
         let (position, velocity) =
             motor.step(if k % 200 < 100 { 0.6 } else { -0.1 }, 0.0, 1e-3).unwrap();
         if k % 100 == 99 {

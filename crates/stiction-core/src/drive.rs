@@ -311,12 +311,9 @@ impl<S: Scalar> Way<S> {
         }
     }
 
-    /// Names of its entries in a state.
-    pub fn names(&self) -> impl Iterator<Item = &'static str> {
-        let delay = self.delay.as_ref().map(|_| DelayLine::<f64>::ENTRY);
-        let rate = self.rate.as_ref().map(|_| RateLimit::<f64>::ENTRY);
-        delay.into_iter().chain(rate).chain(self.lag.as_ref().map(|_| Lag::<f64>::ENTRY))
-    }
+    /// Names that its entries in a state may have.
+    pub const NAMES: [&'static str; 3] =
+        [DelayLine::<f64>::ENTRY, RateLimit::<f64>::ENTRY, Lag::<f64>::ENTRY];
 
     /// What is on the way, as entries of a state.
     pub fn entries(&self) -> impl Iterator<Item = (&'static str, Entry)> {

@@ -12,7 +12,9 @@ use crate::finite;
 use crate::friction::{Law, Statistics};
 use crate::lanes::{self, Job, Width};
 use crate::model::LawSpec;
-use crate::motor::{Column, EffectSpec, Motor, MotorSpec, PerSample, Running, Surroundings};
+use crate::motor::{
+    Column, EffectSpec, Motor, MotorSpec, PerSample, Running, Standing, Surroundings,
+};
 
 /// What members of an ensemble differ in: rows of values, one for each path.
 #[derive(Debug, Clone, Copy)]
@@ -229,7 +231,8 @@ impl Ensemble {
         self.members.is_empty()
     }
 
-    /// One sample of every member; fills position and velocity at its end.
+    /// One sample of every member; fills position and velocity at its end. Where one of them cannot be
+    /// stepped, or that leads to no number, all of them stay where they are.
     pub fn step(
         &mut self,
         inputs: PerSample<'_>,
@@ -246,8 +249,27 @@ impl Ensemble {
                 return Err(Error::Length { name: name.to_owned(), given, wanted: members });
             }
         }
+        // Those that may run away go first, and back where one of them does.
+        let mut watched: Vec<(usize, Standing)> = Vec::new();
+        for k in 0..members {
+            let running = &mut self.members[k];
+            if running.needs_no_watch(inputs.at(k), loads.at(k), dt) {
+                continue;
+            }
+            let before = running.standing();
+            if let Err(error) = running.step_watched(inputs.at(k), loads.at(k), dt) {
+                for (k, before) in watched {
+                    self.members[k].return_to(before);
+                }
+                return Err(Error::Member { member: k, problem: error.to_string() });
+            }
+            watched.push((k, before));
+        }
+        let mut watched = watched.into_iter().map(|(k, _)| k).peekable();
         for (k, running) in self.members.iter_mut().enumerate() {
-            running.step(inputs.at(k), loads.at(k), dt)?;
+            if watched.next_if_eq(&k).is_none() {
+                running.step_or_stay(inputs.at(k), loads.at(k), dt)?;
+            }
             positions[k] = running.run.position;
             velocities[k] = running.run.velocity;
         }
@@ -269,6 +291,12 @@ impl Ensemble {
             if given != wanted {
                 return Err(Error::Length { name: "out".to_owned(), given, wanted });
             }
+        }
+        let longest = plan.dt.greatest();
+        for (member, running) in self.members.iter().enumerate() {
+            running
+                .check_step(longest)
+                .map_err(|error| Error::Member { member, problem: error.to_string() })?;
         }
         let before = (samples >= MANY).then(|| self.members.clone());
         if before.is_none() {

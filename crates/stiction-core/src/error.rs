@@ -106,6 +106,45 @@ pub enum Error {
         /// The longest allowed.
         longest: f64,
     },
+    /// A motion that is none any more.
+    #[error(
+        "the motion ran away: {what} = {value} after {duration} s; give a smaller input, load or dt, or \
+         check units and inertia; the motor is left as it was",
+        duration = Shown(*.duration)
+    )]
+    RanAway {
+        /// Which number is none.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+        /// How long it took.
+        duration: f64,
+    },
+    /// The same in what nobody asked for.
+    #[error(
+        "the motion ran away, which the outputs asked for do not show; ask for position too, give smaller \
+         inputs or dt, or check units and inertia; the motor is left as it was"
+    )]
+    RanUnseen,
+    /// A place where efforts are none.
+    #[error(
+        "at position = {} the effort on the body is no number; give a position nearer to those of this \
+         motor",
+        Shown(*position)
+    )]
+    Nowhere {
+        /// The place as given.
+        position: f64,
+    },
+    /// Friction that is no number although everything given was.
+    #[error(
+        "friction of '{law}' left the range of floats: its parameters lie too far apart for this motion; \
+         give values nearer to the typical ones that `stiction laws {law}` shows, or a shorter dt"
+    )]
+    OutOfRange {
+        /// Name of the law.
+        law: &'static str,
+    },
     /// A state that does not fit the law.
     #[error("state entry '{name}' {problem}; give a state that the same law returned")]
     State {

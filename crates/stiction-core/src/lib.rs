@@ -24,6 +24,7 @@ mod logarithm;
 pub mod model;
 pub mod motor;
 pub mod parameter;
+mod range;
 pub mod scalar;
 pub mod segments;
 pub mod sensitivity;

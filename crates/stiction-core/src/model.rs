@@ -1,11 +1,13 @@
 //! A friction law with its parameters and state: what `FrictionModel` is in Python.
 
 use crate::error::{Error, Result, Shown};
+use crate::finite;
 use crate::friction::{
     AnyState, AnyTrial, Channels, Entry, Law, LawRecord, LawState, Outcome, Statistics, law_record,
 };
 use crate::integrate::{Held, through_events};
 use crate::parameter::resolve;
+use crate::range::{Range, ordinary, sound};
 use crate::scalar::{COLUMNS, Dual, Scalar};
 
 /// Samples between two checks that the next reversals find room.
@@ -135,6 +137,8 @@ pub struct FrictionModel {
     state: AnyState<f64>,
     /// What the last `trial` would lead to.
     proposed: Option<Proposed>,
+    /// Within what a step needs no watch.
+    range: Range,
 }
 
 /// A step not yet accepted.
@@ -151,7 +155,9 @@ impl FrictionModel {
     pub fn new(spec: LawSpec) -> Self {
         let law = spec.plain();
         let state = law.initial();
-        Self { spec, law, state, proposed: None }
+        let values = spec.values.iter().copied();
+        let range = Range::new(ordinary(spec.record.parameters, values), 0.0);
+        Self { spec, law, state, proposed: None, range }
     }
 
     /// Law, parameters and options.
@@ -169,10 +175,20 @@ impl FrictionModel {
         &self.state
     }
 
-    /// One sample at a held velocity; the friction at its end.
+    /// One sample at a held velocity; the friction at its end. Where that is no number, the contact
+    /// stays as it is.
     #[inline]
-    pub fn step(&mut self, velocity: f64, dt: f64, channels: &Channels<f64>) -> f64 {
+    pub fn step(&mut self, velocity: f64, dt: f64, channels: &Channels<f64>) -> Result<f64> {
+        if !self.needs_no_watch(velocity, dt, channels) {
+            return self.step_watched(velocity, dt, channels);
+        }
         self.proposed = None;
+        let force = self.go(velocity, dt, channels);
+        if force.is_finite() { Ok(force) } else { Err(self.out_of_range()) }
+    }
+
+    #[inline(always)]
+    fn go(&mut self, velocity: f64, dt: f64, channels: &Channels<f64>) -> f64 {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             state.make_room(EVENT_ROOM);
             let mut held = Held::new(velocity, *channels);
@@ -181,7 +197,39 @@ impl FrictionModel {
         })
     }
 
-    /// Samples at held velocities; the friction at the end of each.
+    #[cold]
+    #[inline(never)]
+    fn step_watched(&mut self, velocity: f64, dt: f64, channels: &Channels<f64>) -> Result<f64> {
+        let before = self.state.clone();
+        let force = self.go(velocity, dt, channels);
+        self.keep_or_return(before, force.is_finite())?;
+        Ok(force)
+    }
+
+    /// Whether a sample cannot lead to anything but numbers.
+    #[inline]
+    fn needs_no_watch(&self, velocity: f64, dt: f64, channels: &Channels<f64>) -> bool {
+        self.range.covers(velocity.abs() + channels.effort.abs() + channels.load.abs(), dt)
+    }
+
+    /// Keeps the present state where it is one, and goes back to the one before where it is none.
+    fn keep_or_return(&mut self, before: AnyState<f64>, finite: bool) -> Result<()> {
+        let entries = |state: &AnyState<f64>| with_state!(state, |state| state.entries());
+        if finite && (self.range.holds(0.0) || sound(&entries(&before), &entries(&self.state))) {
+            self.proposed = None;
+            return Ok(());
+        }
+        self.state = before;
+        Err(self.out_of_range())
+    }
+
+    #[cold]
+    fn out_of_range(&self) -> Error {
+        Error::OutOfRange { law: self.spec.record.name }
+    }
+
+    /// Samples at held velocities; the friction at the end of each. Where one of them is no number, the
+    /// contact stays as it is.
     ///
     /// `channels` yields what else reaches the contact at a sample.
     pub fn simulate(
@@ -190,8 +238,8 @@ impl FrictionModel {
         dt: f64,
         channels: impl Fn(usize) -> Channels<f64>,
         friction: &mut [f64],
-    ) {
-        self.proposed = None;
+    ) -> Result<()> {
+        let before = self.state.clone();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let chunks = velocity.chunks(CHUNK).zip(friction.chunks_mut(CHUNK));
             for (chunk, (velocity, friction)) in chunks.enumerate() {
@@ -203,21 +251,52 @@ impl FrictionModel {
                 }
             }
         });
+        self.keep_or_return(before, finite::check("friction", friction).is_ok())
     }
 
     /// Friction and ∂friction/∂velocity of a sample, leaving the state as it is.
-    pub fn trial(&mut self, velocity: f64, dt: f64, channels: &Channels<f64>) -> (f64, f64) {
+    pub fn trial(
+        &mut self,
+        velocity: f64,
+        dt: f64,
+        channels: &Channels<f64>,
+    ) -> Result<(f64, f64)> {
+        self.proposed = None;
         let mut held = Held::new(velocity, *channels);
-        if let Some((trial, outcome)) = self.law.quiet_step(&self.state, &held, dt) {
-            self.proposed = Some(Proposed::Step(trial));
-            return (outcome.force, outcome.slope);
+        let quiet = self.law.quiet_step(&self.state, &held, dt);
+        let (proposed, force, slope) = if let Some((trial, outcome)) = quiet {
+            (Proposed::Step(trial), outcome.force, outcome.slope)
+        } else {
+            let mut next = self.state.clone();
+            with_law_and_state!(&self.law, &mut next, |law, state| {
+                through_events(&mut held, law, state, dt);
+            });
+            let slope = self.slope_through_events(velocity, dt, channels);
+            (Proposed::State(Box::new(next)), held.outcome.force, slope)
+        };
+        if !(force.is_finite() && slope.is_finite()) {
+            return Err(self.out_of_range());
         }
-        let mut next = self.state.clone();
-        with_law_and_state!(&self.law, &mut next, |law, state| {
-            through_events(&mut held, law, state, dt);
-        });
-        self.proposed = Some(Proposed::State(Box::new(next)));
-        (held.outcome.force, self.slope_through_events(velocity, dt, channels))
+        if !self.needs_no_watch(velocity, dt, channels) {
+            self.commits(&proposed)?;
+        }
+        self.proposed = Some(proposed);
+        Ok((force, slope))
+    }
+
+    /// Refuses a step that leads to a state which is none.
+    #[cold]
+    fn commits(&self, proposed: &Proposed) -> Result<()> {
+        let mut after = self.clone();
+        after.accept(proposed.clone());
+        after.keep_or_return(self.state.clone(), true)
+    }
+
+    fn accept(&mut self, proposed: Proposed) {
+        match proposed {
+            Proposed::Step(trial) => self.law.commit(&mut self.state, &trial),
+            Proposed::State(next) => self.state = *next,
+        }
     }
 
     /// The slope of a step that changes mode, by a dual velocity: rare, so its cost is no matter.
@@ -243,18 +322,19 @@ impl FrictionModel {
 
     /// Accepts the last trial; false when there was none since the state last changed.
     pub fn commit(&mut self) -> bool {
-        match self.proposed.take() {
-            Some(Proposed::Step(trial)) => self.law.commit(&mut self.state, &trial),
-            Some(Proposed::State(next)) => self.state = *next,
-            None => return false,
+        let proposed = self.proposed.take();
+        let any = proposed.is_some();
+        if let Some(proposed) = proposed {
+            self.accept(proposed);
         }
-        true
+        any
     }
 
     /// Back to a contact that was never moved.
     pub fn reset(&mut self) {
         self.proposed = None;
         self.state = self.law.initial();
+        self.range.forget();
     }
 
     /// The state as named entries.
@@ -266,6 +346,8 @@ impl FrictionModel {
     pub fn restore(&mut self, entries: &[(String, Entry)]) -> Result<()> {
         self.state = self.law.restore(entries)?;
         self.proposed = None;
+        self.range.forget();
+        self.range.meet(entries.iter().map(|(_, entry)| entry));
         Ok(())
     }
 

@@ -187,12 +187,13 @@ fn natural<L: FrictionLaw<f64>>(machine: &Machine<f64>, law: &L) -> f64 {
 }
 
 impl Motor {
-    /// Runs segments on; fills the columns asked for, each as long as [`Segments::rows`].
+    /// Runs segments on; fills the columns asked for, each as long as [`Segments::rows`]. Where they
+    /// lead to no number, or cannot be gone through, the motor stays where it is; whether they did not.
     pub fn simulate_segments(
         &mut self,
         segments: &Segments<'_>,
         columns: &mut [(Column, &mut [f64])],
-    ) -> Result<Account> {
+    ) -> Result<(Account, bool)> {
         segments.check()?;
         let wanted = segments.rows().len();
         for (_, values) in columns.iter() {
@@ -201,10 +202,12 @@ impl Motor {
                 return Err(Error::Length { name, given: values.len(), wanted });
             }
         }
-        self.running_mut().simulate_segments(segments, |k, run, machine, output| {
-            for (column, values) in columns.iter_mut() {
-                values[k] = column.read(run, machine, output);
-            }
+        self.or_stay(|running| {
+            running.simulate_segments(segments, |k, run, machine, output| {
+                for (column, values) in columns.iter_mut() {
+                    values[k] = column.read(run, machine, output);
+                }
+            })
         })
     }
 }

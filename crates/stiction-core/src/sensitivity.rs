@@ -281,14 +281,21 @@ impl Target for Column<'_> {
     }
 }
 
-/// Columns of this many parameters, one after the other, and the targets that fill them.
+/// So many columns, one after the other, and the targets that fill them; of a motion that is shorter than
+/// a kernel they are empty.
 pub(crate) fn columns<'a>(
     values: &'a mut [f64],
-    motion: &MeasuredMotion<'_>,
+    number: usize,
     kernel: &'a RowKernel<'a>,
 ) -> Vec<Column<'a>> {
-    let rows = kernel.rows(motion.samples()).max(1);
-    values.chunks_mut(rows).map(|values| Column { kernel, values, done: 0 }).collect()
+    let rows = values.len() / number.max(1);
+    let mut left = values;
+    let mut next = || {
+        let own;
+        (own, left) = std::mem::take(&mut left).split_at_mut(rows);
+        Column { kernel, values: own, done: 0 }
+    };
+    (0..number).map(|_| next()).collect()
 }
 
 /// Follows given positions and differentiates the efforts by the parameters at these paths: all of
@@ -314,7 +321,7 @@ pub fn follow_columns(
     kernel: &RowKernel<'_>,
 ) -> Result<Vec<f64>> {
     let mut values = vec![0.0; paths.len() * kernel.rows(motion.samples())];
-    let mut targets = columns(&mut values, motion, kernel);
+    let mut targets = columns(&mut values, paths.len(), kernel);
     follow_into(spec, start, motion, paths, Some(kernel), &mut targets)?;
     Ok(values)
 }

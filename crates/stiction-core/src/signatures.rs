@@ -41,8 +41,9 @@ pub fn signature_columns(
     kernel: &RowKernel<'_>,
     threads: usize,
 ) -> Vec<f64> {
-    let mut values = vec![0.0; gains_of(candidates).len() * kernel.rows(motion.samples())];
-    let targets = columns(&mut values, motion, kernel);
+    let number = gains_of(candidates).len();
+    let mut values = vec![0.0; number * kernel.rows(motion.samples())];
+    let targets = columns(&mut values, number, kernel);
     signatures_into(spec, start, motion, candidates, threads, Some(kernel), targets);
     values
 }

@@ -50,7 +50,7 @@ fn no_step_allocates() {
         let before = allocations();
         for k in 0..20_000 {
             let phase = f64::from(k) * 1e-3;
-            model.step(0.05 * (7.0 * phase).sin(), 1e-4, &Channels::default());
+            model.step(0.05 * (7.0 * phase).sin(), 1e-4, &Channels::default()).unwrap();
             body.step(0.8 * (3.0 * phase).sin(), 0.0, 1e-4).unwrap();
         }
         let after = allocations();

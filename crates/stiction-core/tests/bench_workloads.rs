@@ -15,7 +15,7 @@ fn the_timed_paths_break_away_and_stick_again() {
     for record in LAWS {
         let mut model = model(record);
         let mut friction = vec![0.0; SAMPLES];
-        model.simulate(&velocities(), DT, |_| Channels::default(), &mut friction);
+        model.simulate(&velocities(), DT, |_| Channels::default(), &mut friction).unwrap();
         // What a law counts it keeps in its state.
         let counts = |name: &str| model.entries().iter().any(|(entry, _)| *entry == name);
         let (hooked, closes) = (counts("breakaways"), counts("closings"));

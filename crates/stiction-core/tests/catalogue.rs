@@ -153,10 +153,10 @@ fn slope_is_the_derivative_of_the_force_by_the_velocity() {
             let velocity = stream.between(-0.2, 0.2);
             let dt = stream.log(1e-5, 1e-2);
             let channels = Channels::default();
-            let at = |v: f64| model.clone().trial(v, dt, &channels).0;
+            let at = |v: f64| model.clone().trial(v, dt, &channels).unwrap().0;
             let step = 1e-6 * velocity.abs().max(1e-3);
             let chord = (at(velocity + step) - at(velocity - step)) / (2.0 * step);
-            let slope = model.trial(velocity, dt, &channels).1;
+            let slope = model.trial(velocity, dt, &channels).unwrap().1;
             let tolerance = 2e-5 * (chord.abs() + slope.abs()) + 1e-7;
             assert!(
                 (slope - chord).abs() < tolerance,

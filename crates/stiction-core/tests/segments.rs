@@ -23,8 +23,9 @@ fn segments<'a>(durations: &'a [f64], inputs: &'a [f64], times: &'a [f64]) -> Se
 
 fn positions(motor: &mut Motor, segments: &Segments<'_>) -> (Vec<f64>, Account) {
     let mut positions = vec![0.0; segments.rows().len()];
-    let account =
+    let (account, sound) =
         motor.simulate_segments(segments, &mut [(Column::Position, &mut positions)]).unwrap();
+    assert!(sound);
     (positions, account)
 }
 

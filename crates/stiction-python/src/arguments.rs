@@ -35,6 +35,27 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Words<'py> {
     }
 }
 
+/// A word; what no encoding has (a lone half of a surrogate pair) stands in it as �, so that a complaint
+/// can show it.
+pub struct Text(pub String);
+
+impl Text {
+    pub fn of(word: &Bound<'_, PyString>) -> String {
+        word.to_string_lossy().into_owned()
+    }
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Text {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        match given.cast::<PyString>() {
+            Ok(word) => Ok(Self(Self::of(&word))),
+            Err(_) => given.extract().map(Self),
+        }
+    }
+}
+
 /// The same, each as a string of the core.
 pub struct Names(pub Vec<String>);
 
@@ -43,7 +64,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Names {
 
     fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
         let Words(words) = given.extract()?;
-        words.iter().map(|word| word.extract()).collect::<PyResult<_>>().map(Self)
+        Ok(Self(words.iter().map(Text::of).collect()))
     }
 }
 
@@ -68,9 +89,9 @@ pub fn effects_of(effects: &Bound<'_, PyAny>) -> PyResult<Vec<EffectSpec>> {
     })?;
     let mut list = Vec::new();
     for (name, values) in effects {
-        let name: String = name
+        let Text(name) = name
             .extract()
-            .map_err(|_| input_error(py, format!("effect name {name} is not a word")))?;
+            .map_err(|_: PyErr| input_error(py, format!("effect name {name} is not a word")))?;
         let numbers = numbers_of(&format!("effect {name}"), &values)?;
         list.push(EffectSpec::new(&name, &numbers).or_input_error(py)?);
     }
@@ -111,11 +132,11 @@ pub fn candidates_of(candidates: &Bound<'_, PyAny>) -> PyResult<Vec<EffectSpec>>
     let mut list = Vec::new();
     for (k, candidate) in each.enumerate() {
         let candidate = candidate?;
-        let pair: (String, Bound<'_, PyAny>) = candidate
+        let (Text(name), shape): (Text, Bound<'_, PyAny>) = candidate
             .extract()
             .map_err(|_| input_error(py, format!("candidates[{k}] is {candidate}; {wanted}")))?;
-        let numbers = numbers_of(&format!("effect {}", pair.0), &pair.1)?;
-        list.push(EffectSpec::candidate(&pair.0, &numbers).or_input_error(py)?);
+        let numbers = numbers_of(&format!("effect {name}"), &shape)?;
+        list.push(EffectSpec::candidate(&name, &numbers).or_input_error(py)?);
     }
     Ok(list)
 }

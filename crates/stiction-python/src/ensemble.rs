@@ -1,7 +1,5 @@
 //! `Ensemble`: many machines of one kind, advanced in one call.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -9,15 +7,16 @@ use stiction_core::ensemble::{Changes, Ensemble as Core, Inputs, Keep, Plan, Row
 use stiction_core::lanes::Width;
 use stiction_core::motor::Column;
 
-use crate::arguments::{Names, threads_of};
+use crate::arguments::{Names, Text, threads_of};
 use crate::arrays::{Each, numbers, samples};
 use crate::error::{IntoPython, duration, finite, input_error};
 use crate::motor::Motor;
+use crate::shared::Shared;
 
 /// Base of ``stiction.Ensemble``: everything that needs no Python.
 #[pyclass(frozen, subclass, module = "stiction._native")]
 pub struct Ensemble {
-    core: Mutex<Core>,
+    core: Shared<Core>,
 }
 
 /// Numbers for each sample, for all members or for each.
@@ -71,12 +70,6 @@ impl<'py> Table<'py> {
 /// Two arrays: positions, velocities.
 type Reached<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
-impl Ensemble {
-    fn lock(&self) -> MutexGuard<'_, Core> {
-        self.core.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
 #[pymethods]
 impl Ensemble {
     #[new]
@@ -94,13 +87,13 @@ impl Ensemble {
         }
         let values = values.map(|values| samples("parameters", values)).transpose()?;
         let values = values.as_ref().map_or(Ok(&[][..]), |values| values.as_slice())?;
-        let motor = motor.get().core().clone();
+        let motor = motor.get().core(py)?.clone();
         let core = Core::new(&motor, members, Changes { paths: &paths, values });
-        Ok(Self { core: Mutex::new(core.or_input_error(py)?) })
+        Ok(Self { core: Shared::new(core.or_input_error(py)?) })
     }
 
-    fn __len__(&self) -> usize {
-        self.lock().len()
+    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
+        Ok(self.core.lock(py)?.len())
     }
 
     /// One sample of every machine.
@@ -123,7 +116,8 @@ impl Ensemble {
     /// ------
     /// InputError
     ///     Other shapes, numbers that are not finite, a ``dt`` that is not above 0 and at most
-    ///     1e6 s or too long for one of the machines.
+    ///     1e6 s or too long for one of the machines, a machine that runs away: then all of them
+    ///     stay where they are.
     #[pyo3(signature = (current, dt, *, load=None))]
     fn step_many<'py>(
         &self,
@@ -132,7 +126,7 @@ impl Ensemble {
         dt: f64,
         load: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Reached<'py>> {
-        let members = self.lock().len();
+        let members = self.core.lock(py)?.len();
         let dt = duration(py, "dt", dt)?;
         let current = Each::read("current", Some(current), 0.0, &[members])?;
         let load = Each::read("load", load, 0.0, &[members])?;
@@ -142,7 +136,8 @@ impl Ensemble {
             let (mut x, mut v) = (position.readwrite(), velocity.readwrite());
             let (x, v) = (x.as_slice_mut()?, v.as_slice_mut()?);
             let (current, load) = (current.per_sample()?, load.per_sample()?);
-            py.detach(|| self.lock().step(current, load, dt, x, v)).or_input_error(py)?;
+            let done = self.core.apart(py, |core| core.step(current, load, dt, x, v))?;
+            done.or_input_error(py)?;
         }
         Ok((position, velocity))
     }
@@ -178,14 +173,14 @@ impl Ensemble {
         dt: &Bound<'py, PyAny>,
         load: Option<&Bound<'py, PyAny>>,
         outputs: Names,
-        keep: &str,
+        keep: Text,
         every: usize,
         target: Option<&Bound<'py, PyAny>>,
         threads: i64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let Names(outputs) = outputs;
         let (members, law) = {
-            let core = self.lock();
+            let core = self.core.lock(py)?;
             (core.len(), core.spec().friction.clone())
         };
         let threads = threads_of(py, threads)?;
@@ -202,7 +197,8 @@ impl Ensemble {
         let dt = Each::steps("dt", dt, &[n])?;
         let load = Table::read("load", load, members, Some(n))?;
         let target = Table::read("target", target, members, Some(n))?;
-        let keep = match keep {
+        let Text(keep) = keep;
+        let keep = match keep.as_str() {
             "every" if every > 0 => Keep::Every(every),
             "last" => Keep::Last,
             "rms" => Keep::Rms(target.rows()?),
@@ -234,7 +230,7 @@ impl Ensemble {
             threads,
             width: Width::widest(),
         };
-        py.detach(|| self.lock().run(&plan, &mut columns)).or_input_error(py)?;
+        self.core.apart(py, |core| core.run(&plan, &mut columns))?.or_input_error(py)?;
         Ok(result)
     }
 }

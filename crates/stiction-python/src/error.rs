@@ -3,7 +3,8 @@
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
-use stiction_core::error::Shown;
+use stiction_core::error::{Error, Shown};
+use stiction_core::finite::check;
 
 static INPUT_ERROR: PyOnceLock<Py<PyType>> = PyOnceLock::new();
 
@@ -75,15 +76,29 @@ pub fn duration(py: Python<'_>, name: &str, value: f64) -> PyResult<f64> {
     }
 }
 
-/// What is not finite although everything given was: the law left the range of floats.
-#[cold]
-pub fn out_of_range(py: Python<'_>, law: &str) -> PyErr {
-    input_error(
-        py,
-        format!(
-            "friction of '{law}' left the range of floats: its parameters lie too far apart for this \
-             motion; give values nearer to the typical ones that `stiction laws {law}` shows, or a \
-             shorter dt, and reset"
-        ),
-    )
+/// Whether all numbers are finite.
+pub fn is_finite(values: &[f64]) -> bool {
+    check("", values).is_ok()
+}
+
+/// Refuses results of which one is no finite number, unless they are wanted as they are.
+pub fn outcome<'a>(
+    py: Python<'_>,
+    strict: bool,
+    what: &str,
+    results: impl IntoIterator<Item = &'a [f64]>,
+) -> PyResult<()> {
+    for values in results {
+        if strict && let Err(Error::BadSample { place, given, .. }) = check(what, values) {
+            return Err(input_error(
+                py,
+                format!(
+                    "the {what} left the range of floats: number {place} is {given}, though all that \
+                     was given is finite; give numbers nearer to those of a machine, or \
+                     strict=False to have them as they are"
+                ),
+            ));
+        }
+    }
+    Ok(())
 }

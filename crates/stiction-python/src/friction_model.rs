@@ -1,7 +1,7 @@
 //! `FrictionModel`: a law, its parameters and its state.
 
 use std::fmt::Write;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::MutexGuard;
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -10,8 +10,10 @@ use pyo3::types::{PyBool, PyDict, PyTuple};
 use stiction_core::friction::{Channels, Entry};
 use stiction_core::model::{FrictionModel as Core, LawSpec};
 
+use crate::arguments::Text;
 use crate::arrays::{Each, samples};
-use crate::error::{FASTEST, IntoPython, duration, finite, input_error, out_of_range, velocity};
+use crate::error::{FASTEST, IntoPython, duration, finite, input_error, velocity};
+use crate::shared::Shared;
 use crate::state::{from_dict, keywords, to_dict};
 
 /// A friction law with its parameters and its state.
@@ -30,20 +32,20 @@ use crate::state::{from_dict, keywords, to_dict};
 ///     Unknown law, parameter or option; value out of bounds or not a number.
 #[pyclass(frozen, module = "stiction._native")]
 pub struct FrictionModel {
-    core: Mutex<Core>,
+    core: Shared<Core>,
 }
 
 impl FrictionModel {
-    /// The core; a panic elsewhere never leaves it half changed in a way that matters here.
+    /// What it is a binding of.
     #[inline]
-    pub fn lock(&self) -> MutexGuard<'_, Core> {
-        self.core.lock().unwrap_or_else(PoisonError::into_inner)
+    pub fn core(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Core>> {
+        self.core.lock(py)
     }
 
     /// Law, parameters, options and state: all that two equal models share.
-    fn definition(&self) -> (LawSpec, Vec<(&'static str, Entry)>) {
-        let core = self.lock();
-        (core.spec().clone(), core.entries())
+    fn definition(&self, py: Python<'_>) -> PyResult<(LawSpec, Vec<(&'static str, Entry)>)> {
+        let core = self.core(py)?;
+        Ok((core.spec().clone(), core.entries()))
     }
 }
 
@@ -69,10 +71,11 @@ fn channels(
 impl FrictionModel {
     #[new]
     #[pyo3(signature = (law, /, **keywords))]
-    fn new(py: Python<'_>, law: &str, keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        let (numbers, words) = self::keywords(law, keywords)?;
-        let spec = LawSpec::new(law, &numbers, &words).or_input_error(py)?;
-        Ok(Self { core: Mutex::new(Core::new(spec)) })
+    fn new(py: Python<'_>, law: Text, keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let Text(law) = law;
+        let (numbers, words) = self::keywords(&law, keywords)?;
+        let spec = LawSpec::new(&law, &numbers, &words).or_input_error(py)?;
+        Ok(Self { core: Shared::new(Core::new(spec)) })
     }
 
     /// One sample at a held velocity.
@@ -110,9 +113,7 @@ impl FrictionModel {
         let velocity = self::velocity(py, velocity)?;
         let dt = duration(py, "dt", dt)?;
         let channels = channels(py, load, effort, temperature)?;
-        let mut core = self.lock();
-        let force = core.step(velocity, dt, &channels);
-        if force.is_finite() { Ok(force) } else { Err(out_of_range(py, core.spec().record.name)) }
+        self.core(py)?.step(velocity, dt, &channels).or_input_error(py)
     }
 
     /// Samples at held velocities.
@@ -176,21 +177,17 @@ impl FrictionModel {
                 temperature: known.then(|| temperature.at(k)),
                 ..Channels::default()
             };
-            py.detach(|| {
-                let mut core = self.lock();
+            let ran = self.core.apart(py, |core| {
                 if shape.len() == 1 {
-                    core.simulate(velocity, dt, at, friction);
-                    return;
+                    return core.simulate(velocity, dt, at, friction);
                 }
                 let n = shape[1];
-                let rows = velocity.chunks(n).zip(friction.chunks_mut(n));
-                for (row, (velocity, friction)) in rows.enumerate() {
-                    core.clone().simulate(velocity, dt, |k| at(row * n + k), friction);
-                }
-            });
-            if !friction.iter().all(|force| force.is_finite()) {
-                return Err(out_of_range(py, self.lock().spec().record.name));
-            }
+                let mut rows = velocity.chunks(n).zip(friction.chunks_mut(n)).enumerate();
+                rows.try_for_each(|(row, (velocity, friction))| {
+                    core.clone().simulate(velocity, dt, |k| at(row * n + k), friction)
+                })
+            })?;
+            ran.or_input_error(py)?;
         }
         Ok(result)
     }
@@ -226,13 +223,7 @@ impl FrictionModel {
         let velocity = self::velocity(py, velocity)?;
         let dt = duration(py, "dt", dt)?;
         let channels = channels(py, load, effort, temperature)?;
-        let mut core = self.lock();
-        let (force, slope) = core.trial(velocity, dt, &channels);
-        if (force + slope).is_finite() {
-            Ok((force, slope))
-        } else {
-            Err(out_of_range(py, core.spec().record.name))
-        }
+        self.core(py)?.trial(velocity, dt, &channels).or_input_error(py)
     }
 
     /// Accepts the last trial.
@@ -242,7 +233,7 @@ impl FrictionModel {
     /// InputError
     ///     There is none, or something else came after it.
     fn commit(&self, py: Python<'_>) -> PyResult<()> {
-        if self.lock().commit() {
+        if self.core(py)?.commit() {
             Ok(())
         } else {
             Err(input_error(py, "there is no trial to commit; call trial first"))
@@ -250,34 +241,35 @@ impl FrictionModel {
     }
 
     /// Back to a contact that was never moved.
-    fn reset(&self) {
-        self.lock().reset();
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        self.core(py)?.reset();
+        Ok(())
     }
 
     /// An independent copy, state included.
-    fn copy(&self) -> Self {
-        Self { core: Mutex::new(self.lock().clone()) }
+    fn copy(&self, py: Python<'_>) -> PyResult<Self> {
+        Ok(Self { core: Shared::new(self.core(py)?.clone()) })
     }
 
-    fn __copy__(&self) -> Self {
-        self.copy()
+    fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
+        self.copy(py)
     }
 
-    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
-        self.copy()
+    fn __deepcopy__(&self, memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.copy(memo.py())
     }
 
     /// Name of the law.
     #[getter]
-    fn law(&self) -> &'static str {
-        self.lock().spec().record.name
+    fn law(&self, py: Python<'_>) -> PyResult<&'static str> {
+        Ok(self.core(py)?.spec().record.name)
     }
 
     /// Every parameter by name, as a new dict.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        let core = self.lock();
+        let core = self.core(py)?;
         let spec = core.spec();
         for (parameter, value) in spec.record.parameters.iter().zip(&spec.values) {
             dict.set_item(parameter.name, value)?;
@@ -289,7 +281,7 @@ impl FrictionModel {
     #[getter]
     fn options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        for (name, word) in self.lock().spec().options() {
+        for (name, word) in self.core(py)?.spec().options() {
             dict.set_item(name, word)?;
         }
         Ok(dict)
@@ -297,8 +289,8 @@ impl FrictionModel {
 
     /// Whether the contact never gives back more work than it took; some laws do under a condition.
     #[getter]
-    fn passive(&self) -> bool {
-        self.lock().spec().passive()
+    fn passive(&self, py: Python<'_>) -> PyResult<bool> {
+        Ok(self.core(py)?.spec().passive())
     }
 
     /// The state as a dict of floats and arrays; assign one to continue from it.
@@ -309,18 +301,18 @@ impl FrictionModel {
     ///     A state that this law did not return.
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let entries = self.lock().entries();
+        let entries = self.core(py)?.entries();
         to_dict(py, entries)
     }
 
     #[setter]
     fn set_state(&self, state: &Bound<'_, PyDict>) -> PyResult<()> {
         let entries = from_dict(state)?;
-        self.lock().restore(&entries).or_input_error(state.py())
+        self.core(state.py())?.restore(&entries).or_input_error(state.py())
     }
 
-    fn __repr__(&self) -> String {
-        let core = self.lock();
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let core = self.core(py)?;
         let spec = core.spec();
         let mut text = format!("FrictionModel('{}'", spec.record.name);
         for (parameter, value) in spec.record.parameters.iter().zip(&spec.values) {
@@ -334,7 +326,7 @@ impl FrictionModel {
             let _ = write!(text, ", {name}='{word}'");
         }
         text.push(')');
-        text
+        Ok(text)
     }
 
     fn __richcmp__(&self, other: &Bound<'_, PyAny>, op: CompareOp) -> PyResult<Py<PyAny>> {
@@ -343,7 +335,7 @@ impl FrictionModel {
             return Ok(py.NotImplemented());
         };
         // Each copied out under its own lock: two locks at once could wait for each other.
-        let equal = self.definition() == other.get().definition();
+        let equal = self.definition(py)? == other.get().definition(py)?;
         let answer = equal == matches!(op, CompareOp::Eq);
         Ok(PyBool::new(py, answer).to_owned().into_any().unbind())
     }
@@ -361,7 +353,7 @@ impl FrictionModel {
                 PyTuple::new(
                     py,
                     [
-                        me.law().into_pyobject(py)?.into_any(),
+                        me.law(py)?.into_pyobject(py)?.into_any(),
                         keywords.into_any(),
                         me.state(py)?.into_any(),
                     ],

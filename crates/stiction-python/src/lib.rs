@@ -9,6 +9,7 @@ mod friction_model;
 mod kernel;
 mod motion;
 mod motor;
+mod shared;
 mod smoothing;
 mod state;
 
@@ -36,6 +37,11 @@ mod _native {
     const __version__: &str = env!("CARGO_PKG_VERSION");
 
     use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        super::shared::count_forks(module)
+    }
 
     /// Two floats in, one out: what any method costs before it does anything.
     #[pyclass(frozen, module = "stiction._native")]

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use stiction_core::smoothing;
 
 use crate::arrays::one_row;
-use crate::error::{finite, input_error};
+use crate::error::{finite, input_error, outcome};
 
 /// Positions behind readings, each from the widest window that noise does not refute.
 ///
@@ -43,6 +43,7 @@ pub fn adaptively_smoothed<'py>(
         return Err(input_error(py, format!("halves = {halves:?} are no windows; {wanted}")));
     }
     let smoothed = py.detach(|| smoothing::adaptively_smoothed(given, noise, &halves));
+    outcome(py, true, "smoothed readings", [smoothed.as_slice()])?;
     Ok(PyArray1::from_vec(py, smoothed))
 }
 
@@ -77,5 +78,6 @@ pub fn played<'py>(
     }
     let given = readings.as_slice()?;
     let found = py.detach(|| smoothing::played(given, width));
+    outcome(py, true, "followed readings", [found.as_slice()])?;
     Ok(PyArray1::from_vec(py, found))
 }

@@ -344,7 +344,7 @@ class _Fit:
         """What the readings say, and the weighted derivatives of positions by free variables."""
         motor = _motor(self._values(x))
         slopes = [
-            motor.copy().sensitivity(record.effort, record.dt, _PATHS)[0].T
+            motor.copy().sensitivity(record.effort, record.dt, _PATHS, strict=False)[0].T
             for record in self._records
         ]
         said = evidence(self._missed(x), self._counts, self._noise)

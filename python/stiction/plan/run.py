@@ -197,7 +197,7 @@ def _needed(plant: Plant, path: FloatArray, dt: float) -> FloatArray:
     """Effort that following a path takes: inertia, friction, gravity; shape (n,)."""
     motor = plant.follower()
     motor.reset(float(path[0]), 0.0)
-    _, ambient, friction, _ = motor.follow(Motion(path, np.zeros(len(path) - 1), dt))
+    _, ambient, friction, _ = motor.follow(Motion(path, np.zeros(len(path) - 1), dt), strict=False)
     bend = np.diff(path, 2, prepend=path[0], append=path[-1]) / dt**2
     needed = plant.inertia * bend
     needed[1:] += friction - ambient

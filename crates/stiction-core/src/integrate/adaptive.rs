@@ -138,6 +138,10 @@ impl Adaptive {
             }
             let passed = self.step(&mut swing, law, state, left, &mut stalled);
             left = lesser(left, passed, span);
+            // From what is no number nothing leads back.
+            if !(swing.run.position + swing.run.velocity).is_finite() {
+                break;
+            }
         }
         self.account.evaluations += swing.evaluations.get();
     }
@@ -242,7 +246,7 @@ impl Adaptive {
         let went = displacement.abs() > 0.1 * velocity.abs().max(start_velocity.abs()) * span;
         if went && secant.is_finite() {
             let greatest = law.greatest_stiffness();
-            self.stiffness = secant.clamp(0.0, 2.0 * greatest);
+            self.stiffness = secant.max(0.0).min(2.0 * greatest);
         }
     }
 
@@ -308,7 +312,7 @@ impl Adaptive {
             return None;
         }
         let earlier = span - velocity.abs() / pace.abs();
-        Some(earlier.clamp(0.3 * span, 0.98 * span))
+        Some(earlier.max(0.3 * span).min(0.98 * span))
     }
 
     fn net_after<T>(&self, swing: &Swing<'_>, attempt: &Landing<T>) -> f64 {

@@ -212,7 +212,8 @@ fn locate<S: Scalar>(span: S, beyond: f64, mut margin: impl FnMut(S) -> S) -> S 
     }
     // Of so short a piece, its secant.
     let within = if high > low { at_low / (at_low - at_high) } else { 0.0 };
-    let root = (low + (high - low) * within).clamp(low, high);
+    // Margins that are no numbers any more tell of no place: then of its end.
+    let root = if within.is_nan() { high } else { (low + (high - low) * within).clamp(low, high) };
     if !S::CARRIES {
         return S::constant(root);
     }

@@ -434,9 +434,17 @@ impl<S: Scalar> Run<S> {
         self.ambient
     }
 
-    /// Sets what [`Self::ambient`] returned.
-    pub fn set_ambient(&mut self, ambient: S) {
-        self.ambient = ambient;
+    /// The same, to be set to what it was.
+    pub fn ambient_mut(&mut self) -> &mut S {
+        &mut self.ambient
+    }
+
+    /// Whether all of it is made of finite numbers.
+    pub fn is_finite(&self) -> bool {
+        let motion = [self.position, self.velocity, self.time, self.path, self.moved];
+        let rest = [self.wound, self.friction, self.relaxed, self.ambient];
+        let second = [self.second_position, self.second_velocity];
+        motion.iter().chain(&rest).chain(&second).all(|x| x.re().is_finite())
     }
 
     /// The same state over another number type, with no parameter dependence.

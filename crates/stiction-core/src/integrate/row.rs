@@ -136,11 +136,11 @@ impl Rows {
             let weighed = stiffness.max(SOFTEST * greatest);
             let relative = went.strayed / weighed / (LOCAL * self.tolerance);
             if went.stiffness.is_finite() {
-                stiffness = went.stiffness.clamp(0.0, greatest);
+                stiffness = went.stiffness.max(0.0).min(greatest);
             }
             let change = (AIM / relative.max(f64::MIN_POSITIVE)).cbrt();
             let next = span * change.clamp(CHANGE.start, CHANGE.end);
-            self.span = next.clamp(shortest, LONGEST * self.natural);
+            self.span = next.max(shortest).min(LONGEST * self.natural);
             // A state that is not finite cannot be mended by shorter steps.
             if relative > REFUSED && span > shortest {
                 refused += 1;

@@ -156,7 +156,7 @@ impl<L: FrictionLaw<f64>> Stepper<f64, L> for Swing<'_> {
         let run = self.after(&start.after(displacement, velocity, span), friction);
         // A ring turns an error of the velocity round; a slide carries it on until it stops.
         let stops = (before.abs() + velocity.abs()) / (accelerated.abs() + f64::MIN_POSITIVE);
-        let slides = stops.clamp(span, LONGEST_SLIDE.max(span));
+        let slides = stops.min(LONGEST_SLIDE).max(span);
         let reach = if square > 0.0 { slides.min(1.0 / square.sqrt()) } else { slides };
         // What the guess half way, under r(0) alone, has missed there; friction goes by the position
         // where it is a spring, by the velocity where it slides.

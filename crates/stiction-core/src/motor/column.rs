@@ -1,7 +1,9 @@
 //! What a trajectory shows.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
+use super::state::{COLUMNS, of_the_law, qualified};
 use crate::error::{Error, Result};
 use crate::friction::LawState;
 use crate::integrate::{Machine, Places, Run, Seen};
@@ -24,24 +26,26 @@ pub enum Column {
 }
 
 impl Column {
+    /// Those that are no states of the law, in the order of their names.
+    const OWN: [Self; COLUMNS.len()] =
+        [Self::Position, Self::Velocity, Self::Friction, Self::Measured];
+
     /// Names of the columns of a motor with this law, in the order of a trajectory.
-    pub fn names(law: &LawSpec) -> Vec<&'static str> {
-        let mut names = vec!["position", "velocity", "friction", "measured"];
-        names.extend(law.record.outputs);
-        names
+    pub fn names(law: &LawSpec) -> Vec<Cow<'static, str>> {
+        let law = law.record.outputs.iter().copied().map(qualified);
+        COLUMNS.into_iter().map(Cow::Borrowed).chain(law).collect()
     }
 
     /// The column called `name`.
     pub fn named(law: &LawSpec, name: &str) -> Result<Self> {
-        Ok(match name {
-            "position" => Self::Position,
-            "velocity" => Self::Velocity,
-            "friction" => Self::Friction,
-            "measured" => Self::Measured,
-            own => {
-                let index = law.record.outputs.iter().position(|known| *known == own);
-                Self::Law(index.ok_or_else(|| Error::unknown("output", name, Self::names(law)))?)
-            }
+        let own = COLUMNS.iter().position(|own| *own == name).map(|index| Self::OWN[index]);
+        let index = || {
+            let bare = of_the_law(name)?;
+            law.record.outputs.iter().position(|known| *known == bare).map(Self::Law)
+        };
+        own.or_else(index).ok_or_else(|| {
+            let names = Self::names(law);
+            Error::unknown("output", name, names.iter().map(|known| &**known))
         })
     }
 

@@ -3,13 +3,15 @@
 mod column;
 mod running;
 mod spec;
+mod state;
 mod surroundings;
+mod watch;
 
-use crate::drive::Way;
-use crate::effects::Effects;
+use std::borrow::Cow;
+
 use crate::error::{Error, Result};
 use crate::follow::{Efforts, SeesAbout};
-use crate::friction::{AnyState, Entry, LawState, Statistics};
+use crate::friction::{AnyState, Entry, Statistics};
 use crate::kernel::RowKernel;
 use crate::sensitivity::MeasuredMotion;
 use crate::shoot::{Pull, Windows};
@@ -20,6 +22,7 @@ pub(crate) use column::Rows;
 pub use running::Running;
 pub use spec::{EffectSpec, MotorSpec};
 pub use surroundings::{PerSample, Surroundings};
+pub use watch::Standing;
 
 /// A motor in plain numbers: what `Motor` is in Python.
 #[derive(Debug, Clone)]
@@ -47,25 +50,23 @@ impl Motor {
         &self.running
     }
 
-    pub(crate) fn running_mut(&mut self) -> &mut Running<f64> {
-        &mut self.running
-    }
-
-    /// One sample; position and velocity at its end.
+    /// One sample; position and velocity at its end. Where it leads to no number, the motor stays
+    /// where it is.
     #[inline]
     pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<(f64, f64)> {
-        self.running.step(input, load, dt)?;
+        self.running.step_or_stay(input, load, dt)?;
         Ok((self.running.run.position, self.running.run.velocity))
     }
 
-    /// Samples; fills the columns asked for, each as long as `inputs`.
+    /// Samples; fills the columns asked for, each as long as `inputs`. Where they lead to no number,
+    /// or cannot be gone through, the motor stays where it is; whether they did not.
     pub fn simulate(
         &mut self,
         inputs: &[f64],
         around: Surroundings<'_>,
         dt: PerSample<'_>,
         columns: &mut [(Column, &mut [f64])],
-    ) -> Result<()> {
+    ) -> Result<bool> {
         around.check(inputs.len())?;
         dt.check("dt", inputs.len())?;
         for (_, values) in columns.iter() {
@@ -77,7 +78,44 @@ impl Motor {
                 });
             }
         }
-        self.running.simulate_rows(inputs, around, |_| 0.0, dt, Columns::new(columns))
+        self.or_stay(|running| {
+            running.simulate_rows(inputs, around, |_| 0.0, dt, Columns::new(columns))
+        })
+        .map(|((), sound)| sound)
+    }
+
+    /// Goes on, or stays where it is where that leads to no number; whether it went.
+    pub(crate) fn or_stay<T>(
+        &mut self,
+        go: impl FnOnce(&mut Running<f64>) -> Result<T>,
+    ) -> Result<(T, bool)> {
+        let before = self.running.standing();
+        let done = go(&mut self.running);
+        let sound = done.is_ok() && self.running.is_sound(&before);
+        if !sound {
+            self.running.return_to(before);
+        }
+        done.map(|done| (done, sound))
+    }
+
+    /// State of body, drive, effects and friction as named entries.
+    pub fn entries(&self) -> Vec<(Cow<'static, str>, Entry)> {
+        self.running.entries()
+    }
+
+    /// The friction state alone, as a [`crate::model::FrictionModel`] has it.
+    pub fn friction_entries(&self) -> Vec<(&'static str, Entry)> {
+        self.running.friction_entries()
+    }
+
+    /// Sets the state from named entries; where one of them is wrong, nothing changes.
+    pub fn restore(&mut self, entries: &[(String, Entry)]) -> Result<()> {
+        self.running.restore(entries)
+    }
+
+    /// Branch counters.
+    pub fn statistics(&self) -> Statistics {
+        self.running.statistics()
     }
 
     /// Efforts along given positions, one more than there are samples: of the drive, of gravity and
@@ -138,14 +176,23 @@ impl Motor {
         Ok(rows)
     }
 
-    /// Back to rest, or to this position and velocity, with friction never moved.
-    pub fn reset(&mut self, position: f64, velocity: f64) {
-        self.running.state = self.running.law.initial();
-        self.running.run = self.running.machine.start(position, velocity);
-        self.running.machine.effects.forget();
-        if let Some(way) = &mut self.running.way {
+    /// Back to rest, or to this position and velocity, with friction never moved. Where the effort
+    /// there is no number, the motor stays where it is.
+    pub fn reset(&mut self, position: f64, velocity: f64) -> Result<()> {
+        let before = self.standing();
+        let running = &mut self.running;
+        running.machine.effects.forget();
+        running.state = running.law.initial();
+        running.run = running.machine.start(position, velocity);
+        if let Some(way) = &mut running.way {
             way.clear();
         }
+        if !running.run.is_finite() {
+            self.return_to(before);
+            return Err(Error::Nowhere { position });
+        }
+        running.range.forget();
+        Ok(())
     }
 
     /// Sets the temperature in °C that the next steps have.
@@ -162,98 +209,43 @@ impl Motor {
     pub fn set_clock(&mut self, time: f64, path: f64) {
         self.running.run.time = time;
         self.running.run.path = path;
+        self.running.range.meet(&[Entry::Number(time), Entry::Number(path)]);
     }
 
     /// Replaces the friction state by that of a contact that brings these values along, in the
     /// order of the law's start quantities.
     pub fn prime(&mut self, start: &[f64]) {
         self.running.state = self.running.law.primed(start);
+        self.meet();
     }
 
     /// Replaces the friction state, from another model of the same law and parameters.
     pub fn set_friction_state(&mut self, state: AnyState<f64>) {
         self.running.state = state;
+        self.meet();
     }
 
-    /// Body and friction state as named entries.
-    pub fn entries(&self) -> Vec<(&'static str, Entry)> {
-        let run = &self.running.run;
-        let number = Entry::Number;
-        let mut entries = vec![
-            ("position", number(run.position)),
-            ("velocity", number(run.velocity)),
-            ("time", number(run.time)),
-            ("path", number(run.path)),
-            ("friction", number(run.friction)),
-            ("second_position", number(run.second_position)),
-            ("second_velocity", number(run.second_velocity)),
-            ("relaxed", number(run.relaxed)),
-            ("wound", number(run.wound)),
-            ("ambient", number(run.ambient())),
-        ];
-        entries.extend(self.running.way.iter().flat_map(Way::entries));
-        let effects = &self.running.machine.effects;
-        entries.extend(effects.remembers().then(|| effects.entry()));
-        entries.extend(with_state!(&self.running.state, |state| state.entries()));
-        entries
+    /// Takes note of a friction state that was put in.
+    fn meet(&mut self) {
+        let entries = self.friction_entries();
+        self.running.range.meet(entries.iter().map(|(_, entry)| entry));
     }
 
-    /// Sets body and friction state from named entries.
-    pub fn restore(&mut self, entries: &[(String, Entry)]) -> Result<()> {
-        let mut way = self.running.way.clone();
-        let mut effects = self.running.machine.effects.clone();
-        let own = |name: &str| {
-            BODY.contains(&name)
-                || way.iter().flat_map(Way::names).any(|own| own == name)
-                || (effects.remembers() && name == Effects::<f64>::ENTRY)
-        };
-        let (body, law): (Vec<_>, Vec<_>) =
-            entries.iter().cloned().partition(|(name, _)| own(name.as_str()));
-        let mut read = crate::friction::EntryReader::new(&body);
-        let mut run = self.running.run;
-        run.position = read.number("position", false)?;
-        run.velocity = read.number("velocity", false)?;
-        run.time = read.number("time", false)?;
-        run.path = read.number("path", false)?;
-        run.friction = read.number("friction", false)?;
-        run.second_position = read.number("second_position", false)?;
-        run.second_velocity = read.number("second_velocity", false)?;
-        run.relaxed = read.number("relaxed", false)?;
-        run.wound = read.number("wound", false)?;
-        if let Some(way) = &mut way {
-            way.restore(&mut read)?;
-        }
-        if effects.remembers() {
-            effects.restore(&mut read)?;
-        }
-        let state = self.running.law.restore(&law)?;
-        // As it was, not recomputed: it belongs to the end of the last step, to the bit.
-        run.set_ambient(read.number("ambient", false)?);
-        self.running.state = state;
-        self.running.run = run;
-        self.running.way = way;
-        self.running.machine.effects = effects;
-        Ok(())
+    /// Where it stands.
+    pub fn standing(&self) -> Standing {
+        self.running.standing()
     }
 
-    /// Branch counters.
-    pub fn statistics(&self) -> Statistics {
-        with_state!(&self.running.state, |state| state.statistics())
+    /// Back to where it stood.
+    pub fn return_to(&mut self, before: Standing) {
+        self.running.return_to(before);
+    }
+
+    /// Whether all of its state is made of numbers, where it was so before.
+    pub fn is_sound(&self, before: &Standing) -> bool {
+        self.running.is_sound(before)
     }
 }
-
-const BODY: [&str; 10] = [
-    "position",
-    "velocity",
-    "time",
-    "path",
-    "friction",
-    "second_position",
-    "second_velocity",
-    "relaxed",
-    "wound",
-    "ambient",
-];
 
 /// Rows of the efforts of the drive, of gravity and added efforts, of friction and of how far the
 /// centre of mass is ahead.

@@ -10,6 +10,7 @@ use crate::integrate::{
     Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, parts, sample,
 };
 use crate::model::CHUNK;
+use crate::range::{Range, ordinary_motor};
 use crate::scalar::Scalar;
 
 fn whole_parts(parts: f64, most: f64, dt: f64) -> Result<u32> {
@@ -38,6 +39,8 @@ pub struct Running<S: Scalar> {
     pub longest_phase: f64,
     /// Parts of a sample above which it refuses to go on.
     pub most_parts: f64,
+    /// Within what a step needs no watch.
+    pub(crate) range: Range,
 }
 
 impl<S: Scalar> Running<S> {
@@ -57,6 +60,9 @@ impl<S: Scalar> Running<S> {
         let any = delay.is_some() || slowness.is_some() || lag.is_some();
         let way = any.then(|| Way::new(delay, slowness, lag));
         let integrator = spec.integrator;
+        let plain: Vec<f64> = values.iter().map(|value| value.re()).collect();
+        let a_second = with_law!(&law, |law| parts(&machine, law, 1.0, LONGEST_PHASE));
+        let range = Range::new(ordinary_motor(spec, &plain), a_second);
         Self {
             machine,
             law,
@@ -66,6 +72,7 @@ impl<S: Scalar> Running<S> {
             integrator,
             longest_phase: LONGEST_PHASE,
             most_parts: MOST_PARTS,
+            range,
         }
     }
 
@@ -75,9 +82,16 @@ impl<S: Scalar> Running<S> {
         self.run = from.run.lift();
         self.machine.effects.resume(&from.machine.effects);
         self.machine.refresh(&mut self.run);
+        self.range.follow(&from.range);
         if let (Some(way), Some(from)) = (&mut self.way, &from.way) {
             way.resume(from);
         }
+    }
+
+    /// Refuses a sample that is too long.
+    pub(crate) fn check_step(&self, dt: f64) -> Result<()> {
+        let parts = with_law!(&self.law, |law| parts(&self.machine, law, dt, self.longest_phase));
+        whole_parts(parts, self.most_parts, dt).map(|_| ())
     }
 
     /// One sample, at the temperature of the run.

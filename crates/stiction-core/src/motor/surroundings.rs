@@ -79,6 +79,14 @@ impl PerSample<'_> {
         }
     }
 
+    /// The greatest of them, at least 0.
+    pub fn greatest(&self) -> f64 {
+        match self {
+            Self::Same(value) => value.max(0.0),
+            Self::Each(values) => values.iter().copied().fold(0.0, f64::max),
+        }
+    }
+
     /// Refuses numbers that are not as many as the samples.
     pub fn check(&self, name: &str, wanted: usize) -> Result<()> {
         match self {

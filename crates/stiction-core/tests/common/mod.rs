@@ -44,7 +44,7 @@ pub fn model(name: &str, parameters: &[(&str, f64)]) -> FrictionModel {
 
 pub fn run(model: &mut FrictionModel, velocity: &[f64], dt: f64) -> Vec<f64> {
     let mut friction = vec![0.0; velocity.len()];
-    model.simulate(velocity, dt, |_| Channels::default(), &mut friction);
+    model.simulate(velocity, dt, |_| Channels::default(), &mut friction).unwrap();
     friction
 }
 

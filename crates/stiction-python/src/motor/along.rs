@@ -2,6 +2,7 @@
 
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use stiction_core::motor::Motor as Core;
 use stiction_core::sensitivity::{
     EffortSensitivity, follow_columns, follow_sensitivity, sensitivity_into,
 };
@@ -10,7 +11,7 @@ use stiction_core::signatures::{signature_columns, signatures};
 use super::Motor;
 use crate::arguments::{Names, candidates_of, gains_of, threads_of};
 use crate::arrays::{Around, Each, one_row, target};
-use crate::error::IntoPython;
+use crate::error::{IntoPython, is_finite, outcome};
 use crate::kernel::RowKernel;
 use crate::motion::Motion;
 
@@ -26,7 +27,18 @@ type Followed<'py> = (
 );
 
 /// Derivatives as arrays of this shape.
-fn arrays(py: Python<'_>, rows: EffortSensitivity, shape: [usize; 2]) -> PyResult<Derivatives<'_>> {
+fn arrays(
+    py: Python<'_>,
+    rows: EffortSensitivity,
+    shape: [usize; 2],
+    strict: bool,
+) -> PyResult<Derivatives<'_>> {
+    outcome(
+        py,
+        strict,
+        "derivatives",
+        [&rows.needed, &rows.driven, &rows.ahead].map(|row| &**row),
+    )?;
     let array = |values| PyArray1::from_vec(py, values).reshape(shape);
     Ok((array(rows.needed)?, array(rows.driven)?, array(rows.ahead)?))
 }
@@ -42,6 +54,9 @@ impl Motor {
     /// start : dict of str to float, optional
     ///     Start values of the law (``LawRecord.start``, see ``stiction.laws()``), those left out
     ///     0: the contact begins with these, not as it is.
+    /// strict : bool
+    ///     Whether results that are no finite numbers are refused; a fit, whose trials may run away,
+    ///     takes them as they are. The motor then stays where it is.
     ///
     /// Returns
     /// -------
@@ -56,30 +71,25 @@ impl Motor {
     /// ------
     /// InputError
     ///     A start that is no dict, a start value that the law has not, that is not finite or out of
-    ///     its bounds.
-    #[pyo3(signature = (motion, *, start=None))]
+    ///     its bounds; with ``strict`` efforts that are no finite numbers.
+    #[pyo3(signature = (motion, *, start=None, strict=true))]
     fn follow<'py>(
         &self,
         py: Python<'py>,
         motion: &Bound<'py, Motion>,
         start: Option<&Bound<'py, PyAny>>,
+        strict: bool,
     ) -> PyResult<Followed<'py>> {
         let motion = motion.get();
-        let start = self.start(py, start)?;
         let n = motion.samples();
-        let mut efforts = [vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0.0; n]];
-        {
-            let motion = motion.measured();
-            let arrays = efforts.each_mut().map(Vec::as_mut_slice);
-            py.detach(|| {
-                let mut core = self.lock();
-                if let Some(start) = &start {
-                    core.prime(start);
-                }
-                core.follow(&motion, arrays)
-            })
-            .or_input_error(py)?;
-        }
+        let follow = |core: &mut Core| {
+            let mut efforts = [vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0.0; n]];
+            core.follow(&motion.measured(), efforts.each_mut().map(Vec::as_mut_slice))?;
+            Ok(efforts)
+        };
+        let finite = |efforts: &[Vec<f64>; 4]| efforts.iter().all(|each| is_finite(each));
+        let efforts = self.along(py, start, strict, follow, finite)?;
+        outcome(py, strict, "efforts", efforts.iter().map(Vec::as_slice))?;
         let [driven, ambient, friction, ahead] =
             efforts.map(|values| PyArray1::from_vec(py, values));
         Ok((driven, ambient, friction, ahead))
@@ -98,6 +108,8 @@ impl Motor {
     ///     Of m weights, a stamp ``every`` so many samples.
     /// start : dict of str to float, optional
     ///     As for ``follow``.
+    /// strict : bool
+    ///     As for ``follow``.
     ///
     /// Returns
     /// -------
@@ -108,25 +120,21 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``follow``.
-    #[pyo3(signature = (motion, kernel, *, start=None))]
+    #[pyo3(signature = (motion, kernel, *, start=None, strict=true))]
     fn follow_rows<'py>(
         &self,
         py: Python<'py>,
         motion: &Bound<'py, Motion>,
         kernel: &Bound<'py, RowKernel>,
         start: Option<&Bound<'py, PyAny>>,
+        strict: bool,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let motion = motion.get().measured();
         let kernel = kernel.get().core();
-        let start = self.start(py, start)?;
-        let rows = py.detach(|| {
-            let mut core = self.lock();
-            if let Some(start) = &start {
-                core.prime(start);
-            }
-            core.follow_rows(&motion, &kernel)
-        });
-        Ok(PyArray1::from_vec(py, rows.or_input_error(py)?))
+        let follow = |core: &mut Core| core.follow_rows(&motion, &kernel);
+        let rows = self.along(py, start, strict, follow, |rows| is_finite(rows))?;
+        outcome(py, strict, "efforts", [rows.as_slice()])?;
+        Ok(PyArray1::from_vec(py, rows))
     }
 
     /// Exact derivatives of efforts along a measured motion by parameters; the motor is left as it
@@ -141,6 +149,8 @@ impl Motor {
     ///     too: ``start.force`` and so on.
     /// start : dict of str to float, optional
     ///     As for ``follow``.
+    /// strict : bool
+    ///     As for ``follow``.
     ///
     /// Returns
     /// -------
@@ -152,13 +162,14 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``follow``; a path that is unknown, or one of a start that is not given.
-    #[pyo3(signature = (motion, parameters, *, start=None))]
+    #[pyo3(signature = (motion, parameters, *, start=None, strict=true))]
     fn follow_sensitivity<'py>(
         &self,
         py: Python<'py>,
         motion: &Bound<'py, Motion>,
         parameters: Names,
         start: Option<&Bound<'py, PyAny>>,
+        strict: bool,
     ) -> PyResult<Derivatives<'py>> {
         let Names(parameters) = parameters;
         let motion = motion.get();
@@ -166,7 +177,7 @@ impl Motor {
         let rows = self.beside(py, start, |spec, start| {
             follow_sensitivity(spec, start, &measured, &parameters)
         })?;
-        arrays(py, rows.or_input_error(py)?, [parameters.len(), motion.samples()])
+        arrays(py, rows.or_input_error(py)?, [parameters.len(), motion.samples()], strict)
     }
 
     /// Exact derivatives of what ``follow_rows`` returns by parameters; the motor is left as it
@@ -176,7 +187,7 @@ impl Motor {
     /// ----------
     /// motion, kernel
     ///     As for ``follow_rows``.
-    /// parameters, start
+    /// parameters, start, strict
     ///     As for ``follow_sensitivity``.
     ///
     /// Returns
@@ -188,7 +199,7 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``follow_sensitivity``.
-    #[pyo3(signature = (motion, parameters, kernel, *, start=None))]
+    #[pyo3(signature = (motion, parameters, kernel, *, start=None, strict=true))]
     fn follow_columns<'py>(
         &self,
         py: Python<'py>,
@@ -196,6 +207,7 @@ impl Motor {
         parameters: Names,
         kernel: &Bound<'py, RowKernel>,
         start: Option<&Bound<'py, PyAny>>,
+        strict: bool,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let Names(parameters) = parameters;
         let motion = motion.get();
@@ -204,8 +216,9 @@ impl Motor {
         let values = self.beside(py, start, |spec, start| {
             follow_columns(spec, start, &measured, &parameters, &kernel)
         })?;
-        let rows = kernel.rows(motion.samples());
-        PyArray1::from_vec(py, values.or_input_error(py)?).reshape([parameters.len(), rows])
+        let (rows, values) = (kernel.rows(motion.samples()), values.or_input_error(py)?);
+        outcome(py, strict, "derivatives", [values.as_slice()])?;
+        PyArray1::from_vec(py, values).reshape([parameters.len(), rows])
     }
 
     /// Exact derivatives of efforts along a measured motion by the gains of effects beside the
@@ -221,6 +234,8 @@ impl Motor {
     ///     As for ``follow``.
     /// threads : int
     ///     1 to 256; results do not depend on it.
+    /// strict : bool
+    ///     As for ``follow``.
     ///
     /// Returns
     /// -------
@@ -232,7 +247,7 @@ impl Motor {
     /// InputError
     ///     As for ``follow``; candidates that are no such pairs, an unknown effect or parameter, a
     ///     value out of bounds, a gain among them, threads out of bounds.
-    #[pyo3(signature = (motion, candidates, *, start=None, threads=1))]
+    #[pyo3(signature = (motion, candidates, *, start=None, threads=1, strict=true))]
     fn signatures<'py>(
         &self,
         py: Python<'py>,
@@ -240,6 +255,7 @@ impl Motor {
         candidates: &Bound<'py, PyAny>,
         start: Option<&Bound<'py, PyAny>>,
         threads: i64,
+        strict: bool,
     ) -> PyResult<Derivatives<'py>> {
         let motion = motion.get();
         let measured = motion.measured();
@@ -247,7 +263,7 @@ impl Motor {
         let list = candidates_of(candidates)?;
         let rows = self
             .beside(py, start, |spec, start| signatures(spec, start, &measured, &list, threads))?;
-        arrays(py, rows, [gains_of(&list), motion.samples()])
+        arrays(py, rows, [gains_of(&list), motion.samples()], strict)
     }
 
     /// Exact derivatives of what ``follow_rows`` returns by the gains of effects beside the motor's
@@ -257,7 +273,7 @@ impl Motor {
     /// ----------
     /// motion, kernel
     ///     As for ``follow_rows``.
-    /// candidates, start, threads
+    /// candidates, start, threads, strict
     ///     As for ``signatures``.
     ///
     /// Returns
@@ -269,7 +285,7 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``signatures``.
-    #[pyo3(signature = (motion, candidates, kernel, *, start=None, threads=1))]
+    #[pyo3(signature = (motion, candidates, kernel, *, start=None, threads=1, strict=true))]
     fn signature_columns<'py>(
         &self,
         py: Python<'py>,
@@ -278,6 +294,7 @@ impl Motor {
         kernel: &Bound<'py, RowKernel>,
         start: Option<&Bound<'py, PyAny>>,
         threads: i64,
+        strict: bool,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let motion = motion.get();
         let measured = motion.measured();
@@ -287,6 +304,7 @@ impl Motor {
         let values = self.beside(py, start, |spec, start| {
             signature_columns(spec, start, &measured, &list, &kernel, threads)
         })?;
+        outcome(py, strict, "derivatives", [values.as_slice()])?;
         PyArray1::from_vec(py, values).reshape([gains_of(&list), kernel.rows(motion.samples())])
     }
 
@@ -301,6 +319,8 @@ impl Motor {
     ///     Whole paths, as ``parameters`` of the motor has them.
     /// out : numpy.ndarray, shape (2, parameters, n), optional
     ///     Array to fill, C-contiguous float64.
+    /// strict : bool
+    ///     As for ``follow``.
     ///
     /// Returns
     /// -------
@@ -312,7 +332,7 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``simulate``; an unknown path, an ``out`` that is no such array.
-    #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None, out=None))]
+    #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None, out=None, strict=true))]
     #[allow(clippy::type_complexity)] // a pair of arrays, as Python gets it
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn sensitivity<'py>(
@@ -325,6 +345,7 @@ impl Motor {
         temperature: Option<&Bound<'py, PyAny>>,
         enabled: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
+        strict: bool,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let Names(parameters) = parameters;
         let current = one_row("current", current)?;
@@ -342,13 +363,14 @@ impl Motor {
         let mut rows = target("out", &array, &shape)?;
         let both = rows.as_slice_mut()?;
         let (position, velocity) = both.split_at_mut(both.len() / 2);
+        let core = self.core(py)?.clone();
         let result = py.detach(|| {
-            let core = self.lock().clone();
             let rows = [position, velocity];
             sensitivity_into(core.spec(), core.running(), current, around, dt, &parameters, rows)
         });
-        drop(rows);
         result.or_input_error(py)?;
+        outcome(py, strict, "derivatives", [&*both])?;
+        drop(rows);
         Ok((array.get_item(0)?, array.get_item(1)?))
     }
 }

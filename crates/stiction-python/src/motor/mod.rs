@@ -4,37 +4,36 @@ mod along;
 mod own;
 mod shots;
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::borrow::Cow;
+use std::sync::MutexGuard;
 
 use numpy::{PyArray1, PyReadwriteArrayDyn, PyUntypedArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
+use stiction_core::error::{Error, Result};
 use stiction_core::friction::Statistics;
 use stiction_core::motor::{Column, Motor as Core, MotorSpec};
 use stiction_core::segments::Segments;
 use stiction_core::sensitivity::Start;
 
-use crate::arguments::{Names, Words, effects_of, integrator_of, numbers_of, servo_of};
+use crate::arguments::{Names, Text, Words, effects_of, integrator_of, numbers_of, servo_of};
 use crate::arrays::{Around, Each, one_row, target};
 use crate::error::{IntoPython, duration, finite, input_error};
 use crate::friction_model::FrictionModel;
+use crate::shared::Shared;
 
 /// Base of ``stiction.Motor``: everything that needs no Python.
 #[pyclass(frozen, subclass, module = "stiction._native")]
 pub struct Motor {
-    core: Mutex<Core>,
+    core: Shared<Core>,
 }
 
 impl Motor {
-    #[inline]
-    fn lock(&self) -> MutexGuard<'_, Core> {
-        self.core.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// What it is a binding of.
-    pub fn core(&self) -> MutexGuard<'_, Core> {
-        self.lock()
+    #[inline]
+    pub fn core(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Core>> {
+        self.core.lock(py)
     }
 
     /// Start values of the law, where any are given.
@@ -45,16 +44,50 @@ impl Motor {
     ) -> PyResult<Option<Vec<f64>>> {
         let Some(given) = given else { return Ok(None) };
         let numbers = numbers_of("start", given)?;
-        self.lock().spec().friction.start(&numbers).or_input_error(py).map(Some)
+        self.core(py)?.spec().friction.start(&numbers).or_input_error(py).map(Some)
     }
 
-    /// A copy, primed where start values are given.
-    fn primed(&self, start: Option<&[f64]>) -> Core {
-        let mut core = self.lock().clone();
-        if let Some(start) = start {
-            core.prime(start);
-        }
-        core
+    /// Work on a copy, primed where start values are given, without the interpreter.
+    fn primed<R: Send>(
+        &self,
+        py: Python<'_>,
+        start: Option<&Bound<'_, PyAny>>,
+        work: impl FnOnce(&mut Core) -> R + Send,
+    ) -> PyResult<R> {
+        let primed = self.start(py, start)?;
+        let mut core = self.core(py)?.clone();
+        Ok(py.detach(|| {
+            if let Some(start) = &primed {
+                core.prime(start);
+            }
+            work(&mut core)
+        }))
+    }
+
+    /// Goes along a motion, or stays where it is where that leads to no number; results are refused
+    /// then, unless they are wanted as they are.
+    fn along<R: Send>(
+        &self,
+        py: Python<'_>,
+        start: Option<&Bound<'_, PyAny>>,
+        strict: bool,
+        work: impl FnOnce(&mut Core) -> Result<R> + Send,
+        finite: impl Fn(&R) -> bool + Sync,
+    ) -> PyResult<R> {
+        let primed = self.start(py, start)?;
+        let done = self.core.apart(py, |core| {
+            let before = core.standing();
+            if let Some(start) = &primed {
+                core.prime(start);
+            }
+            let done = work(core);
+            let refused = done.as_ref().is_ok_and(|done| strict && !finite(done));
+            if done.is_err() || refused || !core.is_sound(&before) {
+                core.return_to(before);
+            }
+            done
+        })?;
+        done.or_input_error(py)
     }
 
     /// Work that starts where the motor is and leaves it as it was, without the interpreter.
@@ -65,8 +98,8 @@ impl Motor {
         work: impl FnOnce(&MotorSpec, Start<'_>) -> R + Send,
     ) -> PyResult<R> {
         let primed = self.start(py, start)?;
+        let core = self.core(py)?.clone();
         Ok(py.detach(|| {
-            let core = self.lock().clone();
             work(core.spec(), Start { running: core.running(), primed: primed.as_deref() })
         }))
     }
@@ -88,6 +121,18 @@ fn statistics<'py>(py: Python<'py>, counted: &Statistics) -> PyResult<Bound<'py,
     dict.set_item(intern!(py, "memory_peak"), counted.memory_peak)?;
     dict.set_item(intern!(py, "memory_growths"), counted.memory_growths)?;
     Ok(dict)
+}
+
+/// Whether columns show that the motion ran away, and the trajectory will say so.
+fn shown(columns: &[(Column, &mut [f64])]) -> bool {
+    columns.iter().any(|(column, values)| {
+        let number = |x: &f64| match column {
+            // A level may be infinite by definition.
+            Column::Law(_) => !x.is_nan(),
+            _ => x.is_finite(),
+        };
+        !values.iter().all(number)
+    })
 }
 
 /// Arrays by name, samples, time at the start, branch counters.
@@ -127,7 +172,7 @@ impl Motor {
             input_error(py, format!("friction is {friction}, no FrictionModel; {wanted}"))
         })?;
         let (law, state) = {
-            let core = friction.get().lock();
+            let core = friction.get().core(py)?;
             (core.spec().clone(), core.state().clone())
         };
         let spec = MotorSpec {
@@ -143,7 +188,7 @@ impl Motor {
         };
         let mut core = Core::new(spec).or_input_error(py)?;
         core.set_friction_state(state);
-        Ok(Self { core: Mutex::new(core) })
+        Ok(Self { core: Shared::new(core) })
     }
 
     /// One sample with held current.
@@ -170,7 +215,7 @@ impl Motor {
     /// ------
     /// InputError
     ///     Numbers that are not finite, a ``dt`` that is not above 0 and at most 1e6 s or too long
-    ///     for this machine.
+    ///     for this machine, a motion that runs away: then the motor stays where it is.
     #[pyo3(signature = (current, dt, *, load=0.0, temperature=None, enabled=true))]
     fn step(
         &self,
@@ -185,7 +230,7 @@ impl Motor {
         let dt = duration(py, "dt", dt)?;
         let load = finite(py, "load", load)?;
         let temperature = temperature.map(|t| finite(py, "temperature", t)).transpose()?;
-        let mut core = self.lock();
+        let mut core = self.core(py)?;
         core.set_temperature(temperature);
         core.set_enabled(enabled);
         core.step(current, load, dt).or_input_error(py)
@@ -235,8 +280,8 @@ impl Motor {
             (Some(Words(names)), out) => {
                 let given = out.map_or_else(|| PyDict::new(py), Clone::clone);
                 for key in given.keys() {
-                    let key = word(&key)?.to_str()?;
-                    if !names.iter().any(|name| *name == *key) {
+                    let key = Text::of(word(&key)?);
+                    if !names.iter().any(|name| Text::of(name) == key) {
                         return Err(input_error(
                             py,
                             format!("out['{key}'] is not among outputs; add it there or drop it"),
@@ -251,15 +296,16 @@ impl Motor {
                 out.iter().map(own).collect::<PyResult<_>>()?
             }
             _ => {
-                let names = Column::names(&self.lock().spec().friction);
-                names.into_iter().map(|name| (PyString::new(py, name), None)).collect()
+                let names = Column::names(&self.core(py)?.spec().friction);
+                names.into_iter().map(|name| (PyString::new(py, &name), None)).collect()
             }
         };
         let kinds = {
-            let core = self.lock();
+            let core = self.core(py)?;
             let law = &core.spec().friction;
-            let kind =
-                |name: &Bound<'py, PyString>| Column::named(law, name.to_str()?).or_input_error(py);
+            let kind = |name: &Bound<'py, PyString>| {
+                Column::named(law, &name.to_string_lossy()).or_input_error(py)
+            };
             wanted.iter().map(|(name, _)| kind(name)).collect::<PyResult<Vec<Column>>>()?
         };
         let result = PyDict::new(py);
@@ -286,14 +332,14 @@ impl Motor {
         for (column, array) in &mut arrays {
             columns.push((*column, array.as_slice_mut()?));
         }
-        let (start, counted) = py
-            .detach(|| {
-                let mut core = self.lock();
-                let start = core.running().run.time;
-                core.simulate(current, around, dt, &mut columns)?;
-                Ok((start, core.statistics()))
-            })
-            .or_input_error(py)?;
+        let ran = self.core.apart(py, |core| {
+            let start = core.running().run.time;
+            if !core.simulate(current, around, dt, &mut columns)? && !shown(&columns) {
+                return Err(Error::RanUnseen);
+            }
+            Ok((start, core.statistics()))
+        });
+        let (start, counted) = ran?.or_input_error(py)?;
         Ok((result, n, start, statistics(py, &counted)?))
     }
 
@@ -348,8 +394,8 @@ impl Motor {
         };
         segments.check().or_input_error(py)?;
         let rows = segments.rows();
-        let law = self.lock().spec().friction.clone();
-        let all = || Column::names(&law).iter().map(|name| (*name).to_owned()).collect();
+        let law = self.core(py)?.spec().friction.clone();
+        let all = || Column::names(&law).into_iter().map(Cow::into_owned).collect();
         let names: Vec<String> = outputs.map_or_else(all, |names| names.0);
         let kinds = names.iter().map(|name| Column::named(&law, name).or_input_error(py));
         let kinds = kinds.collect::<PyResult<Vec<Column>>>()?;
@@ -359,9 +405,11 @@ impl Motor {
         let mut arrays = vec![vec![0.0; rows.len()]; kinds.len()];
         let mut columns: Vec<(Column, &mut [f64])> =
             kinds.into_iter().zip(arrays.iter_mut().map(Vec::as_mut_slice)).collect();
-        let account = py
-            .detach(|| self.lock().simulate_segments(&segments, &mut columns))
-            .or_input_error(py)?;
+        let ran = self.core.apart(py, |core| {
+            let (account, sound) = core.simulate_segments(&segments, &mut columns)?;
+            if sound || shown(&columns) { Ok(account) } else { Err(Error::RanUnseen) }
+        });
+        let account = ran?.or_input_error(py)?;
         let result = PyDict::new(py);
         for (name, values) in names.iter().zip(arrays) {
             result.set_item(name, PyArray1::from_vec(py, values))?;

@@ -1,5 +1,7 @@
 //! What a motor is and where it is: parameters, settings, state, counters.
 
+use std::borrow::Cow;
+
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stiction_core::integrate::Integrator;
@@ -24,7 +26,7 @@ impl Motor {
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        for (path, value) in self.lock().spec().parameters() {
+        for (path, value) in self.core(py)?.spec().parameters() {
             dict.set_item(path, value)?;
         }
         Ok(dict)
@@ -32,7 +34,7 @@ impl Motor {
 
     /// Keywords that rebuild the motor, but for friction.
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let spec = self.lock().spec().clone();
+        let spec = self.core(py)?.spec().clone();
         let effects = PyDict::new(py);
         for effect in &spec.effects {
             let values = PyDict::new(py);
@@ -64,7 +66,7 @@ impl Motor {
         &self,
         py: Python<'py>,
     ) -> PyResult<(&'static str, Bound<'py, PyDict>)> {
-        let spec = self.lock().spec().friction.clone();
+        let spec = self.core(py)?.spec().friction.clone();
         let dict = PyDict::new(py);
         for (parameter, value) in spec.record.parameters.iter().zip(&spec.values) {
             dict.set_item(parameter.name, value)?;
@@ -77,8 +79,8 @@ impl Motor {
 
     /// Names of the columns that a trajectory can show.
     #[getter]
-    fn output_names(&self) -> Vec<&'static str> {
-        Column::names(&self.lock().spec().friction)
+    fn output_names(&self, py: Python<'_>) -> PyResult<Vec<Cow<'static, str>>> {
+        Ok(Column::names(&self.core(py)?.spec().friction))
     }
 
     /// Back to rest, or to motion, with friction never moved.
@@ -96,7 +98,8 @@ impl Motor {
     /// Raises
     /// ------
     /// InputError
-    ///     A velocity beyond ±1e6 rad/s (m/s), numbers that are not finite.
+    ///     A velocity beyond ±1e6 rad/s (m/s), numbers that are not finite, a position so far away
+    ///     that the effort there is none.
     #[pyo3(signature = (position=0.0, velocity=0.0, *, time=0.0, path=0.0))]
     fn reset(
         &self,
@@ -109,19 +112,21 @@ impl Motor {
         let position = finite(py, "position", position)?;
         let velocity = crate::error::velocity(py, velocity)?;
         let (time, path) = (finite(py, "time", time)?, finite(py, "path", path)?);
-        let mut core = self.lock();
-        core.reset(position, velocity);
+        let mut core = self.core(py)?;
+        core.reset(position, velocity).or_input_error(py)?;
         core.set_clock(time, path);
         Ok(())
     }
 
     /// Time on the session clock in s: what the state calls ``time``.
     #[getter]
-    fn clock(&self) -> f64 {
-        self.lock().running().run.time
+    fn clock(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.core(py)?.running().run.time)
     }
 
     /// State of body and friction as a dict of floats and arrays; assign one to continue from it.
+    ///
+    /// A state of the law that is called like one of the body's is ``friction.name`` here.
     ///
     /// Raises
     /// ------
@@ -129,14 +134,24 @@ impl Motor {
     ///     A state that no motor with this law returned.
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let entries = self.lock().entries();
+        let entries = self.core(py)?.entries();
         to_dict(py, entries)
     }
 
     #[setter]
     fn set_state(&self, state: &Bound<'_, PyDict>) -> PyResult<()> {
         let entries = from_dict(state)?;
-        self.lock().restore(&entries).or_input_error(state.py())
+        self.core(state.py())?.restore(&entries).or_input_error(state.py())
+    }
+
+    /// State of the friction alone, as a ``FrictionModel`` of this law has it.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to float or numpy.ndarray
+    fn friction_state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let entries = self.core(py)?.friction_entries();
+        to_dict(py, entries)
     }
 
     /// Takes over the state of another motor.
@@ -145,16 +160,18 @@ impl Motor {
     /// ----------
     /// other : Motor
     ///     Of the same definition, which is not checked: what it is is taken over too.
-    fn adopt(&self, other: &Bound<'_, Self>) {
+    fn adopt(&self, other: &Bound<'_, Self>) -> PyResult<()> {
+        let py = other.py();
         // Copied out first: two locks at once could wait for each other.
-        let core = other.get().lock().clone();
-        *self.lock() = core;
+        let core = other.get().core(py)?.clone();
+        *self.core(py)? = core;
+        Ok(())
     }
 
     /// How often each branch was taken: reversals, closings, break-aways, sticks, memory.
     #[getter]
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let counted = self.lock().statistics();
+        let counted = self.core(py)?.statistics();
         super::statistics(py, &counted)
     }
 }

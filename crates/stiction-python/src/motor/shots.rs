@@ -6,7 +6,7 @@ use stiction_core::shoot::{Pull, shoot_response, shoot_sensitivity};
 
 use super::Motor;
 use crate::arguments::{Names, Shots};
-use crate::error::{IntoPython, finite, input_error};
+use crate::error::{IntoPython, finite, input_error, outcome};
 use crate::motion::Motion;
 
 /// Two arrays: readings, efforts of the pull.
@@ -28,6 +28,8 @@ impl Motor {
     ///     Samples from the start of a window to that of the next.
     /// start : dict of str to float, optional
     ///     As for ``follow``.
+    /// strict : bool
+    ///     As for ``follow``.
     ///
     /// Returns
     /// -------
@@ -40,7 +42,7 @@ impl Motor {
     /// InputError
     ///     As for ``follow``; weights that are no flat array of finite numbers, a stride below 1, a
     ///     ``dt`` too long for this machine.
-    #[pyo3(signature = (motion, weights, stride, *, start=None))]
+    #[pyo3(signature = (motion, weights, stride, *, start=None, strict=true))]
     fn shoot<'py>(
         &self,
         py: Python<'py>,
@@ -48,14 +50,16 @@ impl Motor {
         weights: &Bound<'py, PyAny>,
         stride: i64,
         start: Option<&Bound<'py, PyAny>>,
+        strict: bool,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let motion = motion.get();
         let measured = motion.measured();
         let shots = Shots::read(weights, stride)?;
         let windows = shots.windows()?;
-        let start = self.start(py, start)?;
-        let sums = py.detach(|| self.primed(start.as_deref()).shoot(&measured, &windows));
-        Ok(PyArray1::from_vec(py, sums.or_input_error(py)?))
+        let sums = self.primed(py, start, |core| core.shoot(&measured, &windows))?;
+        let sums = sums.or_input_error(py)?;
+        outcome(py, strict, "motions of the windows", [sums.as_slice()])?;
+        Ok(PyArray1::from_vec(py, sums))
     }
 
     /// One simulation drawn to a measured motion by a spring and a damper; the motor is left as it
@@ -71,6 +75,8 @@ impl Motor {
     ///     Of the damper, N·m·s/rad or N·s/m.
     /// start : dict of str to float, optional
     ///     As for ``follow``.
+    /// strict : bool
+    ///     As for ``follow``.
     ///
     /// Returns
     /// -------
@@ -84,7 +90,7 @@ impl Motor {
     /// InputError
     ///     As for ``follow``; a stiffness or damping that is not finite, a ``dt`` too long for this
     ///     machine.
-    #[pyo3(signature = (motion, stiffness, damping, *, start=None))]
+    #[pyo3(signature = (motion, stiffness, damping, *, start=None, strict=true))]
     fn accompany<'py>(
         &self,
         py: Python<'py>,
@@ -92,14 +98,15 @@ impl Motor {
         stiffness: f64,
         damping: f64,
         start: Option<&Bound<'py, PyAny>>,
+        strict: bool,
     ) -> PyResult<Accompanied<'py>> {
         let motion = motion.get();
         let measured = motion.measured();
         let stiffness = finite(py, "stiffness", stiffness)?;
         let pull = Pull { stiffness, damping: finite(py, "damping", damping)? };
-        let start = self.start(py, start)?;
-        let rows = py.detach(|| self.primed(start.as_deref()).accompany(&measured, pull));
+        let rows = self.primed(py, start, |core| core.accompany(&measured, pull))?;
         let (readings, efforts) = rows.or_input_error(py)?;
+        outcome(py, strict, "readings and efforts", [readings.as_slice(), efforts.as_slice()])?;
         Ok((PyArray1::from_vec(py, readings), PyArray1::from_vec(py, efforts)))
     }
 
@@ -109,7 +116,7 @@ impl Motor {
     /// ----------
     /// motion, weights, stride
     ///     As for ``shoot``.
-    /// parameters, start
+    /// parameters, start, strict
     ///     As for ``follow_sensitivity``.
     ///
     /// Returns
@@ -121,7 +128,7 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``shoot`` and ``follow_sensitivity``.
-    #[pyo3(signature = (motion, weights, stride, parameters, *, start=None))]
+    #[pyo3(signature = (motion, weights, stride, parameters, *, start=None, strict=true))]
     fn shoot_sensitivity<'py>(
         &self,
         py: Python<'py>,
@@ -130,6 +137,7 @@ impl Motor {
         stride: i64,
         parameters: Names,
         start: Option<&Bound<'py, PyAny>>,
+        strict: bool,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let Names(parameters) = parameters;
         let motion = motion.get();
@@ -140,7 +148,9 @@ impl Motor {
             shoot_sensitivity(spec, start, &measured, &windows, &parameters)
         })?;
         let shape = [parameters.len(), windows.number(motion.samples())];
-        PyArray1::from_vec(py, rows.or_input_error(py)?).reshape(shape)
+        let rows = rows.or_input_error(py)?;
+        outcome(py, strict, "derivatives", [rows.as_slice()])?;
+        PyArray1::from_vec(py, rows).reshape(shape)
     }
 
     /// Exact derivatives of what ``shoot`` returns by an effort along +x that acts during one part
@@ -148,7 +158,7 @@ impl Motor {
     ///
     /// Parameters
     /// ----------
-    /// motion, weights, stride, start
+    /// motion, weights, stride, start, strict
     ///     As for ``shoot``.
     /// parts : int
     ///     How many equal ones a window has; the last takes the rest.
@@ -162,7 +172,7 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``shoot``; parts below 1 or more than a window has samples.
-    #[pyo3(signature = (motion, weights, stride, parts, *, start=None))]
+    #[pyo3(signature = (motion, weights, stride, parts, *, start=None, strict=true))]
     fn shoot_response<'py>(
         &self,
         py: Python<'py>,
@@ -171,6 +181,7 @@ impl Motor {
         stride: i64,
         parts: i64,
         start: Option<&Bound<'py, PyAny>>,
+        strict: bool,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let motion = motion.get();
         let measured = motion.measured();
@@ -187,6 +198,8 @@ impl Motor {
             shoot_response(spec, start, &measured, &windows, parts)
         })?;
         let shape = [parts, windows.number(motion.samples())];
-        PyArray1::from_vec(py, rows.or_input_error(py)?).reshape(shape)
+        let rows = rows.or_input_error(py)?;
+        outcome(py, strict, "derivatives", [rows.as_slice()])?;
+        PyArray1::from_vec(py, rows).reshape(shape)
     }
 }
