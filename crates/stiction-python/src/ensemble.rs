@@ -12,6 +12,7 @@ use stiction_core::motor::Column;
 use crate::arguments::{Names, threads_of};
 use crate::arrays::{Each, numbers, samples};
 use crate::error::{IntoPython, duration, finite, input_error};
+use crate::interrupt::detached;
 use crate::motor::Motor;
 
 /// Base of ``stiction.Ensemble``: everything that needs no Python.
@@ -142,7 +143,7 @@ impl Ensemble {
             let (mut x, mut v) = (position.readwrite(), velocity.readwrite());
             let (x, v) = (x.as_slice_mut()?, v.as_slice_mut()?);
             let (current, load) = (current.per_sample()?, load.per_sample()?);
-            py.detach(|| self.lock().step(current, load, dt, x, v)).or_input_error(py)?;
+            detached(py, || self.lock().step(current, load, dt, x, v))?.or_input_error(py)?;
         }
         Ok((position, velocity))
     }
@@ -234,7 +235,7 @@ impl Ensemble {
             threads,
             width: Width::widest(),
         };
-        py.detach(|| self.lock().run(&plan, &mut columns)).or_input_error(py)?;
+        detached(py, || self.lock().run(&plan, &mut columns))?.or_input_error(py)?;
         Ok(result)
     }
 }

@@ -12,6 +12,7 @@ use stiction_core::model::{FrictionModel as Core, LawSpec};
 
 use crate::arrays::{Each, samples};
 use crate::error::{FASTEST, IntoPython, duration, finite, input_error, out_of_range, velocity};
+use crate::interrupt::{all_or_nothing, detached};
 use crate::state::{from_dict, keywords, to_dict};
 
 /// A friction law with its parameters and its state.
@@ -176,10 +177,13 @@ impl FrictionModel {
                 temperature: known.then(|| temperature.at(k)),
                 ..Channels::default()
             };
-            py.detach(|| {
+            detached(py, || {
                 let mut core = self.lock();
                 if shape.len() == 1 {
-                    core.simulate(velocity, dt, at, friction);
+                    let Ok(()) = all_or_nothing(&mut *core, |core| {
+                        core.simulate(velocity, dt, at, friction);
+                        Ok::<(), std::convert::Infallible>(())
+                    });
                     return;
                 }
                 let n = shape[1];
@@ -187,7 +191,7 @@ impl FrictionModel {
                 for (row, (velocity, friction)) in rows.enumerate() {
                     core.clone().simulate(velocity, dt, |k| at(row * n + k), friction);
                 }
-            });
+            })?;
             if !friction.iter().all(|force| force.is_finite()) {
                 return Err(out_of_range(py, self.lock().spec().record.name));
             }

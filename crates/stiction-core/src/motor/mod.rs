@@ -10,6 +10,7 @@ use crate::effects::Effects;
 use crate::error::{Error, Result};
 use crate::follow::{Efforts, SeesAbout};
 use crate::friction::{AnyState, Entry, LawState, Statistics};
+use crate::integrate::Budget;
 use crate::kernel::RowKernel;
 use crate::sensitivity::MeasuredMotion;
 use crate::shoot::{Pull, Windows};
@@ -168,10 +169,16 @@ impl Motor {
     /// order of the law's start quantities.
     pub fn prime(&mut self, start: &[f64]) {
         self.running.state = self.running.law.primed(start);
+        self.running.run.budget = Budget::unknown();
     }
 
     /// Replaces the friction state, from another model of the same law and parameters.
     pub fn set_friction_state(&mut self, state: AnyState<f64>) {
+        let moved = with_state!(&state, |state| state.entries())
+            != with_state!(&self.running.law.initial(), |state| state.entries());
+        if moved {
+            self.running.run.budget = Budget::unknown();
+        }
         self.running.state = state;
     }
 
@@ -194,6 +201,10 @@ impl Motor {
         entries.extend(self.running.way.iter().flat_map(Way::entries));
         let effects = &self.running.machine.effects;
         entries.extend(effects.remembers().then(|| effects.entry()));
+        if effects.any() {
+            entries
+                .extend(BUDGET.into_iter().zip([run.budget.taken, run.budget.swing].map(number)));
+        }
         entries.extend(with_state!(&self.running.state, |state| state.entries()));
         entries
     }
@@ -206,6 +217,7 @@ impl Motor {
             BODY.contains(&name)
                 || way.iter().flat_map(Way::names).any(|own| own == name)
                 || (effects.remembers() && name == Effects::<f64>::ENTRY)
+                || (effects.any() && BUDGET.contains(&name))
         };
         let (body, law): (Vec<_>, Vec<_>) =
             entries.iter().cloned().partition(|(name, _)| own(name.as_str()));
@@ -226,6 +238,13 @@ impl Motor {
         if effects.remembers() {
             effects.restore(&mut read)?;
         }
+        // A state may say nothing of it: one that was put together by hand.
+        let counted = effects.any() && body.iter().any(|(name, _)| BUDGET.contains(&name.as_str()));
+        run.budget = Budget::unknown();
+        if counted {
+            run.budget.taken = read.number(BUDGET[0], true)?;
+            run.budget.swing = read.at_least_zero(BUDGET[1])?;
+        }
         let state = self.running.law.restore(&law)?;
         // As it was, not recomputed: it belongs to the end of the last step, to the bit.
         run.set_ambient(read.number("ambient", false)?);
@@ -241,6 +260,9 @@ impl Motor {
         with_state!(&self.running.state, |state| state.statistics())
     }
 }
+
+/// What a contact beside effects has taken in, and the greatest kinetic energy so far.
+const BUDGET: [&str; 2] = ["contact_work", "kinetic_peak"];
 
 const BODY: [&str; 10] = [
     "position",

@@ -11,6 +11,7 @@ use super::Motor;
 use crate::arguments::{Names, candidates_of, gains_of, threads_of};
 use crate::arrays::{Around, Each, one_row, target};
 use crate::error::IntoPython;
+use crate::interrupt::{all_or_nothing, detached};
 use crate::kernel::RowKernel;
 use crate::motion::Motion;
 
@@ -71,13 +72,14 @@ impl Motor {
         {
             let motion = motion.measured();
             let arrays = efforts.each_mut().map(Vec::as_mut_slice);
-            py.detach(|| {
-                let mut core = self.lock();
-                if let Some(start) = &start {
-                    core.prime(start);
-                }
-                core.follow(&motion, arrays)
-            })
+            detached(py, || {
+                all_or_nothing(&mut *self.lock(), |core| {
+                    if let Some(start) = &start {
+                        core.prime(start);
+                    }
+                    core.follow(&motion, arrays)
+                })
+            })?
             .or_input_error(py)?;
         }
         let [driven, ambient, friction, ahead] =
@@ -119,13 +121,14 @@ impl Motor {
         let motion = motion.get().measured();
         let kernel = kernel.get().core();
         let start = self.start(py, start)?;
-        let rows = py.detach(|| {
-            let mut core = self.lock();
-            if let Some(start) = &start {
-                core.prime(start);
-            }
-            core.follow_rows(&motion, &kernel)
-        });
+        let rows = detached(py, || {
+            all_or_nothing(&mut *self.lock(), |core| {
+                if let Some(start) = &start {
+                    core.prime(start);
+                }
+                core.follow_rows(&motion, &kernel)
+            })
+        })?;
         Ok(PyArray1::from_vec(py, rows.or_input_error(py)?))
     }
 
@@ -342,13 +345,13 @@ impl Motor {
         let mut rows = target("out", &array, &shape)?;
         let both = rows.as_slice_mut()?;
         let (position, velocity) = both.split_at_mut(both.len() / 2);
-        let result = py.detach(|| {
+        let result = detached(py, || {
             let core = self.lock().clone();
             let rows = [position, velocity];
             sensitivity_into(core.spec(), core.running(), current, around, dt, &parameters, rows)
         });
         drop(rows);
-        result.or_input_error(py)?;
+        result?.or_input_error(py)?;
         Ok((array.get_item(0)?, array.get_item(1)?))
     }
 }

@@ -19,6 +19,7 @@ use crate::arguments::{Names, Words, effects_of, integrator_of, numbers_of, serv
 use crate::arrays::{Around, Each, one_row, target};
 use crate::error::{IntoPython, duration, finite, input_error};
 use crate::friction_model::FrictionModel;
+use crate::interrupt::{all_or_nothing, detached};
 
 /// Base of ``stiction.Motor``: everything that needs no Python.
 #[pyclass(frozen, subclass, module = "stiction._native")]
@@ -65,10 +66,10 @@ impl Motor {
         work: impl FnOnce(&MotorSpec, Start<'_>) -> R + Send,
     ) -> PyResult<R> {
         let primed = self.start(py, start)?;
-        Ok(py.detach(|| {
+        detached(py, || {
             let core = self.lock().clone();
             work(core.spec(), Start { running: core.running(), primed: primed.as_deref() })
-        }))
+        })
     }
 }
 
@@ -87,6 +88,7 @@ fn statistics<'py>(py: Python<'py>, counted: &Statistics) -> PyResult<Bound<'py,
     dict.set_item(intern!(py, "sticks"), counted.sticks)?;
     dict.set_item(intern!(py, "memory_peak"), counted.memory_peak)?;
     dict.set_item(intern!(py, "memory_growths"), counted.memory_growths)?;
+    dict.set_item(intern!(py, "memory_merged"), counted.memory_merged)?;
     Ok(dict)
 }
 
@@ -286,14 +288,14 @@ impl Motor {
         for (column, array) in &mut arrays {
             columns.push((*column, array.as_slice_mut()?));
         }
-        let (start, counted) = py
-            .detach(|| {
-                let mut core = self.lock();
+        let (start, counted) = detached(py, || {
+            all_or_nothing(&mut *self.lock(), |core| {
                 let start = core.running().run.time;
                 core.simulate(current, around, dt, &mut columns)?;
                 Ok((start, core.statistics()))
             })
-            .or_input_error(py)?;
+        })?
+        .or_input_error(py)?;
         Ok((result, n, start, statistics(py, &counted)?))
     }
 
@@ -359,9 +361,12 @@ impl Motor {
         let mut arrays = vec![vec![0.0; rows.len()]; kinds.len()];
         let mut columns: Vec<(Column, &mut [f64])> =
             kinds.into_iter().zip(arrays.iter_mut().map(Vec::as_mut_slice)).collect();
-        let account = py
-            .detach(|| self.lock().simulate_segments(&segments, &mut columns))
-            .or_input_error(py)?;
+        let account = detached(py, || {
+            all_or_nothing(&mut *self.lock(), |core| {
+                core.simulate_segments(&segments, &mut columns)
+            })
+        })?
+        .or_input_error(py)?;
         let result = PyDict::new(py);
         for (name, values) in names.iter().zip(arrays) {
             result.set_item(name, PyArray1::from_vec(py, values))?;

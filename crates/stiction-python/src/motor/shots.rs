@@ -7,6 +7,7 @@ use stiction_core::shoot::{Pull, shoot_response, shoot_sensitivity};
 use super::Motor;
 use crate::arguments::{Names, Shots};
 use crate::error::{IntoPython, finite, input_error};
+use crate::interrupt::detached;
 use crate::motion::Motion;
 
 /// Two arrays: readings, efforts of the pull.
@@ -54,7 +55,7 @@ impl Motor {
         let shots = Shots::read(weights, stride)?;
         let windows = shots.windows()?;
         let start = self.start(py, start)?;
-        let sums = py.detach(|| self.primed(start.as_deref()).shoot(&measured, &windows));
+        let sums = detached(py, || self.primed(start.as_deref()).shoot(&measured, &windows))?;
         Ok(PyArray1::from_vec(py, sums.or_input_error(py)?))
     }
 
@@ -98,7 +99,7 @@ impl Motor {
         let stiffness = finite(py, "stiffness", stiffness)?;
         let pull = Pull { stiffness, damping: finite(py, "damping", damping)? };
         let start = self.start(py, start)?;
-        let rows = py.detach(|| self.primed(start.as_deref()).accompany(&measured, pull));
+        let rows = detached(py, || self.primed(start.as_deref()).accompany(&measured, pull))?;
         let (readings, efforts) = rows.or_input_error(py)?;
         Ok((PyArray1::from_vec(py, readings), PyArray1::from_vec(py, efforts)))
     }
