@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any, Final
 
 import numpy as np
@@ -108,3 +109,15 @@ def test_what_cannot_be_run_is_refused(
     with pytest.raises(st.InputError, match=sentence):
         motor.simulate_segments(durations, current, **keywords)
     assert motor.state["time"] == 0.0
+
+
+def test_a_call_that_would_never_end_is_refused_in_a_sentence() -> None:
+    effects = {"backlash": {"inertia_share": 0.3, "contact_time": 1e-3}}
+    behind_a_gap = st.Motor(INERTIA, friction=st.FrictionModel("hsieh_pan"), effects=effects)
+    for motor, duration, tolerance in ((behind_a_gap, 1e9, TOLERANCE), (rig(), 1000.0, 1e-300)):
+        before = motor.state
+        began = time.process_time()
+        with pytest.raises(st.InputError, match=r"more than \d+ steps .*; ask for more rows"):
+            motor.simulate_segments([duration], [0.2], tolerance=tolerance)
+        assert time.process_time() - began < 5.0
+        np.testing.assert_equal(motor.state, before)

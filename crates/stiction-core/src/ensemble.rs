@@ -10,6 +10,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::error::{Error, Result};
 use crate::finite;
 use crate::friction::{Law, Statistics};
+use crate::integrate::{LONGEST_PHASE, parts};
+use crate::interrupt::{self, Pace};
 use crate::lanes::{self, Job, Width};
 use crate::model::LawSpec;
 use crate::motor::{
@@ -141,6 +143,10 @@ pub struct Plan<'a> {
 /// Samples from which on numbers are looked at on the way, where a copy of the machines, which takes
 /// back what they did until then, costs less than to read all numbers once more.
 const MANY: usize = 1000;
+/// Steps of all members together that take longer than anybody waits without a wish to interrupt them.
+const LONG: f64 = 1e6;
+/// Plain steps that a step of a member takes as long as, at least.
+const PER_MEMBER: u64 = 16;
 
 impl<'a> Plan<'a> {
     /// All that has a number for each sample.
@@ -249,6 +255,8 @@ impl Ensemble {
                 return Err(Error::Length { name: name.to_owned(), given, wanted: members });
             }
         }
+        let before = (self.steps_of(dt) > LONG).then(|| self.members.clone());
+        let mut pace = Pace::default();
         // Those that may run away go first, and back where one of them does.
         let mut watched: Vec<(usize, Standing)> = Vec::new();
         for k in 0..members {
@@ -256,24 +264,49 @@ impl Ensemble {
             if running.needs_no_watch(inputs.at(k), loads.at(k), dt) {
                 continue;
             }
-            let before = running.standing();
+            if before.is_some() && pace.due(PER_MEMBER) {
+                break;
+            }
+            let standing = running.standing();
             if let Err(error) = running.step_watched(inputs.at(k), loads.at(k), dt) {
-                for (k, before) in watched {
-                    self.members[k].return_to(before);
+                for (k, standing) in watched {
+                    self.members[k].return_to(standing);
                 }
                 return Err(Error::Member { member: k, problem: error.to_string() });
             }
-            watched.push((k, before));
+            watched.push((k, standing));
         }
         let mut watched = watched.into_iter().map(|(k, _)| k).peekable();
         for (k, running) in self.members.iter_mut().enumerate() {
+            if before.is_some() && pace.due(PER_MEMBER) {
+                break;
+            }
             if watched.next_if_eq(&k).is_none() {
                 running.step_or_stay(inputs.at(k), loads.at(k), dt)?;
             }
             positions[k] = running.run.position;
             velocities[k] = running.run.velocity;
         }
+        if let Some(before) = before
+            && interrupt::due()
+        {
+            self.members = before;
+            return Err(Error::Interrupted);
+        }
         Ok(())
+    }
+
+    /// Whether one would want to interrupt samples of this plan.
+    fn takes_long(&self, plan: &Plan<'_>) -> bool {
+        plan.samples > 0 && self.steps_of(plan.dt.at(0)) * plan.samples as f64 > LONG
+    }
+
+    /// Steps of a sample of all members, if they are like the first.
+    fn steps_of(&self, dt: f64) -> f64 {
+        self.members.first().map_or(0.0, |first| {
+            let each = with_law!(&first.law, |law| parts(&first.machine, law, dt, LONGEST_PHASE));
+            each * self.members.len() as f64
+        })
     }
 
     /// Runs all members on. Each of `columns` is filled one member after the other, with
@@ -298,8 +331,8 @@ impl Ensemble {
                 .check_step(longest)
                 .map_err(|error| Error::Member { member, problem: error.to_string() })?;
         }
-        let before = (samples >= MANY).then(|| self.members.clone());
-        if before.is_none() {
+        let before = (samples >= MANY || self.takes_long(plan)).then(|| self.members.clone());
+        if samples < MANY {
             plan.check_finite()?;
         }
         let halted = AtomicBool::new(false);
@@ -337,16 +370,13 @@ impl Ensemble {
                 }
             }
         };
-        std::thread::scope(|scope| {
-            for _ in 1..plan.threads.min(members) {
-                scope.spawn(labour);
-            }
-            labour();
-        });
-        if halted.into_inner() {
+        interrupt::shared(plan.threads.min(members), labour);
+        let interrupted = interrupt::check();
+        if halted.into_inner() || interrupted.is_err() {
             if let Some(before) = before {
                 self.members = before;
             }
+            interrupted?;
             plan.check_finite()?;
         }
         match failed.into_inner() {

@@ -145,6 +145,21 @@ pub enum Error {
         /// Name of the law.
         law: &'static str,
     },
+    /// Whoever called wants no answer any more.
+    #[error("the call was interrupted; the machine is as it was before it")]
+    Interrupted,
+    /// More work than a call may make.
+    #[error(
+        "segments take more than {most} steps of this machine until {} s; ask for more rows with \
+         times, which allow as many more, give a larger tolerance, or run shorter segments",
+        Shown(*time)
+    )]
+    TooManySteps {
+        /// How many a call may take.
+        most: f64,
+        /// Until when it would have taken more.
+        time: f64,
+    },
     /// A state that does not fit the law.
     #[error("state entry '{name}' {problem}; give a state that the same law returned")]
     State {

@@ -7,7 +7,8 @@ use stiction_dispatch::Task;
 use crate::drive::Way;
 use crate::effects::{Passage, Situation};
 use crate::friction::{Channels, FrictionLaw, LawState, Motion};
-use crate::integrate::{Along, Beyond, Machine, Run};
+use crate::integrate::{Along, Beyond, Budget, Machine, Run};
+use crate::interrupt;
 use crate::model::CHUNK;
 use crate::motor::Running;
 use crate::scalar::Scalar;
@@ -219,6 +220,9 @@ where
         let mut held = false;
         for (passed, k) in samples.enumerate() {
             if passed % CHUNK == 0 {
+                if interrupt::due() {
+                    break;
+                }
                 state.make_room(CHUNK + CHUNK / 4);
             }
             let duration = dt.at(k);
@@ -341,6 +345,8 @@ impl<S: Scalar> Run<S> {
         self.enabled = at.enabled;
         self.second_position = at.position;
         self.second_velocity = at.velocity;
+        // Whatever moved it, it was not counted.
+        self.budget = Budget::unknown();
     }
 }
 

@@ -18,6 +18,7 @@ pub mod exponential;
 pub mod finite;
 pub mod follow;
 pub mod integrate;
+pub mod interrupt;
 pub mod kernel;
 pub mod lanes;
 mod logarithm;

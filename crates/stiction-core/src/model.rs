@@ -6,6 +6,7 @@ use crate::friction::{
     AnyState, AnyTrial, Channels, Entry, Law, LawRecord, LawState, Outcome, Statistics, law_record,
 };
 use crate::integrate::{Held, through_events};
+use crate::interrupt;
 use crate::parameter::resolve;
 use crate::range::{Range, ordinary, sound};
 use crate::scalar::{COLUMNS, Dual, Scalar};
@@ -243,6 +244,10 @@ impl FrictionModel {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let chunks = velocity.chunks(CHUNK).zip(friction.chunks_mut(CHUNK));
             for (chunk, (velocity, friction)) in chunks.enumerate() {
+                if interrupt::due() {
+                    self.state = before;
+                    return Err(Error::Interrupted);
+                }
                 state.make_room(CHUNK + EVENT_ROOM);
                 for (k, (v, f)) in velocity.iter().zip(friction).enumerate() {
                     let mut held = Held::new(*v, channels(chunk * CHUNK + k));

@@ -1,6 +1,7 @@
 //! A machine started anew along a motion that was measured: where it gets to by itself.
 
 use crate::error::{Error, Result};
+use crate::interrupt::{self, Pace};
 use crate::motor::{MotorSpec, PerSample, Running};
 use crate::scalar::{COLUMNS, Dual, Scalar};
 use crate::sensitivity::{MeasuredMotion, Start, passes, seeded};
@@ -70,6 +71,7 @@ impl<S: Scalar> Running<S> {
         let length = windows.weights.len();
         let mut reached = 0;
         for window in 0..windows.number(motion.samples()) {
+            interrupt::check()?;
             let start = window * windows.stride.max(1);
             self.follow_to(motion, reached..start);
             reached = start;
@@ -95,6 +97,9 @@ impl<S: Scalar> Running<S> {
     }
 }
 
+/// Plain steps that a sample drawn to a motion takes as long as, at least.
+const PER_SAMPLE: u64 = 4;
+
 /// Effort by which a run is drawn to a motion: that of a spring and a damper.
 #[derive(Debug, Clone, Copy)]
 pub struct Pull {
@@ -119,7 +124,11 @@ impl Running<f64> {
         let actual = |reading: f64| sensor.behind(reading);
         let actual: Option<&dyn Fn(f64) -> f64> =
             if sensor.misreads() { Some(&actual) } else { None };
+        let mut pace = Pace::default();
         for k in 0..motion.samples() {
+            if pace.due(PER_SAMPLE) {
+                return Err(Error::Interrupted);
+            }
             let track = Track::new(positions, actual, k);
             let behind = track.position() - self.run.position;
             let slower = track.velocity(&dt) - self.run.velocity;

@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use stiction_dispatch::{Task, Width};
 
 use crate::effects::{AnyEffect, EffectRecord, Effects, Hook, Passage, Situation, neutral_values};
+use crate::interrupt;
 use crate::kernel::RowKernel;
 use crate::motor::{EffectSpec, MotorSpec, Running};
 use crate::scalar::{COLUMNS, Dual, Scalar};
@@ -90,12 +91,7 @@ fn signatures_into(
             });
         }
     };
-    std::thread::scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(passes);
-        }
-        passes();
-    });
+    interrupt::shared(threads, passes);
 }
 
 /// A gain, by candidate and place, and where its traces go.
@@ -160,6 +156,9 @@ fn at_once<T: Target>(
     targets: Vec<Seeded<T>>,
 ) {
     let along = Along::of(spec, start, motion);
+    if interrupt::due() {
+        return;
+    }
     let number = motion.samples();
     let (mut needed, mut driven) = (vec![0.0; number], vec![0.0; number]);
     let mut fill = |unit: &Unit, wave: &[f64], target: &mut T| {
@@ -172,6 +171,9 @@ fn at_once<T: Target>(
     let even = vec![1.0; number];
     let mut waves = Vec::new();
     for ((index, gain), mut target) in targets {
+        if interrupt::due() {
+            return;
+        }
         let EffectSpec { record, values } = &candidates[index];
         match record.facts.wave() {
             None => fill(&along.unit(record, values, gain), &even, &mut target),
@@ -189,6 +191,9 @@ fn at_once<T: Target>(
     let mut carriers: Vec<(&str, Unit)> = Vec::new();
     let mut present = None;
     for (order, record, sine, mut target) in waves {
+        if interrupt::due() {
+            return;
+        }
         if present != Some(order) {
             present = Some(order);
             trig::waves(order, &positions, &mut cosines, &mut sines);

@@ -2,6 +2,8 @@
 
 use stiction_dispatch::{Task, Width};
 
+use crate::interrupt;
+
 /// Standard deviations by which estimates from narrow and wide windows may differ.
 const TRUSTED: f64 = 2.0;
 /// Half the samples, less one, over which one width goes over into the next: a jump would turn the
@@ -84,6 +86,9 @@ impl Task for Smoothing<'_> {
             let middle = &padded[edge..edge + number];
             let mut estimate: Vec<f64> = middle.iter().map(|x| weights[0] * x).collect();
             for (j, weight) in weights.iter().enumerate().skip(1) {
+                if interrupt::due() {
+                    return estimate;
+                }
                 let before = &padded[edge - j..][..number];
                 let after = &padded[edge + j..][..number];
                 for ((sum, one), other) in estimate.iter_mut().zip(before).zip(after) {

@@ -28,4 +28,10 @@ impl<S: Scalar> Wave<S> {
         let first = one(self.first);
         self.second.map_or(first, |second| first + one(second))
     }
+
+    /// Greatest slope by position.
+    pub fn steepest(&self) -> f64 {
+        let one = |[cosine, sine, order]: [S; 3]| cosine.re().hypot(sine.re()) * order.re();
+        one(self.first) + self.second.map_or(0.0, one)
+    }
 }

@@ -6,6 +6,7 @@ mod catalogue;
 mod ensemble;
 mod error;
 mod friction_model;
+mod interrupt;
 mod kernel;
 mod motion;
 mod motor;

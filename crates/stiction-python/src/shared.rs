@@ -10,6 +10,7 @@ use std::time::Duration;
 use pyo3::prelude::*;
 
 use crate::error::input_error;
+use crate::interrupt::detached;
 
 /// Forks that lie between the first process and this one.
 static FORKS: AtomicU64 = AtomicU64::new(0);
@@ -58,7 +59,7 @@ impl<T> Shared<T> {
         }
     }
 
-    /// Works on it without the interpreter.
+    /// Works on it without the interpreter; a signal whose handler raises ends it with that.
     pub fn apart<R: Send>(
         &self,
         py: Python<'_>,
@@ -69,11 +70,11 @@ impl<T> Shared<T> {
     {
         // Only looked at: a guard stays in the thread and with the interpreter that it was made with.
         drop(self.lock(py)?);
-        Ok(py.detach(|| {
+        detached(py, || {
             let mut guard = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
             self.taken.store(FORKS.load(Ordering::Relaxed), Ordering::Relaxed);
             work(&mut guard)
-        }))
+        })
     }
 
     #[inline]

@@ -6,6 +6,7 @@ use stiction_core::smoothing;
 
 use crate::arrays::one_row;
 use crate::error::{finite, input_error, outcome};
+use crate::interrupt::detached;
 
 /// Positions behind readings, each from the widest window that noise does not refute.
 ///
@@ -42,7 +43,7 @@ pub fn adaptively_smoothed<'py>(
         let wanted = "give whole numbers that rise from 0 to at most that of the readings";
         return Err(input_error(py, format!("halves = {halves:?} are no windows; {wanted}")));
     }
-    let smoothed = py.detach(|| smoothing::adaptively_smoothed(given, noise, &halves));
+    let smoothed = detached(py, || smoothing::adaptively_smoothed(given, noise, &halves))?;
     outcome(py, true, "smoothed readings", [smoothed.as_slice()])?;
     Ok(PyArray1::from_vec(py, smoothed))
 }

@@ -62,4 +62,8 @@ impl<S: Scalar> Effect<S> for Cogging<S> {
     fn effort(&self, at: &Situation<S>, _memory: &Memory<S>) -> S {
         self.0.at(at.position)
     }
+
+    fn stiffness(&self, _sliding: f64) -> f64 {
+        self.0.steepest()
+    }
 }

@@ -55,4 +55,8 @@ impl<S: Scalar> Effect<S> for GravityUnbalance<S> {
         let (sine, cosine) = at.position.sin_cos();
         self.0.cosine * cosine + self.0.sine * sine
     }
+
+    fn stiffness(&self, _sliding: f64) -> f64 {
+        self.0.cosine.re().hypot(self.0.sine.re())
+    }
 }

@@ -87,6 +87,10 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn stiffness(&self, _sliding: f64) -> f64 {
         0.0
     }
+    /// ∂effort/∂velocity that it adds at this velocity, where it calms the motion.
+    fn damping(&self, _velocity: f64) -> f64 {
+        0.0
+    }
 }
 
 /// An effect as the catalogue knows it.

@@ -48,4 +48,8 @@ impl<S: Scalar> Effect<S> for ViscousQuadratic<S> {
     fn effort(&self, at: &Situation<S>, _memory: &Memory<S>) -> S {
         -(self.0.quadratic * at.velocity * at.velocity.abs())
     }
+
+    fn damping(&self, velocity: f64) -> f64 {
+        2.0 * self.0.quadratic.re() * velocity.abs()
+    }
 }

@@ -1,6 +1,6 @@
 //! The Leuven model: bristles whose force is a hysteresis that remembers its reverse points.
 
-use super::elements::approach::{approach, way_to};
+use super::elements::approach::{approach, approach_evenly, way_evenly_to, way_to};
 use super::elements::bristle::{self, Bent, Bristle, Slip};
 use super::elements::reachable::reachable;
 use super::elements::slides::Slides;
@@ -145,6 +145,7 @@ impl<S: Scalar> LawState<S> for LeuvenState<S> {
             closings: self.loops.closings,
             memory_peak: self.loops.memory_peak,
             memory_growths: self.spring.memory.growths(),
+            memory_merged: self.spring.memory.merged(),
             ..self.slides.statistics()
         }
     }
@@ -213,6 +214,8 @@ impl<S: Scalar> Leuven<S> {
             // (slope of the branch)/g times what bends, per r.
             let gap = (from + span - goal) / level;
             let rate = |r: S| (r + gap) / distance * bends(r, n, rising);
+            // All of a path bends that may with n = 1, and a formula leads along.
+            let even = n.re() == 1.0 && !n.derivative_is_nonzero();
             let r = (goal - force) / level;
             // Force at which this branch closes its loop, and how many points that forgets.
             let closing = match (new, &points[..kept]) {
@@ -232,10 +235,13 @@ impl<S: Scalar> Leuven<S> {
                 let size = (force.re().abs() / level.re()).max(1.0).powf(n.re());
                 let quick = stiffness.re() * left.re() * (1.0 + size);
                 if short <= quick {
-                    let needed = if short > 0.0 {
-                        way_to(r, (goal - target) / level, rate)
-                    } else {
+                    let there = (goal - target) / level;
+                    let needed = if short <= 0.0 {
                         S::constant(0.0)
+                    } else if even {
+                        way_evenly_to(r, there, gap, distance)
+                    } else {
+                        way_to(r, there, rate)
                     };
                     if needed.re() <= left.re() {
                         left -= needed;
@@ -249,7 +255,12 @@ impl<S: Scalar> Leuven<S> {
                 }
             }
             if r.re() > 0.0 {
-                force = goal - approach(r, left, rate) * level;
+                let r = if even {
+                    approach_evenly(r, left, gap, distance)
+                } else {
+                    approach(r, left, rate)
+                };
+                force = goal - r * level;
             }
             let share = (force - from) / span;
             let share = if share.re() < ENDS { share } else { S::constant(ENDS) };

@@ -106,7 +106,11 @@ impl<S: Scalar> LawState<S> for MaxwellSlipState<S> {
     }
 
     fn statistics(&self) -> Statistics {
-        Statistics { memory_growths: self.spring.memory.growths(), ..self.statistics }
+        Statistics {
+            memory_growths: self.spring.memory.growths(),
+            memory_merged: self.spring.memory.merged(),
+            ..self.statistics
+        }
     }
 
     fn make_room(&mut self, steps: usize) {

@@ -166,7 +166,11 @@ impl<S: Scalar> LawState<S> for PreisachState<S> {
     }
 
     fn statistics(&self) -> Statistics {
-        Statistics { memory_growths: self.spring.memory.growths(), ..self.statistics }
+        Statistics {
+            memory_growths: self.spring.memory.growths(),
+            memory_merged: self.spring.memory.merged(),
+            ..self.statistics
+        }
     }
 
     fn make_room(&mut self, steps: usize) {

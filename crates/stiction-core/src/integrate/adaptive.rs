@@ -7,11 +7,13 @@
 
 use std::cell::Cell;
 
+use super::budget::Work;
 use super::events::Stepper;
 use super::machine::{Machine, Run};
 use super::row::{Rows, Taken};
 use super::swing::{Landing, Swing, located};
 use crate::friction::{FrictionLaw, LawState, Motion};
+use crate::interrupt::Pace;
 use crate::scalar::sign;
 
 /// Share of the tolerance that a step may add to the error, by an estimate of one order less.
@@ -32,6 +34,9 @@ const GROWTH: f64 = 4.0;
 const FINEST: f64 = 1.0 / 64.0;
 /// Events without any progress after which a step is taken as it is.
 const MOST_EVENTS: u32 = 16;
+
+/// Plain steps that one of these takes as long as.
+const PER_STEP: u64 = 32;
 
 /// What a long run cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -61,13 +66,16 @@ pub struct Adaptive {
     /// How many times its size what is left of a ring would still move the body.
     over: f64,
     rows: Rows,
+    pace: Pace,
+    /// Steps that are left to be taken.
+    left: u64,
     /// What it cost.
     pub account: Account,
 }
 
 impl Adaptive {
-    /// With this error allowed; a step of the fast integrator lasts `natural`.
-    pub fn new(tolerance: f64, natural: f64) -> Self {
+    /// With this error allowed, in at most so many steps; one of the fast integrator lasts `natural`.
+    pub fn new(tolerance: f64, natural: f64, most: u64) -> Self {
         Self {
             tolerance,
             natural,
@@ -76,12 +84,19 @@ impl Adaptive {
             damping: 0.0,
             over: 1.0,
             rows: Rows::new(tolerance, natural),
+            pace: Pace::default(),
+            left: most,
             account: Account::default(),
         }
     }
 }
 
 impl Adaptive {
+    /// Whether it has taken all steps that it may.
+    pub fn exhausted(&self) -> bool {
+        self.left == 0
+    }
+
     /// Runs on for `span` with input and load held.
     pub fn run<L: FrictionLaw<f64>>(
         &mut self,
@@ -103,7 +118,8 @@ impl Adaptive {
         self.over = 1.0;
         self.rows.begin::<L>(&swing);
         let (mut left, mut stalled, mut mayrest) = (span, 0, true);
-        while left > 0.0 {
+        while left > 0.0 && !self.exhausted() && !self.pace.due(PER_STEP) {
+            self.left -= 1;
             state.make_room(64);
             if swing.run.velocity == 0.0
                 && let Some(held) = self.hold(&mut swing, law, state, left)
@@ -136,7 +152,13 @@ impl Adaptive {
                 left = lesser(left, passed, span);
                 continue;
             }
+            let counts = machine.counts_work();
+            let work = counts.then(|| Work::begin(machine, swing.run, (input, load), 0.0));
             let passed = self.step(&mut swing, law, state, left, &mut stalled);
+            if let Some(mut work) = work {
+                work.rough = machine.roughness(law.greatest_stiffness(), passed);
+                work.count(machine, swing.run);
+            }
             left = lesser(left, passed, span);
             // From what is no number nothing leads back.
             if !(swing.run.position + swing.run.velocity).is_finite() {

@@ -1,5 +1,6 @@
 //! Everything of a plant but its friction law, and the running state of its body.
 
+use super::budget::Budget;
 use super::glide::{Glide, Verlet};
 use super::shaft::Shaft;
 use crate::body::Body;
@@ -76,6 +77,8 @@ pub struct Run<S> {
     pub relaxed: S,
     /// Gravity, added efforts and shaft at the end of the last step.
     pub(super) ambient: S,
+    /// What the contact may give back, beside effects.
+    pub budget: Budget<S>,
 }
 
 impl<S: Scalar> Machine<S> {
@@ -146,6 +149,7 @@ impl<S: Scalar> Machine<S> {
             second_velocity: velocity,
             relaxed: zero,
             ambient: zero,
+            budget: Budget::default(),
         };
         self.refresh(&mut run);
         run
@@ -388,6 +392,16 @@ impl<S: Scalar> Machine<S> {
         (after, crept)
     }
 
+    /// Creep of a body at rest, as far as the effort that makes it goes on: what creeps to where the
+    /// effort is balanced stays there.
+    #[inline]
+    fn not_beyond(&self, effort: S, crept: S) -> S {
+        let gravity = self.body.gravity_amplitude.re().abs();
+        let near = self.effects.stiffness(self.sliding.re()) + gravity;
+        let way = effort.abs() / near;
+        if near > 0.0 && crept.re().abs() > way.re() { way * sign(crept.re()) } else { crept }
+    }
+
     /// Whether the contact creeps of itself.
     #[inline]
     pub fn relaxes(&self) -> bool {
@@ -464,6 +478,7 @@ impl<S: Scalar> Run<S> {
             second_velocity: lift(self.second_velocity),
             relaxed: lift(self.relaxed),
             ambient: lift(self.ambient),
+            budget: self.budget.lift(),
         }
     }
 }
@@ -489,6 +504,7 @@ pub(super) fn hold<S: Scalar, L: crate::friction::FrictionLaw<S>>(
     machine.swing(&at, &at, span, run);
     if machine.relaxes() {
         let (hardened, crept) = machine.relax(run.relaxed, effort, span);
+        let crept = machine.not_beyond(effort, crept);
         run.relaxed = hardened;
         run.position += crept;
         run.moved += crept;

@@ -6,6 +6,7 @@
 //! all go through the same loop.
 
 mod adaptive;
+mod budget;
 mod clock;
 mod contact;
 mod ends;
@@ -23,6 +24,8 @@ mod steep;
 mod swing;
 
 pub use adaptive::{Account, Adaptive};
+pub use budget::Budget;
+use budget::Work;
 pub use clock::after_steps;
 pub use contact::{Along, Held};
 use events::through_likely_events;
@@ -56,8 +59,9 @@ const LONGEST_DAMPING: f64 = 0.25;
 const MOST_PARTS_FOR_A_FALL: f64 = 16.0;
 /// λ·h above which the reference integrator divides a sample for the law's internal variables.
 const LONGEST_RATE: f64 = 0.3;
-/// A sample that needs more parts than this is a mistake in the units, not a stiff machine.
-pub const MOST_PARTS: f64 = 1e5;
+/// A sample that needs more parts than this is a mistake in the units, not a stiff machine; and what a
+/// sample may cost is bounded by it.
+pub const MOST_PARTS: f64 = 1e4;
 
 /// Number of equal parts that a sample of this duration is divided into, so that ω·h stays below
 /// `longest`; above [`MOST_PARTS`] the sample is too long for the machine.
@@ -72,6 +76,39 @@ pub fn parts<S: Scalar, L: FrictionLaw<S>>(
     let calming = dt * (law.greatest_damping() + machine.servo().1) / lightest / LONGEST_DAMPING;
     let falling = dt * law.steepest_fall() / lightest / LONGEST_DAMPING;
     phase.max(calming).max(falling.min(MOST_PARTS_FOR_A_FALL)).ceil().max(1.0)
+}
+
+/// Number of parts that the reference integrator divides a sample into for the internal variables.
+pub fn inner_parts<S: Scalar, L: FrictionLaw<S>>(law: &L, state: &L::State, dt: f64) -> f64 {
+    (dt * law.fastest_rate(state) / LONGEST_RATE).ceil()
+}
+
+/// Level of friction up to which a sample is divided as at level 1: ω·h and (C/J)·h may be larger than
+/// their limits by far before a step runs away, and most levels are near 1.
+const MOST_LEVEL: f64 = 4.0;
+
+/// How many times the parts of a sample that [`parts`] tells are to be, because of what effects make of
+/// the contact where a run is: `dt` is the duration of a part.
+pub fn finer<S: Scalar, L: FrictionLaw<S>>(
+    machine: &Machine<S>,
+    law: &L,
+    run: &Run<S>,
+    load: S,
+    dt: f64,
+) -> f64 {
+    if !machine.effects.any() {
+        return 1.0;
+    }
+    let (level, viscous) = if machine.effects.changes_levels() {
+        machine.effects.levels(&machine.at_contact(&run.situation(), load))
+    } else {
+        (S::constant(1.0), S::constant(1.0))
+    };
+    let share = dt / machine.inertia.re() / (MOST_LEVEL * LONGEST_DAMPING);
+    let raised = level.re().max(viscous.re());
+    let calming = if raised > MOST_LEVEL { law.greatest_damping() * raised } else { 0.0 };
+    let calming = (calming + machine.effects.damping(run.velocity.re())) * share;
+    (level.re() / MOST_LEVEL).sqrt().max(calming).ceil().max(1.0)
 }
 
 /// One step of the fast integrator under a held input and load, in which a mode is likely to change;
@@ -111,17 +148,31 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
         Integrator::Fast => {
             let span = S::constant(dt / f64::from(parts));
             let mut stepper = fast::Fast::<S, BARE> { machine, run, input, load };
-            for _ in steps {
-                through_events(&mut stepper, law, state, span);
+            if BARE || !machine.counts_work() {
+                for _ in steps {
+                    through_events(&mut stepper, law, state, span);
+                }
+            } else {
+                let rough = machine.roughness(law.greatest_stiffness(), span.re());
+                let mut work = Work::begin(machine, stepper.run, (input, load), rough);
+                for _ in steps {
+                    through_events(&mut stepper, law, state, span);
+                    work.count(machine, stepper.run);
+                }
             }
         }
         Integrator::Reference => {
-            let fast = (dt * law.fastest_rate(state) / LONGEST_RATE).min(MOST_PARTS).ceil() as u32;
+            let fast = inner_parts(law, state, dt).min(MOST_PARTS) as u32;
             let parts = parts.max(fast);
             let span = S::constant(dt / f64::from(parts));
             let mut stepper = reference::Reference { machine, run, input, load };
+            let rough = machine.roughness(law.greatest_stiffness(), span.re());
+            let mut work = Work::begin(machine, stepper.run, (input, load), rough);
             for _ in 0..parts {
                 through_events(&mut stepper, law, state, span);
+                if !BARE && machine.counts_work() {
+                    work.count(machine, stepper.run);
+                }
             }
         }
     }

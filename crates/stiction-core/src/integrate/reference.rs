@@ -141,6 +141,7 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Reference<'_, S> {
             second_velocity: y[3],
             relaxed: if self.machine.slides(friction) { S::constant(0.0) } else { y[4] },
             ambient: self.machine.ambient(&at, y[2], y[3]),
+            budget: run.budget,
         };
         Attempt { run: next, trial, motion }
     }

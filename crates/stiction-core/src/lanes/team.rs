@@ -12,6 +12,7 @@ use super::tally::Tally;
 use crate::ensemble::{Keep, Plan};
 use crate::friction::{FrictionLaw, LawState};
 use crate::integrate::{Integrator, MOST_PARTS, Machine, Run, parts, step};
+use crate::interrupt;
 use crate::model::CHUNK;
 use crate::motor::{Column, PerSample, Running};
 use crate::scalar::Scalar;
@@ -211,7 +212,7 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
         while first < samples {
             let length = SAMPLES.min(samples - first);
             let finite = supply.fill(plan, first, length);
-            if !finite || self.job.halted.load(Ordering::Relaxed) {
+            if !finite || self.job.halted.load(Ordering::Relaxed) || interrupt::due() {
                 self.job.halted.store(true, Ordering::Relaxed);
                 return;
             }

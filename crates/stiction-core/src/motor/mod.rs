@@ -11,7 +11,8 @@ use std::borrow::Cow;
 
 use crate::error::{Error, Result};
 use crate::follow::{Efforts, SeesAbout};
-use crate::friction::{AnyState, Entry, Statistics};
+use crate::friction::{AnyState, Entry, LawState, Statistics};
+use crate::integrate::Budget;
 use crate::kernel::RowKernel;
 use crate::sensitivity::MeasuredMotion;
 use crate::shoot::{Pull, Windows};
@@ -217,10 +218,16 @@ impl Motor {
     pub fn prime(&mut self, start: &[f64]) {
         self.running.state = self.running.law.primed(start);
         self.meet();
+        self.running.run.budget = Budget::unknown();
     }
 
     /// Replaces the friction state, from another model of the same law and parameters.
     pub fn set_friction_state(&mut self, state: AnyState<f64>) {
+        let moved = with_state!(&state, |state| state.entries())
+            != with_state!(&self.running.law.initial(), |state| state.entries());
+        if moved {
+            self.running.run.budget = Budget::unknown();
+        }
         self.running.state = state;
         self.meet();
     }

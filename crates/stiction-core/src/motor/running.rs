@@ -7,8 +7,10 @@ use crate::error::{Error, Result};
 use crate::follow::arriving;
 use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
 use crate::integrate::{
-    Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, parts, sample,
+    Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, finer, inner_parts, parts,
+    sample,
 };
+use crate::interrupt::Pace;
 use crate::model::CHUNK;
 use crate::range::{Range, ordinary_motor};
 use crate::scalar::Scalar;
@@ -99,7 +101,11 @@ impl<S: Scalar> Running<S> {
     pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<()> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let parts = parts(&self.machine, law, dt, self.longest_phase);
-            let parts = whole_parts(parts, self.most_parts, dt)?;
+            let finer = finer(&self.machine, law, &self.run, S::constant(load), dt / parts);
+            let parts = whole_parts(parts * finer, self.most_parts, dt)?;
+            if self.integrator == Integrator::Reference {
+                whole_parts(inner_parts(law, state, dt), self.most_parts, dt)?;
+            }
             state.make_room(parts as usize + CHUNK / 4);
             let before = self.run;
             let arrived = arriving(&mut self.way.as_mut(), input, dt);
@@ -173,20 +179,30 @@ impl<S: Scalar> Running<S> {
         let plain = BARE && self.integrator == Integrator::Fast && around.is_steady();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let glides = plain && law.glides();
+            let strains = !BARE && self.machine.effects.any();
             let mut known = f64::NAN;
-            let mut divided = 1;
+            let (mut plainly, mut divided) = (1.0, 1);
             let mut room = 0;
             let mut ahead = Ahead::default();
+            let mut pace = Pace::default();
             let mut index = 0;
             while index < inputs.len() {
                 let dt_now = dt.at(index);
                 if dt_now != known {
-                    let parts = parts(&self.machine, law, dt_now, self.longest_phase);
-                    divided = whole_parts(parts, self.most_parts, dt_now)?;
+                    plainly = parts(&self.machine, law, dt_now, self.longest_phase);
+                    divided = whole_parts(plainly, self.most_parts, dt_now)?;
                     known = dt_now;
                 }
                 self.run.temperature = around.temperature_at(index);
                 self.run.enabled = around.enabled_at(index);
+                if self.integrator == Integrator::Reference {
+                    whole_parts(inner_parts(law, state, dt_now), self.most_parts, dt_now)?;
+                }
+                if strains {
+                    let load = added(index) + around.load.at(index);
+                    let finer = finer(&self.machine, law, &self.run, load, dt_now / plainly);
+                    divided = whole_parts(plainly * finer, self.most_parts, dt_now)?;
+                }
                 let mut passed = 0;
                 if glides && self.machine.glides(&self.run) {
                     let span = S::constant(dt_now / f64::from(divided));
@@ -201,6 +217,8 @@ impl<S: Scalar> Running<S> {
                     let end =
                         if S::CARRIES { inputs.len().min(index + AHEAD) } else { ahead.end() };
                     let end = dt.same_until(index, end);
+                    let end = end.min(index + 1 + MOST_AT_ONCE / divided as usize);
+                    let begun = index;
                     let (samples, state) = (index..end, &mut *state);
                     let step = (span, divided);
                     (self.run, index, passed) = if S::CARRIES {
@@ -217,9 +235,14 @@ impl<S: Scalar> Running<S> {
                         S::run(Plain { law, state, glide })
                     };
                     room = 0; // what the glide has left of it nobody counted
+                    if pace.due((index - begun) as u64 * u64::from(divided)) {
+                        return Err(Error::Interrupted);
+                    }
                     if index == end {
                         continue;
                     }
+                } else if pace.due(u64::from(divided)) {
+                    return Err(Error::Interrupted);
                 }
                 let left = divided - passed;
                 if room < left {
@@ -286,6 +309,8 @@ impl<S: Scalar, A: Fn(usize) -> S> Efforts<S> for Applied<'_, S, A> {
     }
 }
 
+/// Steps of a row of plain steps after which is asked whether to go on.
+const MOST_AT_ONCE: usize = 1 << 15;
 /// Samples that a row of plain steps goes on at most.
 const AHEAD: usize = 8 * CHUNK;
 

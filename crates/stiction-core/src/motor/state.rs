@@ -11,7 +11,7 @@ use crate::drive::Way;
 use crate::effects::Effects;
 use crate::error::{Error, Result};
 use crate::friction::{Entry, EntryReader, LawState};
-use crate::integrate::Run;
+use crate::integrate::{Budget, Run};
 
 /// Before the name of a law's state that is also one of a motor's own.
 const QUALIFIED: &str = "friction.";
@@ -37,10 +37,14 @@ const BODY: [(&str, Place); 10] = [
     ("ambient", Run::ambient_mut),
 ];
 
+/// What a contact beside effects has taken in, and the greatest kinetic energy so far.
+const BUDGET: [&str; 2] = ["contact_work", "kinetic_peak"];
+
 /// Whether a motor of any law, with any effects, calls something of its own so.
 fn is_own(name: &str) -> bool {
     COLUMNS.contains(&name)
         || BODY.iter().any(|(own, _)| *own == name)
+        || BUDGET.contains(&name)
         || Way::<f64>::NAMES.contains(&name)
         || name == Effects::<f64>::ENTRY
 }
@@ -66,7 +70,10 @@ impl Running<f64> {
         let effects = &self.machine.effects;
         let remembered = effects.remembers().then(|| effects.entry());
         let way = self.way.iter().flat_map(Way::entries);
-        let own = body.into_iter().chain(way).chain(remembered);
+        let numbers = [self.run.budget.taken, self.run.budget.swing].map(Entry::Number);
+        let counted = effects.any().then(|| BUDGET.into_iter().zip(numbers));
+        let own =
+            body.into_iter().chain(way).chain(remembered).chain(counted.into_iter().flatten());
         let law = self.friction_entries().into_iter().map(|(name, entry)| (qualified(name), entry));
         own.map(|(name, entry)| (Cow::Borrowed(name), entry)).chain(law).collect()
     }
@@ -97,6 +104,14 @@ impl Running<f64> {
         }
         if effects.remembers() {
             effects.restore(&mut read)?;
+        }
+        if effects.any() {
+            // A state that was put together by hand may say nothing of it.
+            run.budget = Budget::unknown();
+            if own.iter().any(|(name, _)| BUDGET.contains(&name.as_str())) {
+                run.budget.taken = read.number(BUDGET[0], true)?;
+                run.budget.swing = read.at_least_zero(BUDGET[1])?;
+            }
         }
         read.finish()?;
         let state = self.law.restore(&law).map_err(|error| match error {

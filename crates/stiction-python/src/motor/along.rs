@@ -12,6 +12,7 @@ use super::Motor;
 use crate::arguments::{Names, candidates_of, gains_of, threads_of};
 use crate::arrays::{Around, Each, one_row, target};
 use crate::error::{IntoPython, is_finite, outcome};
+use crate::interrupt::detached;
 use crate::kernel::RowKernel;
 use crate::motion::Motion;
 
@@ -364,10 +365,10 @@ impl Motor {
         let both = rows.as_slice_mut()?;
         let (position, velocity) = both.split_at_mut(both.len() / 2);
         let core = self.core(py)?.clone();
-        let result = py.detach(|| {
+        let result = detached(py, || {
             let rows = [position, velocity];
             sensitivity_into(core.spec(), core.running(), current, around, dt, &parameters, rows)
-        });
+        })?;
         result.or_input_error(py)?;
         outcome(py, strict, "derivatives", [&*both])?;
         drop(rows);

@@ -13,6 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use stiction_core::error::{Error, Result};
 use stiction_core::friction::Statistics;
+use stiction_core::interrupt::due;
 use stiction_core::motor::{Column, Motor as Core, MotorSpec};
 use stiction_core::segments::Segments;
 use stiction_core::sensitivity::Start;
@@ -21,6 +22,7 @@ use crate::arguments::{Names, Text, Words, effects_of, integrator_of, numbers_of
 use crate::arrays::{Around, Each, one_row, target};
 use crate::error::{IntoPython, duration, finite, input_error};
 use crate::friction_model::FrictionModel;
+use crate::interrupt::{all_or_nothing, detached};
 use crate::shared::Shared;
 
 /// Base of ``stiction.Motor``: everything that needs no Python.
@@ -56,12 +58,12 @@ impl Motor {
     ) -> PyResult<R> {
         let primed = self.start(py, start)?;
         let mut core = self.core(py)?.clone();
-        Ok(py.detach(|| {
+        detached(py, || {
             if let Some(start) = &primed {
                 core.prime(start);
             }
             work(&mut core)
-        }))
+        })
     }
 
     /// Goes along a motion, or stays where it is where that leads to no number; results are refused
@@ -82,7 +84,7 @@ impl Motor {
             }
             let done = work(core);
             let refused = done.as_ref().is_ok_and(|done| strict && !finite(done));
-            if done.is_err() || refused || !core.is_sound(&before) {
+            if done.is_err() || refused || due() || !core.is_sound(&before) {
                 core.return_to(before);
             }
             done
@@ -99,9 +101,9 @@ impl Motor {
     ) -> PyResult<R> {
         let primed = self.start(py, start)?;
         let core = self.core(py)?.clone();
-        Ok(py.detach(|| {
+        detached(py, || {
             work(core.spec(), Start { running: core.running(), primed: primed.as_deref() })
-        }))
+        })
     }
 }
 
@@ -120,6 +122,7 @@ fn statistics<'py>(py: Python<'py>, counted: &Statistics) -> PyResult<Bound<'py,
     dict.set_item(intern!(py, "sticks"), counted.sticks)?;
     dict.set_item(intern!(py, "memory_peak"), counted.memory_peak)?;
     dict.set_item(intern!(py, "memory_growths"), counted.memory_growths)?;
+    dict.set_item(intern!(py, "memory_merged"), counted.memory_merged)?;
     Ok(dict)
 }
 
@@ -333,11 +336,13 @@ impl Motor {
             columns.push((*column, array.as_slice_mut()?));
         }
         let ran = self.core.apart(py, |core| {
-            let start = core.running().run.time;
-            if !core.simulate(current, around, dt, &mut columns)? && !shown(&columns) {
-                return Err(Error::RanUnseen);
-            }
-            Ok((start, core.statistics()))
+            all_or_nothing(core, |core| {
+                let start = core.running().run.time;
+                if !core.simulate(current, around, dt, &mut columns)? && !shown(&columns) {
+                    return Err(Error::RanUnseen);
+                }
+                Ok((start, core.statistics()))
+            })
         });
         let (start, counted) = ran?.or_input_error(py)?;
         Ok((result, n, start, statistics(py, &counted)?))
@@ -406,8 +411,10 @@ impl Motor {
         let mut columns: Vec<(Column, &mut [f64])> =
             kinds.into_iter().zip(arrays.iter_mut().map(Vec::as_mut_slice)).collect();
         let ran = self.core.apart(py, |core| {
-            let (account, sound) = core.simulate_segments(&segments, &mut columns)?;
-            if sound || shown(&columns) { Ok(account) } else { Err(Error::RanUnseen) }
+            all_or_nothing(core, |core| {
+                let (account, sound) = core.simulate_segments(&segments, &mut columns)?;
+                if sound || shown(&columns) { Ok(account) } else { Err(Error::RanUnseen) }
+            })
         });
         let account = ran?.or_input_error(py)?;
         let result = PyDict::new(py);

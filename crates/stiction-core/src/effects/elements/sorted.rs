@@ -92,7 +92,7 @@ impl<S: Scalar> Effects<S> {
         !self.levels.is_empty()
     }
 
-    /// Multipliers of friction and of viscous friction.
+    /// Multipliers of friction and of viscous friction: 1 and what effects add, at least 0.
     #[inline]
     pub fn levels(&self, at: &Situation<S>) -> (S, S) {
         self.levels_within(at)
@@ -108,7 +108,7 @@ impl<S: Scalar> Effects<S> {
             friction += change.friction;
             viscous += change.viscous;
         }
-        (friction, viscous)
+        (never_driving(friction), never_driving(viscous))
     }
 
     /// Seeds the levels of dry and viscous friction and an added effort of 0, to differentiate by
@@ -122,6 +122,12 @@ impl<S: Scalar> Effects<S> {
         let (friction, viscous, effort) = self.unit;
         self.kept.is_empty()
             && ![friction, viscous, effort].iter().any(|seed| seed.derivative_is_nonzero())
+    }
+
+    /// Whether there is any effect.
+    #[inline]
+    pub fn any(&self) -> bool {
+        !self.kept.is_empty()
     }
 
     /// Whether any effect remembers what happened before.
@@ -273,6 +279,11 @@ impl<S: Scalar> Effects<S> {
     pub fn stiffness(&self, sliding: f64) -> f64 {
         self.kept.iter().map(|kept| with_effect!(&kept.effect, |e| e.stiffness(sliding))).sum()
     }
+
+    /// Sum of the dampings that effects add at this velocity.
+    pub fn damping(&self, velocity: f64) -> f64 {
+        self.kept.iter().map(|kept| with_effect!(&kept.effect, |e| e.damping(velocity))).sum()
+    }
 }
 
 /// All memories, as a task: rows of derivatives want the widest vectors.
@@ -290,6 +301,12 @@ impl<S: Scalar> Task for Remembering<'_, S> {
             with_effect!(effect, |e| e.remember(memory, self.passage));
         }
     }
+}
+
+/// A level at which friction resists, or 0: below it would drive. There nothing depends on it any more.
+#[inline(always)]
+fn never_driving<S: Scalar>(level: S) -> S {
+    if level.re() < 0.0 { S::constant(0.0) } else { level }
 }
 
 fn sum<S: Scalar>(one: Option<S>, other: Option<S>) -> Option<S> {

@@ -6,6 +6,8 @@ use crate::scalar::Scalar;
 const STEP: f64 = 1.0 / 32.0;
 /// Nothing is left below this.
 const NOTHING: f64 = 1e-17;
+/// Of so many e-folds nothing is left.
+const MOST_E_FOLDS: f64 = 40.0;
 /// Greatest change of ln r over a part of a way.
 const PART: f64 = 0.25;
 /// Places on 0 … 1 and weights of Gauss's rule of five points.
@@ -64,6 +66,24 @@ pub fn way_to<S: Scalar>(r: S, target: S, rate: impl Fn(S) -> S) -> S {
     sum * width / parts
 }
 
+/// r after a way, where dr/dσ = −r·(r + gap)/distance with gap > 0: [`approach`] in closed form.
+#[inline]
+pub fn approach_evenly<S: Scalar>(r: S, way: S, gap: S, distance: S) -> S {
+    let z = gap * way / distance;
+    if z.re() > MOST_E_FOLDS {
+        return S::constant(0.0);
+    }
+    r / (z.exp_m1() * (r / gap + 1.0) + 1.0)
+}
+
+/// The way from r to `target` < r: what [`approach_evenly`] needs to get there.
+#[inline]
+pub fn way_evenly_to<S: Scalar>(r: S, target: S, gap: S, distance: S) -> S {
+    let ratio = (r - target) * gap / (target * (gap + r));
+    let x = ratio.re();
+    ratio.chain(x.ln_1p(), 1.0 / (1.0 + x)) * distance / gap
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -75,6 +95,20 @@ mod tests {
             // dr/dσ = −r·(1 + r): the way is ln((1 + r)/r) between both ends.
             let exact = ((1.0 + target) / (2.0 * target)).ln();
             assert!((way - exact).abs() < 1e-10 * exact, "{target}: {way} {exact}");
+        }
+    }
+
+    #[test]
+    fn an_even_way_is_the_one_that_is_followed_step_by_step() {
+        for (gap, distance) in [(0.02, 1e-4), (1.0, 3.0), (40.0, 0.7)] {
+            let rate = |r: f64| (r + gap) / distance;
+            for way in [1e-6, 0.1, 2.0].map(|share: f64| share * distance) {
+                let there = approach_evenly(1.3, way, gap, distance);
+                let followed = approach(1.3, way, rate);
+                assert!((there - followed).abs() < 1e-8 * followed + 1e-16, "{there} {followed}");
+                let back = way_evenly_to(1.3, there, gap, distance);
+                assert!((back - way).abs() < 1e-9 * way, "{back} {way}");
+            }
         }
     }
 

@@ -135,4 +135,7 @@ pub struct Statistics {
     pub memory_peak: u64,
     /// How often room for reverse points was added, between chunks of samples.
     pub memory_growths: u64,
+    /// Reverse points forgotten because there were too many, see
+    /// [`super::memory::MOST`].
+    pub memory_merged: u64,
 }

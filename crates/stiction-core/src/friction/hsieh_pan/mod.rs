@@ -225,6 +225,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
             sticks: read.count("sticks")?,
             memory_peak: read.count("memory_peak")?,
             memory_growths: 0,
+            memory_merged: 0,
         };
         read.finish()?;
         Ok(state)

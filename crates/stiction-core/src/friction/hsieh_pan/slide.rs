@@ -35,7 +35,12 @@ impl<S: Scalar> HsiehPan<S> {
         let p = &self.parameters;
         let steepness = fall_slope(velocity, p.stribeck_exponent, power, left);
         let excess = latched - p.coulomb;
-        let viscous = p.viscous * channels.viscous_level / channels.level;
+        // At level 0 there is no force for it to be a share of.
+        let viscous = if channels.level.re() == 0.0 {
+            S::constant(0.0)
+        } else {
+            p.viscous * channels.viscous_level / channels.level
+        };
         (p.coulomb + excess * left + viscous * velocity.abs(), excess * steepness + viscous)
     }
 
