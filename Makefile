@@ -27,7 +27,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # Fuzzing takes a fresh seed where none is given.
 GIVEN_SEED = $(if $(filter-out file,$(origin SEED)),--seed $(SEED))
 
-.PHONY: demo test lint rust-tests python-tests gate blind ordinary fuzz wheel bench format audit clean toolchain
+.PHONY: demo test test-slow lint rust-tests python-tests gate blind ordinary fuzz wheel bench format audit clean toolchain
 
 demo: $(READY)
 	$(BIN)/stiction demo --out $(OUT)
@@ -67,8 +67,17 @@ rust-tests: $(READY)
 	cargo test --quiet
 
 # Files go over the processor's cores, each whole, for its tests share what was made once.
+PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --maxprocesses 8 --dist loadfile
+
 python-tests: $(READY)
-	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --maxprocesses 8 --dist loadfile
+	$(PYTEST) -m 'not slow'
+
+# What takes long and guards what changes seldom: the simulators that tests use, the table of
+# properties, a wheel, the law of the page; then the gate, and a minute of fuzzing with a fresh seed.
+test-slow: $(READY)
+	$(PYTEST) -m slow
+	$(MAKE) gate
+	$(MAKE) fuzz SECONDS=60
 
 # Fresh sessions of every family and all real recordings, the way that a user goes: none may be lost.
 gate: $(READY)

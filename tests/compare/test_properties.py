@@ -57,6 +57,7 @@ ANCHORS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("law", "name", "verdict"), ANCHORS)
 def test_what_the_literature_fixes_comes_out(table, law, name, verdict):
     if law not in NAMES:
@@ -65,6 +66,7 @@ def test_what_the_literature_fixes_comes_out(table, law, name, verdict):
     assert cell.verdict == verdict, f"{cell.note}: {cell.cases}"
 
 
+@pytest.mark.slow
 def test_every_law_has_every_property_and_a_cost(table):
     assert [row.law for row in table.rows] == [record.name for record in st.laws()]
     for row in table.rows:

@@ -54,6 +54,7 @@ def drawn(seed):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_held_speeds_follow_the_oracle(seed):
     rng, values = drawn(seed)

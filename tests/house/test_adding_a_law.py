@@ -14,6 +14,7 @@ REPOSITORY = Path(__file__).parents[2]
 GENERIC = ("every_file", "parameters_are_documented", "laws_oppose", "slope_is_the_derivative")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("cargo") is None, reason="cargo is not installed")
 def test_the_law_of_the_page_builds_and_passes_the_generic_tests(tmp_path: Path) -> None:
     page = (REPOSITORY / "docs" / "adding-a-law.md").read_text("utf-8")

@@ -38,6 +38,7 @@ def test_laws_and_effects_of_the_core_reach_python() -> None:
         assert files == {record.name for record in records}
 
 
+@pytest.mark.slow
 def test_a_wheel_installs_without_rust(tmp_path: Path) -> None:
     if shutil.which("cargo") is None:
         pytest.skip("no cargo to build a wheel with")

@@ -13,6 +13,8 @@ from .plant_reference import EffectGroup, simulate
 from .session_reference import Draft, Spec, make_session, make_sessions
 from .test_plant_reference import COUNT, identity_batch, lanes_with
 
+pytestmark = pytest.mark.slow  # of the simulators that tests use, not of the package
+
 DRIVES = (
     "gravity_unbalance",
     "torque_constant_saturation",

@@ -190,6 +190,7 @@ def test_coasting_stops_as_the_closed_form_says():
     assert run.velocity[-1, 0] == 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("base", BASES)
 def test_half_the_step_leads_to_the_same_recording(base):
     """One count of a sensor with 2^18 counts, also in free flight, which forgets nothing."""
@@ -311,6 +312,7 @@ def sizes(specs):
         yield session, effect
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("machine", [40, 70, 100])
 def test_sizes_are_reached_or_stated(machine):
     """A short recording may keep one out of reach: no rest to relax in, a patch never passed."""
@@ -335,6 +337,7 @@ def test_sizes_are_reached_or_stated(machine):
     assert out_of_reach <= 0.1 * len(FORMS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("base", ["hsieh_pan", "coulomb"])
 def test_sizes_are_reached_on_other_bases(base):
     short = {"base": base, "roles": ("train",), "seconds": 6 * 0.6, "rate": 5e3}
