@@ -254,6 +254,13 @@ def test_structs_within_structs_are_refused_beyond_a_depth(tmp_path: Path) -> No
     assert "it is nested more than 64 deep" in refusal(matlab(tmp_path / "run.mat", own))
 
 
+def test_a_name_of_thousands_of_bytes_does_not_fill_the_screen(tmp_path: Path) -> None:
+    own = variable("\x1b" * 20_000, 6, (1, 1), element(9, bytes(8)))
+    sentence = refusal(matlab(tmp_path / "run.mat", own))
+    assert len(sentence) < 4000
+    assert sentence.endswith("save time, input and position as vectors")
+
+
 def test_a_packed_variable_that_is_damaged_is_refused(tmp_path: Path) -> None:
     path = matlab(tmp_path / "run.mat", variable("t", 6, (300, 1), DOUBLES))
     content = bytearray(path.read_bytes())

@@ -38,16 +38,16 @@ def read(path: Path) -> Table:
     (header, text), body = _split_header(path, lines, comments, delimiter)
     names = _names(path, header, text, delimiter)
     units = _units(names, body[0], delimiter) if body else {}
-    above = body[0][0] if units else body[0][0] - 1 if body else 0
-    if len(body) == bool(units):
-        raise InputError(
-            f"{path}: the file has a header ({counted(len(names), 'column')}) and no rows under "
-            "it; record it again or name another"
-        )
+    above = body[0][0] - (not units) if body else header
     head = Head(delimiter, header, names, units, above)
     rows = _rows(path, head, commas=delimiter != ",")
     if rows.mixed:
         rows = _rows(path, head, commas=False)
+    if not len(rows.lines):
+        raise InputError(
+            f"{path}: the file has a header ({counted(len(names), 'column')}) and no rows under "
+            "it; record it again or name another"
+        )
     columns, cells = rows.columns()
     return Table(path, columns, cells, lines=rows.lines, units=units)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import InputError
 from ...wording import counted
-from ..expansion import BYTES_OF_A_NUMBER, check_expansion
+from ..expansion import BYTES_OF_A_NUMBER, check_expansion, most_bytes
 from ..table import CELLS_KEPT, Cell
 from ..units import FloatArray
 from .cells import BLANKS, DECIMAL_COMMA, number, split
@@ -67,7 +67,9 @@ class Rows:
         self.lines = LineNumbers()
         self._path, self._head, self._commas = path, head, commas
         self._width = len(head.names)
-        self._pieces: list[list[FloatArray]] = [[] for _ in head.names]
+        self._expected = 0
+        self._size = path.stat().st_size
+        self._columns: list[FloatArray] = []
         self._cells: list[list[Cell]] = [[] for _ in head.names]
         self._commas_seen = self._points_seen = False
         # Between blanks an empty cell leaves no trace: only a last line, broken off, is safe.
@@ -88,6 +90,10 @@ class Rows:
         data, lines = block.without_empty()
         if not data:
             return
+        if not self._expected:
+            # Room is made once, and taken where rows come: joining pieces would need it twice.
+            expected = int(1.02 * len(lines) * self._size / len(data)) + 1
+            self._expected = min(expected, most_bytes() // (BYTES_OF_A_NUMBER * self._width) + 1)
         if self._broken is None and (columns := self._plainly(data)) is not None:
             self._append(columns, lines)
             return
@@ -105,13 +111,12 @@ class Rows:
 
     def columns(self) -> tuple[dict[str, FloatArray], tuple[Cell, ...]]:
         """Every column by name, and cells that hold text; empties what was gathered."""
-        columns: dict[str, FloatArray] = {}
-        for name, pieces in zip(self._head.names, self._pieces, strict=True):
-            columns[name] = pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
-            pieces.clear()
+        columns, self._columns = self._columns, []
+        for column in columns:
+            column.resize(len(self.lines), refcheck=False)
         cells = [cell for column in self._cells for cell in column]
         cells.sort(key=lambda cell: cell.row)
-        return columns, tuple(cells)
+        return dict(zip(self._head.names, columns, strict=True)), tuple(cells)
 
     def _plainly(self, data: bytes) -> list[FloatArray] | None:
         delimiter = self._head.delimiter
@@ -187,6 +192,16 @@ class Rows:
         rows = len(self.lines) + len(lines)
         size = rows * self._width * BYTES_OF_A_NUMBER
         check_expansion(self._path, f"{rows} rows of {counted(self._width, 'column')}", size)
+        part = slice(len(self.lines), rows)
+        for whole, column in zip(self._room(rows), columns, strict=True):
+            whole[part] = column
         self.lines.add(lines)
-        for pieces, column in zip(self._pieces, columns, strict=True):
-            pieces.append(column)
+
+    def _room(self, rows: int) -> list[FloatArray]:
+        """The columns, of so many rows at least."""
+        if not self._columns:
+            self._columns = [np.empty(max(rows, self._expected)) for _ in self._head.names]
+        elif rows > len(self._columns[0]):
+            for column in self._columns:
+                column.resize(rows + rows // 4, refcheck=False)
+        return self._columns
