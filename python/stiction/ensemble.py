@@ -231,8 +231,7 @@ class Ensemble(_Ensemble):
             raise InputError("every goes with rows, and reduce keeps none; give one of them")
         if target is not None and reduce != "rms":
             raise InputError('target goes with reduce="rms"; leave it out')
-        given.unmasked(current, "current")
-        samples = np.shape(current)[-1:] or (0,)
+        samples = given.numbers(current, "current").shape[-1:] or (0,)
         if reduce is None:
             kept = (2.0 * len(names) + 1.0) * len(self) * (samples[0] // every)
             given.memory_for(

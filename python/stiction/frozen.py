@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeVar
 
 from .errors import UnknownName
+from .given import mapping
 from .wording import did_you_mean, listed
 
 __all__ = ["ByPath", "Frozen", "freeze", "path_of"]
@@ -71,9 +72,17 @@ class ByPath(Frozen[str, V]):
 
 
 def freeze(owner: object, kind: type[Frozen[Any, Any]], *names: str) -> None:
-    """Hold these mappings of a frozen dataclass as this kind; for its ``__post_init__``."""
+    """Hold these mappings of a frozen dataclass as this kind; for its ``__post_init__``.
+
+    Raises
+    ------
+    InputError
+        One of them is no mapping.
+    """
+    where = type(owner).__name__
     for name in names:
-        object.__setattr__(owner, name, kind(getattr(owner, name)))
+        held = mapping(getattr(owner, name), f"{where}: {name}", "a mapping")
+        object.__setattr__(owner, name, kind(held))
 
 
 def path_of(name: str, paths: Iterable[str], where: str = "", lacking: str = "is unknown") -> str:

@@ -231,7 +231,7 @@ def numbers(given: Any, where: str) -> npt.NDArray[np.float64]:
     unmasked(given, where)
     try:
         array: npt.NDArray[np.float64] = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (OverflowError, TypeError, ValueError) as error:
         raise InputError(f"{where} is not an array of numbers: {error}") from None
     return array
 

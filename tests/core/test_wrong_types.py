@@ -157,6 +157,22 @@ REFUSED = {
         lambda: Effect("cogging", {"cosine": 0.1}),
         "effect cogging: cosine is 0.1; give a Parameter",
     ),
+    "sensor in a word": (
+        lambda: st.Plant(Friction("coulomb"), sensor="encoder"),
+        "Plant: sensor is 'encoder'; give a mapping",
+    ),
+    "rows of unlike lengths": (
+        lambda: st.Ensemble(motor(), 2).simulate([1.0, [2.0]], DT),
+        "current is not an array of numbers",
+    ),
+    "a whole number beyond floats": (
+        lambda: ensemble(target=10**400, reduce="rms"),
+        "not an array of numbers",
+    ),
+    "currents beyond floats": (
+        lambda: st.simulate_ensemble(motor(), [10**400], DT),
+        "currents is not an array of numbers",
+    ),
     "members beyond memory": (
         lambda: st.Ensemble(motor(), 10**12),
         "GiB) for 1000000000000 machines; give fewer",

@@ -49,6 +49,8 @@ def _shrink_all(found: list[tuple[Task, Find]], seconds: float, *, keeping: bool
     worker = Worker()
     try:
         for task, find in found:
+            if find.kind == "fuzzer":
+                continue
             slow = find.kind in ("hang", "waits for ever")
             program = shrunk(
                 task.program(),

@@ -116,7 +116,9 @@ def coast_lines(draw: Draw) -> Program:
         f"x.reset({draw.signed(-3.0, 1.0)}, {draw.signed(-1.0, 2.0)})",
     ]
     # Several laws may give energy back by their parameters, and say so.
-    lines.append(f"coasts(x, {draw.size(-5.0, -2.5)}, 400) if x.friction.passive else None")
+    warmth = f", {draw.random.uniform(-40.0, 150.0):.4g}" if draw.chance(0.6) else ""
+    call = f"coasts(x, {draw.size(-5.0, -2.5)}, 400{warmth})"
+    lines.append(f"{call} if x.friction.passive else None")
     return lines
 
 

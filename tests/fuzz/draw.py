@@ -27,9 +27,12 @@ FOREIGN = (
     "None", "True", "1j", "'1'", "b'1'", "[]", "{}", "()", "[[1.0, 2.0]]", "np.zeros((2, 2))",
     "np.array(3.0)", "np.array(['a'])", "object", "np.zeros(0)", "range(3)", "[None]", "[1, 'a']",
     "np.array([1.0], dtype=object)", "np.array([1j])", "np.float32(0.1)", "np.int64(3)",
-    "np.zeros((0, 2))", "np.ma.masked", "np.datetime64('2020')", "lambda: 1", "Ellipsis",
+    "np.zeros((0, 2))", "np.ma.masked", "np.datetime64('2020')", "(lambda: 1)", "Ellipsis",
 )  # fmt: skip
 """Values of another kind than what is wanted."""
+LARGE = ("1e16", "-1e30", "1e150", "-1e154", "1e300", "-1e304", "1e308", "-1.7e308")
+"""Finite numbers among plain ones, whose square or product may be none."""
+SPIKES = 0.04
 LENGTHS = (0, 1, 2, 3, 7, 40, 200)
 SERVO = ("proportional", "integral", "derivative", "duty_limit", "supply", "resistance",
          "current_limit")  # fmt: skip
@@ -110,10 +113,15 @@ class Draw:
             if self.chance(0.3):
                 return str(self.pick(FOREIGN))
         if length <= 4:
-            return f"[{', '.join(self.signed(low, high) for _ in range(length))}]"
+            cells = [self.signed(low, high) for _ in range(length)]
+            if cells and self.chance(SPIKES):
+                cells[self.random.randrange(length)] = str(self.pick(LARGE))
+            return f"[{', '.join(cells)}]"
         size = 10.0 ** self.random.uniform(low, high)
         text = f"wave({length}, {self.random.randint(0, 999)}, {size:.3g})"
-        if self.odd():
+        if self.chance(SPIKES):
+            text = f"spoiled({text}, {self.random.randint(0, length)}, {self.pick(LARGE)})"
+        elif self.odd():
             text = f"spoiled({text}, {self.random.randint(0, length)}, {self.size()})"
         elif self.odd():
             text = f"masked({text}, {self.random.randint(0, length)})"

@@ -38,14 +38,14 @@ NOT_REPEATED = ("seconds", "cost", "cost_ns", "path", "source", "version", "crea
 RAW = ("Motor.run", "Motor.run_segments", "Ensemble.run", "recording.Table.find",
        "recording.read_table", "Nothing.step")  # fmt: skip
 """What hands numbers to a caller that looks whether they are finite, or reads what is missing."""
-UNENDED = re.compile(r"([\s,;:(\[{]|\b(?:and|or|to|of|in|is|a|the))$")
+UNENDED = re.compile(r"([\s,;:(\[{]|\b(?:and|or|to|of|in|is|the))$")
 INSIDE = re.compile(
     r"has no attribute|index out of (?:range|bounds)|unsupported operand|Traceback|"
     r"not subscriptable|not iterable|recursion depth"
 )
 """Words of Python's own about what a program did, which a reader of a sentence never did."""
 ADDRESS = re.compile(r"at 0x[0-9a-f]{6,}")
-MAKERS = ("wave", "spoiled", "masked", "positive", "file", *DAMAGES)
+MAKERS = ("wave", "spoiled", "masked", "positive", "scaled", "file", *DAMAGES)
 """What makes arguments, and may be asked for what cannot be made."""
 HOUSE = (st.InputError,)
 
@@ -141,7 +141,9 @@ def _step(line: str, names: dict[str, Any]) -> tuple[list[Find], str]:
             if isinstance(error, SystemExit | KeyboardInterrupt):
                 raise
             found = _of_error(error, line, called)
-            if not found and not _same_states(kept, names):
+            # What calls several things may have come to its second.
+            alone = called in targets()
+            if not found and alone and not _same_states(kept, names):
                 found = [Find("changed by a refusal", called, "the state is another", line)]
             return found, f"{type(error).__name__}: {error}"
     if heard:

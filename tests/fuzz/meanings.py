@@ -63,7 +63,7 @@ def _start(draw: Draw) -> str:
 def moved(draw: Draw) -> str:
     """A measured motion."""
     n = draw.n
-    position = f"{draw.size(-6.0, 0.0)} * {draw.array(-1.0, 0.0, n=n + 1)}"
+    position = f"scaled({draw.size(-6.0, 0.0)}, {draw.array(-1.0, 0.0, n=n + 1)})"
     if draw.odd():
         position = draw.array(n=n)
     more = f", load={draw.array(n=n)}" if draw.chance(0.2) else ""
@@ -101,7 +101,7 @@ BY_NAME: dict[str, Drawer] = {
     "effort": lambda d: d.array(),
     "enabled": lambda d: d.array(0.0, 0.0),
     "dt": lambda d: d.steps(),
-    "durations": lambda d: f"positive({d.array(-4.0, 4.0)})",
+    "durations": lambda d: f"positive({d.array(-5.0, d.pick((-2.0, -1.0, 4.0)))})",
     "times": lambda d: d.rising(),
     "tolerance": lambda d: d.size(-9.0, -4.0),
     "parameters": _paths,
