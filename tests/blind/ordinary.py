@@ -26,6 +26,7 @@ from tests.ordinary.hidden import HIDDEN
 import stiction as st
 
 from .__main__ import pair, read_rows, state_of
+from .draw import deck
 from .ordinary_table import report
 from .score import families_of, told
 from .way import PATIENCE, walked
@@ -57,7 +58,7 @@ def cases(kinds, number, seed, seconds=SECONDS):
     found = [Case("grid", spec) for spec in null_grid()] if "grid" in kinds else []
     drawn = [kind for kind in kinds if kind != "grid"]
     rng = np.random.default_rng([seed, zlib.crc32(b"ordinary cases")])
-    laws, effects = _deck(rng, [law.name for law in st.laws()]), _deck(rng, HIDDEN)
+    laws, effects = deck(rng, [law.name for law in st.laws()]), deck(rng, HIDDEN)
     for k in range(number if drawn else 0):
         contact = str(rng.choice(["dry", "dry", "bristle"]))
         law = USUAL_LAWS[contact] if rng.random() < USUAL else next(laws)
@@ -69,13 +70,6 @@ def cases(kinds, number, seed, seconds=SECONDS):
             spec = Spec(**asdict(spec) | {"hidden": next(effects), "size": size_of(rng)})
         found.append(Case(kind, spec))
     return found
-
-
-def _deck(rng, cards):
-    """Every card once in random order, again and again."""
-    while True:
-        for index in rng.permutation(len(cards)):
-            yield cards[index]
 
 
 def judged(case, patience=PATIENCE):
