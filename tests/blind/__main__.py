@@ -76,7 +76,7 @@ def _arguments():
     parser.add_argument("--number", type=int, default=200, help="sessions; 0 counts only")
     parser.add_argument("--seed", type=int, default=0, help="of the draw, from 0")
     parser.add_argument("--base", default="maxwell_slip", help="law of the plant")
-    parser.add_argument("--sizes", type=_pair, default=SIZES, help="shares of F_c: 0.001,0.03")
+    parser.add_argument("--sizes", type=pair, default=SIZES, help="shares of F_c: 0.001,0.03")
     parser.add_argument("--kinds", type=_words(MIX), default=tuple(MIX), help=", ".join(MIX))
     parser.add_argument(
         "--effects", type=_words(library()), default=(), help="hidden ones; all without it"
@@ -88,7 +88,7 @@ def _arguments():
     return parser.parse_args()
 
 
-def _pair(text):
+def pair(text):
     low, high = (float(word) for word in text.split(","))
     return low, high
 

@@ -64,9 +64,9 @@ def cases(number, seed, base="maxwell_slip", sizes=SIZES, kinds=tuple(MIX), effe
     if number > SEEDS_EACH:
         raise ValueError(f"one seed draws {SEEDS_EACH} sessions at most, not {number}")
     rng = np.random.default_rng([seed, *(zlib.crc32(w.encode()) for w in ("blind", base))])
-    kind_deck = _deck(rng, [kind for kind in kinds for _ in range(MIX[kind])])
-    effect_deck = _deck(rng, list(effects) or library(base))
-    foreign_deck = _deck(rng, list(FOREIGN))
+    kind_deck = deck(rng, [kind for kind in kinds for _ in range(MIX[kind])])
+    effect_deck = deck(rng, list(effects) or library(base))
+    foreign_deck = deck(rng, list(FOREIGN))
     first = FIRST_SEED + SEEDS_EACH * seed
     return [
         _case(next(kind_deck), base, first + k, rng, sizes, effect_deck, foreign_deck)
@@ -98,7 +98,7 @@ def _size(rng, sizes):
     return round(float(np.exp(rng.uniform(low, high))), 6)
 
 
-def _deck(rng, cards):
+def deck(rng, cards):
     """Every card once in random order, again and again."""
     while True:
         for index in rng.permutation(len(cards)):

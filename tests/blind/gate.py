@@ -32,7 +32,7 @@ from tests.reference.session_reference import make_session
 
 import stiction as st
 
-from .draw import library
+from .draw import deck, library
 from .real import data_folder, lay, machines
 from .way import Answer, walked
 
@@ -72,6 +72,7 @@ class Entry:
 def entries(seed: int) -> list[Entry]:
     """Every real machine that is there, what was lost once, and fresh ones of every family."""
     rng = np.random.default_rng([seed, 24])
+    hidden, moved = deck(rng, HIDDEN), deck(rng, MOVED_HIDDEN)
     found = [
         *_planned("planned null", rng, 2, lambda: ()),
         *_planned("planned single", rng, 2, lambda: _some(rng, library("maxwell_slip"), 1)),
@@ -79,9 +80,9 @@ def entries(seed: int) -> list[Entry]:
         *_planned("planned foreign", rng, 1, lambda: _some(rng, list(FOREIGN), 1)),
         *_left_out(rng),
         *_ordinary("ordinary null", rng, 5, lambda: {}),
-        *_ordinary("ordinary hidden", rng, 6, lambda: _hidden(rng, HIDDEN)),
+        *_ordinary("ordinary hidden", rng, 6, lambda: _hidden(rng, hidden)),
         *_ordinary("servo", rng, 1, lambda: {"kind": "servo", "dt": 1e-2, "law": "coulomb"}),
-        *_ordinary("moved", rng, 2, lambda: {"kind": "moved"} | _hidden(rng, MOVED_HIDDEN)),
+        *_ordinary("moved", rng, 2, lambda: {"kind": "moved"} | _hidden(rng, moved)),
         *_ordinary("data fault", rng, 1, lambda: {"flaw": "constant"}),
         *_ordinary("data fault, holes", rng, 1, lambda: {"flaw": "holes"}),
         *_ordinary("not testable", rng, 1, lambda: {"flaw": "still", "loop": "open"}),
@@ -89,7 +90,7 @@ def entries(seed: int) -> list[Entry]:
     folder = data_folder()
     real = [
         Entry(machine.name, lambda where, machine=machine: lay(machine, folder, where))
-        for machine in machines(folder)
+        for machine in machines(folder, seed % 2)
     ]
     return real + kept() + found
 
@@ -137,11 +138,11 @@ def _written(spec, where):
 
 
 def _ordinary(name, rng, number, given):
-    laws = [law.name for law in st.laws() if law.name not in UNTRIED]
+    laws = deck(rng, [law.name for law in st.laws() if law.name not in UNTRIED])
     for k in range(number):
         usual = {
             "seed": _seed(rng),
-            "law": str(rng.choice(laws)),
+            "law": next(laws),
             "seconds": float(rng.uniform(*SECONDS)),
             "recordings": int(rng.choice([1, 1, 2, 3])),
             "dt": float(rng.choice(SAMPLE_TIMES)),
@@ -152,7 +153,7 @@ def _ordinary(name, rng, number, given):
 
 
 def _hidden(rng, names):
-    return {"hidden": str(rng.choice(names)), "size": size_of(rng)}
+    return {"hidden": next(names), "size": size_of(rng)}
 
 
 def _seed(rng):

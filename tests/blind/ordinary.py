@@ -19,13 +19,14 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from tests.ordinary.draw import Spec, null_grid, ordinary, size_of
+from tests.ordinary.draw import SECONDS, Spec, null_grid, ordinary, size_of
 from tests.ordinary.files import write
 from tests.ordinary.hidden import HIDDEN
 
 import stiction as st
 
-from .__main__ import read_rows, state_of
+from .__main__ import pair, read_rows, state_of
+from .draw import deck
 from .ordinary_table import report
 from .score import families_of, told
 from .way import PATIENCE, walked
@@ -52,28 +53,23 @@ class Case:
         return f"{self.kind} {spec.seed} {spec.law} {spec.hidden} {spec.size}"
 
 
-def cases(kinds, number, seed):
+def cases(kinds, number, seed, seconds=SECONDS):
     """The cases of some kinds; a longer list begins with the shorter one."""
     found = [Case("grid", spec) for spec in null_grid()] if "grid" in kinds else []
     drawn = [kind for kind in kinds if kind != "grid"]
     rng = np.random.default_rng([seed, zlib.crc32(b"ordinary cases")])
-    laws, effects = _deck(rng, [law.name for law in st.laws()]), _deck(rng, HIDDEN)
+    laws, effects = deck(rng, [law.name for law in st.laws()]), deck(rng, HIDDEN)
     for k in range(number if drawn else 0):
         contact = str(rng.choice(["dry", "dry", "bristle"]))
         law = USUAL_LAWS[contact] if rng.random() < USUAL else next(laws)
         kind = drawn[k % len(drawn)]
-        spec = Spec(FIRST_SEED + SEEDS_EACH * seed + k, law=law, contact=contact)
+        length = None if seconds == SECONDS else float(rng.uniform(*seconds))
+        own = FIRST_SEED + SEEDS_EACH * seed + k
+        spec = Spec(own, law=law, contact=contact, seconds=length)
         if kind == "hidden":
             spec = Spec(**asdict(spec) | {"hidden": next(effects), "size": size_of(rng)})
         found.append(Case(kind, spec))
     return found
-
-
-def _deck(rng, cards):
-    """Every card once in random order, again and again."""
-    while True:
-        for index in rng.permutation(len(cards)):
-            yield cards[index]
 
 
 def judged(case, patience=PATIENCE):
@@ -104,7 +100,7 @@ def main():
     args = _arguments()
     rows = read_rows(args.out)
     done, state = {row["key"] for row in rows}, state_of()
-    plan = [c for c in cases(args.cases, args.number, args.seed) if c.key not in done]
+    plan = [c for c in cases(args.cases, args.number, args.seed, args.seconds) if c.key not in done]
     try:
         with ThreadPoolExecutor(args.jobs) as pool:
             for row in pool.map(partial(judged, patience=args.patience), plan):
@@ -139,6 +135,7 @@ def _arguments():
     parser.add_argument("--cases", type=_kinds, default=("null", "hidden"), help=", ".join(CASES))
     parser.add_argument("--number", type=int, default=48, help="drawn sessions; 0 counts only")
     parser.add_argument("--seed", type=int, default=0, help="of the draw, from 0")
+    parser.add_argument("--seconds", type=pair, default=SECONDS, help="of a session: 20,40")
     parser.add_argument("--jobs", type=int, default=1, help="sessions side by side")
     parser.add_argument("--patience", type=float, default=PATIENCE, help="s, of one command")
     parser.add_argument("--out", type=Path, default=Path("ordinary.jsonl"), help="a line a session")

@@ -40,14 +40,14 @@ class Machine:
         Of its recordings in the folder of all of them.
     lay : callable
         Lays the session out: from the folder of recordings into another one.
-    seconds : float
-        Processor time of its diagnosis, about: what takes long is begun first.
+    turn : int or None
+        Of machines that were recorded twice over: which of the two this is.
     """
 
     name: str
     folder: str
     lay: Callable[[Path, Path], Path]
-    seconds: float = 10.0
+    turn: int | None = None
 
 
 def data_folder() -> Path:
@@ -56,9 +56,10 @@ def data_folder() -> Path:
     return named if named.is_absolute() else REPOSITORY / named
 
 
-def machines(folder: Path) -> list[Machine]:
-    """Machines whose recordings are there."""
-    return [machine for machine in MACHINES if (folder / machine.folder).is_dir()]
+def machines(folder: Path, turn: int | None = None) -> list[Machine]:
+    """Machines whose recordings are there; of what was recorded twice one ``turn``, or both."""
+    there = [machine for machine in MACHINES if (folder / machine.folder).is_dir()]
+    return [machine for machine in there if None in (turn, machine.turn) or turn == machine.turn]
 
 
 def lay(machine: Machine, folder: Path, where: Path) -> Path:
@@ -144,7 +145,7 @@ def _xl330(source: Path, where: Path) -> Path:
     return write_session(where, _servo(drive, body), SERVO_COLUMNS, recordings)
 
 
-def _sts3215(mass: float) -> Callable[[Path, Path], Path]:
+def _sts3215(mass: float, turn: int) -> Callable[[Path, Path], Path]:
     def laid(source: Path, where: Path) -> Path:
         drive = {
             "kind": "servo",
@@ -155,7 +156,8 @@ def _sts3215(mass: float) -> Callable[[Path, Path], Path]:
         }
         body = {"inertia": 0.02, "payload_kg": mass + ARM_KG, "payload_m": 0.1}
         recordings = _servo_logs(source, lambda header: abs(header["mass"] - mass) < 0.01)
-        return write_session(where, _servo(drive, body), SERVO_COLUMNS, recordings)
+        # Each log and its repeat follow each other.
+        return write_session(where, _servo(drive, body), SERVO_COLUMNS, recordings[turn::2])
 
     return laid
 
@@ -282,8 +284,9 @@ MACHINES = (
     Machine("emps", "emps", _emps),
     Machine("xl330", "xl330", _xl330),
     *(
-        Machine(f"sts3215 {mass:g} kg", "sts3215", _sts3215(mass))
+        Machine(f"sts3215 {mass:g} kg {'ab'[turn]}", "sts3215", _sts3215(mass, turn), turn)
         for mass in (0.535, 0.741, 0.969, 1.168)
+        for turn in (0, 1)
     ),
     Machine(
         "dfki",

@@ -11,7 +11,7 @@ import pytest
 
 from .gate import entries, kept
 from .ordinary_table import report as ordinary_report
-from .real import data_folder, machines
+from .real import MACHINES, data_folder, machines
 from .score import told
 from .table import report
 from .way import Answer, Loss, finite, judged, walked
@@ -244,6 +244,17 @@ def test_tables_begin_with_what_was_lost() -> None:
     lines = ordinary_report(rows).splitlines()
     assert lines[2].startswith("| **lost**: no whole answer | 1/2 = 50.0 %")
     assert "| right: nothing is missing | 1/1 = 100.0 % (20.7–100.0) |" in lines
+
+
+def test_of_what_was_recorded_twice_the_gate_takes_one_and_all_of_it_in_turn(tmp_path) -> None:
+    for machine in MACHINES:
+        (tmp_path / machine.folder).mkdir(exist_ok=True)
+    first, second = (set(machines(tmp_path, turn)) for turn in (0, 1))
+    assert first | second == set(machines(tmp_path)) == set(MACHINES)
+    assert {machine.turn for machine in first & second} == {None}
+    assert len(first) == len(second)
+    (tmp_path / "emps").rmdir()
+    assert "emps" not in {machine.name for machine in machines(tmp_path)}
 
 
 def test_the_gate_has_every_family_and_is_the_same_again() -> None:
