@@ -37,19 +37,27 @@ def plain_numbers(data: bytes, width: int, delimiter: str) -> list[FloatArray] |
     list of ndarray, shape (lines,), or None
     """
     between = delimiter.encode()
-    cleaned = _cleaned(data, width, between) if width else None
+    cleaned = _cleaned(data, between) if width else None
     if cleaned is None:
         return None
-    rows = cleaned.count(b"\n")
+    columns = _parsed(cleaned, width, between)
+    if columns is None and between != b" ":
+        # Looking for empty cells takes as long as reading numbers, and most files have none.
+        filled = _filled(cleaned, width, between)
+        columns = None if filled == cleaned else _parsed(filled, width, between)
+    return columns
+
+
+def _parsed(data: bytes, width: int, between: bytes) -> list[FloatArray] | None:
     try:
-        columns = _by_arrow(cleaned, width, between) or _by_numpy(cleaned, delimiter)
+        columns = _by_arrow(data, width, between) or _by_numpy(data, between.decode())
     except ValueError:  # also pyarrow's own errors are ones
         return None
-    return columns if len(columns) == width and len(columns[0]) == rows else None
+    return columns if len(columns) == width and len(columns[0]) == data.count(b"\n") else None
 
 
-def _cleaned(data: bytes, width: int, between: bytes) -> bytes | None:
-    """The same cells in the one spelling that both readers know, one line a row."""
+def _cleaned(data: bytes, between: bytes) -> bytes | None:
+    """The same cells in a spelling that both readers know, None where there is none."""
     # Deleting is the fastest question about all bytes there is.
     if data.translate(None, _ALPHABET + between + b" \t"):
         return None
@@ -57,13 +65,11 @@ def _cleaned(data: bytes, width: int, between: bytes) -> bytes | None:
         data = data.replace(b"\t", b" ")
     elif between != b"\t" and b"\t" in data:
         return None
-    if b" " in data:
-        data = _without_blanks(data, between)
-        if between != b" " and b" " in data:
-            return None
-    if data.startswith(b"\n") or b"\n\n" in data:
-        return None
-    return data if between == b" " else _filled(data, width, between)
+    if b" " not in data:
+        return data
+    data = _without_blanks(data, between)
+    blank = between != b" " and b" " in data
+    return None if blank or data.startswith(b"\n") or b"\n\n" in data else data
 
 
 def _without_blanks(data: bytes, between: bytes) -> bytes:
@@ -75,7 +81,7 @@ def _without_blanks(data: bytes, between: bytes) -> bytes:
     return data.replace(b" \n", b"\n").replace(b"\n ", b"\n").removeprefix(b" ")
 
 
-def _filled(data: bytes, width: int, between: bytes) -> bytes | None:
+def _filled(data: bytes, width: int, between: bytes) -> bytes:
     """With nan in empty cells, and without a delimiter behind the last column."""
     if between + b"\n" in data:
         rows = data.count(b"\n")
@@ -88,7 +94,7 @@ def _filled(data: bytes, width: int, between: bytes) -> bytes | None:
             data = data.replace(between * 2, between + b"nan" + between)
     if data.startswith(between) or b"\n" + between in data:
         if between == b"\t":  # a line of tabs alone is an empty one
-            return None
+            return data
         data = (b"\n" + data).replace(b"\n" + between, b"\nnan" + between)[1:]
     return data
 
