@@ -12,6 +12,15 @@ class InputError(ValueError):
     what to do about it.  The command line prints that sentence alone and exits with status 2.
     """
 
+    def __init__(self, *arguments: object) -> None:
+        # What was given is shown in it, and need not be what a terminal or a log can write.
+        super().__init__(*(_written(each) if isinstance(each, str) else each for each in arguments))
+
+
+def _written(sentence: str) -> str:
+    """A sentence in which a lone half of a surrogate pair stands as its number."""
+    return sentence.encode("utf-8", "backslashreplace").decode("utf-8")
+
 
 class NotEnoughData(InputError):  # noqa: N818 (it is raised and named as what is the matter)
     """Data that can be read and do not suffice for what was asked.
