@@ -336,6 +336,11 @@ def simulate_ensemble(
                 "take one thread each; leave threads out, and give parts"
             )
     inputs = given.numbers(currents, "currents")
+    if inputs.ndim == 0:
+        raise InputError(
+            f"currents = {float(inputs)} is a single number; give an array of shape (n,) or "
+            "(members, n)"
+        )
     values = _rows_by_path(motor, parameters, len(inputs) if inputs.ndim == 2 else None)
     sizes = {len(row) for row in values.values()} | ({len(inputs)} if inputs.ndim == 2 else set())
     if len(sizes) > 1:

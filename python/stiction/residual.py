@@ -334,7 +334,7 @@ def started(
     motor.reset(position, velocity, time=clock, path=path)
     if start:
         state = motor.state
-        motor.follow(Motion([position] * 2, [0.0], NO_TIME), start=start)
+        motor.follow(Motion([position] * 2, [0.0], NO_TIME), start=start, strict=False)
         kept = ("velocity", "second_velocity", "time")
         motor.state = {**motor.state, **{name: state[name] for name in kept}}
     return motor

@@ -199,7 +199,8 @@ def _resume(motor: Motor, path: Path, identity: str) -> tuple[int, float]:
 
 def _read(path: Path) -> tuple[str, int, float, dict[str, Any]]:
     """What a checkpoint belongs to, samples done, when the run began, and the state."""
-    with np.load(path, allow_pickle=False) as file:
+    # Opened here, for numpy leaves a file open that it stumbles over.
+    with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
         kept = {name: file[name] for name in file.files}
     done, start = kept["done"], kept["start"]
     if done.shape or done.dtype.kind not in "iu" or done < 0:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -103,6 +105,69 @@ def test_a_checkpoint_of_another_run_is_refused(tmp_path: Path) -> None:
         list(st.stream(motor(), chunks(2), 2 * DT, checkpoint=path))
     path.write_bytes(b"nothing of the kind")
     with pytest.raises(st.InputError, match="delete it"):
+        list(st.stream(motor(), chunks(2), DT, checkpoint=path))
+
+
+def changed(**entries: object) -> Callable[[dict[str, Any]], dict[str, Any]]:
+    """Entries of a checkpoint as they are not; an Ellipsis takes one away."""
+    new = {name.replace("__", "."): value for name, value in entries.items()}
+    return lambda kept: {name: x for name, x in (kept | new).items() if x is not ...}
+
+
+DAMAGES: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
+    "done below 0": changed(done=-5),
+    "done a fraction": changed(done=2.5),
+    "done a row": changed(done=[1, 2]),
+    "done a word": changed(done="many"),
+    "done missing": changed(done=...),
+    "start not a number": changed(start=np.nan),
+    "start a word": changed(start="soon"),
+    "identity missing": changed(identity=...),
+    "identity numbers": changed(identity=np.zeros(3)),
+    "position missing": changed(state__position=...),
+    "position not a number": changed(state__position=np.inf),
+    "position a word": changed(state__position="here"),
+    "position in single precision": changed(state__position=np.float32(1.0)),
+    "reverse points without rows": changed(state__reverse_points=np.zeros(3)),
+    "a state too many": changed(state__colour=1.0),
+}
+
+
+@pytest.mark.parametrize("name", sorted(DAMAGES))
+def test_a_damaged_checkpoint_is_refused_in_a_sentence(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "run.npz"
+    list(st.stream(motor(), chunks(2), DT, checkpoint=path))
+    with np.load(path) as file:
+        kept = {key: file[key] for key in file.files}
+    np.savez(path, **DAMAGES[name](kept))
+    machine = motor()
+    with pytest.raises(st.InputError, match=r"run\.npz: .*delete it") as told:
+        list(st.stream(machine, chunks(4), DT, checkpoint=path))
+    assert "\n" not in str(told.value)
+    assert machine == motor()
+
+
+def test_no_bytes_in_a_checkpoint_raise_anything_but_a_sentence(tmp_path: Path) -> None:
+    path = tmp_path / "run.npz"
+    list(st.stream(motor(), chunks(2), DT, checkpoint=path))
+    whole_file = path.read_bytes()
+    source = np.random.default_rng(5)
+    for _ in range(150):
+        damaged = bytearray(whole_file)
+        for place in source.integers(0, len(damaged), source.integers(1, 4)):
+            damaged[place] = source.integers(0, 256)
+        if source.random() < 0.3:
+            del damaged[source.integers(0, len(damaged)) :]
+        path.write_bytes(damaged)
+        with contextlib.suppress(st.InputError):
+            next(st.stream(motor(), chunks(4), DT, checkpoint=path))
+
+
+def test_a_checkpoint_beyond_the_chunks_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.npz"
+    list(st.stream(motor(), chunks(3), DT, checkpoint=path))
+    assert list(st.stream(motor(), chunks(3), DT, checkpoint=path)) == []
+    with pytest.raises(st.InputError, match="the chunks end after"):
         list(st.stream(motor(), chunks(2), DT, checkpoint=path))
 
 

@@ -210,7 +210,9 @@ impl FrictionModel {
     /// Whether a sample cannot lead to anything but numbers.
     #[inline]
     fn needs_no_watch(&self, velocity: f64, dt: f64, channels: &Channels<f64>) -> bool {
-        self.range.covers(velocity.abs() + channels.effort.abs() + channels.load.abs(), dt)
+        let warmth = channels.temperature.map_or(0.0, f64::abs);
+        let efforts = channels.effort.abs() + channels.load.abs();
+        self.range.covers(velocity.abs() + warmth + efforts, dt)
     }
 
     /// Keeps the present state where it is one, and goes back to the one before where it is none.

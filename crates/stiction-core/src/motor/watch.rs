@@ -56,7 +56,8 @@ impl Running<f64> {
     #[inline]
     pub(crate) fn needs_no_watch(&self, input: f64, load: f64, dt: f64) -> bool {
         let moves = self.run.position.abs() + self.run.velocity.abs();
-        self.range.covers(moves + input.abs() + load.abs(), dt)
+        let warmth = self.run.temperature.map_or(0.0, f64::abs);
+        self.range.covers(moves + warmth + input.abs() + load.abs(), dt)
     }
 
     /// The same as [`Self::step_or_stay`], whatever there is.
