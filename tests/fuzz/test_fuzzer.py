@@ -172,9 +172,21 @@ def test_a_planted_fault_is_found_by_drawing(monkeypatch: pytest.MonkeyPatch) ->
         return SOUND(motor, current, dt, **keywords)
 
     monkeypatch.setattr(st.Motor, "simulate", odd)
-    found = (find.where for _, find in hunt(60.0, 1, 1, Tally(), ("Motor.simulate",)))
-    # It ends with the first; a minute is for machines that have much else to do.
+    cases = (Task("Motor.simulate", f"planted.{k}") for k in range(400))
+    hit = [case for case in cases if "x.simulate(wave(7," in case.program()[-1]][:3]
+    worker = Worker()
+    try:
+        found = [find.where for case in hit for find in worker.run(case)]
+    finally:
+        worker.close()
     assert any("ZeroDivisionError" in where for where in found)
+
+
+def test_a_hunt_counts_what_it_runs_and_goes_by_weight() -> None:
+    tally = Tally()
+    list(hunt(1.0, 1, 1, tally, ("FrictionModel.step", "laws")))
+    assert sum(tally.calls.values()) > 1
+    assert tally.next(("paper.estimate", "Motor.step")) == "Motor.step"
 
 
 def test_a_case_is_the_same_again_from_its_seed() -> None:
