@@ -6,6 +6,7 @@ import os
 import time
 import warnings
 from collections.abc import Callable, Iterator
+from functools import wraps
 from itertools import count
 from typing import Any
 
@@ -166,6 +167,7 @@ def test_a_state_that_does_not_come_back_is_found(monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_planted_fault_is_found_by_drawing(monkeypatch: pytest.MonkeyPatch) -> None:
+    @wraps(SOUND)
     def odd(motor: st.Motor, current: Any, dt: Any, **keywords: Any) -> Any:
         if np.size(current) == 7:
             raise ZeroDivisionError("division by zero")
@@ -173,7 +175,11 @@ def test_a_planted_fault_is_found_by_drawing(monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(st.Motor, "simulate", odd)
     cases = (Task("Motor.simulate", f"planted.{k}") for k in range(400))
-    hit = [case for case in cases if "x.simulate(wave(7," in case.program()[-1]][:3]
+    hit = [
+        case
+        for case in cases
+        if len(case.program()) == 2 and "x.simulate(wave(7," in case.program()[-1]
+    ][:8]
     worker = Worker()
     try:
         found = [find.where for case in hit for find in worker.run(case)]
