@@ -30,6 +30,8 @@ LONG_CPU_S = 90.0
 """And one that simulates many times: a fit, a diagnosis, a comparison."""
 WALL_TIMES = 12.0
 """Longer than so many times its patience on the clock, a case does not work: it waits."""
+IDLE = 0.01
+"""Share of the clock below which a process does nothing."""
 MEMORY = 6 << 30
 """Bytes that a worker may ask for."""
 LIVES = 3000
@@ -91,6 +93,7 @@ class Worker:
             self._start()
         self.lives -= 1
         self.task, self.began = task, time.monotonic()
+        self._worked = _worked(self.process.pid or 0)
         Path(self._line.name).write_bytes(b"0")
         Path(self._dump.name).write_bytes(b"")
         self._patience = max(patience(line, task.name) for line in task.program())
@@ -106,11 +109,18 @@ class Worker:
             return [self._lost()], time.monotonic() - self.began
         if not self.process.is_alive():
             return [self._lost()], time.monotonic() - self.began
-        if time.monotonic() - self.began > WALL_TIMES * self._patience:
+        if self._waits():
             with contextlib.suppress(ProcessLookupError):
                 os.kill(self.process.pid or 0, signal.SIGABRT)
             self.process.join(5.0)
         return None
+
+    def _waits(self) -> bool:
+        """Whether a case is late by the clock, and not because others have the processor."""
+        lasted = time.monotonic() - self.began
+        if lasted < WALL_TIMES * self._patience:
+            return False
+        return _worked(self.process.pid or 0) - self._worked < IDLE * lasted
 
     def _lost(self) -> Find:
         """What ended the process, from the dump that it left; a new one is started."""
@@ -148,6 +158,15 @@ class Worker:
         for file in (self._dump, self._line):
             file.close()
             Path(file.name).unlink(missing_ok=True)
+
+
+def _worked(pid: int) -> float:
+    """Seconds of processor that a process had; 0 where the system does not say."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(fields[11]) + int(fields[12])) / float(os.sysconf("SC_CLK_TCK"))
 
 
 def _place(dump: str) -> str:

@@ -6,6 +6,7 @@ import os
 import time
 import warnings
 from collections.abc import Callable, Iterator
+from functools import wraps
 from itertools import count
 from typing import Any
 
@@ -166,15 +167,32 @@ def test_a_state_that_does_not_come_back_is_found(monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_planted_fault_is_found_by_drawing(monkeypatch: pytest.MonkeyPatch) -> None:
+    @wraps(SOUND)
     def odd(motor: st.Motor, current: Any, dt: Any, **keywords: Any) -> Any:
         if np.size(current) == 7:
             raise ZeroDivisionError("division by zero")
         return SOUND(motor, current, dt, **keywords)
 
     monkeypatch.setattr(st.Motor, "simulate", odd)
-    found = (find.where for _, find in hunt(60.0, 1, 1, Tally(), ("Motor.simulate",)))
-    # It ends with the first; a minute is for machines that have much else to do.
+    cases = (Task("Motor.simulate", f"planted.{k}") for k in range(400))
+    hit = [
+        case
+        for case in cases
+        if len(case.program()) == 2 and "x.simulate(wave(7," in case.program()[-1]
+    ][:8]
+    worker = Worker()
+    try:
+        found = [find.where for case in hit for find in worker.run(case)]
+    finally:
+        worker.close()
     assert any("ZeroDivisionError" in where for where in found)
+
+
+def test_a_hunt_counts_what_it_runs_and_goes_by_weight() -> None:
+    tally = Tally()
+    list(hunt(1.0, 1, 1, tally, ("FrictionModel.step", "laws")))
+    assert sum(tally.calls.values()) > 1
+    assert tally.next(("paper.estimate", "Motor.step")) == "Motor.step"
 
 
 def test_a_case_is_the_same_again_from_its_seed() -> None:
