@@ -286,6 +286,7 @@ impl Motor {
     /// InputError
     ///     As for ``signatures``.
     #[pyo3(signature = (motion, candidates, kernel, *, start=None, threads=1, strict=true))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn signature_columns<'py>(
         &self,
         py: Python<'py>,

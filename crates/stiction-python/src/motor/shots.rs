@@ -129,6 +129,7 @@ impl Motor {
     /// InputError
     ///     As for ``shoot`` and ``follow_sensitivity``.
     #[pyo3(signature = (motion, weights, stride, parameters, *, start=None, strict=true))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn shoot_sensitivity<'py>(
         &self,
         py: Python<'py>,
@@ -173,6 +174,7 @@ impl Motor {
     /// InputError
     ///     As for ``shoot``; parts below 1 or more than a window has samples.
     #[pyo3(signature = (motion, weights, stride, parts, *, start=None, strict=true))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn shoot_response<'py>(
         &self,
         py: Python<'py>,
