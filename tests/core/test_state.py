@@ -78,9 +78,13 @@ WAYS: dict[str, Callable[[st.Motor], st.Motor]] = {
 
 
 def cases() -> list[tuple[str, str, tuple[str, ...]]]:
-    """Every law with every effect, machines in turn, and with all effects on every machine."""
+    """Every law with all effects and with none on every machine, and with some by themselves.
+
+    Every law with every effect by itself is gone through by the tests of the core.
+    """
     kinds = itertools.cycle(MACHINES)
-    each = [(law, next(kinds), (effect,)) for law in LAWS for effect in EFFECTS]
+    pairs = itertools.product(enumerate(LAWS), enumerate(EFFECTS))
+    each = [(law, next(kinds), (effect,)) for (i, law), (k, effect) in pairs if (i + k) % 8 == 0]
     every = [(law, kind, tuple(EFFECTS)) for law in LAWS for kind in MACHINES]
     plain = [(law, kind, ()) for law in LAWS for kind in MACHINES]
     return each + every + plain
