@@ -252,10 +252,12 @@ impl Ensemble {
                 return Err(Error::Length { name: name.to_owned(), given, wanted: members });
             }
         }
-        let before = (self.steps_of(dt) > LONG).then(|| self.members.clone());
+        let steps = self.steps_of(dt);
+        let before = (steps > LONG).then(|| self.members.clone());
+        let each = PER_MEMBER + (steps / members.max(1) as f64) as u64;
         let mut pace = Pace::default();
         for (k, running) in self.members.iter_mut().enumerate() {
-            if before.is_some() && pace.due(PER_MEMBER) {
+            if before.is_some() && pace.due(each) {
                 break;
             }
             running.step(inputs.at(k), loads.at(k), dt)?;
