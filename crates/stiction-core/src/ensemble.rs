@@ -255,7 +255,9 @@ impl Ensemble {
                 return Err(Error::Length { name: name.to_owned(), given, wanted: members });
             }
         }
-        let before = (self.steps_of(dt) > LONG).then(|| self.members.clone());
+        let steps = self.steps_of(dt);
+        let before = (steps > LONG).then(|| self.members.clone());
+        let each = PER_MEMBER + (steps / members.max(1) as f64) as u64;
         let mut pace = Pace::default();
         // Those that may run away go first, and back where one of them does.
         let mut watched: Vec<(usize, Standing)> = Vec::new();
@@ -278,7 +280,7 @@ impl Ensemble {
         }
         let mut watched = watched.into_iter().map(|(k, _)| k).peekable();
         for (k, running) in self.members.iter_mut().enumerate() {
-            if before.is_some() && pace.due(PER_MEMBER) {
+            if before.is_some() && pace.due(each) {
                 break;
             }
             if watched.next_if_eq(&k).is_none() {

@@ -62,6 +62,8 @@ const LONGEST_RATE: f64 = 0.3;
 /// A sample that needs more parts than this is a mistake in the units, not a stiff machine; and what a
 /// sample may cost is bounded by it.
 pub const MOST_PARTS: f64 = 1e4;
+/// The reference integrator divides no further for internal variables, however fast they are.
+const MOST_INNER: f64 = 1e5;
 
 /// Number of equal parts that a sample of this duration is divided into, so that ω·h stays below
 /// `longest`; above [`MOST_PARTS`] the sample is too long for the machine.
@@ -76,11 +78,6 @@ pub fn parts<S: Scalar, L: FrictionLaw<S>>(
     let calming = dt * (law.greatest_damping() + machine.servo().1) / lightest / LONGEST_DAMPING;
     let falling = dt * law.steepest_fall() / lightest / LONGEST_DAMPING;
     phase.max(calming).max(falling.min(MOST_PARTS_FOR_A_FALL)).ceil().max(1.0)
-}
-
-/// Number of parts that the reference integrator divides a sample into for the internal variables.
-pub fn inner_parts<S: Scalar, L: FrictionLaw<S>>(law: &L, state: &L::State, dt: f64) -> f64 {
-    (dt * law.fastest_rate(state) / LONGEST_RATE).ceil()
 }
 
 /// Level of friction up to which a sample is divided as at level 1: ω·h and (C/J)·h may be larger than
@@ -162,7 +159,7 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
             }
         }
         Integrator::Reference => {
-            let fast = inner_parts(law, state, dt).min(MOST_PARTS) as u32;
+            let fast = (dt * law.fastest_rate(state) / LONGEST_RATE).min(MOST_INNER).ceil() as u32;
             let parts = parts.max(fast);
             let span = S::constant(dt / f64::from(parts));
             let mut stepper = reference::Reference { machine, run, input, load };

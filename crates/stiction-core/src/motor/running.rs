@@ -7,8 +7,7 @@ use crate::error::{Error, Result};
 use crate::follow::arriving;
 use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
 use crate::integrate::{
-    Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, finer, inner_parts, parts,
-    sample,
+    Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, finer, parts, sample,
 };
 use crate::interrupt::Pace;
 use crate::model::CHUNK;
@@ -103,9 +102,6 @@ impl<S: Scalar> Running<S> {
             let parts = parts(&self.machine, law, dt, self.longest_phase);
             let finer = finer(&self.machine, law, &self.run, S::constant(load), dt / parts);
             let parts = whole_parts(parts * finer, self.most_parts, dt)?;
-            if self.integrator == Integrator::Reference {
-                whole_parts(inner_parts(law, state, dt), self.most_parts, dt)?;
-            }
             state.make_room(parts as usize + CHUNK / 4);
             let before = self.run;
             let arrived = arriving(&mut self.way.as_mut(), input, dt);
@@ -195,9 +191,6 @@ impl<S: Scalar> Running<S> {
                 }
                 self.run.temperature = around.temperature_at(index);
                 self.run.enabled = around.enabled_at(index);
-                if self.integrator == Integrator::Reference {
-                    whole_parts(inner_parts(law, state, dt_now), self.most_parts, dt_now)?;
-                }
                 if strains {
                     let load = added(index) + around.load.at(index);
                     let finer = finer(&self.machine, law, &self.run, load, dt_now / plainly);
@@ -217,7 +210,8 @@ impl<S: Scalar> Running<S> {
                     let end =
                         if S::CARRIES { inputs.len().min(index + AHEAD) } else { ahead.end() };
                     let end = dt.same_until(index, end);
-                    let end = end.min(index + 1 + MOST_AT_ONCE / divided as usize);
+                    let most = if S::CARRIES { MOST_AT_ONCE / 8 } else { MOST_AT_ONCE };
+                    let end = end.min(index + 1 + most / divided as usize);
                     let begun = index;
                     let (samples, state) = (index..end, &mut *state);
                     let step = (span, divided);
