@@ -299,12 +299,15 @@ def test_neutral_effects_change_no_bit(kind, integrator):
     one, other = plain.simulate(current, DT), dressed.simulate(current, DT)
     for name in one:
         assert np.array_equal(one[name], other[name]), name
-    # Delay and lag have inputs on their way, some effects a memory: these come with them alone.
+    # Delay and lag have inputs on their way, some effects a memory, and beside effects the work of
+    # the contact is counted: these come with them alone.
     assert dressed.state.keys() == plain.state.keys() | {
         "input_history",
         "lagged_input",
         "limited_input",
         "effect_memory",
+        "contact_work",
+        "kinetic_peak",
     }
     assert plain.statistics == dressed.statistics
 
