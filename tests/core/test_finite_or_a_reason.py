@@ -196,7 +196,11 @@ def size(source: random.Random) -> float:
     return source.choice([-1.0, 1.0]) * source.choice([usual, usual, source.choice(EXTREME)])
 
 
-@pytest.mark.parametrize("law", st.laws(), ids=lambda law: law.name)
+# Each break of a bristle is located: what a step costs that goes far is another question.
+STEPPED = [law for law in st.laws() if law.name != "bristle"]
+
+
+@pytest.mark.parametrize("law", STEPPED, ids=lambda law: law.name)
 def test_steps_of_any_machine_give_numbers_or_change_nothing(law: Any) -> None:
     source = random.Random(f"{law.name} 1")
     effects = st.effects()

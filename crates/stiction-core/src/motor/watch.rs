@@ -66,7 +66,7 @@ impl Running<f64> {
     pub(crate) fn step_watched(&mut self, input: f64, load: f64, dt: f64) -> Result<()> {
         let before = self.standing();
         let done = self.step(input, load, dt);
-        if done.is_ok() && self.is_sound(&before) {
+        if done.is_ok() && self.is_sound_throughout(&before) {
             return done;
         }
         let problem = self.ran_away(dt);
@@ -80,7 +80,9 @@ impl Running<f64> {
         let moves = [run.position, run.velocity, run.friction, run.path, run.wound, run.relaxed];
         let second = [run.second_position, run.second_velocity, run.ambient()];
         let size: f64 = moves.into_iter().chain(second).map(f64::abs).sum();
-        self.range.holds(size) || self.is_sound_throughout(before)
+        // What effects remember and what is on its way is of no size that the body shows.
+        let alone = self.way.is_none() && !self.machine.effects.remembers();
+        (alone && self.range.holds(size)) || self.is_sound_throughout(before)
     }
 
     #[cold]
