@@ -114,7 +114,7 @@ def test_ctrl_c_ends_a_long_call_of_a_motor_which_is_then_as_before(name, swingi
 @pytest.mark.parametrize("threads", [1, 2])
 def test_ctrl_c_ends_an_ensemble_on_all_its_threads(threads):
     many = st.Ensemble(motor("hook"), 200)
-    current = np.full(100_000, 0.1)
+    current = np.full(2_000_000, 0.1)
     before = many.step_many(0.0, DT)
     took = interrupted(lambda: many.simulate(current, DT, reduce="last", threads=threads))
     assert took < SOON
