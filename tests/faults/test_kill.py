@@ -116,11 +116,11 @@ class Killed:
                 path = out / name
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(EARLIER)
-        before = set(_files(out, drafts=True))
+        before = _seen(out)
         process = self._started(out)
         if source.random() < 0.5:
             # While something is being written.
-            while process.poll() is None and set(_files(out, drafts=True)) <= before:
+            while process.poll() is None and _seen(out) == before:
                 time.sleep(0.0005)
             time.sleep(source.uniform(0.0, self._last - self._first) ** 2 / 4.0)
         else:
@@ -174,6 +174,15 @@ def _files(out: Path, *, drafts: bool = False) -> list[Path]:
         for path in sorted(out.rglob("*"))
         if path.is_file() and (drafts or not path.name.startswith(".stiction-"))
     ]
+
+
+def _seen(out: Path) -> set[tuple[str, int]]:
+    """Files and when each was changed: also one that is written in place shows."""
+    seen = set()
+    for path in _files(out, drafts=True):
+        with suppress(FileNotFoundError):
+            seen.add((str(path), path.stat().st_mtime_ns))
+    return seen
 
 
 @pytest.mark.parametrize("verb", sorted(VERBS.keys() - SLOW))
