@@ -235,7 +235,7 @@ impl<S: Scalar> FrictionLaw<S> for LoadDependent<S> {
         motion: &Motion<S>,
         channels: &Channels<S>,
     ) -> LoadDependentTrial<S> {
-        let mode = state.0.mode_at(motion.velocity);
+        let mode = state.0.mode_over(motion);
         if mode == 0.0 {
             let force = held(channels.effort, self.greatest(channels));
             // Set-valued at rest; the viscous slope is what a host's Newton step can use.

@@ -144,7 +144,7 @@ impl<S: Scalar> FrictionLaw<S> for RigidPerfectlyPlastic<S> {
         motion: &Motion<S>,
         channels: &Channels<S>,
     ) -> RigidPerfectlyPlasticTrial<S> {
-        let mode = state.contact.mode_at(motion.velocity);
+        let mode = state.contact.mode_over(motion);
         let viscous = self.parameters.viscous * channels.viscous_level;
         if mode == 0.0 {
             let (level, _) = self.level.level(state.slid);

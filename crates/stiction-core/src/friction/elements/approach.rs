@@ -106,8 +106,11 @@ mod tests {
                 let there = approach_evenly(1.3, way, gap, distance);
                 let followed = approach(1.3, way, rate);
                 assert!((there - followed).abs() < 1e-8 * followed + 1e-16, "{there} {followed}");
-                let back = way_evenly_to(1.3, there, gap, distance);
-                assert!((back - way).abs() < 1e-9 * way, "{back} {way}");
+                // Where nothing is left, no way is long enough.
+                if there > 0.0 {
+                    let back = way_evenly_to(1.3, there, gap, distance);
+                    assert!((back - way).abs() < 1e-9 * way, "{back} {way}");
+                }
             }
         }
     }

@@ -1,8 +1,11 @@
 //! Stick and slip of a contact that is rigid until it breaks away.
 
 use crate::error::Result;
-use crate::friction::{Entry, EntryReader, Statistics};
+use crate::friction::{Entry, EntryReader, Motion, Statistics};
 use crate::scalar::{Scalar, sign};
+
+/// Share of the velocity at the end of a step below which one at its start is what rounding left of a stop.
+const STILL: f64 = 1e-9;
 
 /// Contact mode, and the force at the end of the last step.
 #[derive(Debug, Clone, Copy)]
@@ -53,6 +56,15 @@ impl<S: Scalar> Rigid<S> {
     #[inline]
     pub fn mode_at(&self, velocity: S) -> f64 {
         if self.mode == 0.0 { sign(velocity.re()) } else { self.mode }
+    }
+
+    /// The mode over a step. A body that moves already when a contact first meets it slides the way that it
+    /// moves, even where the step is predicted to end the other way: it stops on the way there.
+    #[inline]
+    pub fn mode_over(&self, motion: &Motion<S>) -> f64 {
+        let (start, end) = (motion.start_velocity.re(), motion.velocity.re());
+        let moves = start * end < 0.0 && start.abs() > STILL * end.abs();
+        if moves && self.mode == 0.0 { sign(start) } else { self.mode_at(motion.velocity) }
     }
 
     /// Accepts a step that ends in this mode with this force.
