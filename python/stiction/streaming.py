@@ -126,6 +126,8 @@ def _streamed(
     for chunk in currents:
         inputs = np.ascontiguousarray(given.numbers(chunk, "stream: a chunk"))
         length = inputs.size
+        if not length:
+            raise InputError("stream: a chunk has no samples; leave it out")
         if done + length <= passed:
             done += length
             continue

@@ -288,7 +288,9 @@ def test_names_of_any_letters_survive_in_toml(tmp_path: Path) -> None:
     np.savez(path, **dict(zip(names, real.values(), strict=True)))
     assert run(["init", str(path), "-o", str(tmp_path / "o")]) == 0
     session = tomllib.loads((tmp_path / "o" / "session.toml").read_text("utf-8"))
-    assert [session["columns"][role]["name"] for role in ("time", "input", "position")] == [*names]
+    # What would act on a terminal is escaped, and called so from then on.
+    told = (names[0], "i\\n\\x7f\t# [A]", names[2])
+    assert [session["columns"][role]["name"] for role in ("time", "input", "position")] == [*told]
     assert len(st.load(tmp_path / "o" / "session.toml")) == 1
 
 

@@ -33,8 +33,9 @@ def same(one: dict[str, Any], other: dict[str, Any]) -> bool:
 
 
 def numbers(state: dict[str, Any]) -> bool:
-    """Whether a state is made of numbers; a level that is never reached is infinite."""
-    levels = {"breakaway_level", "latched_breakaway"}
+    """Whether a state is made of numbers; a level that is never reached is infinite, and so is the
+    work of a contact of which nobody knows what it took."""
+    levels = {"breakaway_level", "latched_breakaway", "contact_work"}
     return all(np.isfinite(state[name]).all() for name in state if name not in levels)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -29,8 +28,7 @@ def even_session() -> Any:
         "viscous": float(made.plant["viscous"]),
     }
     stated = as_plant(made).to_dict() | {"body": body, "friction": friction}
-    found = SimpleNamespace(plant=st.Plant.from_dict(stated))
-    session = recorded(made, found, "cycle")
+    session = recorded(made, st.Plant.from_dict(stated), "cycle")
     first = next(k for k, each in enumerate(session.recordings) if each.cold)
     return replace(session, recordings=session.recordings[first:])
 

@@ -43,11 +43,11 @@ def test_on_a_full_disk_nothing_is_half_there(
     ("verb", "share"),
     [
         ("simulate", 0.5),
-        ("fit", 0.0),
+        ("fit", 0.1),
         ("fit", 0.95),
         ("diagnose", 0.5),
         ("compare", 0.5),
-        ("laws", 0.0),
+        ("laws", 0.1),
         ("effects", 0.95),
     ],
 )

@@ -73,10 +73,6 @@ def moves_and_refuses(motor: st.Motor, *args: Any, **keywords: Any) -> Any:
     raise st.InputError("current[0] = 0.1 is too small; give more")
 
 
-def refuses_in_lines(motor: st.Motor, *args: Any, **keywords: Any) -> Any:
-    raise st.InputError("current\nis wrong")
-
-
 def warns(motor: st.Motor, *args: Any, **keywords: Any) -> Any:
     warnings.warn("overflow encountered in multiply", RuntimeWarning, stacklevel=2)
 
@@ -96,7 +92,6 @@ KINDS: dict[str, tuple[Callable[..., Any], str]] = {
     "a panic": (panics, "panic"),
     "an abort": (aborts, "abort"),
     "a state that a refusal changed": (moves_and_refuses, "changed by a refusal"),
-    "two lines": (refuses_in_lines, "no sentence"),
     "a warning": (warns, "warning"),
     "other bits": (counts, "not repeated"),
 }

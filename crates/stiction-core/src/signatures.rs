@@ -278,7 +278,7 @@ impl Along {
         let mut found = Unit { friction: room(true), added: room(adds), driven: room(mapped) };
         for sample in &self.samples {
             effects.remember(&sample.passage);
-            let (dry, viscous) = effects.levels(&sample.at);
+            let (dry, viscous) = effects.sums(&sample.at);
             let (mut added, mut moved) = (0.0, 0.0);
             if adds {
                 added = effects.effort(&sample.at) / unit;

@@ -70,8 +70,10 @@ impl<S: Scalar> Work<S> {
         let before = half * from.velocity * from.velocity;
         let after = half * run.velocity * run.velocity;
         let done = (acted + now) * (run.position - from.position) * 0.5;
-        let taken = from.budget.taken + done - (after - before);
-        let swing = from.budget.swing.max(before.re());
+        let counted = from.budget.taken + done - (after - before);
+        // What is beyond floats cannot be counted.
+        let taken = if counted.re().is_finite() { counted } else { S::constant(f64::INFINITY) };
+        let swing = from.budget.swing.max(before.re()).min(f64::MAX);
         let least = -rough * swing;
         run.budget = Budget { taken, swing };
         self.effort = now;

@@ -62,7 +62,7 @@ def _column(name: str, stored: ZipFile, member: ZipInfo, expansion: Expansion) -
         return "is no array"
     if member.compress_type not in _PACKED:
         return "is packed in a way that NumPy does not write"
-    with stored.open(member) as file:
+    with stored.open(name=member) as file:
         if (header := _header(file)) is None:
             return "does not hold numbers"
         shape, _, kind = header

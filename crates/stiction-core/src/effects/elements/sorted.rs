@@ -101,6 +101,13 @@ impl<S: Scalar> Effects<S> {
     /// The same as part of whoever asks for it.
     #[inline(always)]
     pub(crate) fn levels_within(&self, at: &Situation<S>) -> (S, S) {
+        let (friction, viscous) = self.sums(at);
+        (never_driving(friction), never_driving(viscous))
+    }
+
+    /// The same wherever they end: proportional to a gain, however far that is.
+    #[inline(always)]
+    pub(crate) fn sums(&self, at: &Situation<S>) -> (S, S) {
         let (mut friction, mut viscous, _) = self.unit;
         for place in &self.levels {
             let Kept { effect, memory } = &self.kept[*place];
@@ -108,7 +115,7 @@ impl<S: Scalar> Effects<S> {
             friction += change.friction;
             viscous += change.viscous;
         }
-        (never_driving(friction), never_driving(viscous))
+        (friction, viscous)
     }
 
     /// Seeds the levels of dry and viscous friction and an added effort of 0, to differentiate by
