@@ -73,11 +73,10 @@ python-tests: $(READY)
 	$(PYTEST) -m 'not slow'
 
 # What takes long and guards what changes seldom: the simulators that tests use, the table of
-# properties, a wheel, the law of the page; then the gate, and a minute of fuzzing with a fresh seed.
+# properties, a wheel, the law of the page; then the gate.
 test-slow: $(READY)
 	$(PYTEST) -m slow
 	$(MAKE) gate
-	$(MAKE) fuzz SECONDS=60
 
 # Fresh sessions of every family and all real recordings, the way that a user goes: none may be lost.
 gate: $(READY)
