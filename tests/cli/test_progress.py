@@ -175,15 +175,21 @@ def test_times_are_said_as_people_say_them(seconds: float, words: str) -> None:
 
 def test_a_stderr_that_is_closed_disturbs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stiction.cli.progress.SELDOM", 0.002)
-    monkeypatch.setattr(sys, "stderr", Shut())
+    shut = Shut()
+    monkeypatch.setattr(sys, "stderr", shut)
     with progress():
-        time.sleep(0.02)
+        assert shut.asked.wait(5.0), "nothing was written that could disturb"
 
 
 class Shut(io.StringIO):
     """Nobody reads it any more."""
 
+    def __init__(self) -> None:
+        super().__init__()
+        self.asked = threading.Event()
+
     def write(self, _: str) -> int:
+        self.asked.set()
         raise BrokenPipeError
 
 
