@@ -24,7 +24,7 @@ from stiction.diagnosis.pictures import Tracking
 from stiction.report import drawings, figures
 from stiction.report.sections import BUILDERS, Section, name_of, rest
 
-FILES = {"report.html", "findings.json", "plant.toml", "figures"}
+FILES = {"report.html", "findings.json", "plant.toml", "begins.toml", "figures"}
 FAULT = "IndexError: a fault of its own"
 
 

@@ -82,6 +82,8 @@ class Cause(_Gained):
         Coordinate in which the residual showed it.
     doubt : str
         Why it is undecided where no look-alike is, "" where there is no other reason.
+    waves : Mapping of str to FitParameter
+        By path: amplitude and phase of what was fitted as a cosine and a sine.
     chosen : Mapping of str to float
         By path: numbers of it that were not fitted, but taken from those that were tried, as the
         order of a wave is.
@@ -98,10 +100,11 @@ class Cause(_Gained):
     try_: str
     coordinate: str
     doubt: str = ""
+    waves: Mapping[str, FitParameter] = field(default_factory=dict)
     chosen: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        freeze(self, ByPath, "parameters", "chosen")
+        freeze(self, ByPath, "parameters", "waves", "chosen")
 
     @property
     def doubtful(self) -> bool:
@@ -119,6 +122,10 @@ class Cause(_Gained):
             "parameters": {
                 path: {"value": p.value, "ci95": list(p.ci95), "unit": p.unit}
                 for path, p in self.parameters.items()
+            },
+            "waves": {
+                path: {"value": p.value, "ci95": list(p.ci95), "unit": p.unit}
+                for path, p in self.waves.items()
             },
             "heldout_gain": self.heldout_gain,
             "heldout_gain_ci95": None if self.gain is None else list(self.gain.ci95),

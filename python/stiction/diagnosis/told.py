@@ -60,6 +60,11 @@ def causes_of(
             for path, p in result.parameters.items()
             if path.startswith(f"effects.{record.name}.")
         }
+        waves = {
+            path: p
+            for path, p in result.waves.items()
+            if path.startswith(f"effects.{record.name}.")
+        }
         means, remedy = meant(record, final.plant)
         effect = effect_of(final.plant, record.name)
         own = {f"effects.{record.name}.{name}": p.value for name, p in effect.parameters.items()}
@@ -75,6 +80,7 @@ def causes_of(
                 means=means,
                 try_=remedy,
                 coordinate=record.coordinate,
+                waves=waves,
                 chosen={path: value for path, value in own.items() if path not in fitted_values},
             )
         )

@@ -45,6 +45,7 @@ from .statistics import (
     undetermined_directions,
 )
 from .variables import RATIOS, Variables, states_bound, unit_of, with_effort_in
+from .waves import amplitude_of, parts_of, waves_of
 
 __all__ = ["evaluate", "fit", "reweighted", "settled"]
 
@@ -329,7 +330,7 @@ def evaluate(
         covariance=matrix,
         correlations=correlations(matrix),
         bounds_hit=_bound_sentences(parameters, given, followed=stated != plant),
-        undetermined=_undetermined_sentences(parameters, flat, train),
+        undetermined=_undetermined_sentences(parameters, waves_of(parameters, matrix), flat, train),
         assumed=(told,) if told else (),
         r2=fitted[2],
         train_rms=fitted[0],
@@ -452,6 +453,7 @@ def _held_beside(
 
 def _undetermined_sentences(
     parameters: dict[str, FitParameter],
+    waves: dict[str, FitParameter],
     flat: Sequence[Sequence[str]],
     rows: Sequence[Rows],
 ) -> tuple[str, ...]:
@@ -466,8 +468,13 @@ def _undetermined_sentences(
                 "record what separates them"
             )
     told = {path for group in flat for path in group}
-    for path, p in parameters.items():
-        if path not in told and p.stderr > abs(p.value) and p.value != 0.0:
+    # Of a wave the amplitude is asked: a small part of a large one is known as well as the other.
+    whole = {
+        path for path in parameters if (parts := parts_of(path)) and amplitude_of(parts) in waves
+    }
+    amplitudes = {path: p for path, p in waves.items() if "phase" not in path}
+    for path, p in ({**parameters, **amplitudes}).items():
+        if path not in told | whole and p.stderr > abs(p.value) and p.value != 0.0:
             sentences.append(
                 f"{path} is not determined by these data: its standard error {p.stderr:.2g} "
                 f"exceeds its value{_why(path, rows)}"
