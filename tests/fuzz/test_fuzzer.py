@@ -201,7 +201,7 @@ def test_a_find_is_made_short() -> None:
         return [Find("kind", "where", "")] if any("load=" in line for line in lines) else []
 
     program = ["y = 3", *LINES, "x.simulate([0.1], 1e-3, load=0.25, outputs=['position'])"]
-    short = shrunk(program, Find("kind", "where", ""), judged, 5.0)
+    short = shrunk(program, Find("kind", "where", ""), judged, time.monotonic() + 5.0)
     assert len(short) == 1
     assert "outputs" not in short[0]
 
