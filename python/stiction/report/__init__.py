@@ -9,6 +9,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from .. import given
 from ..atomic_files import subfolder, write_text
 from ..best_effort import Failure, attempt
 from .files import made, refused, without_others
@@ -46,7 +47,7 @@ def write(diagnosis: Diagnosis, folder: Path) -> Path:
     InputError
         The folder cannot be made or written to.
     """
-    made(folder)
+    folder = made(given.path(folder, "report.write: folder"))
     try:
         write_text(folder / "findings.json", diagnosis.to_json() + "\n")
         diagnosis.plant.save(folder / "plant.toml")
