@@ -199,6 +199,8 @@ class ModelSummary:
         What the plant leaves open and every value hangs on, in sentences.
     stiffness : float or None
         Of a servo: effort per position by which errors of its simulated loop count as a residual.
+    begins : Mapping of str to Mapping
+        Where each recording begins for this model (see ``FitResult.begins``).
     """
 
     plant: Plant
@@ -214,9 +216,12 @@ class ModelSummary:
     replay: Replay | None = None
     assumed: tuple[str, ...] = ()
     stiffness: float | None = None
+    begins: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")
+        begins = {name: Frozen(begin) for name, begin in self.begins.items()}
+        object.__setattr__(self, "begins", Frozen(begins))
 
     @property
     def law(self) -> str:
@@ -248,6 +253,7 @@ class ModelSummary:
             "heldout_rms": self.heldout_rms,
             "noise_floor_rms": self.noise_floor_rms,
             "replay": None if self.replay is None else self.replay.to_dict(),
+            "begins": {name: dict(begin) for name, begin in self.begins.items()},
         }
 
 
@@ -387,7 +393,7 @@ class Diagnosis:
         return json_of(self.to_dict())
 
     def save(self, folder: str | Path) -> Path:
-        """Write report.html, findings.json, plant.toml and figures.
+        """Write report.html, findings.json, plant.toml, begins.toml and figures.
 
         Parameters
         ----------

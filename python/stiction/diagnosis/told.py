@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..begins import begins
 from ..fitting.result import FitResult
 from ..plant import Plant
 from ..stated import Effect
@@ -116,6 +117,7 @@ def summary_of(
     if evidence.split.select:
         (plan,) = evidence.plans
         select = float(np.sqrt(np.mean((model.residual / evidence.weights)[plan.held] ** 2)))
+    tested = {} if test is None else begins(evidence.names, test.rows, test.nuisances[index])
     return ModelSummary(
         plant=result.plant,
         parameters=result.parameters,
@@ -129,6 +131,7 @@ def summary_of(
         remarks=result.remarks,
         assumed=result.assumed,
         stiffness=result.stiffness,
+        begins={**result.begins, **tested},
     )
 
 

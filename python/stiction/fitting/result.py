@@ -78,6 +78,9 @@ class FitResult:
         By how much the input was taken to be stamped early, s; bounded by half a sample.
     starts : Mapping of str to Mapping
         Friction state at the first row of each recording that tells of it.
+    begins : Mapping of str to Mapping
+        Where each recording begins: ``clock_s``, ``path``, and the friction state where one is
+        known, held-out recordings too (see ``stiction.begins``).
     assumed : tuple of str
         What the plant leaves open and every value hangs on, in sentences.
     stiffness : float or None
@@ -102,14 +105,16 @@ class FitResult:
     evaluations: int
     timing_offset: float = 0.0
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    begins: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     assumed: tuple[str, ...] = ()
     stiffness: float | None = None
     interrupted: bool = False
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")
-        starts = {name: Frozen(start) for name, start in self.starts.items()}
-        object.__setattr__(self, "starts", Frozen(starts))
+        for name in ("starts", "begins"):
+            held = {key: Frozen(start) for key, start in getattr(self, name).items()}
+            object.__setattr__(self, name, Frozen(held))
 
     @property
     def stderr(self) -> Mapping[str, float]:
@@ -222,6 +227,7 @@ class FitResult:
                 "timing_offset_s": self.timing_offset,
                 "starts": {name: dict(start) for name, start in self.starts.items()},
             },
+            "begins": {name: dict(begin) for name, begin in self.begins.items()},
         }
 
     def to_json(self) -> str:

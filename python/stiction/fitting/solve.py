@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..begins import begins
 from ..drive import assumed_gain
 from ..errors import InputError
 from ..given import instance, whole
@@ -318,7 +319,8 @@ def evaluate(
     fitted = _errors(plant, train, nuisances)
     trained = {each.index for each in train}
     others = [each for each in held if each.index not in trained]
-    heldout = _errors(plant, held, started(plant, others, nuisances)) if held else None
+    begun = started(plant, others, nuisances)
+    heldout = _errors(plant, held, begun) if held else None
     stated = as_stated(plant, given)
     told = assumed_gain(given.drive, train[0].form.input_unit, given.effort_unit)
     return FitResult(
@@ -343,6 +345,7 @@ def evaluate(
         evaluations=evaluations,
         timing_offset=nuisances.timing,
         starts={names[index]: dict(start) for index, start in nuisances.starts.items()},
+        begins=begins(names, [*train, *others], begun),
     )
 
 
