@@ -9,6 +9,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from .. import given
 from ..atomic_files import subfolder, write_text
 from ..begins import save_begins
 from ..best_effort import Failure, attempt
@@ -47,7 +48,7 @@ def write(diagnosis: Diagnosis, folder: Path) -> Path:
     InputError
         The folder cannot be made or written to.
     """
-    made(folder)
+    folder = made(given.path(folder, "report.write: folder"))
     try:
         write_text(folder / "findings.json", diagnosis.to_json() + "\n")
         diagnosis.plant.save(folder / "plant.toml")
