@@ -26,10 +26,10 @@ def refused(call: Callable[[], Any]) -> str:
     return str(caught.value)
 
 
-def stiff(**keywords: Any) -> st.Motor:
+def stiff() -> st.Motor:
     """A motor that divides 1 ms into some thousand steps, none of them in a row."""
     friction = st.FrictionModel("lugre", initial_stiffness=1e9, coulomb=0.3)
-    return st.Motor(0.01, friction=friction, **keywords)
+    return st.Motor(0.01, friction=friction, effects={"relaxation": {"speed": 1e-4}})
 
 
 def test_what_is_known_beforehand_is_refused_at_once_with_the_parameter_that_costs() -> None:
@@ -73,7 +73,7 @@ def test_ensembles_share_what_a_call_may_cost() -> None:
     machine = stiff()
     many = st.Ensemble(machine, 400)
     before = [state["position"] for state in (machine.state,)]
-    said = refused(lambda: many.step_many(np.full(400, 0.1), 7e-3))
+    said = refused(lambda: many.step_many(np.full(400, 0.1), 1.4e-3))
     assert "a smaller friction.initial_stiffness" in said
     refused(lambda: st.simulate_ensemble(machine, np.full((400, 10), 0.1), 1e-3))
     assert before == [0.0]
@@ -82,8 +82,8 @@ def test_ensembles_share_what_a_call_may_cost() -> None:
 
 
 def test_derivatives_and_windows_count() -> None:
-    machine = stiff(effects={"relaxation": {}})
-    motion = st.Motion(np.zeros(4001), np.full(4000, 0.1), 1.85e-3)
+    machine = stiff()
+    motion = st.Motion(np.zeros(4001), np.full(4000, 0.1), 1.3e-3)
     refused(lambda: machine.shoot(motion, np.ones(50), 50))
     refused(lambda: machine.sensitivity(np.full(4000, 0.1), 1e-3, parameters=["body.inertia"]))
     refused(lambda: machine.accompany(motion, stiffness=10.0, damping=1.0))

@@ -237,6 +237,14 @@ pub enum Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
+    /// Where this is too much work for a part of a call: for all of it, as much as is allowed.
+    pub(crate) fn of_all(mut self, allowed: f64) -> Self {
+        if let Self::TooMuchWork { most, .. } = &mut self {
+            *most = allowed;
+        }
+        self
+    }
+
     /// Where this is too much work: of segments, by that time.
     pub(crate) fn until(self, time: f64) -> Self {
         match self {

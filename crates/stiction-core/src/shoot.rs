@@ -70,7 +70,8 @@ impl<S: Scalar> Running<S> {
         let actual: Option<&dyn Fn(f64) -> S> =
             if sensor.misreads() { Some(&behind) } else { None };
         let length = windows.weights.len();
-        let mut left = work::allowed(windows.number(motion.samples()) * length);
+        let all = work::allowed(windows.number(motion.samples()) * length);
+        let mut left = all;
         let mut reached = 0;
         for window in 0..windows.number(motion.samples()) {
             interrupt::check()?;
@@ -91,9 +92,11 @@ impl<S: Scalar> Running<S> {
             let read = positions[start];
             let mut sum = S::constant(0.0);
             shot.allowance = Some(left);
-            shot.simulate_under(&each[start..end], around, &added, dt, |k, run, machine, _| {
-                sum += (machine.effects.sensor(run.position) - read) * windows.weights[k];
-            })?;
+            let done =
+                shot.simulate_under(&each[start..end], around, &added, dt, |k, run, machine, _| {
+                    sum += (machine.effects.sensor(run.position) - read) * windows.weights[k];
+                });
+            done.map_err(|error| error.of_all(work::in_steps(all)))?;
             left = shot.allowance.unwrap_or(left);
             land(window, sum);
         }

@@ -48,6 +48,11 @@ pub fn spend(cost: u64) {
     WITHIN.set(WITHIN.get().wrapping_add(cost));
 }
 
+/// Work in steps of the fast integrator.
+pub fn in_steps(work: f64) -> f64 {
+    work / STEP as f64
+}
+
 /// What a call of so many samples may cost.
 pub fn allowed(samples: usize) -> f64 {
     FIRST + OF_A_SAMPLE * samples as f64
@@ -124,7 +129,7 @@ impl Meter {
 
 /// The refusal of more work than that.
 pub(crate) fn too_much(most: f64, why: &'static str) -> Error {
-    Error::TooMuchWork { most: most / STEP as f64, why, remedy: String::new() }
+    Error::TooMuchWork { most: in_steps(most), why, remedy: String::new() }
 }
 
 #[cfg(test)]
