@@ -30,7 +30,6 @@ def based(
     plant: Plant,
     recordings: Sequence[Recording],
     *,
-    threads: int | None = None,
     wide: bool = False,
     joined: bool = False,
 ) -> tuple[Evidence, Model]:
@@ -53,12 +52,12 @@ def based(
     NotEnoughData
         As for ``Evidence``; a base that lost the inertia that the motion shows.
     """
-    evidence = Evidence(plant, recordings, threads=threads, joined=joined)
+    evidence = Evidence(plant, recordings, joined=joined)
     first = first_pass(
         plant,
         evidence,
         lambda found, through, watch: Evidence(
-            found, recordings, threads=threads, through=through, watch=watch, joined=joined
+            found, recordings, through=through, watch=watch, joined=joined
         ),
         most=MOST_EVALUATIONS,
         wide=wide,
@@ -77,8 +76,6 @@ def based_wider(
     recordings: Sequence[Recording],
     evidence: Evidence,
     final: Model,
-    *,
-    threads: int | None = None,
 ) -> tuple[Evidence, Model] | None:
     """The base through wider kernels, where these alone show the inertia; None elsewhere.
 
@@ -101,7 +98,7 @@ def based_wider(
     if wider_of(final.plant, final.nuisances, evidence.train, evidence.forms) is None:
         return None
     try:
-        other, base = based(plant, recordings, threads=threads, wide=True)
+        other, base = based(plant, recordings, wide=True)
     except InputError:
         # What was found through narrow kernels stands.
         return None
@@ -117,8 +114,6 @@ def based_joined(
     plant: Plant,
     recordings: Sequence[Recording],
     evidence: Evidence,
-    *,
-    threads: int | None = None,
 ) -> tuple[Evidence, Model] | None:
     """The base that is fitted to the rows that decide as well; through wide kernels as before.
 
@@ -127,7 +122,7 @@ def based_joined(
     """
     wide = any(form.widened for form in evidence.forms)
     try:
-        return based(plant, recordings, threads=threads, wide=wide, joined=True)
+        return based(plant, recordings, wide=wide, joined=True)
     except InputError:
         return None
 
