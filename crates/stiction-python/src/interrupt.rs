@@ -6,14 +6,19 @@ use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use stiction_core::interrupt::watched;
 
+use crate::cancel::cancelled;
+
 thread_local! {
     /// What the handler of a signal raised.
     static RAISED: Cell<Option<PyErr>> = const { Cell::new(None) };
 }
 
 /// Lets Python run the handlers of signals that have come; whether one of them raised. Signals come to
-/// the main thread alone: on others it never does.
+/// the main thread alone: others end where what they work under was cancelled.
 fn asks() -> bool {
+    if cancelled() {
+        return true;
+    }
     Python::try_attach(|py| match py.check_signals() {
         Ok(()) => false,
         Err(error) => {

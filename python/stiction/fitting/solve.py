@@ -26,6 +26,7 @@ from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from ..wording import counted
+from ..workers import with_workers
 from .first_pass import first_pass
 from .forms import KERNELS, Through, as_session, as_stated, forms_of
 from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stopped
@@ -149,6 +150,11 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     if not recordings:
         raise InputError("there are no recordings to fit; give at least one")
     max_evaluations = whole(max_evaluations, "max_evaluations", least=0)
+    with with_workers(None):
+        return _fitted(plant, recordings, max_evaluations)
+
+
+def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> FitResult:
     recordings, faults = _without_faults(recordings)
     phase(_logger, "looking through %s", counted(len(recordings), "recording"))
     seen = _Seen(plant, recordings)
