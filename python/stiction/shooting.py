@@ -93,9 +93,17 @@ class ShootingForm(WeakForm):
     def go_by(self, plant: Plant) -> None:
         """Counts accelerations by the inertia of a plant, and starts windows from its runs."""
         self.unit = self.own(plant).inertia
-        if not self.springy:
+        if self._is_rigid(plant):
             self._leader = plant
             self.read_with(self.noise)
+
+    def _is_rigid(self, plant: Plant) -> bool:
+        """Whether pre-sliding is over within a count."""
+        friction = plant.friction.parameters
+        if not {"coulomb", "initial_stiffness"} <= friction.keys():
+            return not self.springy
+        reach = friction["coulomb"].value / friction["initial_stiffness"].value
+        return reach < max(self.count, self.noise)
 
     def driving(self, readings: FloatArray, load: FloatArray | None = None) -> FloatArray:
         """The motion from which windows start, under a load in the place of the recorded one."""

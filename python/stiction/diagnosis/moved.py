@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..finite import finite
-from ..fitting.forms import HORIZONS_S, LEAST_WINDOWS, Through, shows_its_ring
+from ..fitting.forms import HORIZONS_S, LEAST_WINDOWS, Through, followable
 from ..trajectory import FloatArray
 from .evidence import Evidence
 from .influence import limited
@@ -57,7 +57,7 @@ def _can_be_simulated(models: list[Model], evidence: Evidence) -> bool:
     shortest = min(form.dt * len(form.readings) for form in forms)
     if shortest < LEAST_WINDOWS * HORIZONS_S[1]:
         return False
-    return all(m.plant.inertia > 0.0 and shows_its_ring(m.plant, forms) for m in models)
+    return all(model.plant.inertia > 0.0 for model in models)
 
 
 def _powers(models: list[Model], evidence: Evidence) -> list[FloatArray] | None:
@@ -65,7 +65,7 @@ def _powers(models: list[Model], evidence: Evidence) -> list[FloatArray] | None:
     through = Through(horizon=HORIZONS_S[1])
     try:
         windows = Evidence(
-            models[0].plant,
+            followable(models[0].plant, evidence.forms),
             evidence.recordings,
             through=through,
             watch=evidence.watch,
@@ -78,6 +78,7 @@ def _powers(models: list[Model], evidence: Evidence) -> list[FloatArray] | None:
     number = int(block.max()) + 1
     found = []
     for model in models:
-        left = finite(windows.residual(model.plant, model.nuisances))
+        plant = followable(model.plant, windows.forms)
+        left = finite(windows.residual(plant, model.nuisances))
         found.append(np.bincount(block[held], left[held] ** 2, number).astype(np.float64))
     return found

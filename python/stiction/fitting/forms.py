@@ -50,6 +50,9 @@ HORIZONS_S: Final = (0.100, 0.300)
 and let a motion that hangs on a break-away run away."""
 BEYOND_SHOWN: Final = 2.0
 """A contact simulated over windows may become so many times stiffer than samples show."""
+RIGID_SHOWN: Final = 0.5
+"""Share of it that stands for a contact which is rigid to the samples: pre-sliding is over within
+less than coarse readings show."""
 RINGS: Final = 3.0
 """Periods of its ring on the pre-sliding stiffness that a window holds: a start that is wrong by a
 count sets a machine ringing, and of a ring three times as fast as itself the kernel leaves 1 %."""
@@ -217,6 +220,7 @@ def horizon_of(
 def windows_of(plant: Plant, forms: Sequence[WeakForm]) -> float | None:
     """Over how long a rigid contact should be simulated beside the weak form, None for not at all.
 
+    One that rings faster than the samples is rigid to them, and is simulated as stiff as they show.
     It turns round with the reading, whatever that is off by: whether that matters is known once
     both residuals were tried (see ``astray``). The window is the longest one: the state at its
     start comes from the readings too, and the longer the window is the less hangs on it.
@@ -235,10 +239,12 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm]) -> float | None:
     """
     horizon = HORIZONS_S[1]
     shortest = min(form.dt * len(form.readings) for form in forms)
-    led = plant.friction.springy or plant.servo or plant.inertia <= 0.0
-    if led or any(form.prescribed or form.simulated for form in forms):
+    if any(form.prescribed or form.simulated for form in forms) or plant.servo:
         return None
-    return None if shortest < LEAST_WINDOWS * horizon else horizon
+    if plant.inertia <= 0.0 or shortest < LEAST_WINDOWS * horizon:
+        return None
+    rigid = not plant.friction.springy or not shows_its_ring(plant, forms)
+    return horizon if rigid else None
 
 
 def astray(
@@ -333,7 +339,12 @@ def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
         return plant
     shown = plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
     loops = all(isinstance(form, LoopForm) for form in forms)
-    most, start = (shown, 0.5) if loops else (BEYOND_SHOWN * shown, 1.0)
+    if loops:
+        most, start = shown, 0.5
+    elif shows_its_ring(plant, forms):
+        most, start = BEYOND_SHOWN * shown, 1.0
+    else:
+        most, start = RIGID_SHOWN * shown, 0.5
     ends = max(min(stiffness.max or most, most), stiffness.min or 0.0)
     held = replace(stiffness, value=min(stiffness.value, start * ends), max=ends)
     parameters = {**plant.friction.parameters, "initial_stiffness": held}
