@@ -143,9 +143,7 @@ def based_simulated(
         return None
     through = Through(horizon=horizon)
     try:
-        windows = Evidence(
-            final.plant, recordings, through=through, watch=evidence.watch
-        )
+        windows = Evidence(final.plant, recordings, through=through, watch=evidence.watch)
         own = fitted(windows, final.plant, final.nuisances)
         if not own.solution.interrupted and not astray(
             final.plant,

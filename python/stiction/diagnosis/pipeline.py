@@ -235,9 +235,7 @@ def _testable(
             look = again(look, wider) or look
     if not look.selection.interrupted:
         final = look.selection.models[-1]
-        shot = based_simulated(
-            found.plant, session.recordings, look.evidence, final, threads=threads
-        )
+        shot = based_simulated(found.plant, session.recordings, look.evidence, final)
         if shot is not None:
             phase(_logger, "screening the effects again, with the plant simulated over windows")
             look = again(look, shot) or look
