@@ -25,7 +25,7 @@ from stiction.report.axis import Axis
 from stiction.report.chart import Chart, Line, Panel
 from stiction.report.sections import BUILDERS, Section, name_of, rest
 
-FILES = {"report.html", "findings.json", "plant.toml", "figures"}
+FILES = {"report.html", "findings.json", "plant.toml", "begins.toml", "figures"}
 FAULT = "IndexError: a fault of its own"
 
 
@@ -197,7 +197,12 @@ def test_a_figure_that_fails_ends_no_other_command(
     told = capsys.readouterr().out
     assert left_out
     if arguments[0] == "fit":
-        assert {path.name for path in out.iterdir()} >= {"plant.toml", "fit.json", "fit.html"}
+        assert {path.name for path in out.iterdir()} >= {
+            "plant.toml",
+            "begins.toml",
+            "fit.json",
+            "fit.html",
+        }
         told = (out / "fit.html").read_text("utf-8")
     else:
         assert {path.name for path in out.iterdir()} == {"run-trajectory.csv"}

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
-use stiction_core::interrupt::{due, watched};
+use stiction_core::interrupt::watched;
 
 use crate::cancel::cancelled;
 
@@ -37,17 +37,4 @@ pub fn detached<R: Send>(py: Python<'_>, work: impl FnOnce() -> R + Send) -> PyR
         return Err(raised.unwrap_or_else(|| PyKeyboardInterrupt::new_err(())));
     }
     Ok(result)
-}
-
-/// Does long work that changes something, which is as before where the work was refused or interrupted.
-pub fn all_or_nothing<T: Clone, R, E>(
-    changed: &mut T,
-    work: impl FnOnce(&mut T) -> Result<R, E>,
-) -> Result<R, E> {
-    let before = changed.clone();
-    let result = work(changed);
-    if result.is_err() || due() {
-        *changed = before;
-    }
-    result
 }

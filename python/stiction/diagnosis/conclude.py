@@ -20,6 +20,7 @@ from .candidates import scales_of
 from .ceiling import Ceiling, ceiling_of
 from .confirm import confirmed, described, lost, lost_on_test
 from .coordinates import Look, looks
+from .decide import LEAST_SIZE
 from .evidence import Evidence
 from .exact_forms import rests_of
 from .gain import HeldOut, gain_of, residuals_of
@@ -31,6 +32,7 @@ from .listing import in_order
 from .lone import lone_event
 from .loop import borne_out, replayed
 from .model import Model
+from .moved import borne_out_in_motion
 from .noise import Noise
 from .noted import with_checks, with_pushes
 from .omnibus import Rest, rest
@@ -136,7 +138,7 @@ class Conclusion:
         found = with_checks(found, holds_of(self.evidence.shown, final, names))
         held = () if self.brief else self.held
         found = with_checks(found, [each.check for each in held], held_words(held))
-        apart = outlying_in_test(self.evidence, final, self.test, number)
+        apart = outlying_in_test(self.evidence, final, self.test, number, self.relevant)
         found = with_checks(found, apart, apart_words(apart))
         return replayed(replace(found, ceiling=ceiling), self.evidence, self.base, final)
 
@@ -144,7 +146,7 @@ class Conclusion:
     def decided(self) -> Search:
         """The selection, as far as the plant describes the machine with it."""
         selection = described(self.selection, self.evidence, self.null)
-        return borne_out(selection, self.evidence)
+        return borne_out(borne_out_in_motion(selection, self.evidence), self.evidence)
 
     @cached_property
     def rivals(self) -> Sequence[Rival]:
@@ -229,8 +231,19 @@ class Conclusion:
             return surrogates_of(self.evidence, final, number, self.found.seed)[0]
 
         return unnamed(
-            self.evidence, self.confirmed, *self.rests, self.null, null_of_last, self.burst
+            self.evidence,
+            self.confirmed,
+            *self.rests,
+            self.null,
+            null_of_last,
+            self.burst,
+            relevant=self.relevant,
         )
+
+    @cached_property
+    def relevant(self) -> float:
+        """Weighted rms of a residual that matters: less of an effect would have no name either."""
+        return LEAST_SIZE * friction_of(self.evidence, self.base)
 
     @cached_property
     def burst(self) -> Burst | None:
@@ -291,7 +304,7 @@ class Conclusion:
                 "These data cannot be tested: the base imitates every effect, so none could be "
                 "seen."
             )
-            event = None if causes else lone_event(evidence, final, test, 0)
+            event = None if causes else lone_event(evidence, final, test, 0, self.relevant)
             burst = self.burst if event is None else None
             unseen = selection.unseen if event is None else {}
             beside = unseen_words(unseen, verdict != "nothing_missing")

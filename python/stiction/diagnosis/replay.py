@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -20,7 +20,7 @@ from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from ..weak_form import Start, WeakForm
 from .evidence import Evidence
-from .noise import GAUSSIAN, Noise, measure_noise, position_noise
+from .noise import GAUSSIAN, Noise, measure_noise, position_noise, seen_effort
 
 __all__ = [
     "NoReplayError",
@@ -44,6 +44,10 @@ noise allows: what is left of the noise of its speed would be in motion and read
 noise to a replay."""
 BESIDE_NOISE: Final = 1.15
 """Readings are as far from it then as noise takes them, but for so much."""
+ALIKE: Final = 1e-3
+"""Share by which counts of one sensor differ."""
+MOST_TIMES: Final = 3.0
+"""Of an estimate of noise that replays are asked about: with more they tell nothing."""
 TRIED: Final = 2
 """Readings of a motion without noise of the effort, to see what they make of the residual."""
 
@@ -84,14 +88,36 @@ def surrogate_residuals(
         By recording.
     """
 
-    def one(rows: Rows) -> tuple[FloatArray, Noise]:
+    def measured(rows: Rows) -> tuple[_Replay, Noise]:
         replay = _Replay.of(rows, plant, nuisances)
-        noise = replay.noise()
-        return rows.weight * replay.columns(noise, number, seed), noise
+        return replay, replay.noise()
 
-    found = evidence.each(one, evidence.shown)
-    noises = {rows.index: noise for rows, (_, noise) in zip(evidence.shown, found, strict=True)}
-    return np.concatenate([columns for columns, _ in found]), noises
+    def replayed(found: tuple[_Replay, Noise]) -> FloatArray:
+        replay, noise = found
+        return replay.rows.weight * replay.columns(noise, number, seed)
+
+    found = evidence.each(measured, evidence.shown)
+    if evidence.simulated:
+        found = _of_one_sensor(found)
+    noises = {replay.rows.index: noise for replay, noise in found}
+    return np.concatenate(evidence.each(replayed, found)), noises
+
+
+def _of_one_sensor(found: Sequence[tuple[_Replay, Noise]]) -> list[tuple[_Replay, Noise]]:
+    """The same with one noise of the position for all that one sensor read, the middle one.
+
+    Where a machine rests between two counts readings show no noise, and then it moves.
+    """
+
+    def alike(one: WeakForm, other: WeakForm) -> bool:
+        return bool(np.isclose(one.count, other.count, rtol=ALIKE) and one.dt == other.dt)
+
+    usual = []
+    for replay, noise in found:
+        form = replay.rows.form
+        own = [each.position for other, each in found if alike(form, other.rows.form)]
+        usual.append((replay, replace(noise, position=float(np.median(own)))))
+    return usual
 
 
 def noise_of(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
@@ -134,11 +160,31 @@ class _Replay:
         if isinstance(form, ShootingForm):
             start = self.nuisances.start(self.rows.index)
             alone = [form.from_readings_alone(self.plant, start)]
-        else:
-            source = np.random.default_rng(self.rows.index)
-            white, still = position_noise(form), np.zeros(len(self.motion))
-            alone = [self.residual(self.read(white, source), still) for _ in range(TRIED)]
+            return self._as_seen(measure_noise(self.rows, self.plant, self.nuisances, alone), alone)
+        source = np.random.default_rng(self.rows.index)
+        white, still = position_noise(form), np.zeros(len(self.motion))
+        alone = [self.residual(self.read(white, source), still) for _ in range(TRIED)]
         return measure_noise(self.rows, self.plant, self.nuisances, alone)
+
+    def _as_seen(self, noise: Noise, alone: Sequence[FloatArray]) -> Noise:
+        """Noise of which as much is seen in replays as in the recording.
+
+        A machine that rests through a part of its windows keeps noise of the effort to itself, and
+        where it turns round noise does more than through a kernel.
+        """
+        if noise.effort <= 0.0:
+            return noise
+        source = np.random.default_rng([self.rows.index, TRIED])
+        size = len(self.motion)
+        again = [
+            self.residual(
+                self.read(noise.position, source), noise.effort * source.standard_normal(size)
+            )
+            for _ in range(TRIED)
+        ]
+        seen = seen_effort(self.rows, again, alone)
+        times = noise.effort / seen if seen > 0.0 else 1.0
+        return replace(noise, effort=noise.effort * float(np.clip(times, 1.0, MOST_TIMES)))
 
     def columns(self, noise: Noise, number: int, seed: int) -> FloatArray:
         """Residuals of the rows that count, of so many replays; shape (rows, number)."""

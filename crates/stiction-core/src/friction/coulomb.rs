@@ -236,21 +236,21 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
     fn event(
         &self,
         state: &CoulombState<S>,
-        _trial: &CoulombTrial<S>,
+        trial: &CoulombTrial<S>,
         motion: &Motion<S>,
     ) -> Option<Event> {
-        state.0.stops_by(motion.velocity).then_some(Event::Reversal)
+        state.0.stops_over(trial.mode, motion).then_some(Event::Reversal)
     }
 
     #[inline]
     fn margin(
         &self,
-        state: &CoulombState<S>,
-        _trial: &CoulombTrial<S>,
+        _state: &CoulombState<S>,
+        trial: &CoulombTrial<S>,
         motion: &Motion<S>,
         _event: Event,
     ) -> S {
-        motion.velocity * state.0.mode
+        motion.velocity * trial.mode
     }
 
     fn switch(&self, state: &mut CoulombState<S>, _event: Event) {

@@ -272,21 +272,21 @@ impl<S: Scalar> FrictionLaw<S> for LoadDependent<S> {
     fn event(
         &self,
         state: &LoadDependentState<S>,
-        _trial: &LoadDependentTrial<S>,
+        trial: &LoadDependentTrial<S>,
         motion: &Motion<S>,
     ) -> Option<Event> {
-        state.0.stops_by(motion.velocity).then_some(Event::Reversal)
+        state.0.stops_over(trial.mode, motion).then_some(Event::Reversal)
     }
 
     #[inline]
     fn margin(
         &self,
-        state: &LoadDependentState<S>,
-        _trial: &LoadDependentTrial<S>,
+        _state: &LoadDependentState<S>,
+        trial: &LoadDependentTrial<S>,
         motion: &Motion<S>,
         _event: Event,
     ) -> S {
-        motion.velocity * state.0.mode
+        motion.velocity * trial.mode
     }
 
     fn switch(&self, state: &mut LoadDependentState<S>, _event: Event) {

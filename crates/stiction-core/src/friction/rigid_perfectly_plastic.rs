@@ -193,21 +193,21 @@ impl<S: Scalar> FrictionLaw<S> for RigidPerfectlyPlastic<S> {
     fn event(
         &self,
         state: &RigidPerfectlyPlasticState<S>,
-        _trial: &RigidPerfectlyPlasticTrial<S>,
+        trial: &RigidPerfectlyPlasticTrial<S>,
         motion: &Motion<S>,
     ) -> Option<Event> {
-        state.contact.stops_by(motion.velocity).then_some(Event::Reversal)
+        state.contact.stops_over(trial.mode, motion).then_some(Event::Reversal)
     }
 
     #[inline]
     fn margin(
         &self,
-        state: &RigidPerfectlyPlasticState<S>,
-        _trial: &RigidPerfectlyPlasticTrial<S>,
+        _state: &RigidPerfectlyPlasticState<S>,
+        trial: &RigidPerfectlyPlasticTrial<S>,
         motion: &Motion<S>,
         _event: Event,
     ) -> S {
-        motion.velocity * state.contact.mode
+        motion.velocity * trial.mode
     }
 
     fn switch(&self, state: &mut RigidPerfectlyPlasticState<S>, _event: Event) {

@@ -9,7 +9,7 @@
 use super::machine::{Machine, Run};
 use crate::scalar::Scalar;
 
-/// Share of the greatest kinetic energy by which a balance may be off, in (ω·h)²: what a step of the fast
+/// Share of the greatest energy by which a balance may be off, in (ω·h)²: what a step of the fast
 /// integrator leaves of a ring that nothing damps is an eighth of that.
 const ROUGH: f64 = 0.25;
 /// The same of round-off.
@@ -20,7 +20,8 @@ const ROUND_OFF: f64 = 1e-12;
 pub struct Budget<S> {
     /// Taken in, less what was given back; infinite of a contact that brought something along.
     pub taken: S,
-    /// The greatest kinetic energy of the motor so far, beside which errors of steps are small.
+    /// The greatest energy so far that the motor had before a step or was given by one, beside which errors
+    /// of steps are small.
     pub swing: f64,
 }
 
@@ -73,7 +74,8 @@ impl<S: Scalar> Work<S> {
         let counted = from.budget.taken + done - (after - before);
         // What is beyond floats cannot be counted.
         let taken = if counted.re().is_finite() { counted } else { S::constant(f64::INFINITY) };
-        let swing = from.budget.swing.max(before.re()).min(f64::MAX);
+        let given = done.re().abs();
+        let swing = from.budget.swing.max(before.re()).max(given).min(f64::MAX);
         let least = -rough * swing;
         run.budget = Budget { taken, swing };
         self.effort = now;

@@ -59,11 +59,11 @@ impl<S: Scalar> Rigid<S> {
     }
 
     /// The mode over a step. A body that moves already when a contact first meets it slides the way that it
-    /// moves, even where the step is predicted to end the other way: it stops on the way there.
+    /// moves, even where the step is predicted to end the other way: it stops on the way there, which is an event.
     #[inline]
     pub fn mode_over(&self, motion: &Motion<S>) -> f64 {
         let (start, end) = (motion.start_velocity.re(), motion.velocity.re());
-        let moves = start * end < 0.0 && start.abs() > STILL * end.abs();
+        let moves = start * end <= 0.0 && start.abs() > STILL * end.abs();
         if moves && self.mode == 0.0 { sign(start) } else { self.mode_at(motion.velocity) }
     }
 
@@ -98,10 +98,12 @@ impl<S: Scalar> Rigid<S> {
         self.mode * velocity.re() < 0.0
     }
 
-    /// Whether a slide ends at or before this velocity.
+    /// Whether a slide in this mode over a step ends with it: also one that begins with the step, where the
+    /// body moved that way already.
     #[inline]
-    pub fn stops_by(&self, velocity: S) -> bool {
-        self.mode != 0.0 && self.mode * velocity.re() <= 0.0
+    pub fn stops_over(&self, mode: f64, motion: &Motion<S>) -> bool {
+        let slid = self.mode != 0.0 || mode * motion.start_velocity.re() > 0.0;
+        slid && mode * motion.velocity.re() <= 0.0 && mode != 0.0
     }
 
     /// Ends a slide.
