@@ -8,6 +8,7 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11 p
 RUST_NEEDED := $(shell sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
 VENV := .venv
 BIN := $(VENV)/bin
+INSTALLED := $(VENV)/installed
 READY := $(VENV)/ready
 OUT ?= stiction-demo
 BLIND ?= target/blind
@@ -29,7 +30,7 @@ GIVEN_SEED = $(if $(filter-out file,$(origin SEED)),--seed $(SEED))
 
 .PHONY: demo test test-slow lint rust-tests python-tests gate blind ordinary fuzz wheel bench format audit clean toolchain
 
-demo: $(READY)
+demo: $(INSTALLED)
 	$(BIN)/stiction demo --out $(OUT)
 
 test: lint rust-tests python-tests
@@ -48,8 +49,14 @@ toolchain:
 	[ "$$least" = "$(RUST_NEEDED)" ] || { \
 		echo "rustc $$have is older than $(RUST_NEEDED); run: rustup update stable" >&2; exit 1; }
 
-$(READY): $(SOURCES) | toolchain
+# What the demo needs and no more.
+$(INSTALLED): $(SOURCES) | toolchain
 	[ -x $(BIN)/python ] || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+# The tools of development beside it; what was compiled stays.
+$(READY): $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --editable '.[dev]'
 	touch $@
 
@@ -63,8 +70,12 @@ lint: $(READY)
 	$(BIN)/mypy
 	$(BIN)/stubtest stiction._native --ignore-disjoint-bases
 
+# The core's own tests with its assertions on; all others on what the extension was built from, so
+# that a second core need not be compiled for them.
 rust-tests: $(READY)
-	cargo test --quiet
+	cargo test --quiet -p stiction-core -p stiction-dispatch --lib
+	cargo test --quiet --profile editable -p stiction-core --test '*'
+	cargo test --quiet --profile editable -p stiction-capi
 
 # Files go over the processor's cores, each whole, for its tests share what was made once.
 PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --maxprocesses 8 --dist loadfile

@@ -1,14 +1,17 @@
 """What the compiled module holds; checked against the binary by stubtest."""
 
-from collections.abc import Iterable, Sequence
-from typing import Any, Final, Self, final
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Final, Self, TypeVar, final
 
 import numpy as np
 import numpy.typing as npt
 
+_Item = TypeVar("_Item")
+_Result = TypeVar("_Result")
 _Floats = npt.NDArray[np.float64]
 
 __all__ = [
+    "CancelToken",
     "Ensemble",
     "FrictionModel",
     "Motion",
@@ -30,6 +33,12 @@ def adaptively_smoothed(
     readings: npt.ArrayLike, noise: float, halves: Sequence[int]
 ) -> _Floats: ...
 def played(readings: npt.ArrayLike, width: float) -> _Floats: ...
+
+@final
+class CancelToken:
+    def __new__(cls) -> CancelToken: ...
+    def cancel(self) -> None: ...
+    def run(self, work: Callable[[_Item], _Result], item: _Item, /) -> _Result: ...
 
 @final
 class FrictionModel:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeVar
 
-from .errors import UnknownName
-from .given import mapping
+from .errors import InputError, UnknownName
+from .given import mapping, shown
 from .wording import did_you_mean, listed
 
 __all__ = ["ByPath", "Frozen", "freeze", "path_of"]
@@ -31,8 +31,11 @@ class Frozen(Mapping[K, V]):
     _items: dict[K, V]
 
     def __init__(self, given: Mapping[K, V] | Iterable[tuple[K, V]] = ()) -> None:
-        # What cannot change can be shared.
-        items = given._items if isinstance(given, Frozen) else dict(given)
+        try:
+            # What cannot change can be shared.
+            items = given._items if isinstance(given, Frozen) else dict(given)
+        except (TypeError, ValueError):
+            raise InputError(f"{shown(given)} holds nothing by name; give a mapping") from None
         object.__setattr__(self, "_items", items)
 
     def __setattr__(self, name: str, value: object) -> None:

@@ -7,6 +7,7 @@ import stat
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from types import UnionType
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -22,9 +23,11 @@ __all__ = [
     "numbers",
     "path",
     "regular",
+    "shown",
     "unmasked",
     "vacant",
     "whole",
+    "word",
     "written",
 ]
 
@@ -39,13 +42,13 @@ _WORTH_ASKING: Final = 2.0**26
 """Bytes."""
 
 
-def instance(given: object, kind: type[T], where: str, remedy: str) -> T:
+def instance(given: object, kind: type[T] | UnionType, where: str, remedy: str) -> T:
     """Take an object of a class.
 
     Parameters
     ----------
     given : object
-    kind : type
+    kind : type, or several with | between
     where : str
         What it is called, such as ``"fit: plant"``.
     remedy : str
@@ -57,7 +60,7 @@ def instance(given: object, kind: type[T], where: str, remedy: str) -> T:
         Anything else.
     """
     if not isinstance(given, kind):
-        raise InputError(f"{where} is {_shown(given)}; give {remedy}")
+        raise InputError(f"{where} is {shown(given)}; give {remedy}")
     return given
 
 
@@ -72,7 +75,7 @@ def mapping(given: Any, where: str, remedy: str) -> Mapping[str, Any]:
     if given is None:
         return {}
     if not isinstance(given, Mapping):
-        raise InputError(f"{where} is {_shown(given)}; give {remedy}")
+        raise InputError(f"{where} is {shown(given)}; give {remedy}")
     return given
 
 
@@ -134,11 +137,11 @@ def names(given: Any, where: str) -> list[str]:
     if isinstance(given, str):
         raise InputError(f"{where} = '{given}' is a word; give a sequence of names")
     if not isinstance(given, Iterable):
-        raise InputError(f"{where} = {_shown(given)} is no sequence; give a sequence of names")
+        raise InputError(f"{where} = {shown(given)} is no sequence; give a sequence of names")
     names = list(given)
     for k, name in enumerate(names):
         if not isinstance(name, str):
-            raise InputError(f"{where}[{k}] = {_shown(name)} is no word; give a sequence of names")
+            raise InputError(f"{where}[{k}] = {shown(name)} is no word; give a sequence of names")
     return names
 
 
@@ -151,7 +154,7 @@ def path(given: str | os.PathLike[str], where: str) -> Path:
         Anything that names no file: None, a number, bytes.
     """
     if not isinstance(given, str | os.PathLike) or isinstance(os.fspath(given), bytes):
-        raise InputError(f"{where}: {_shown(given)} is not a path; give the name of a file")
+        raise InputError(f"{where}: {shown(given)} is not a path; give the name of a file")
     try:
         nameable = b"\0" not in os.fsencode(given)
     except UnicodeEncodeError:
@@ -179,7 +182,7 @@ def whole(given: Any, name: str, *, least: int, most: int | None = None) -> int:
     if number is None or number < least or (most is not None and number > most):
         upto = "" if most is None else f" to {most}"
         raise InputError(
-            f"{name} = {_shown(given)} is out of bounds: give a whole number from {least}{upto}"
+            f"{name} = {shown(given)} is out of bounds: give a whole number from {least}{upto}"
         )
     return number
 
@@ -236,6 +239,19 @@ def numbers(given: Any, where: str) -> npt.NDArray[np.float64]:
     return array
 
 
+def word(given: Any, where: str) -> str:
+    """Take a word.
+
+    Raises
+    ------
+    InputError
+        Anything else.
+    """
+    if not isinstance(given, str):
+        raise InputError(f"{where} is {shown(given)}; give a word")
+    return given
+
+
 @contextmanager
 def written(file: Path) -> Iterator[None]:
     """Says in a sentence that a file cannot be written.
@@ -253,7 +269,7 @@ def written(file: Path) -> Iterator[None]:
         ) from None
 
 
-def _shown(given: object) -> str:
+def shown(given: object) -> str:
     """An object in a sentence: short, on one line."""
     shown = " ".join(repr(given).split())
     if len(shown) > 60 or type(given).__repr__ is object.__repr__:

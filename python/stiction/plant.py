@@ -292,6 +292,7 @@ class Plant:
             Settings of a servo for a plant without one, or that leave it nothing to move with; a
             rotary payload of which nobody states how far from the axis it hangs.
         """
+        settings = given.mapping(settings, f"{self.source}: settings", "numbers by name")
         if not settings:
             return self
         payload = {

@@ -11,10 +11,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import matplotlib
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from . import given
 from .atomic_files import replacing
@@ -25,6 +22,7 @@ from .trajectory import FloatArray
 if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from .trajectory import Trajectory
 
@@ -98,6 +96,10 @@ def figure(
     Figure, list of Axes
         Panels row by row.
     """
+    # Imported here: colours and sizes are asked for by pages that draw without it.
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
     layout = ConstrainedLayoutEngine(h_pad=0.06, w_pad=0.06)
     drawn = Figure(figsize=(width, height), dpi=RESOLUTION, layout=layout)
     grid = drawn.subplots(
@@ -327,6 +329,8 @@ def save_or_say(what: str, make: Callable[[], Figure], *paths: Path) -> str:
 
 
 def _encoded(fig: Figure, suffix: str) -> bytes:
+    import matplotlib
+
     # Dates, versions and random identifiers would make each file differ from the last.
     metadata = {"Date": None} if suffix == ".svg" else {"Software": None}
     target = BytesIO()

@@ -195,7 +195,13 @@ class FreeRun:
 
 
 def effort_residual(
-    plant: Plant, recording: Recording, *, support: float | None = None
+    plant: Plant,
+    recording: Recording,
+    start: Start = None,
+    *,
+    support: float | None = None,
+    clock: float = 0.0,
+    path: float = 0.0,
 ) -> EffortResidual:
     """The effort that the model leaves unexplained along the measured motion.
 
@@ -207,6 +213,8 @@ def effort_residual(
     support : float, optional
         Width of the kernel in s. Without it the narrowest one from 30 ms on that keeps the
         position noise in the inertia term below 2 % of the effort.
+    start, clock, path
+        As for ``free_run``.
 
     Raises
     ------
@@ -215,7 +223,8 @@ def effort_residual(
     """
     (recording,) = without_failures([recording])
     form = WeakForm(plant, recording, support=support)
-    measured, model = form.efforts(plant)
+    form.clock, form.path = clock, path
+    measured, model = form.efforts(plant, start)
     return EffortResidual(form.time, measured, model, form.kernel.support, form.effort_unit)
 
 

@@ -8,6 +8,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
+from numbers import Integral
 from pathlib import Path
 from typing import Any
 
@@ -107,7 +108,10 @@ class Session:
         ------
         IndexError
             There is no such recording.
+        InputError
+            No whole number.
         """
+        given.instance(index, Integral, "Session.clock: index", "a whole number")
         time = self.recordings[index].time
         clock: FloatArray = time - time[0] + self.starts[index]
         return clock

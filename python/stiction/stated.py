@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from ._native import FrictionModel
-from .catalogue import LawRecord, laws
+from .catalogue import EffectRecord, LawRecord, effects, laws
+from .errors import UnknownName
 from .frozen import Frozen, freeze
-from .given import instance
+from .given import instance, word
 from .parameter import Parameter
+from .wording import did_you_mean, listed
 
 __all__ = ["Effect", "Friction", "check_parameters"]
 
@@ -25,6 +27,21 @@ def check_parameters(given: Mapping[str, Parameter], where: str) -> None:
         instance(value, Parameter, f"{where} {name}", "a Parameter of stiction.parameter")
 
 
+def known(name: str, records: Iterable[LawRecord | EffectRecord], where: str) -> None:
+    """Refuse what is no name of the catalogue.
+
+    Raises
+    ------
+    InputError
+        No word.
+    UnknownName
+    """
+    names = [record.name for record in records]
+    if word(name, where) not in names:
+        near = did_you_mean(name, names)
+        raise UnknownName(f"{where} '{name}' is unknown{near}; known: {listed(names)}")
+
+
 @dataclass(frozen=True)
 class Friction:
     """A law with the parameters and options that the file states."""
@@ -34,6 +51,7 @@ class Friction:
     options: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        known(self.law, laws(), "friction: law")
         freeze(self, Frozen, "parameters", "options")
         check_parameters(self.parameters, "friction:")
 
@@ -61,5 +79,6 @@ class Effect:
     parameters: Mapping[str, Parameter] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        known(self.name, effects(), "effect: name")
         freeze(self, Frozen, "parameters")
         check_parameters(self.parameters, f"effect {self.name}:")

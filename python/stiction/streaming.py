@@ -184,6 +184,8 @@ def _resume(motor: Motor, path: Path, identity: str) -> tuple[int, float]:
     """Sets the state that was kept; samples done until then, and when the run began."""
     try:
         belongs, done, start, state = _read(path)
+    except InputError:
+        raise
     # Whatever stands in a damaged file, a reader of zip archives and arrays may stumble over it.
     except Exception as error:
         raise _damaged(path, error) from None
@@ -201,9 +203,14 @@ def _resume(motor: Motor, path: Path, identity: str) -> tuple[int, float]:
 
 def _read(path: Path) -> tuple[str, int, float, dict[str, Any]]:
     """What a checkpoint belongs to, samples done, when the run began, and the state."""
+    from .recording.formats.npz import check_room
+
     # Opened here, for numpy leaves a file open that it stumbles over.
-    with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-        kept = {name: file[name] for name in file.files}
+    with path.open("rb") as opened:
+        check_room(path, opened)
+        opened.seek(0)
+        with np.load(opened, allow_pickle=False) as file:
+            kept = {name: file[name] for name in file.files}
     done, start = kept["done"], kept["start"]
     if done.shape or done.dtype.kind not in "iu" or done < 0:
         raise ValueError(f"done = {done}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 import unicodedata
 from collections.abc import Iterable
 
@@ -12,6 +13,8 @@ _ALIKE = 0.55
 _LISTED = 24
 
 _LONGEST = 4000
+
+_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 
 NO_POSITION = (
     "there is no measured position to compare with; name its column under [columns], as in "
@@ -48,10 +51,11 @@ def printable(text: str) -> str:
 def sentence(text: str) -> str:
     """A sentence that holds foreign text: printable, and short enough to be read.
 
-    What it begins and ends with is kept: where the fault is, and what to do.
+    What it begins and ends with is kept: where the fault is, and what to do. Where in memory an
+    object lies, as some show it, is left out: that says nothing, and differs from run to run.
     """
     # Cut again, for what is escaped is longer.
-    return _cut(printable(_cut(text)))
+    return _cut(printable(_ADDRESS.sub("", _cut(text))))
 
 
 def _cut(text: str) -> str:
@@ -60,8 +64,11 @@ def _cut(text: str) -> str:
     return f"{text[: _LONGEST // 2]} ... {text[-_LONGEST // 4 :]}"
 
 
-def nearest(word: str, words: Iterable[str]) -> str | None:
+def nearest(word: object, words: Iterable[str]) -> str | None:
     """The one of ``words`` that looks most like ``word``, whatever the case, or None."""
+    # Whatever was given in the place of a word, nothing is like it.
+    if not isinstance(word, str):
+        return None
     by_fold: dict[str, str] = {}
     for candidate in words:
         by_fold.setdefault(candidate.casefold(), candidate)
@@ -69,7 +76,7 @@ def nearest(word: str, words: Iterable[str]) -> str | None:
     return by_fold[hits[0]] if hits else None
 
 
-def did_you_mean(word: str, words: Iterable[str]) -> str:
+def did_you_mean(word: object, words: Iterable[str]) -> str:
     """``" (did you mean 'x'?)"``, or nothing where no word is near."""
     near = nearest(word, words)
     return f" (did you mean '{near}'?)" if near is not None else ""

@@ -29,7 +29,7 @@ class Known(NamedTuple):
 
 def oracle(plant, session, made, baseline):
     """What there is to be found in a session; `baseline` is the plant where fits start from."""
-    seen = Evidence(plant, session.recordings, threads=1)
+    seen = Evidence(plant, session.recordings)
     clean = _without_hidden(plant, made)
     base = fitted(seen, baseline)
     reweighted(seen.train, base.plant, base.nuisances)
@@ -57,7 +57,7 @@ def _without_hidden(plant, made, kept=None):
     for r in made.recordings:
         hidden = r.truth["hidden"]
         torque.append(r.torque_nm + (hidden if kept is None else hidden - r.truth["parts"][kept]))
-    return Evidence(plant, as_session(made, torque).recordings, threads=1)
+    return Evidence(plant, as_session(made, torque).recordings)
 
 
 def _distance(made, seen, clean, base):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,10 @@ import pytest
 
 import stiction as st
 from stiction import Plant
+from stiction.begins import load_begins, save_begins
 from stiction.cli import run
 from stiction.cli.simulate import stems_of
+from stiction.residual import started
 
 DT = 1e-3
 ROWS = 2000
@@ -178,3 +181,84 @@ def test_what_simulate_writes_is_a_recording(motion: str, tmp_path: Path) -> Non
     assert drafted.position == pytest.approx(again.position, abs=0.0)
     assert drafted.input == pytest.approx(again.input, abs=0.0)
     assert drafted.motion == motion
+
+
+PRESLIDING = """
+[drive]
+input = "torque_nm"
+gain = 1.0
+[body]
+inertia = { value = 0.0076, fixed = true }
+[friction]
+law = "dahl"
+coulomb = { value = 0.4, fixed = true }
+initial_stiffness = 400.0
+viscous = { value = 1.0, fixed = true }
+"""
+DRIVE = {"input": "torque_nm", "gain": 1.0}
+BEGIN = {"clock_s": 3.0, "path": 0.5, "force": 0.2}
+
+
+@pytest.fixture
+def preloaded(tmp_path: Path) -> tuple[Path, Path]:
+    """A plant and a recording far below break-away, which begins with a bent contact."""
+    path = tmp_path / "plant.toml"
+    path.write_text(PRESLIDING, encoding="utf-8")
+    plant = Plant.load(path)
+    effort = 0.2 + 0.1 * np.sin(6.0 * TIME)
+    motor = started(plant, 0.0, 0.0, {"force": BEGIN["force"]})
+    position = np.append(0.0, motor.simulate(effort[:-1], DT).position)
+    return path, written(tmp_path / "run.csv", time_s=TIME, torque_nm=effort, position_rad=position)
+
+
+def error_of(path: Path, plant: Path, recording: Path, capsys) -> tuple[float, float]:
+    capsys.readouterr()
+    assert run(["simulate", str(plant), str(recording), "-o", str(path), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    return told["free_run"]["rms"], told["effort_residual"]["relative"]
+
+
+def test_a_recording_begins_as_the_file_beside_the_plant_says(preloaded, tmp_path, capsys):
+    plant, recording = preloaded
+    never = error_of(tmp_path / "o", plant, recording, capsys)
+    save_begins(tmp_path, {"run.csv": BEGIN, "other.csv": BEGIN | {"force": -0.3}})
+    begun = error_of(tmp_path / "o", plant, recording, capsys)
+    assert begun[0] < 0.01 * never[0]
+    assert begun[1] < 0.1 * never[1]
+
+
+def test_a_fit_can_be_simulated_again(preloaded, tmp_path, capsys):
+    _, recording = preloaded
+    session = tmp_path / "session.toml"
+    session.write_text('plant = "plant.toml"\n[[recordings]]\nfile = "run.csv"\n', encoding="utf-8")
+    assert run(["fit", str(session), "-o", str(tmp_path / "fit")]) == 0
+    begins = tomllib.loads((tmp_path / "fit" / "begins.toml").read_text(encoding="utf-8"))
+    assert begins["run.csv"]["force"] == pytest.approx(BEGIN["force"], abs=0.01)
+    rms, _ = error_of(tmp_path / "o", tmp_path / "fit" / "plant.toml", recording, capsys)
+    assert rms < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ('["run.csv"]\nclock_s = 0.0\npath = 0.0\nforces = 1.0\n', "forces"),
+        ('["run.csv"]\nforce = 1.0\n', "clock_s, path are needed"),
+        ('["run.csv"]\nclock_s = 0.0\npath = 0.0\nforce = "a"\n', "force: 'a'"),
+        ('"run.csv" = 3\n', "no table"),
+        ("[\n", "begins.toml"),
+    ],
+)
+def test_a_file_of_begins_that_is_none_is_refused(preloaded, tmp_path, capsys, text, word):
+    plant, recording = preloaded
+    (tmp_path / "begins.toml").write_text(text, encoding="utf-8")
+    assert run(["simulate", str(plant), str(recording), "-o", str(tmp_path / "o")]) == 2
+    said = capsys.readouterr().err
+    assert word in said
+    assert "begins.toml" in said
+
+
+def test_a_name_of_any_characters_comes_back(tmp_path):
+    plant = Plant.from_dict({"friction": {"law": "dahl"}, "body": {"inertia": 1.0}, "drive": DRIVE})
+    found = {'a "b"\\c\n\x01é.csv': BEGIN}
+    save_begins(tmp_path, found)
+    assert load_begins(tmp_path / "plant.toml", plant) == found

@@ -89,7 +89,7 @@ def test_an_interrupted_fit_is_written_and_says_so(
     monkeypatch.setattr("stiction.cli.fit.run", stopped)
     assert run(["fit", str(session), "-o", str(tmp_path / "out")]) == 130
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {"plant.toml", "fit.json", "fit.html"}
+    assert names == {"plant.toml", "begins.toml", "fit.json", "fit.html"}
 
 
 def test_a_page_that_is_being_written_is_finished(

@@ -64,7 +64,7 @@ def swinging():
 
 
 def slow(**keywords):
-    """A motor whose samples are divided into thousands of steps."""
+    """A motor whose samples are divided into hundreds of steps."""
     friction = st.FrictionModel("lugre", initial_stiffness=1e8)
     return st.Motor(1e-3, friction=friction, **keywords)
 
@@ -73,11 +73,11 @@ GAP = {"backlash": {"inertia_share": 0.3, "contact_time": 1e-3}}
 PUSHED = np.full(20_000, 0.1)
 # Numbers of Motion and kernels as the residual has them, from which long calls are made.
 CALLS = {
-    "simulate": lambda m, _: m.simulate(PUSHED, 1e-3, outputs=()),
+    "simulate": lambda m, _: m.simulate(PUSHED, 2e-4, outputs=()),
     "simulate, reference": lambda m, _: m.simulate(PUSHED, 1e-4, outputs=()),
     "simulate_segments": lambda m, _: m.simulate_segments([400.0], [0.1]),
     "follow": lambda m, motion: [m.follow(motion) for _ in range(20)],
-    "sensitivity": lambda m, _: m.sensitivity(PUSHED, 1e-3, ["friction.coulomb"]),
+    "sensitivity": lambda m, _: m.sensitivity(PUSHED, 4e-5, ["friction.coulomb"]),
     "signatures": lambda m, motion: [
         m.signatures(motion, [(e.name, {}) for e in st.effects()], threads=2) for _ in range(5)
     ],
@@ -123,7 +123,7 @@ def test_ctrl_c_ends_an_ensemble_on_all_its_threads(threads):
 
 def test_ctrl_c_ends_one_sample_of_many_motors():
     many = st.Ensemble(slow(), 3000)
-    assert interrupted(lambda: [many.step_many(0.1, 1e-3) for _ in range(100)]) < SOON
+    assert interrupted(lambda: [many.step_many(0.1, 1e-4) for _ in range(1000)]) < SOON
 
 
 def test_ctrl_c_ends_a_contact_that_is_moved(held):
@@ -146,7 +146,7 @@ def test_a_handler_of_ones_own_is_heard_and_may_let_the_call_go_on():
     timer = threading.Timer(0.01, lambda: os.kill(os.getpid(), signal.SIGINT))
     try:
         timer.start()
-        run = slow().simulate(PUSHED[:1500], 1e-3)
+        run = slow().simulate(PUSHED[:1500], 2e-4)
         ended = time.perf_counter()
     finally:
         timer.join()

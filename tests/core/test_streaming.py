@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import os
 import signal
 import subprocess
 import sys
+import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,7 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.recording.expansion import VARIABLE
 
 DT = 2e-4
 # A generator of its own process, killed while it works.
@@ -201,3 +204,28 @@ def test_time_goes_on_where_the_motor_was() -> None:
     machine.simulate(np.zeros(100), DT)
     (part,) = st.stream(machine, [np.zeros(50)], DT, every=10)
     assert part.time[0] == pytest.approx(110 * DT)
+
+
+def test_a_checkpoint_that_expands_beyond_the_ceiling_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "run.npz"
+    list(st.stream(motor(), chunks(2), DT, checkpoint=path))
+    with np.load(path) as file:
+        kept = dict(file)
+    np.savez_compressed(path, **kept, more=np.zeros(100_000))
+    monkeypatch.setenv(VARIABLE, "100000")
+    with pytest.raises(st.InputError, match=f"expands to .* {VARIABLE}"):
+        list(st.stream(motor(), chunks(4), DT, checkpoint=path))
+
+
+def test_a_checkpoint_whose_header_asks_for_more_than_is_there_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.npz"
+    list(st.stream(motor(), chunks(2), DT, checkpoint=path))
+    array = io.BytesIO()
+    header = {"descr": "<f8", "fortran_order": False, "shape": (10**14,)}
+    np.lib.format.write_array_header_1_0(array, header)
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr("more.npy", array.getvalue())
+    with pytest.raises(st.InputError, match="array 'more' is longer than what is stored"):
+        list(st.stream(motor(), chunks(4), DT, checkpoint=path))

@@ -51,7 +51,7 @@ def test_no_friction_rises_from_rest_and_late() -> None:
     )
     record = next(each for each in st.effects() if each.name == "frictional_lag")
     made = make_session(3, base="coulomb", seconds=9.0)
-    evidence = Evidence(plant, as_session(made).recordings, threads=1)
+    evidence = Evidence(plant, as_session(made).recordings)
     for candidate in candidates(record, scales_of(evidence, plant)):
         (bounds,) = candidate.bounds
         stated = with_effect(plant, candidate, [-0.2]).effects[-1].parameters

@@ -69,7 +69,7 @@ def coarse() -> list[st.Recording]:
 
 
 def chosen(counts: int) -> tuple[float | None, Model]:
-    evidence = Evidence(plant(counts), session(counts), threads=1)
+    evidence = Evidence(plant(counts), session(counts))
     base = fitted(evidence, plant(counts))
     return horizon_of(base.plant, base.nuisances, evidence.train, evidence.forms), base
 
@@ -79,7 +79,7 @@ def test_a_coarse_encoder_is_looked_at_by_short_simulations() -> None:
     assert horizon is not None
     assert HORIZONS_S[0] <= horizon <= HORIZONS_S[1]
     assert "weak form" in told(base.evidence.forms, base.plant)
-    evidence = Evidence(plant(COARSE), session(COARSE), threads=1, through=Through(horizon=horizon))
+    evidence = Evidence(plant(COARSE), session(COARSE), through=Through(horizon=horizon))
     assert all(isinstance(form, ShootingForm) for form in evidence.forms)
     assert "shooting" in told(evidence.forms, base.plant)
 
@@ -102,7 +102,7 @@ def test_prescribed_motion_is_never_simulated(coarse: list[st.Recording]) -> Non
             "sensor": {"counts_per_rev": COARSE},
         }
     )
-    evidence = Evidence(machine, moved, threads=1)
+    evidence = Evidence(machine, moved)
     assert horizon_of(machine, Nuisances(), evidence.train, evidence.forms) is None
 
 
@@ -156,7 +156,7 @@ def test_a_plant_too_stiff_to_simulate_looks_bad_and_breaks_nothing(
 
 
 def test_surrogates_and_noise_are_those_of_a_right_model(coarse: list[st.Recording]) -> None:
-    evidence = Evidence(plant(COARSE), coarse, threads=1, through=Through(horizon=0.1))
+    evidence = Evidence(plant(COARSE), coarse, through=Through(horizon=0.1))
     residual = evidence.residual(plant(COARSE), Nuisances())
     null, noises = surrogate_residuals(evidence, plant(COARSE), Nuisances(), 6, 0)
     assert 0.6 < np.std(residual) / np.std(null) < 1.5

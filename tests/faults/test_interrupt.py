@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 import signal
 import subprocess
@@ -45,19 +46,26 @@ def lasts(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], float]:
     return measured
 
 
-def moments(verb: str, lasts: float) -> list[float]:
-    """Early, in the middle and late; drawn anew for each test."""
-    source = random.Random()
+@pytest.fixture
+def source() -> random.Random:
+    """Draws moments anew for each test; what failed shows the seed, and ``SEED`` gives it again."""
+    seed = int(os.environ.get("SEED") or random.SystemRandom().randrange(10**6))
+    print(f"SEED={seed}")
+    return random.Random(seed)
+
+
+def moments(verb: str, lasts: float, source: random.Random) -> list[float]:
+    """Early, in the middle and late."""
     number = 1 if verb == "demo" else MOMENTS
     return [SHORTEST_S + lasts * (k + source.random()) / number for k in range(number)]
 
 
 @pytest.mark.parametrize("verb", VERBS)
 def test_an_interrupted_command_says_so_and_leaves_whole_files(
-    verb: str, tmp_path: Path, lasts: Callable[[str], float]
+    verb: str, tmp_path: Path, lasts: Callable[[str], float], source: random.Random
 ) -> None:
     answers = []
-    for k, moment in enumerate(moments(verb, lasts(verb))):
+    for k, moment in enumerate(moments(verb, lasts(verb), source)):
         folder = desk(tmp_path / f"desk{k}")
         running = Running(arguments(verb, folder / "out"), folder)
         time.sleep(moment)
@@ -81,13 +89,14 @@ def test_old_files_or_new_ones_are_there_after_a_signal(
     tmp_path: Path,
     lasts: Callable[[str], float],
     good: Callable[[str], dict[str, bytes]],
+    source: random.Random,
 ) -> None:
     folder = desk(tmp_path / "desk")
     out = folder / "out"
     lay(good(verb), out)
     running = Running(arguments(verb, out), folder)
     # Files are written at the end.
-    time.sleep(random.Random().uniform(0.8, 1.05) * lasts(verb))
+    time.sleep(source.uniform(0.8, 1.05) * lasts(verb))
     running.strike(number)
     ended = running.ended()
     assert ended.status in (0, 130, -signal.SIGTERM), ended
@@ -99,7 +108,7 @@ def test_old_files_or_new_ones_are_there_after_a_signal(
     assert_whole(tmp_path / "answer")
 
 
-def test_ctrl_c_while_the_program_starts_is_heard(tmp_path: Path) -> None:
+def test_ctrl_c_while_the_program_starts_is_heard(tmp_path: Path, source: random.Random) -> None:
     folder = desk(tmp_path / "desk")
     started = subprocess.Popen(
         [sys.executable, "-m", "stiction", *arguments("diagnose", folder / "out")],
@@ -110,7 +119,7 @@ def test_ctrl_c_while_the_program_starts_is_heard(tmp_path: Path) -> None:
         # What runs in the background may be told to ignore Ctrl-C.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
-    time.sleep(random.Random().uniform(0.3, 1.5))
+    time.sleep(source.uniform(0.3, 1.5))
     started.send_signal(signal.SIGINT)
     _, error = started.communicate(timeout=PATIENCE_S)
     assert started.returncode in (0, 130, -signal.SIGINT), error

@@ -15,6 +15,10 @@ from .shrink import shrunk
 
 SHRINK_S = 20.0
 """For making one find short."""
+SLOWER = 4.0
+"""Times that for one that shows only after seconds."""
+ALL_SHRINK_S = 60.0
+"""For all of them together, on the clock: who waits for an answer must know how long."""
 
 
 def main() -> int:
@@ -37,26 +41,33 @@ def main() -> int:
             print(f"    python -m tests.fuzz --case {task.case}", flush=True)
     except KeyboardInterrupt:
         print("interrupted")
-    _shrink_all(found, min(SHRINK_S, args.seconds / 6.0), keeping=args.keep)
+    _shrink_all(
+        found, min(SHRINK_S, args.seconds / 6.0), min(ALL_SHRINK_S, args.seconds), args.keep
+    )
     print(summary(tally, time.monotonic() - began))
     return 1 if tally.finds else 0
 
 
-def _shrink_all(found: list[tuple[Task, Find]], seconds: float, *, keeping: bool) -> None:
-    """Each find once more, as short as it gets in so many seconds."""
+def _shrink_all(
+    found: list[tuple[Task, Find]], seconds: float, altogether: float, keeping: bool
+) -> None:
+    """Each find once more, as short as it gets in its share of the time."""
+    found = [(task, find) for task, find in found if find.kind != "fuzzer"]
     if not found:
         return
+    last = time.monotonic() + altogether
     worker = Worker()
     try:
-        for task, find in found:
-            if find.kind == "fuzzer":
-                continue
+        for number, (task, find) in enumerate(found):
             slow = find.kind in ("hang", "waits for ever")
+            now = time.monotonic()
+            share = max(last - now, 0.0) / (len(found) - number)
+            end = now + min(seconds * (SLOWER if slow else 1.0), share)
             program = shrunk(
                 task.program(),
                 find,
-                lambda lines, name=task.name: worker.run(Task(name, "shrunk", lines)),
-                seconds * (4.0 if slow else 1.0),
+                lambda lines, name=task.name, end=end: worker.run(Task(name, "shrunk", lines), end),
+                end,
             )
             print(f"\n{find.signature} ({task.case})\n    " + "\n    ".join(program), flush=True)
             if keeping:

@@ -38,7 +38,8 @@ def receiver(draw: Draw, cls: type) -> str:
     if name == "Ensemble":
         return f"st.Ensemble({draw.motor()}, 3)"
     if name == "Plant":
-        return draw.plant() if not draw.odd() else f"st.Plant.from_dict({draw.plant_table()})"
+        plain = f"plant({draw.pick(sorted(LAWS))!r})"
+        return plain if draw.chance(0.3) else f"st.Plant.from_dict({draw.plant_table()})"
     if name == "Recording":
         return draw.recording()
     if name == "Session":

@@ -138,11 +138,16 @@ class Worker:
         called = callee(line, self.task.name.partition(".")[0])
         return Find(name, _place(dump) or called, f"{name} in {called}", line)
 
-    def run(self, task: Task) -> list[Find]:
-        """Run one case to its end."""
+    def run(self, task: Task, until: float = math.inf) -> list[Find]:
+        """Run one case to its end, or to this time of the clock, by which it found nothing."""
         self.give(task)
         while True:
-            wait([self.pipe, self.process.sentinel], timeout=1.0)
+            left = until - time.monotonic()
+            if left <= 0.0:
+                self.end()
+                self._start()
+                return []
+            wait([self.pipe, self.process.sentinel], timeout=min(1.0, left))
             found = self.poll()
             if found is not None:
                 return found[0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import hashlib
 import inspect
 import math
@@ -104,14 +105,16 @@ def run(program: list[str], beginning: Any = None) -> tuple[list[Find], list[str
     digests: list[str] = []
     try:
         names = world.namespace(folder)
-        for number, line in enumerate(program):
-            if beginning is not None:
-                beginning(number)
-            found, digest = _step(line, names)
-            finds += found
-            digests.append(digest.replace(str(folder), "FOLDER"))
-            if found:
-                break
+        # Names without a folder are drawn too: what they write must not stay for the next case.
+        with contextlib.chdir(folder):
+            for number, line in enumerate(program):
+                if beginning is not None:
+                    beginning(number)
+                found, digest = _step(line, names)
+                finds += found
+                digests.append(digest.replace(str(folder), "FOLDER"))
+                if found:
+                    break
     finally:
         if any(folder.iterdir()):
             shutil.rmtree(folder, ignore_errors=True)
@@ -344,7 +347,9 @@ def _feed(digest: Any, value: Any, depth: int) -> None:
     if depth > 6:
         return
     if isinstance(value, np.ndarray):
-        digest.update(value.tobytes() if value.dtype != object else repr(value).encode())
+        # What lies under a mask is no part of it, and the masked number has no bytes at all.
+        plain = value.dtype != object and not isinstance(value, np.ma.MaskedArray)
+        digest.update(value.tobytes() if plain else repr(value).encode())
     elif isinstance(value, str):
         digest.update(ADDRESS.sub("", value).encode("utf-8", "replace"))
     elif isinstance(value, int | float | complex | bytes | type(None)):

@@ -15,7 +15,7 @@ SIMPLE = (0.0, 1.0, 0.1)
 
 
 def shrunk(
-    program: Program, find: Find, judged: Callable[[Program], list[Find]], seconds: float
+    program: Program, find: Find, judged: Callable[[Program], list[Find]], end: float
 ) -> Program:
     """The shortest program that was reached and still gives a find of this signature.
 
@@ -23,10 +23,9 @@ def shrunk(
     ----------
     judged : callable
         The finds of a program.
-    seconds : float
-        For all tries together.
+    end : float
+        Of the monotonic clock, when all tries must have come to an end.
     """
-    end = time.monotonic() + seconds
     best, tried = program, {tuple(program)}
     going = True
     while going:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator
 from functools import wraps
 from itertools import count
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -201,7 +204,7 @@ def test_a_find_is_made_short() -> None:
         return [Find("kind", "where", "")] if any("load=" in line for line in lines) else []
 
     program = ["y = 3", *LINES, "x.simulate([0.1], 1e-3, load=0.25, outputs=['position'])"]
-    short = shrunk(program, Find("kind", "where", ""), judged, 5.0)
+    short = shrunk(program, Find("kind", "where", ""), judged, time.monotonic() + 5.0)
     assert len(short) == 1
     assert "outputs" not in short[0]
 
@@ -228,3 +231,42 @@ def test_a_sentence_of_the_house_is_one() -> None:
     with pytest.raises(st.InputError) as caught:
         st.FrictionModel("lugr")
     assert fault_of_sentence(str(caught.value)) == ""
+
+
+PROGRAMS = """
+from tests.fuzz.cases import names, program
+from hashlib import sha256
+drawn = [line for name in names() for k in range(3) for line in program(name, f"7.{k}")]
+print(sha256("\\n".join(drawn).encode("utf-8", "replace")).hexdigest())
+"""
+
+
+def test_a_case_is_the_same_in_every_process() -> None:
+    digests = {
+        subprocess.run(
+            [sys.executable, "-c", PROGRAMS],
+            env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": os.pathsep.join(sys.path)},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert len(digests) == 1
+
+
+def test_a_case_that_is_given_no_more_time_found_nothing(
+    planted: Callable[[Callable[..., Any]], Worker],
+) -> None:
+    worker = planted(waits_for_ever)
+    began = time.monotonic()
+    assert worker.run(Task("Motor.simulate", "planted", LINES), began + 0.5) == []
+    assert time.monotonic() - began < 20.0
+
+
+def test_a_program_leaves_nothing_where_the_fuzzer_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert not judge(["x = motor()", "x.simulate([0.1], 1e-3).save('here.npz')"])
+    assert not list(tmp_path.iterdir())

@@ -106,6 +106,8 @@ PRODUCERS: dict[str, Callable[[], Any]] = {
     "Signal": lambda: stiction.plan.plan(plant(), only=["turns"]).signals[0],
     "Recorded": lambda: stiction.paper.Recorded(1e-3, wave(300), 1e-3 * wave(300, 1)),
     "Estimate": lambda: stiction.paper.estimate(stiction.paper.experiment_1()),
+    "Measured": lambda: stiction.compare.Measured(True, {"a": 1.0}),
+    "Limits": lambda: stiction.plan.Limits(1.0, 2.0, 3.0),
     "Number": lambda: stiction.paper.Number(1.0, "N·m"),
     "Parameter": lambda: stiction.parameter.Parameter(0.1, 0.0, 1.0),
     "RowKernel": lambda: st._native.RowKernel([0.25, 0.5, 0.25], [1.0, -2.0, 1.0], 1, 0.01),
@@ -210,7 +212,8 @@ def _look(x: Any) -> str:
         shown.append(html(x))
     for name in dir(type(x)):
         if not name.startswith("_") and not callable(getattr(type(x), name)):
-            with contextlib.suppress(AttributeError):
+            # What an object cannot tell, it may refuse: a plant that lacks what it is asked for.
+            with contextlib.suppress(AttributeError, st.InputError):
                 shown.append(repr(getattr(x, name)))
     return "\n".join(shown)
 

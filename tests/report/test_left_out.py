@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from tests.cli.desk import Desk
 from tests.report.canned import diagnosis
 from tests.report.test_report import Page
@@ -22,9 +21,11 @@ from stiction.diagnosis import Diagnosis
 from stiction.diagnosis.omnibus import Rest, View
 from stiction.diagnosis.pictures import Tracking
 from stiction.report import drawings, figures
+from stiction.report.axis import Axis
+from stiction.report.chart import Chart, Line, Panel
 from stiction.report.sections import BUILDERS, Section, name_of, rest
 
-FILES = {"report.html", "findings.json", "plant.toml", "figures"}
+FILES = {"report.html", "findings.json", "plant.toml", "begins.toml", "figures"}
 FAULT = "IndexError: a fault of its own"
 
 
@@ -46,7 +47,8 @@ def faulty(*_: object, **__: object) -> Any:
 
 def quick(order: drawings.Order) -> drawings.Order:
     """The figure in name, with nothing in it."""
-    shown = drawings._Shown(lambda *_, narrow: Figure((1.0, 1.0)), "A label of it.", "A caption.")
+    empty = Chart(100.0, [Panel(Axis(0.0, 1.0), Axis(0.0, 1.0), (), 10.0)])
+    shown = drawings._Shown(lambda *_, narrow: empty, "A label of it.", "A caption.")
     return drawings.Order(order.name, lambda _: shown)
 
 
@@ -165,10 +167,10 @@ def test_views_before_and_after_need_not_have_the_same_stretches_nor_coordinates
         causes=((before[0], fewer(after[0], 7)),),
     )
     found = replace(found, pictures=cut)
-    drawn = figures.cause(found, 0)
-    curves = {line.get_label(): line.get_xdata() for line in drawn.axes[0].get_lines()}
+    (panel,) = figures.cause(found, 0).panels
+    curves = {mark.label: mark.x for mark in panel.marks if isinstance(mark, Line)}
     assert max(curves["after"]) < max(curves["before"])
-    assert len(figures.coordinates(found).axes) >= len(after)
+    assert len(figures.coordinates(found).panels) >= len(after)
     section = rest.build(found, {})
     assert section is not None
     assert len(section.content["rows"]) == len(after)
@@ -195,7 +197,12 @@ def test_a_figure_that_fails_ends_no_other_command(
     told = capsys.readouterr().out
     assert left_out
     if arguments[0] == "fit":
-        assert {path.name for path in out.iterdir()} >= {"plant.toml", "fit.json", "fit.html"}
+        assert {path.name for path in out.iterdir()} >= {
+            "plant.toml",
+            "begins.toml",
+            "fit.json",
+            "fit.html",
+        }
         told = (out / "fit.html").read_text("utf-8")
     else:
         assert {path.name for path in out.iterdir()} == {"run-trajectory.csv"}

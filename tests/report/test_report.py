@@ -27,11 +27,12 @@ import stiction as st
 from stiction.diagnosis.gain import Gain
 from stiction.diagnosis.omnibus import Rest
 from stiction.diagnosis.result import CandidateRow, Verdict
+from stiction.fitting.waves import waves_of
 from stiction.parameter import Parameter
 from stiction.report import write
-from stiction.report.figures import headline, most_shown
+from stiction.report.figures import most_shown
+from stiction.report.labels import shortened
 from stiction.report.numbers import between, digits, percent, quantity, tick
-from stiction.report.panels import shortened
 from stiction.report.sections.parameters import rows_of_effect
 from stiction.stated import Effect
 
@@ -145,7 +146,7 @@ def test_files_beside_the_report_are_whole(pages: dict[str, Path], verdict: Verd
     found = diagnosis(verdict)
     assert json.loads((folder / "findings.json").read_text("utf-8")) == json.loads(found.to_json())
     assert st.Plant.load(folder / "plant.toml") == found.plant
-    names = {"report.html", "findings.json", "plant.toml", "figures"}
+    names = {"report.html", "findings.json", "plant.toml", "begins.toml", "figures"}
     assert {path.name for path in folder.iterdir()} == names
     figures = sorted(path.stem for path in (folder / "figures").iterdir())
     drawn = ["before-after", "candidates", "coordinates", "errors"]
@@ -174,7 +175,7 @@ def test_same_diagnosis_gives_the_same_bytes(pages: dict[str, Path], tmp_path: P
     (tmp_path / "report.html").write_text("an earlier report")
     write(diagnosis("missing_effect"), tmp_path)
     files = [path.relative_to(first) for path in first.rglob("*") if path.is_file()]
-    assert len(files) == 8
+    assert len(files) == 9
     for file in files:
         assert (tmp_path / file).read_bytes() == (first / file).read_bytes()
 
@@ -302,7 +303,7 @@ def test_what_stops_a_report_half_way_leaves_whole_files_and_the_numbers_first(
         assert json.loads((tmp_path / "findings.json").read_text("utf-8"))["seed"] == seed
         assert (tmp_path / "report.html").read_bytes() == page
         assert {path.name for path in tmp_path.iterdir()} == {
-            *("report.html", "findings.json", "plant.toml", "figures")
+            *("report.html", "findings.json", "plant.toml", "begins.toml", "figures")
         }
         monkeypatch.undo()
 
@@ -316,16 +317,16 @@ def test_a_file_in_place_of_the_folder_is_refused_in_a_sentence(tmp_path: Path) 
 
 def test_names_that_cannot_be_drawn_are_drawn_in_part() -> None:
     assert shortened("run.csv", 30) == "run.csv"
-    assert shortened("$a$ 名\udcff\n", 30) == r"\$a\$ ???"
+    assert shortened("$a$ 名\udcff\n\u202e", 30) == "$a$ 名???"
     assert shortened("a_long_name_of_a_recording.csv", 15) == "a_long_…ing.csv"
 
 
 def test_a_headline_is_drawn_only_from_pictures() -> None:
-    drawn = headline(diagnosis("missing_effect"))
+    drawn = diagnosis("missing_effect").plot()
     assert len(drawn.axes) == 3
-    assert len(headline(diagnosis("nothing_missing")).axes) == 2
+    assert len(diagnosis("nothing_missing").plot().axes) == 2
     with pytest.raises(st.InputError, match="nothing to draw"):
-        headline(diagnosis("data_fault"))
+        diagnosis("data_fault").plot()
     assert all(panel.get_ylabel().endswith("N·m)") for panel in drawn.axes)
     assert drawn.axes[-1].get_xlabel() == "time in the recording (s)"
 
@@ -339,22 +340,25 @@ def test_a_wave_is_told_by_its_amplitude_and_by_the_order_that_was_chosen() -> N
         f"{path}.cosine_2": parameter(0.0001, 0.001, "1"),
         f"{path}.sine_2": parameter(0.0002, 0.001, "1"),
     }
+    waves = waves_of(fitted, np.diag([1e-6] * 4))
+    del waves[f"{path}.amplitude_2"]
     values = {"cosine": 0.03, "sine": 0.0004, "order": 6.0, "order_2": 12.0}
     effect = Effect(
         record.name, MappingProxyType({name: Parameter(v) for name, v in values.items()})
     )
-    rows = rows_of_effect(effect, fitted, record, replace(plant(), effects=(effect,)), "N·m")
+    machine = replace(plant(), effects=(effect,))
+    rows = rows_of_effect(effect, fitted, waves, record, machine, "N·m")
+    # The parts stand alone where a wave is not told as a whole.
     assert [row["name"] for row in rows] == [
-        *("amplitude", "cosine", "sine", "order"),
-        *("amplitude_2", "cosine_2", "sine_2", "order_2"),
+        *("amplitude", "phase", "order"),
+        *("cosine_2", "sine_2", "order_2"),
     ]
-    first, order = rows[0], rows[3]
+    first, phase, order = rows[:3]
     assert (first["value"], first["unit"]) == ("3.00", "%")
+    assert (phase["value"], phase["unit"]) == ("0.013", "rad")
     assert (order["value"], order["unit"]) == ("6", "per turn")
     assert order["notes"] == ["chosen, not fitted"]
-    # A part of a wave is not doubted where the other part is there.
-    assert rows[2]["notes"] == []
-    assert rows[5]["notes"] == rows[6]["notes"] == ["not told from 0"]
+    assert rows[3]["notes"] == rows[4]["notes"] == ["not told from 0"]
 
 
 def test_what_is_flat_everywhere_stands_in_the_table_alone() -> None:

@@ -11,7 +11,7 @@ from tests.report.test_report import undrawn
 from stiction.diagnosis.gain import Gain
 from stiction.diagnosis.result import Verdict
 from stiction.report import write
-from stiction.report.panels import told_apart
+from stiction.report.labels import told_apart
 
 
 def test_names_that_are_too_long_stay_apart() -> None:

@@ -12,7 +12,7 @@ use stiction_dispatch::{Task, Width, alone};
 use crate::scalar::Scalar;
 
 /// Derivative columns carried by one [`Dual`]: one pass of the model yields this many.
-pub const COLUMNS: usize = 16;
+pub const COLUMNS: usize = 8;
 
 /// A value with its derivatives with respect to [`COLUMNS`] seeded parameters.
 ///

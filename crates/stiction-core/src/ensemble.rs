@@ -10,13 +10,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::error::{Error, Result};
 use crate::finite;
 use crate::friction::{Law, Statistics};
-use crate::integrate::{LONGEST_PHASE, parts};
+use crate::integrate::{Integrator, LONGEST_PHASE, parts};
 use crate::interrupt::{self, Pace};
 use crate::lanes::{self, Job, Width};
 use crate::model::LawSpec;
 use crate::motor::{
     Column, EffectSpec, Motor, MotorSpec, PerSample, Running, Standing, Surroundings,
 };
+use crate::work::{self, Meter};
 
 /// What members of an ensemble differ in: rows of values, one for each path.
 #[derive(Debug, Clone, Copy)]
@@ -175,6 +176,8 @@ impl<'a> Plan<'a> {
 pub struct Ensemble {
     spec: MotorSpec,
     members: Vec<Running<f64>>,
+    /// What a second of all of them costs at least.
+    rate: f64,
 }
 
 impl Ensemble {
@@ -209,7 +212,9 @@ impl Ensemble {
             running.resume(motor.running());
             Ok(running)
         });
-        Ok(Self { spec: spec.clone(), members: members.collect::<Result<_>>()? })
+        let members = members.collect::<Result<Vec<_>>>()?;
+        let rate = members.iter().map(|running| running.cost(1.0)).sum();
+        Ok(Self { spec: spec.clone(), members, rate })
     }
 
     /// The motor that all of them are copies of.
@@ -255,10 +260,12 @@ impl Ensemble {
                 return Err(Error::Length { name: name.to_owned(), given, wanted: members });
             }
         }
+        self.check_work(loads, dt)?;
         let steps = self.steps_of(dt);
         let before = (steps > LONG).then(|| self.members.clone());
         let each = PER_MEMBER + (steps / members.max(1) as f64) as u64;
         let mut pace = Pace::default();
+        let mut meter = Meter::new(work::allowed(members));
         // Those that may run away go first, and back where one of them does.
         let mut watched: Vec<(usize, Standing)> = Vec::new();
         for k in 0..members {
@@ -270,7 +277,9 @@ impl Ensemble {
                 break;
             }
             let standing = running.standing();
-            if let Err(error) = running.step_watched(inputs.at(k), loads.at(k), dt) {
+            if let Err(error) =
+                running.step_watched_within(inputs.at(k), loads.at(k), dt, &mut meter)
+            {
                 for (k, standing) in watched {
                     self.members[k].return_to(standing);
                 }
@@ -296,6 +305,26 @@ impl Ensemble {
             return Err(Error::Interrupted);
         }
         Ok(())
+    }
+
+    /// Whether effects or the integrator may divide samples further than parameters do.
+    fn may_divide_further(&self) -> bool {
+        self.spec.integrator != Integrator::Fast || !self.spec.effects.is_empty()
+    }
+
+    /// Refuses a sample of all members that takes more work than a call may make.
+    fn check_work(&self, loads: PerSample<'_>, dt: f64) -> Result<()> {
+        let members = self.members.len();
+        let meter = Meter::new(work::allowed(members));
+        let most = if self.may_divide_further() { f64::INFINITY } else { dt * self.rate };
+        // Few members cannot come to it, and of plain ones nobody has to be asked.
+        let dearest = self.spec.integrator.dearest_sample();
+        if meter.foresee(most.min(members as f64 * dearest)).is_ok() {
+            return Ok(());
+        }
+        let each = self.members.iter().enumerate();
+        let cost = each.map(|(k, running)| running.cost_here(loads.at(k), dt).min(dearest)).sum();
+        meter.foresee(cost).map_err(|error| self.spec.blame(error))
     }
 
     /// Whether one would want to interrupt samples of this plan.
@@ -333,7 +362,17 @@ impl Ensemble {
                 .check_step(longest)
                 .map_err(|error| Error::Member { member, problem: error.to_string() })?;
         }
-        let before = (samples >= MANY || self.takes_long(plan)).then(|| self.members.clone());
+        let most = work::allowed(members * samples);
+        let foreseen =
+            |running: &Running<f64>| running.foreseen(&Surroundings::NONE, plan.dt, samples);
+        let cost: f64 = self.members.iter().map(foreseen).sum();
+        Meter::new(most).foresee(cost).map_err(|error| self.spec.blame(error))?;
+        let long = samples >= MANY || self.takes_long(plan) || cost > LONG;
+        let before = (long || self.may_divide_further()).then(|| self.members.clone());
+        // Of what is short, nothing could be taken back.
+        let most = before.as_ref().map(|_| most);
+        let spent = Mutex::new(0.0);
+        let too_much = || most.is_some_and(|most| spent.lock().is_ok_and(|spent| *spent > most));
         if samples < MANY {
             plan.check_finite()?;
         }
@@ -358,6 +397,10 @@ impl Ensemble {
                     Some(Work::Alone(motor)) => motor,
                 };
                 let member = motor.number;
+                if too_much() {
+                    break;
+                }
+                motor.running.allowance = Some(most.unwrap_or(f64::INFINITY));
                 if halted.load(Ordering::Relaxed) || !plan.is_finite_for(member) {
                     halted.store(true, Ordering::Relaxed);
                     break;
@@ -370,16 +413,25 @@ impl Ensemble {
                 {
                     *failed = Some((member, error));
                 }
+                let left = motor.running.allowance.take();
+                if let (Some(most), Some(left), Ok(mut spent)) = (most, left, spent.lock()) {
+                    // What has run out has spent more than there was.
+                    *spent += if left > 0.0 { most - left } else { f64::INFINITY };
+                }
             }
         };
         interrupt::shared(plan.threads.min(members), labour);
         let interrupted = interrupt::check();
-        if halted.into_inner() || interrupted.is_err() {
+        let too_much = too_much();
+        if halted.load(Ordering::Relaxed) || interrupted.is_err() || too_much {
             if let Some(before) = before {
                 self.members = before;
             }
             interrupted?;
             plan.check_finite()?;
+        }
+        if let (true, Some(most)) = (too_much, most) {
+            return Err(self.spec.blame(work::too_much(most, work::PARTS)));
         }
         match failed.into_inner() {
             Ok(Some((member, error))) => Err(Error::Member { member, problem: error.to_string() }),

@@ -148,17 +148,34 @@ pub enum Error {
     /// Whoever called wants no answer any more.
     #[error("the call was interrupted; the machine is as it was before it")]
     Interrupted,
-    /// More work than a call may make.
+    /// More work than a call of so many samples may make.
     #[error(
-        "segments take more than {most} steps of this machine until {} s; ask for more rows with \
-         times, which allow as many more, give a larger tolerance, or run shorter segments",
+        "the run takes more work than {most:.2e} inner steps, which are allowed for a call of that \
+         many samples: {why}; give {remedy}a shorter dt, or fewer samples a call"
+    )]
+    TooMuchWork {
+        /// How many a call may take.
+        most: f64,
+        /// What takes them.
+        why: &'static str,
+        /// What to change, with a comma behind it; empty where nobody looked.
+        remedy: String,
+    },
+    /// The same of segments.
+    #[error(
+        "segments take more work than {most:.2e} inner steps until {} s: {why}; ask for more rows with \
+         times, which allow some more, give {remedy}a larger tolerance, or run shorter segments",
         Shown(*time)
     )]
     TooManySteps {
         /// How many a call may take.
         most: f64,
+        /// What takes them.
+        why: &'static str,
         /// Until when it would have taken more.
         time: f64,
+        /// What to change, with a comma behind it; empty where nobody looked.
+        remedy: String,
     },
     /// A state that does not fit the law.
     #[error("state entry '{name}' {problem}; give a state that the same law returned")]
@@ -220,6 +237,24 @@ pub enum Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
+    /// Where this is too much work for a part of a call: for all of it, as much as is allowed.
+    pub(crate) fn of_all(mut self, allowed: f64) -> Self {
+        if let Self::TooMuchWork { most, .. } = &mut self {
+            *most = allowed;
+        }
+        self
+    }
+
+    /// Where this is too much work: of segments, by that time.
+    pub(crate) fn until(self, time: f64) -> Self {
+        match self {
+            Self::TooMuchWork { most, why, remedy } => {
+                Self::TooManySteps { most, why, time, remedy }
+            }
+            other => other,
+        }
+    }
+
     /// An unknown name with the nearest known one suggested.
     pub fn unknown<'a>(
         kind: impl Into<String>,

@@ -38,3 +38,4 @@ mod traces;
 mod track;
 pub mod trig;
 pub mod wave;
+pub mod work;

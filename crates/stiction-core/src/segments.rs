@@ -3,8 +3,9 @@
 use crate::error::{Error, Result};
 use crate::friction::{FrictionLaw, LawState};
 use crate::integrate::{Account, Adaptive, LONGEST_PHASE, Machine, Run, parts};
-use crate::interrupt::{self, Pace};
+use crate::interrupt;
 use crate::motor::{Column, Motor, Running, Surroundings};
+use crate::work::{self, Meter};
 
 /// A tenth of an arc-second in rad.
 pub const TENTH_OF_AN_ARC_SECOND: f64 = 4.848_136_811_095_36e-7;
@@ -14,13 +15,6 @@ const LONGEST_NATURAL: f64 = 1e-3;
 const FALL: f64 = 0.25;
 /// Samples of machines that have to be sampled, s.
 const SAMPLE: f64 = 1e-3;
-
-/// Plain steps that a call may take, and as many more for each of its rows: some seconds.
-const MOST_STEPS: f64 = 1e7;
-const MOST_STEPS_OF_A_ROW: f64 = 1e4;
-/// Steps of the adaptive integrator, likewise: one costs as much as some of the others.
-const MOST_ADAPTIVE: u64 = 1_000_000;
-const MOST_ADAPTIVE_OF_A_ROW: u64 = 1_000;
 
 /// Inputs that are held, each for its duration.
 #[derive(Debug, Clone, Copy)]
@@ -124,7 +118,7 @@ impl Running<f64> {
         let (rows, began) = (segments.rows(), self.run.time);
         let Self { machine, law, state, run, .. } = self;
         with_law_and_state!(law, state, |law, state| {
-            let most = MOST_ADAPTIVE + MOST_ADAPTIVE_OF_A_ROW * rows.len() as u64;
+            let most = work::allowed_for_rows(rows.len());
             let mut adaptive = Adaptive::new(segments.tolerance, natural(machine, law), most);
             let (mut k, mut passed, mut end) = (0, 0.0, 0.0);
             for (segment, duration) in segments.durations.iter().enumerate() {
@@ -135,10 +129,8 @@ impl Running<f64> {
                 loop {
                     let until = rows[k];
                     adaptive.run(machine, law, state, run, acting, until - passed);
+                    adaptive.ended.take().map_or(Ok(()), |error| Err(error.until(until)))?;
                     interrupt::check()?;
-                    if adaptive.exhausted() {
-                        return Err(Error::TooManySteps { most: most as f64, time: until });
-                    }
                     // Not the sum of the steps: a long run would carry its round-off.
                     (passed, run.time) = (until, began + until);
                     let seen = &*state;
@@ -160,10 +152,8 @@ impl Running<f64> {
         mut row: impl FnMut(usize, &Run<f64>, &Machine<f64>, &dyn Fn(usize) -> f64),
     ) -> Result<Account> {
         let mut account = Account::default();
-        let mut pace = Pace::default();
         let (rows, began) = (segments.rows(), self.run.time);
-        let most = MOST_STEPS + MOST_STEPS_OF_A_ROW * rows.len() as f64;
-        let mut taken = 0.0;
+        let mut meter = Meter::new(work::allowed_for_rows(rows.len()));
         let (mut k, mut passed, mut end) = (0, 0.0, 0.0);
         for (segment, duration) in segments.durations.iter().enumerate() {
             end += duration;
@@ -176,15 +166,10 @@ impl Running<f64> {
                 let dt = (until - passed) / samples;
                 let divided =
                     with_law!(&self.law, |law| parts(&self.machine, law, dt, self.longest_phase));
-                taken += samples * divided;
-                if taken > most {
-                    return Err(Error::TooManySteps { most, time: until });
-                }
+                meter.foresee(samples * self.cost(dt)).map_err(|error| error.until(until))?;
                 for _ in 0..samples as u64 {
-                    if pace.due(divided as u64) {
-                        return Err(Error::Interrupted);
-                    }
-                    self.step(input, load, dt)?;
+                    let done = self.step_within(input, load, dt, &mut meter);
+                    done.map_err(|error| error.until(until))?;
                 }
                 account.steps += (samples * divided) as u64;
                 account.evaluations = account.steps;

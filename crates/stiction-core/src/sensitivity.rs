@@ -116,7 +116,7 @@ pub(crate) fn passes(
         .collect::<Result<Vec<usize>>>()?;
     for (pass, places) in wanted.chunks(COLUMNS).enumerate() {
         let mut running = seeded(spec, start, &values, places);
-        visit(&mut running, pass * COLUMNS, places.len())?;
+        visit(&mut running, pass * COLUMNS, places.len()).map_err(|error| spec.blame(error))?;
     }
     Ok(())
 }

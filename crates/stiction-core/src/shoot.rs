@@ -1,11 +1,12 @@
 //! A machine started anew along a motion that was measured: where it gets to by itself.
 
 use crate::error::{Error, Result};
-use crate::interrupt::{self, Pace};
+use crate::interrupt;
 use crate::motor::{MotorSpec, PerSample, Running};
 use crate::scalar::{COLUMNS, Dual, Scalar};
 use crate::sensitivity::{MeasuredMotion, Start, passes, seeded};
 use crate::track::Track;
+use crate::work::{self, Meter};
 
 /// ω·h above which a sample of a window is divided: the phase error of the ring is then 0.4 % of the
 /// phase, and of a ring that fast the weights of a window keep nothing.
@@ -69,6 +70,8 @@ impl<S: Scalar> Running<S> {
         let actual: Option<&dyn Fn(f64) -> S> =
             if sensor.misreads() { Some(&behind) } else { None };
         let length = windows.weights.len();
+        let all = work::allowed(windows.number(motion.samples()) * length);
+        let mut left = all;
         let mut reached = 0;
         for window in 0..windows.number(motion.samples()) {
             interrupt::check()?;
@@ -88,17 +91,18 @@ impl<S: Scalar> Running<S> {
             let (around, dt) = (around.between(start, end), dt.between(start, end));
             let read = positions[start];
             let mut sum = S::constant(0.0);
-            shot.simulate_under(&each[start..end], around, &added, dt, |k, run, machine, _| {
-                sum += (machine.effects.sensor(run.position) - read) * windows.weights[k];
-            })?;
+            shot.allowance = Some(left);
+            let done =
+                shot.simulate_under(&each[start..end], around, &added, dt, |k, run, machine, _| {
+                    sum += (machine.effects.sensor(run.position) - read) * windows.weights[k];
+                });
+            done.map_err(|error| error.of_all(work::in_steps(all)))?;
+            left = shot.allowance.unwrap_or(left);
             land(window, sum);
         }
         Ok(())
     }
 }
-
-/// Plain steps that a sample drawn to a motion takes as long as, at least.
-const PER_SAMPLE: u64 = 4;
 
 /// Effort by which a run is drawn to a motion: that of a spring and a damper.
 #[derive(Debug, Clone, Copy)]
@@ -124,18 +128,15 @@ impl Running<f64> {
         let actual = |reading: f64| sensor.behind(reading);
         let actual: Option<&dyn Fn(f64) -> f64> =
             if sensor.misreads() { Some(&actual) } else { None };
-        let mut pace = Pace::default();
+        let mut meter = Meter::new(work::allowed(motion.samples()));
         for k in 0..motion.samples() {
-            if pace.due(PER_SAMPLE) {
-                return Err(Error::Interrupted);
-            }
             let track = Track::new(positions, actual, k);
             let behind = track.position() - self.run.position;
             let slower = track.velocity(&dt) - self.run.velocity;
             let effort = pull.stiffness * behind + pull.damping * slower;
             self.run.temperature = around.temperature_at(k);
             self.run.enabled = around.enabled_at(k);
-            self.step(inputs.at(k), around.load.at(k) + effort, dt.at(k))?;
+            self.step_within(inputs.at(k), around.load.at(k) + effort, dt.at(k), &mut meter)?;
             row(k, self.machine.effects.sensor(self.run.position), effort);
         }
         Ok(())
@@ -190,11 +191,13 @@ pub fn shoot_response(
             Some(column) if column < number => Dual::variable(0.0, column),
             _ => Dual::constant(0.0),
         };
-        seeded(spec, start, &values, &[]).shoot_under(motion, windows, added, |window, sum| {
+        let mut running = seeded(spec, start, &values, &[]);
+        let shot = running.shoot_under(motion, windows, added, |window, sum| {
             for column in 0..number {
                 result[(first + column) * width + window] = sum.partial(column);
             }
-        })?;
+        });
+        shot.map_err(|error| spec.blame(error))?;
     }
     Ok(result)
 }

@@ -43,6 +43,11 @@ impl Text {
     pub fn of(word: &Bound<'_, PyString>) -> String {
         word.to_string_lossy().into_owned()
     }
+
+    /// The integrator where none is named.
+    pub fn fast() -> Self {
+        Self("fast".to_owned())
+    }
 }
 
 impl<'a, 'py> FromPyObject<'a, 'py> for Text {
@@ -69,8 +74,8 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Names {
 }
 
 /// An integrator by its name.
-pub fn integrator_of(py: Python<'_>, name: &str) -> PyResult<Integrator> {
-    match name {
+pub fn integrator_of(py: Python<'_>, Text(name): &Text) -> PyResult<Integrator> {
+    match name.as_str() {
         "fast" => Ok(Integrator::Fast),
         "reference" => Ok(Integrator::Reference),
         other => {

@@ -203,7 +203,13 @@ impl Ensemble {
             "last" => Keep::Last,
             "rms" => Keep::Rms(target.rows()?),
             "extremes" => Keep::Extremes,
-            _ => return Err(input_error(py, "every = 0 is out of bounds: allowed is 1 or more")),
+            "every" => {
+                return Err(input_error(py, "every = 0 is out of bounds: allowed is 1 or more"));
+            }
+            other => {
+                let known = "every, last, rms, extremes";
+                return Err(input_error(py, format!("keep '{other}' is unknown; known: {known}")));
+            }
         };
         let width = keep.width(n);
         let result = PyDict::new(py);

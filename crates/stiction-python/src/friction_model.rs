@@ -13,7 +13,6 @@ use stiction_core::model::{FrictionModel as Core, LawSpec};
 use crate::arguments::Text;
 use crate::arrays::{Each, samples};
 use crate::error::{FASTEST, IntoPython, duration, finite, input_error, velocity};
-use crate::interrupt::all_or_nothing;
 use crate::shared::Shared;
 use crate::state::{from_dict, keywords, to_dict};
 
@@ -180,7 +179,7 @@ impl FrictionModel {
             };
             let ran = self.core.apart(py, |core| {
                 if shape.len() == 1 {
-                    return all_or_nothing(core, |core| core.simulate(velocity, dt, at, friction));
+                    return core.simulate(velocity, dt, at, friction);
                 }
                 let n = shape[1];
                 let mut rows = velocity.chunks(n).zip(friction.chunks_mut(n)).enumerate();

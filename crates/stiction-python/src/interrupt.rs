@@ -4,7 +4,9 @@ use std::cell::Cell;
 
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
-use stiction_core::interrupt::{due, watched};
+use stiction_core::interrupt::watched;
+
+use crate::cancel::cancelled;
 
 thread_local! {
     /// What the handler of a signal raised.
@@ -12,8 +14,11 @@ thread_local! {
 }
 
 /// Lets Python run the handlers of signals that have come; whether one of them raised. Signals come to
-/// the main thread alone: on others it never does.
+/// the main thread alone: others end where what they work under was cancelled.
 fn asks() -> bool {
+    if cancelled() {
+        return true;
+    }
     Python::try_attach(|py| match py.check_signals() {
         Ok(()) => false,
         Err(error) => {
@@ -32,17 +37,4 @@ pub fn detached<R: Send>(py: Python<'_>, work: impl FnOnce() -> R + Send) -> PyR
         return Err(raised.unwrap_or_else(|| PyKeyboardInterrupt::new_err(())));
     }
     Ok(result)
-}
-
-/// Does long work that changes something, which is as before where the work was refused or interrupted.
-pub fn all_or_nothing<T: Clone, R, E>(
-    changed: &mut T,
-    work: impl FnOnce(&mut T) -> Result<R, E>,
-) -> Result<R, E> {
-    let before = changed.clone();
-    let result = work(changed);
-    if result.is_err() || due() {
-        *changed = before;
-    }
-    result
 }

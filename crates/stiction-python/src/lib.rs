@@ -2,6 +2,7 @@
 
 mod arguments;
 mod arrays;
+mod cancel;
 mod catalogue;
 mod ensemble;
 mod error;
@@ -18,6 +19,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use super::cancel::CancelToken;
     #[pymodule_export]
     use super::catalogue::{effects, laws};
     #[pymodule_export]

@@ -32,7 +32,8 @@ def diagnose(
 ) -> None:
     """Find out what a simulation of the machine is missing, add it and measure the gain.
 
-    Writes report.html, findings.json, the extended plant.toml and figures.
+    Writes report.html, findings.json, the extended plant.toml, begins.toml with the state at the
+    start of each recording, and figures.
 
     Parameters
     ----------

@@ -9,6 +9,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from ..atomic_files import write_text
+from ..begins import FILE as BEGINS
+from ..begins import save_begins
 from ..errors import InputError
 from ..fitting import FitResult
 from ..fitting import fit as run
@@ -29,8 +31,9 @@ def fit(
 ) -> None:
     """Fit the plant of a session to its recordings.
 
-    Writes the fitted plant.toml, fit.json and fit.html, and prints parameters with standard
-    errors, the error where fitted and the error held out.
+    Writes the fitted plant.toml, begins.toml with the state at the start of each recording,
+    fit.json and fit.html, and prints parameters with standard errors, the error where fitted and
+    the error held out.
 
     Parameters
     ----------
@@ -63,12 +66,13 @@ def _told(recordings: Session, result: FitResult, where: Path, name: str, *, as_
     """Write plant, numbers and page, and say what was fitted."""
     from ..report.fit_page import fit_page
 
-    files = [where / "plant.toml", where / "fit.json", where / "fit.html"]
+    files = [where / "plant.toml", where / BEGINS, where / "fit.json", where / "fit.html"]
     with told_anyway(str(result), result.to_dict(), as_json=as_json), written(where):
         # The numbers first: no figure can cost them.
         result.plant.save(files[0])
-        write_text(files[1], result.to_json() + "\n")
-        write_text(files[2], fit_page(result, list(recordings), f"Fit of {name}"))
+        save_begins(where, result.begins)
+        write_text(files[2], result.to_json() + "\n")
+        write_text(files[3], fit_page(result, list(recordings), f"Fit of {name}"))
     wrote = "\n".join(f"wrote {file}" for file in files)
     repairs = mended(recordings)
     told = "\n".join([*repairs, str(result)])

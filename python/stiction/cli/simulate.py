@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from cyclopts import Parameter
 
 from .. import closed_loop, residual, session
+from ..begins import FILE, Begin, begin_of, load_begins
 from ..errors import InputError
 from ..plant import Plant
 from ..progress import phase, steps
@@ -46,7 +47,8 @@ def simulate(
     The trajectory is written, as a CSV file that can be read as a recording. With measured motion
     two errors are printed: the free run (started once, left alone) and the effort residual along
     the measured motion. Where the plant states its controller and the recording has a reference,
-    the loop of both is simulated as well.
+    the loop of both is simulated as well. A recording of a fit or a diagnosis begins with the
+    contact, the clock and the path that begins.toml in the folder of the plant tells of it.
 
     Parameters
     ----------
@@ -66,6 +68,7 @@ def simulate(
         Print JSON.
     """
     machine = Plant.load(plant)
+    told = load_begins(plant, machine)
     with progress():
         if recording.suffix.lower() == ".toml":
             if columns is not None:
@@ -78,9 +81,11 @@ def simulate(
         stems = [where / stem for stem in stems_of(recordings)]
         with written(where):
             phase(_logger, "simulating")
+            known = [_begin(told, name) for name in names_of(recordings)]
+            each_with_its_begin = list(zip(recordings, stems, known, strict=True))
             results = [
-                _named(machine, each, stem, support)
-                for each, stem in steps(list(zip(recordings, stems, strict=True)), "recording")
+                _named(machine, each, stem, support, begin)
+                for each, stem, begin in steps(each_with_its_begin, "recording")
             ]
     text = "\n\n".join(result.pop("text") for result in results)
     answer(text, results[0] if len(results) == 1 else results, as_json=json)
@@ -148,18 +153,30 @@ def _flat(name: PurePath) -> str:
     return name.as_posix().lstrip("/").replace("/", "-").replace(":", "")
 
 
-def _named(plant: Plant, recording: Recording, stem: Path, support: float | None) -> dict[str, Any]:
+def _begin(told: Mapping[str, Begin], name: str) -> Begin | None:
+    """Where a recording begins: of its name, or of the only one of its file's name."""
+    if name in told:
+        return told[name]
+    alike = [begin for other, begin in told.items() if PurePath(other).name == PurePath(name).name]
+    return alike[0] if len(alike) == 1 else None
+
+
+def _named(
+    plant: Plant, recording: Recording, stem: Path, support: float | None, begin: Begin | None
+) -> dict[str, Any]:
     """The answer for one recording, or a refusal that names its file."""
     try:
         # Absurd numbers are refused below, in words.
         with np.errstate(all="ignore"):
-            return _one(plant, recording, stem, support)
+            return _one(plant, recording, stem, support, begin)
     except InputError as error:
         file = str(recording.path)
         raise InputError(str(error) if file in str(error) else f"{file}: {error}") from None
 
 
-def _one(plant: Plant, recording: Recording, stem: Path, support: float | None) -> dict[str, Any]:
+def _one(
+    plant: Plant, recording: Recording, stem: Path, support: float | None, begin: Begin | None
+) -> dict[str, Any]:
     """The answer for one recording, whose files begin with ``stem``."""
     checks = [*check(recording), *(own for _, own in impulse_checks([recording]))]
     remarks = [each.what for each in checks if each.verdict != "fine"]
@@ -176,7 +193,9 @@ def _one(plant: Plant, recording: Recording, stem: Path, support: float | None) 
     }
     drawn = _Drawn(stem)
     if recording.position is not None:
-        lines += _beside_the_motion(plant, recording, support, drawn, result)
+        lines += _beside_the_motion(plant, recording, support, drawn, result, begin_of(begin))
+        if begin is not None:
+            lines.append(f"begins as {FILE} beside the plant says")
     elif recording.input is not None:
         trajectory = residual.input_run(plant, recording)
         drawn.trajectory(plant, recording, trajectory)
@@ -238,11 +257,12 @@ def _beside_the_motion(
     support: float | None,
     drawn: _Drawn,
     result: dict[str, Any],
+    begin: dict[str, Any],
 ) -> list[str]:
     """Lines on what a simulation misses of a measured motion; the numbers go into ``result``."""
     lines = []
     if not plant.prescribed_motion and recording.input is not None:
-        run = residual.free_run(plant, recording)
+        run = residual.free_run(plant, recording, **begin)
         drawn.trajectory(plant, recording, run.trajectory)
         drawn.figure(run.plot, "free-run")
         lines.append(
@@ -252,7 +272,7 @@ def _beside_the_motion(
         result["free_run"] = run.to_dict()
     if plant.controller and "reference" in recording.channels:
         try:
-            loop = closed_loop.replay(plant, recording)
+            loop = closed_loop.replay(plant, recording, **begin)
         except InputError as error:
             lines.append(f"closed loop: {error}")
             result["closed_loop"] = {"error": str(error)}
@@ -260,7 +280,7 @@ def _beside_the_motion(
             drawn.figure(loop.plot, "closed-loop")
             lines += _loop_lines(loop)
             result["closed_loop"] = loop.to_dict()
-    effort = residual.effort_residual(plant, recording, support=support)
+    effort = residual.effort_residual(plant, recording, support=support, **begin)
     if not np.isfinite(effort.relative):
         raise InputError(
             "the effort residual is not a finite number; check units, and cells far beyond what "

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from .. import given
+from ..parameter import number
 from .subject import Subject
 
 __all__ = ["Measured", "Property"]
@@ -30,8 +35,17 @@ class Measured:
 
     def __post_init__(self) -> None:
         # What comes out of numpy is no number for JSON.
-        object.__setattr__(self, "holds", None if self.holds is None else bool(self.holds))
-        plain = {name: float(value) for name, value in self.numbers.items()}
+        if self.holds is not None:
+            given.instance(self.holds, bool | np.bool_, "Measured: holds", "True, False or None")
+            object.__setattr__(self, "holds", bool(self.holds))
+        held = given.mapping(self.numbers, "Measured: numbers", "numbers by name")
+        # A share of nothing is no number, and says so.
+        plain = {
+            name: math.nan
+            if isinstance(value, float) and math.isnan(value)
+            else number(value, f"Measured: {name}")
+            for name, value in held.items()
+        }
         object.__setattr__(self, "numbers", plain)
 
 

@@ -30,7 +30,6 @@ def based(
     plant: Plant,
     recordings: Sequence[Recording],
     *,
-    threads: int | None = None,
     wide: bool = False,
     joined: bool = False,
     windows: bool = False,
@@ -54,12 +53,12 @@ def based(
     NotEnoughData
         As for ``Evidence``; a base that lost the inertia that the motion shows.
     """
-    evidence = Evidence(plant, recordings, threads=threads, joined=joined)
+    evidence = Evidence(plant, recordings, joined=joined)
     first = first_pass(
         plant,
         evidence,
         lambda found, through, watch: Evidence(
-            found, recordings, threads=threads, through=through, watch=watch, joined=joined
+            found, recordings, through=through, watch=watch, joined=joined
         ),
         most=MOST_EVALUATIONS,
         wide=wide,
@@ -79,8 +78,6 @@ def based_wider(
     recordings: Sequence[Recording],
     evidence: Evidence,
     final: Model,
-    *,
-    threads: int | None = None,
 ) -> tuple[Evidence, Model] | None:
     """The base through wider kernels, where these alone show the inertia; None elsewhere.
 
@@ -103,7 +100,7 @@ def based_wider(
     if wider_of(final.plant, final.nuisances, evidence.train, evidence.forms) is None:
         return None
     try:
-        other, base = based(plant, recordings, threads=threads, wide=True)
+        other, base = based(plant, recordings, wide=True)
     except InputError:
         # What was found through narrow kernels stands.
         return None
@@ -120,8 +117,6 @@ def based_simulated(
     recordings: Sequence[Recording],
     evidence: Evidence,
     final: Model,
-    *,
-    threads: int | None = None,
 ) -> tuple[Evidence, Model] | None:
     """The base simulated over windows, where a rigid contact was led astray; None elsewhere.
 
@@ -148,9 +143,7 @@ def based_simulated(
         return None
     through = Through(horizon=horizon)
     try:
-        windows = Evidence(
-            final.plant, recordings, threads=threads, through=through, watch=evidence.watch
-        )
+        windows = Evidence(final.plant, recordings, through=through, watch=evidence.watch)
         own = fitted(windows, final.plant, final.nuisances)
         if not own.solution.interrupted and not astray(
             final.plant,
@@ -160,7 +153,7 @@ def based_simulated(
             windows.train,
         ):
             return None
-        return based(plant, recordings, threads=threads, windows=True)
+        return based(plant, recordings, windows=True)
     except InputError:
         # What was found along the readings stands.
         return None
@@ -170,8 +163,6 @@ def based_joined(
     plant: Plant,
     recordings: Sequence[Recording],
     evidence: Evidence,
-    *,
-    threads: int | None = None,
 ) -> tuple[Evidence, Model] | None:
     """The base that is fitted to the rows that decide as well; seen as before.
 
@@ -181,7 +172,7 @@ def based_joined(
     wide = any(form.widened for form in evidence.forms)
     windows = evidence.simulated
     try:
-        return based(plant, recordings, threads=threads, wide=wide, joined=True, windows=windows)
+        return based(plant, recordings, wide=wide, joined=True, windows=windows)
     except InputError:
         return None
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,6 +22,7 @@ from ..recording.names import names_of, places_in_session
 from ..recording.split import BLOCK_S, Split, split
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
+from ..workers import side_by_side
 
 __all__ = ["Cells", "Evidence", "Plan", "SealedError"]
 
@@ -85,8 +85,6 @@ class Evidence:
     plant : Plant
         For its kind of motion, drive and sensor.
     recordings : sequence of Recording
-    threads : int, optional
-        Recordings looked at side by side; results do not depend on it.
     through : Through, optional
     watch : Watch, optional
         Who looks out for pushes from outside; without it a new one learns from the rows that may
@@ -132,7 +130,6 @@ class Evidence:
         plant: Plant,
         recordings: Sequence[Recording],
         *,
-        threads: int | None = None,
         through: Through = KERNELS,
         watch: Watch | None = None,
         joined: bool = False,
@@ -140,7 +137,6 @@ class Evidence:
         self.plant = plant
         self.loop = through.loop
         self.recordings = list(recordings)
-        self.threads = threads
         self.names = names_of(self.recordings)
         self.places = np.array(places_in_session(self.recordings))
         self.forms = forms_of(plant, self.recordings, self.each, through)
@@ -183,10 +179,7 @@ class Evidence:
 
     def each(self, work: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
         """Results of some work on each item, in their order, on as many threads as allowed."""
-        if self.threads == 1 or len(items) < 2:
-            return [work(item) for item in steps(items, "recording")]
-        with ThreadPoolExecutor(self.threads) as pool:
-            return list(steps(pool.map(work, items), "recording", len(items)))
+        return list(steps(side_by_side(work, items), "recording", len(items)))
 
     def residual(self, plant: Plant, nuisances: Nuisances) -> FloatArray:
         """Weighted residual of all rows that may be looked at; shape (n,)."""

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from ..fitting.rows import Rows
 from ..recording import Check
@@ -125,14 +124,24 @@ def _longest_rest(position: FloatArray, dt: float, still: float) -> tuple[int, i
     length = round(LEAST_S / dt)
     if length < 1 or len(position) < length:
         return 0, 0
-    # Of window k: samples k to k + length − 1.
-    origin = -(length // 2)
-    high = maximum_filter1d(position, length, origin=origin)
-    low = minimum_filter1d(position, length, origin=origin)
-    rests = (high - low <= still)[: len(position) - length + 1]
+    high, low = (_extremes(position, length, ufunc) for ufunc in (np.maximum, np.minimum))
+    rests = high - low <= still
     edges = np.flatnonzero(np.diff(np.concatenate([[0], rests.astype(np.int8), [0]])))
     if len(edges) == 0:
         return 0, 0
     firsts, ends = edges[::2], edges[1::2]
     longest = int(np.argmax(ends - firsts))
     return int(firsts[longest]), int(ends[longest]) - 1 + length
+
+
+def _extremes(values: FloatArray, length: int, ufunc: np.ufunc) -> FloatArray:
+    """The greatest or least of each window of so many values, the first begins at the first.
+
+    Of windows that overlap, each twice as long as before.
+    """
+    width = 1
+    while width < length:
+        further = min(width, length - width)
+        values = ufunc(values[:-further], values[further:])
+        width += further
+    return values

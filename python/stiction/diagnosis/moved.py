@@ -67,7 +67,6 @@ def _powers(models: list[Model], evidence: Evidence) -> list[FloatArray] | None:
         windows = Evidence(
             followable(models[0].plant, evidence.forms),
             evidence.recordings,
-            threads=evidence.threads,
             through=through,
             watch=evidence.watch,
             joined=evidence.joined,

@@ -107,8 +107,9 @@ def before_and_after(diagnosis: Diagnosis) -> Figure:
     InputError
         There are no pictures: nothing could be fitted.
     """
+    from ..report.chart_figure import make_figure
     from ..report.figures import headline
 
     if diagnosis.pictures is None:
         raise InputError(f"there is nothing to draw: {diagnosis.sentence}")
-    return headline(diagnosis)
+    return make_figure(headline(diagnosis))

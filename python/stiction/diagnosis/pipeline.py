@@ -27,6 +27,7 @@ from ..recording.usable import checks_of, usable
 from ..session import Session
 from ..trajectory import FloatArray
 from ..wording import counted
+from ..workers import with_workers
 from .advice import advise
 from .base import based, based_joined, based_simulated, based_wider
 from .candidates import left_out
@@ -149,7 +150,8 @@ def diagnose(
         )
     else:
         try:
-            found = _testable(found, usable, unwanted, others, surrogates, threads, checks)
+            with with_workers(threads):
+                found = _testable(found, usable, unwanted, others, surrogates, checks)
             found = replace(found, sentence=" ".join(filter(None, (found.sentence, fault, doubt))))
         except NotEnoughData as error:
             told = str(error)
@@ -213,13 +215,12 @@ def _testable(
     without: Sequence[str],
     others: Sequence[str],
     surrogates: int,
-    threads: int | None,
     checks: Sequence[tuple[str, Check]],
 ) -> Diagnosis:
     """The diagnosis of data that can be used."""
     number = counted(len(session), "recording")
     phase(_logger, "looking through %s and fitting the base", number)
-    evidence, base = based(found.plant, session.recordings, threads=threads)
+    evidence, base = based(found.plant, session.recordings)
     found, null = _replayed(found, evidence, base, surrogates)
     if null is None:
         return base_alone(found, evidence, base)
@@ -228,21 +229,19 @@ def _testable(
     again = partial(_again, surrogates=surrogates, without=without)
     if not look.selection.interrupted:
         final = look.selection.models[-1]
-        wider = based_wider(found.plant, session.recordings, evidence, final, threads=threads)
+        wider = based_wider(found.plant, session.recordings, evidence, final)
         if wider is not None:
             phase(_logger, "screening the effects again, through wider kernels")
             look = again(look, wider) or look
     if not look.selection.interrupted:
         final = look.selection.models[-1]
-        shot = based_simulated(
-            found.plant, session.recordings, look.evidence, final, threads=threads
-        )
+        shot = based_simulated(found.plant, session.recordings, look.evidence, final)
         if shot is not None:
             phase(_logger, "screening the effects again, with the plant simulated over windows")
             look = again(look, shot) or look
     if acts_for_seconds(look.evidence, look.selection, look.null):
         phase(_logger, "screening limits again, over the rows that decide as well")
-        joined = based_joined(found.plant, session.recordings, look.evidence, threads=threads)
+        joined = based_joined(found.plant, session.recordings, look.evidence)
         before = look.selection
         second = joined and again(look, joined, without=(*without, *asked_before(before)))
         if second and holds_more(second.selection, before):

@@ -82,6 +82,8 @@ class Cause(_Gained):
         Coordinate in which the residual showed it.
     doubt : str
         Why it is undecided where no look-alike is, "" where there is no other reason.
+    waves : Mapping of str to FitParameter
+        By path: amplitude and phase of what was fitted as a cosine and a sine.
     chosen : Mapping of str to float
         By path: numbers of it that were not fitted, but taken from those that were tried, as the
         order of a wave is.
@@ -98,10 +100,11 @@ class Cause(_Gained):
     try_: str
     coordinate: str
     doubt: str = ""
+    waves: Mapping[str, FitParameter] = field(default_factory=dict)
     chosen: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        freeze(self, ByPath, "parameters", "chosen")
+        freeze(self, ByPath, "parameters", "waves", "chosen")
 
     @property
     def doubtful(self) -> bool:
@@ -119,6 +122,10 @@ class Cause(_Gained):
             "parameters": {
                 path: {"value": p.value, "ci95": list(p.ci95), "unit": p.unit}
                 for path, p in self.parameters.items()
+            },
+            "waves": {
+                path: {"value": p.value, "ci95": list(p.ci95), "unit": p.unit}
+                for path, p in self.waves.items()
             },
             "heldout_gain": self.heldout_gain,
             "heldout_gain_ci95": None if self.gain is None else list(self.gain.ci95),
@@ -199,6 +206,8 @@ class ModelSummary:
         What the plant leaves open and every value hangs on, in sentences.
     stiffness : float or None
         Of a servo: effort per position by which errors of its simulated loop count as a residual.
+    begins : Mapping of str to Mapping
+        Where each recording begins for this model (see ``FitResult.begins``).
     """
 
     plant: Plant
@@ -214,9 +223,12 @@ class ModelSummary:
     replay: Replay | None = None
     assumed: tuple[str, ...] = ()
     stiffness: float | None = None
+    begins: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")
+        begins = {name: Frozen(begin) for name, begin in self.begins.items()}
+        object.__setattr__(self, "begins", Frozen(begins))
 
     @property
     def law(self) -> str:
@@ -248,6 +260,7 @@ class ModelSummary:
             "heldout_rms": self.heldout_rms,
             "noise_floor_rms": self.noise_floor_rms,
             "replay": None if self.replay is None else self.replay.to_dict(),
+            "begins": {name: dict(begin) for name, begin in self.begins.items()},
         }
 
 
@@ -387,7 +400,7 @@ class Diagnosis:
         return json_of(self.to_dict())
 
     def save(self, folder: str | Path) -> Path:
-        """Write report.html, findings.json, plant.toml and figures.
+        """Write report.html, findings.json, plant.toml, begins.toml and figures.
 
         Parameters
         ----------

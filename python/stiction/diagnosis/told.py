@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..begins import begins
 from ..fitting.result import FitResult
 from ..plant import Plant
 from ..stated import Effect
@@ -59,6 +60,11 @@ def causes_of(
             for path, p in result.parameters.items()
             if path.startswith(f"effects.{record.name}.")
         }
+        waves = {
+            path: p
+            for path, p in result.waves.items()
+            if path.startswith(f"effects.{record.name}.")
+        }
         means, remedy = meant(record, final.plant)
         effect = effect_of(final.plant, record.name)
         own = {f"effects.{record.name}.{name}": p.value for name, p in effect.parameters.items()}
@@ -74,6 +80,7 @@ def causes_of(
                 means=means,
                 try_=remedy,
                 coordinate=record.coordinate,
+                waves=waves,
                 chosen={path: value for path, value in own.items() if path not in fitted_values},
             )
         )
@@ -116,6 +123,7 @@ def summary_of(
     if evidence.split.select:
         (plan,) = evidence.plans
         select = float(np.sqrt(np.mean((model.residual / evidence.weights)[plan.held] ** 2)))
+    tested = {} if test is None else begins(evidence.names, test.rows, test.nuisances[index])
     return ModelSummary(
         plant=result.plant,
         parameters=result.parameters,
@@ -129,6 +137,7 @@ def summary_of(
         remarks=result.remarks,
         assumed=result.assumed,
         stiffness=result.stiffness,
+        begins={**result.begins, **tested},
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
@@ -15,6 +15,7 @@ from ..finite import finite
 from ..plant import Plant
 from ..progress import steps
 from ..trajectory import FloatArray
+from ..workers import side_by_side
 from .levenberg import FIRST_DAMPING, Minimum, escaped, levenberg_marquardt
 from .rows import Nuisances, Rows, Start, numbers, primed, start_quantities, timing_bound
 from .slopes import places_of, slopes
@@ -66,6 +67,8 @@ ROUNDED: Final = 64.0 * float(np.finfo(float).eps)
 """Share of an effort that rounding may leave of it, over all that a law sums up: of data simulated
 without noise it left a quarter of this."""
 RUNAWAY: Final = 1e6
+LONG: Final = 8_000
+"""Samples of a recording from which on recordings are looked at side by side."""
 INTERRUPTED: Final = "interrupted: these are the best values so far"
 
 _logger = logging.getLogger(__name__)
@@ -471,14 +474,22 @@ class _Minimiser:
         _logger.debug("evaluation %d: %g", self.evaluations, power)
         return residual
 
+    def each(self, work: Callable[[Rows], FloatArray]) -> list[FloatArray]:
+        """Some work on every recording, side by side where it takes longer than handing it over."""
+        done = side_by_side(work, self.rows) if self.long else map(work, self.rows)
+        return list(steps(done, "recording", len(self.rows)))
+
+    @cached_property
+    def long(self) -> bool:
+        """Whether a residual of a recording takes much longer than what Python does about it."""
+        samples = np.mean([len(each.form.position) for each in self.rows])
+        return self.rows[0].form.simulated or bool(samples > LONG)
+
     def _left(self, full: FloatArray) -> FloatArray:
         """What is left of the rows; kept, for a descent asks for its start once more."""
         if self._last is None or not np.array_equal(self._last[0], full):
             plant, nuisances = self.split(full)
-            rows = [
-                each.weight * each.residual(plant, nuisances)[each.mask]
-                for each in steps(self.rows, "recording")
-            ]
+            rows = self.each(lambda each: each.weight * each.residual(plant, nuisances)[each.mask])
             # A runaway trial must look bad, not break the optimiser.
             left = finite(np.concatenate(rows), RUNAWAY)
             self._last = np.array(full), left
@@ -487,9 +498,7 @@ class _Minimiser:
     def jacobian(self, full: FloatArray) -> FloatArray:
         plant, nuisances = self.split(full)
         count, paths = len(self.begin), self.variables.paths
-        self._slopes = np.vstack(
-            [slopes(each, plant, paths, nuisances) for each in steps(self.rows, "recording")]
-        )
+        self._slopes = np.vstack(self.each(lambda each: slopes(each, plant, paths, nuisances)))
         found: FloatArray = self._slopes.copy()
         found[:, :count] = self.variables.chain(found[:, :count], full[:count])
         if len(self.shrunk):

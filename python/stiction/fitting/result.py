@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from html import escape
 from typing import Any
@@ -13,6 +13,7 @@ from ..frozen import ByPath, Frozen, freeze
 from ..json_text import json_of
 from ..plant import Plant
 from ..trajectory import FloatArray
+from .waves import amplitude_of, parts_of, phase_of, waves_of
 
 __all__ = ["FitParameter", "FitResult"]
 
@@ -78,6 +79,9 @@ class FitResult:
         By how much the input was taken to be stamped early, s; bounded by half a sample.
     starts : Mapping of str to Mapping
         Friction state at the first row of each recording that tells of it.
+    begins : Mapping of str to Mapping
+        Where each recording begins: ``clock_s``, ``path``, and the friction state where one is
+        known, held-out recordings too (see ``stiction.begins``).
     assumed : tuple of str
         What the plant leaves open and every value hangs on, in sentences.
     stiffness : float or None
@@ -102,19 +106,29 @@ class FitResult:
     evaluations: int
     timing_offset: float = 0.0
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    begins: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     assumed: tuple[str, ...] = ()
     stiffness: float | None = None
     interrupted: bool = False
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters")
-        starts = {name: Frozen(start) for name, start in self.starts.items()}
-        object.__setattr__(self, "starts", Frozen(starts))
+        for name in ("starts", "begins"):
+            held = {key: Frozen(start) for key, start in getattr(self, name).items()}
+            object.__setattr__(self, name, Frozen(held))
 
     @property
     def stderr(self) -> Mapping[str, float]:
         """Standard error of each parameter in its SI unit, by path or bare last word."""
         return ByPath({path: p.stderr for path, p in self.parameters.items()})
+
+    @property
+    def waves(self) -> Mapping[str, FitParameter]:
+        """Amplitude and phase of each wave over position, by path; phase in rad.
+
+        A wave a·cos(n·q − φ) is fitted by its cosine and its sine, which stand in ``parameters``.
+        """
+        return ByPath(waves_of(self.parameters, self.covariance))
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -133,7 +147,7 @@ class FitResult:
 
     def __str__(self) -> str:
         rows = [("parameter", "value", "± (1 s.e.)", "unit", "")]
-        for path, p in self.parameters.items():
+        for path, p in self._shown():
             note = f"at its {p.at_bound} bound" if p.at_bound else ""
             rows.append((path, f"{p.value:.6g}", f"{p.stderr:.2g}", p.unit, note))
         widths = [max(len(row[k]) for row in rows) for k in range(4)]
@@ -144,6 +158,17 @@ class FitResult:
         return "\n".join([*self._headline(), "", *table, *self._remarks()])
 
     __repr__ = __str__
+
+    def _shown(self) -> Iterator[tuple[str, FitParameter]]:
+        """What is told in a table: of a wave its amplitude and phase in place of its parts."""
+        waves = self.waves
+        for path, p in self.parameters.items():
+            parts = parts_of(path)
+            names = [] if parts is None else [amplitude_of(parts), phase_of(parts)]
+            if parts is None or names[0] not in waves:
+                yield path, p
+            elif path == parts[0]:
+                yield from ((name, waves[name]) for name in names)
 
     def _headline(self) -> list[str]:
         by = compared_by(self.plant)
@@ -180,7 +205,7 @@ class FitResult:
         rows = "".join(
             f"<tr><td>{escape(path)}</td><td>{p.value:.6g} {escape(p.unit)}</td>"
             f"<td>{_interval(p)}</td><td>{escape(p.at_bound)}</td></tr>"
-            for path, p in self.parameters.items()
+            for path, p in self._shown()
         )
         lines = "".join(f"<p>{escape(line)}</p>" for line in self._headline())
         remarks = "".join(f"<li>{escape(line.strip())}</li>" for line in self._remarks())
@@ -203,6 +228,10 @@ class FitResult:
                 }
                 for path, p in self.parameters.items()
             },
+            "waves": {
+                path: {"value": p.value, "stderr": p.stderr, "ci95": list(p.ci95), "unit": p.unit}
+                for path, p in self.waves.items()
+            },
             "covariance": self.covariance.tolist(),
             "correlations": self.correlations.tolist(),
             "bounds_hit": list(self.bounds_hit),
@@ -222,6 +251,7 @@ class FitResult:
                 "timing_offset_s": self.timing_offset,
                 "starts": {name: dict(start) for name, start in self.starts.items()},
             },
+            "begins": {name: dict(begin) for name, begin in self.begins.items()},
         }
 
     def to_json(self) -> str:

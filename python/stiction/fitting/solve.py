@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..begins import begins
 from ..drive import assumed_gain
 from ..errors import InputError
 from ..given import instance, whole
@@ -25,6 +26,7 @@ from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from ..wording import counted
+from ..workers import with_workers
 from .first_pass import first_pass
 from .forms import KERNELS, Through, as_session, as_stated, forms_of
 from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stopped
@@ -44,6 +46,7 @@ from .statistics import (
     undetermined_directions,
 )
 from .variables import RATIOS, Variables, states_bound, unit_of, with_effort_in
+from .waves import amplitude_of, parts_of, waves_of
 
 __all__ = ["evaluate", "fit", "reweighted", "settled"]
 
@@ -147,6 +150,11 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     if not recordings:
         raise InputError("there are no recordings to fit; give at least one")
     max_evaluations = whole(max_evaluations, "max_evaluations", least=0)
+    with with_workers(None):
+        return _fitted(plant, recordings, max_evaluations)
+
+
+def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> FitResult:
     recordings, faults = _without_faults(recordings)
     phase(_logger, "looking through %s", counted(len(recordings), "recording"))
     seen = _Seen(plant, recordings)
@@ -318,7 +326,8 @@ def evaluate(
     fitted = _errors(plant, train, nuisances)
     trained = {each.index for each in train}
     others = [each for each in held if each.index not in trained]
-    heldout = _errors(plant, held, started(plant, others, nuisances)) if held else None
+    begun = started(plant, others, nuisances)
+    heldout = _errors(plant, held, begun) if held else None
     stated = as_stated(plant, given)
     told = assumed_gain(given.drive, train[0].form.input_unit, given.effort_unit)
     return FitResult(
@@ -327,7 +336,7 @@ def evaluate(
         covariance=matrix,
         correlations=correlations(matrix),
         bounds_hit=_bound_sentences(parameters, given, followed=stated != plant),
-        undetermined=_undetermined_sentences(parameters, flat, train),
+        undetermined=_undetermined_sentences(parameters, waves_of(parameters, matrix), flat, train),
         assumed=(told,) if told else (),
         r2=fitted[2],
         train_rms=fitted[0],
@@ -343,6 +352,7 @@ def evaluate(
         evaluations=evaluations,
         timing_offset=nuisances.timing,
         starts={names[index]: dict(start) for index, start in nuisances.starts.items()},
+        begins=begins(names, [*train, *others], begun),
     )
 
 
@@ -449,6 +459,7 @@ def _held_beside(
 
 def _undetermined_sentences(
     parameters: dict[str, FitParameter],
+    waves: dict[str, FitParameter],
     flat: Sequence[Sequence[str]],
     rows: Sequence[Rows],
 ) -> tuple[str, ...]:
@@ -463,8 +474,13 @@ def _undetermined_sentences(
                 "record what separates them"
             )
     told = {path for group in flat for path in group}
-    for path, p in parameters.items():
-        if path not in told and p.stderr > abs(p.value) and p.value != 0.0:
+    # Of a wave the amplitude is asked: a small part of a large one is known as well as the other.
+    whole = {
+        path for path in parameters if (parts := parts_of(path)) and amplitude_of(parts) in waves
+    }
+    amplitudes = {path: p for path, p in waves.items() if "phase" not in path}
+    for path, p in ({**parameters, **amplitudes}).items():
+        if path not in told | whole and p.stderr > abs(p.value) and p.value != 0.0:
             sentences.append(
                 f"{path} is not determined by these data: its standard error {p.stderr:.2g} "
                 f"exceeds its value{_why(path, rows)}"

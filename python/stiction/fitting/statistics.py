@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
+from .quantiles import f_quantile, t_quantile
 
 __all__ = [
     "CORRELATED_S",
@@ -17,6 +18,7 @@ __all__ = [
     "echoes",
     "interval_width",
     "jackknife",
+    "normal_inverse",
     "undetermined_directions",
 ]
 
@@ -54,11 +56,8 @@ def covariance(
     rows_per_block : sequence of int
         Rows that make a block of each recording.
     """
-    matrix = np.vstack(jacobians)
-    parameters = matrix.shape[1]
-    scale = np.sqrt(np.sum(matrix**2, axis=0))
-    scale[scale == 0.0] = 1.0
-    bread = np.linalg.pinv((matrix / scale).T @ (matrix / scale), rcond=FLAT**2, hermitian=True)
+    bread, scale = normal_inverse(np.vstack(jacobians))
+    parameters = len(scale)
     meat = np.zeros((parameters, parameters))
     blocks = 0
     for jacobian, residual, rows in zip(jacobians, residuals, rows_per_block, strict=True):
@@ -69,6 +68,25 @@ def covariance(
             blocks += 1
     few = blocks / (blocks - 1) if blocks > 1 else np.inf
     return np.asarray(bread @ meat @ bread * few / np.outer(scale, scale)), blocks
+
+
+def normal_inverse(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(JᵀJ)⁻¹ of columns divided by their norms, and these; without directions that are flat.
+
+    Parameters
+    ----------
+    matrix : numpy.ndarray, shape (n, p)
+
+    Returns
+    -------
+    numpy.ndarray, shape (p, p)
+    numpy.ndarray, shape (p,)
+        1 for a column that is 0.
+    """
+    scale = np.sqrt(np.sum(matrix**2, axis=0))
+    scale[scale == 0.0] = 1.0
+    scaled = matrix / scale
+    return np.linalg.pinv(scaled.T @ scaled, rcond=FLAT**2, hermitian=True), scale
 
 
 def jackknife(
@@ -107,9 +125,7 @@ def interval_width(blocks: int) -> float:
 
     B blocks are B independent pieces of evidence, however many rows they hold.
     """
-    from scipy.special import stdtrit
-
-    return float(stdtrit(max(1, blocks - 1), 0.975))
+    return t_quantile(max(1, blocks - 1), 0.975)
 
 
 def differ(values: FloatArray, covariance: FloatArray, blocks: int) -> bool:
@@ -120,8 +136,6 @@ def differ(values: FloatArray, covariance: FloatArray, blocks: int) -> bool:
     still there may be no doubt that one of them is there. One value alone differs where
     its interval of `interval_width` leaves 0 out.
     """
-    from scipy.special import fdtri
-
     number, degrees = len(values), max(1, blocks - 1)
     if number == 0 or degrees < number or not np.all(np.isfinite(covariance)):
         return False
@@ -131,7 +145,7 @@ def differ(values: FloatArray, covariance: FloatArray, blocks: int) -> bool:
     scaled = values / size
     inverse = np.linalg.pinv(covariance / np.outer(size, size), rcond=FLAT, hermitian=True)
     rest = degrees - number + 1
-    bound = number * degrees / rest * float(fdtri(number, rest, 0.95))
+    bound = number * degrees / rest * f_quantile(number, rest, 0.95)
     return float(scaled @ inverse @ scaled) > bound
 
 

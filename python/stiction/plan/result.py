@@ -77,10 +77,16 @@ class Signal:
         return f"Signal({self.name}, {self.kind}, {self.duration:.1f} s, greatest {most})"
 
     def save(self, where: str | Path) -> Path:
-        """Write it as CSV into a folder; returns the path."""
-        path = Path(where) / f"{self.name}.csv"
+        """Write it as CSV into a folder; returns the path.
+
+        Raises
+        ------
+        InputError
+            No name of a folder, or one that is not there or cannot be written to.
+        """
+        path = given.path(where, "Signal.save") / f"{self.name}.csv"
         rows = np.column_stack([self.time, self.values])
-        with replacing(path) as file:
+        with given.written(path), replacing(path) as file:
             file.write(f"time_s,{self.column}\n".encode())
             np.savetxt(file, rows, fmt="%.9g", delimiter=",")
         return path

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from .. import given as taken
 from ..errors import InputError
 from ..frozen import Frozen
 from ..wording import did_you_mean
@@ -142,7 +143,10 @@ class Columns(Mapping[str, Column]):
     """
 
     def __init__(self, by_role: Mapping[str, Column] | None = None, *, where: str = "columns"):
-        self._by_role = Frozen(by_role or {})
+        columns = taken.mapping(by_role, where, "a mapping of roles to columns")
+        for role, column in columns.items():
+            taken.instance(column, Column, f"{where}: {taken.shown(role)}", "a Column")
+        self._by_role: Frozen[str, Column] = Frozen(columns)
         self.where = where
 
     @classmethod

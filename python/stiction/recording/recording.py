@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..frozen import Frozen
-from ..given import instance, mapping
+from ..given import instance, mapping, numbers
 from ..given import path as file_path
 from ..parameter import number
 from ..wording import did_you_mean
@@ -244,11 +244,21 @@ class Recording:
         ----------
         values : numpy.ndarray, shape (rows,)
             In the unit of the input; copied.
+
+        Raises
+        ------
+        InputError
+            No numbers, or not one for each row.
         """
         again = copy(self)
-        given = values.copy()
-        given.flags.writeable = False
-        object.__setattr__(again, "input", given)
+        held = numbers(values, "Recording.with_input: values").copy()
+        if held.shape != self.time.shape:
+            raise InputError(
+                f"Recording.with_input: values has shape {held.shape} where {self.time.shape} is "
+                "needed; give one value a row"
+            )
+        held.flags.writeable = False
+        object.__setattr__(again, "input", held)
         return again
 
     def _fill(

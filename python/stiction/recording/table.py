@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
+from ..given import instance, whole, word
 from ..wording import counted, did_you_mean, listed, printable
 from .text.lines import LineNumbers
 from .units import FloatArray, bracketed_unit
@@ -59,11 +60,14 @@ class Table:
     units: dict[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for names in (self.columns, self.unusable, self.units):
+        for what in ("columns", "unusable", "units"):
+            names = instance(getattr(self, what), dict, f"Table: {what}", "a dict by column")
+            for name in names:
+                word(name, f"Table: {what}: a column")
             if not all(name.isprintable() for name in names):
                 renamed = {printable(name): value for name, value in names.items()}
                 names.clear()
-                names.update(renamed)  # type: ignore[arg-type]
+                names.update(renamed)
 
     def heading(self, name: str) -> str:
         """A column's name, with the unit below it in brackets where it has none itself."""
@@ -72,7 +76,9 @@ class Table:
 
     def place(self, row: int) -> str:
         """How a reader finds a 0-based row again: ``"line 19"``, or ``"row 17"`` (1-based)."""
-        return f"row {row + 1}" if self.lines is None else f"line {self.lines[row]}"
+        if self.lines is None:
+            return f"row {whole(row, 'row', least=0) + 1}"
+        return f"line {self.lines[whole(row, 'row', least=0, most=len(self.lines) - 1)]}"
 
     def find(self, name: str, field_name: str) -> FloatArray:
         """One column, as numbers.
@@ -93,6 +99,7 @@ class Table:
         InputError
             If the file has no such column, or it is no vector, or a cell of it holds text.
         """
+        word(name, f"{self.path}: {field_name}")
         if name in self.unusable:
             raise InputError(
                 f"{self.path}: '{name}', asked for as {field_name}, {self.unusable[name]}; "

@@ -9,7 +9,9 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from .. import given
 from ..atomic_files import subfolder, write_text
+from ..begins import save_begins
 from ..best_effort import Failure, attempt
 from .files import made, refused, without_others
 
@@ -23,7 +25,7 @@ REPORT: Final = "report.html"
 
 
 def write(diagnosis: Diagnosis, folder: Path) -> Path:
-    """Write report.html, findings.json, plant.toml and figures/*.svg.
+    """Write report.html, findings.json, plant.toml, begins.toml and figures/*.svg.
 
     The numbers are on the disk before anything is drawn, and no file is ever half there. A figure
     or a section that fails is a sentence in its place. The same diagnosis gives the same bytes,
@@ -46,10 +48,12 @@ def write(diagnosis: Diagnosis, folder: Path) -> Path:
     InputError
         The folder cannot be made or written to.
     """
-    made(folder)
+    folder = made(given.path(folder, "report.write: folder"))
     try:
         write_text(folder / "findings.json", diagnosis.to_json() + "\n")
         diagnosis.plant.save(folder / "plant.toml")
+        extended = diagnosis.extended
+        save_begins(folder, {} if extended is None else extended.begins)
         drawn = attempt("the figures", lambda: _drawn(diagnosis))
         drawings = {} if isinstance(drawn, Failure) else drawn
         figures = subfolder(folder, "figures")

@@ -16,15 +16,15 @@ from ..best_effort import Failure, attempt
 from ..compared import compared_by
 from ..progress import phase, steps
 from . import figures
+from .chart_svg import write_svg
 from .numbers import isolated, percent, plain
 from .scale import scale_of
-from .svg import inline, text_of
+from .svg import inline
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from ..diagnosis.omnibus import View
     from ..diagnosis.result import Diagnosis
+    from .chart import Chart
 
 __all__ = ["Drawing", "Drawings", "Order", "draw", "orders"]
 
@@ -33,7 +33,7 @@ _logger = logging.getLogger(__name__)
 
 
 class _Drawn(Protocol):
-    def __call__(self, diagnosis: Diagnosis, *, narrow: bool) -> Figure: ...
+    def __call__(self, diagnosis: Diagnosis, *, narrow: bool) -> Chart: ...
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class Order:
     def draw(self, diagnosis: Diagnosis) -> Drawing:
         """Draw it, wide and narrow."""
         shown = self.shown(diagnosis)
-        wide, narrow = (text_of(shown.draw(diagnosis, narrow=each)) for each in (False, True))
+        wide, narrow = (write_svg(shown.draw(diagnosis, narrow=each)) for each in (False, True))
         return Drawing(
             self.name,
             shown.caption,
@@ -205,7 +205,7 @@ def _cause(diagnosis: Diagnosis, index: int) -> _Shown:
     if index > 0:
         caption += " “Before” has the causes above already, “after” this one too."
 
-    def drawn(diagnosis: Diagnosis, *, narrow: bool) -> Figure:
+    def drawn(diagnosis: Diagnosis, *, narrow: bool) -> Chart:
         return figures.cause(diagnosis, index, narrow=narrow)
 
     label = f"{plain(cause.name)}: {what.lower()} against {over}, before and after."

@@ -1,6 +1,6 @@
-"""The figures of a report.
+"""The figures of a report, as charts.
 
-Each is drawn wide for a screen or paper, and again ``narrow`` for a phone, where the wide one would
+Each is made wide for a screen or paper, and again ``narrow`` for a phone, where the wide one would
 be too small to read.
 """
 
@@ -8,47 +8,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.ticker import (
-    FuncFormatter,
-    MaxNLocator,
-)
 
 from ..compared import compared_by
 from ..errors import InputError
-from ..plot import (
-    ACCENT,
-    FAINT,
-    INK,
-    MEASURED,
-    SIMULATED,
-    SMALL,
-    TEXT,
-    WIDTH,
-    figure,
-    thinned,
-)
-from .numbers import NO_BREAK, digits, percent, tick
-from .panels import (
-    STEPS,
-    beside,
-    grid,
-    grid_height,
-    legend_above,
-    named,
-    note,
-    shortened,
-    ticks,
-    told_apart,
-)
+from ..plot import ACCENT, FAINT, INK, MEASURED, SIMULATED, SMALL, TEXT, WIDTH, thinned
+from .axis import Axis, around
+from .chart import Area, Bars, Chart, Line, Mark, Panel, Span, Words
+from .labels import shortened, told_apart
+from .numbers import NO_BREAK, digits, percent
 from .scale import Scale, loop_scale_of, prefixed, scale_of, suited
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from ..diagnosis.omnibus import View
     from ..diagnosis.pictures import Pictures
     from ..diagnosis.result import Diagnosis, ModelSummary
@@ -64,8 +38,10 @@ __all__ = [
     "quantity_of",
 ]
 
-NARROW: Final = 3.9
-"""Width of a figure for a phone, inches: text keeps its size on 360 pixels."""
+INCH: Final = 72.0
+"""Points: lengths of charts are in these."""
+WIDE, NARROW = WIDTH * INCH, 3.9 * INCH
+"""Widths of a figure for a page and for a phone: there text keeps its size on 360 pixels."""
 BEFORE, AFTER, BAND, REFUSED = ACCENT, SIMULATED, "#dde1e5", "#b9c0c7"
 """Orange and blue are told apart by people who do not see red and green alike."""
 FLOOR_TIMES: Final = 2.0
@@ -81,9 +57,11 @@ MOST_PANELS: Final = 12
 """Coordinates that are drawn; the others are flat, and stand in the table."""
 TOGETHER: Final = 0.012
 """Stretches nearer than this share of the axis are drawn as one."""
+TRACE, ROW, BAR = 80.0, 21.6, 19.4
+"""Heights of a panel over time, and of a line in a list of errors and of bars."""
 
 
-def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
+def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     """Measured effort (of a servo its position), and what both models leave of it, over time.
 
     The held-out recording with the largest improvement; the band is what noise alone leaves.
@@ -106,41 +84,42 @@ def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     left = [("before", stretch.before, BEFORE), ("after", stretch.after, AFTER)]
     if not diagnosis.effects:
         left = [("left", stretch.after, AFTER)]
-    drawn, (upper, *lower) = figure(
-        1 + len(left),
-        height=1.25 + (1.2 if narrow else 1.1) * (1 + len(left)),
-        width=NARROW if narrow else WIDTH,
-        sharex=True,
-        height_ratios=(0.8, *(1.0 for _ in left)),
-    )
-    buckets = 350 if narrow else 700
     by = compared_by(diagnosis.plant)
     unit = pictures.position_unit if by.loop else pictures.effort_unit
     given = suited([_extent([stretch.measured])], unit)
-    shown = thinned(stretch.time, given.factor * stretch.measured, buckets)
-    upper.plot(*shown, color=MEASURED, linewidth=0.9)
-    named(upper, f"measured {by.quantity}", narrow)
-    upper.set_ylabel(given.on_axis(by.quantity))
+    time, size = _time(stretch.time, narrow), SMALL if narrow else TEXT
+    measured = _trace(stretch.time, given.factor * stretch.measured, MEASURED, 0.9, narrow)
+    upright = Axis(0.0, 1.0, given.on_axis(by.quantity), _up(narrow))
+    panels = [
+        Panel(
+            x=replace(time, numbered=False),
+            y=around([measured.y], upright),
+            marks=[measured],
+            height=0.8 * TRACE,
+            title=f"measured {by.quantity}",
+            size=size,
+        )
+    ]
     band = FLOOR_TIMES * scale.factor * pictures.floor
-    span = max(scale.factor * _extent([values for _, values, _ in left]), 1.3 * band)
-    for panel, (name, values, colour) in zip(lower, left, strict=True):
-        panel.axhspan(-band, band, color=BAND, linewidth=0.0, zorder=0.5)
-        shown = thinned(stretch.time, scale.factor * values, buckets)
-        panel.plot(*shown, color=colour, linewidth=0.8)
-        panel.set_ylim(-1.08 * span, 1.08 * span)
-        panel.set_ylabel(scale.on_axis("residual"))
-        named(panel, f"{name}: {scale.text(_rms(values))} rms not explained", narrow)
-    lower[-1].set_xlabel("time in the recording (s)")
-    upper.set_xlim(min(0.0, float(stretch.time[0])), float(stretch.time[-1]))
-    for panel in (upper, *lower):
-        ticks(panel, 5 if narrow else 9, 4 if narrow else 5)
-    if not narrow:
-        note(lower[0], "band: noise alone")
-    drawn.align_ylabels()
-    return drawn
+    span = 1.08 * max(scale.factor * _extent([values for _, values, _ in left]), 1.3 * band)
+    for number, (name, values, colour) in enumerate(left, 1):
+        last = number == len(left)
+        trace = _trace(stretch.time, scale.factor * values, colour, 0.8, narrow)
+        panels.append(
+            Panel(
+                x=replace(time, label="time in the recording (s)") if last else panels[0].x,
+                y=Axis(-span, span, scale.on_axis("residual"), _up(narrow)),
+                marks=[Span("y", -band, band, BAND), trace],
+                height=TRACE,
+                title=f"{name}: {scale.text(_rms(values))} rms not explained",
+                size=size,
+                remark="band: noise alone" if number == 1 and not narrow else "",
+            )
+        )
+    return Chart(_width(narrow), panels)
 
 
-def cause(diagnosis: Diagnosis, index: int, *, narrow: bool = False) -> Figure:
+def cause(diagnosis: Diagnosis, index: int, *, narrow: bool = False) -> Chart:
     """The residual over the coordinate in which a cause shows, before and after.
 
     Parameters
@@ -153,17 +132,20 @@ def cause(diagnosis: Diagnosis, index: int, *, narrow: bool = False) -> Figure:
     """
     pictures = _pictures(diagnosis)
     before, after = pictures.causes[index]
-    drawn, (panel,) = figure(height=3.3 if narrow else 3.1, width=NARROW if narrow else WIDTH)
     upright, scale = _upright(before, pictures, scale_of(diagnosis))
-    _curves(panel, before, after, scale, size=3.5)
-    panel.set_xlabel(_axis(before, pictures))
-    panel.set_ylabel(scale.on_axis(upright))
-    ticks(panel, 4 if narrow else 8, 6)
-    legend_above(panel, 3)
-    return drawn
+    x, marks = _curves(before, after, scale, size=3.5)
+    drawn = [part for mark in marks for part in _heights(mark)]
+    panel = Panel(
+        x=replace(x, label=_axis(before, pictures), most=4 if narrow else 8),
+        y=around(drawn, Axis(0.0, 1.0, scale.on_axis(upright))),
+        marks=marks,
+        height=2.4 * INCH,
+        legend=True,
+    )
+    return Chart(_width(narrow), [panel])
 
 
-def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
+def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     """The residual over the coordinates in which most shows, with what noise alone reaches.
 
     Parameters
@@ -177,39 +159,32 @@ def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     before = {view.coordinate.name: view for view in pictures.before.views}
     views = most_shown(pictures)
     columns = 2 if narrow else 3
-    rows = -(-len(views) // columns)
-    drawn, panels = figure(
-        rows,
-        columns,
-        height=grid_height(rows),
-        width=NARROW if narrow else WIDTH,
-    )
-    grid(drawn, rows)
     both, scale = bool(diagnosis.effects), scale_of(diagnosis)
     shown = (*views, *(before.values() if both else ()))
     parts = [part for view in shown for part in (view.mean, view.low, view.high)]
-    span = scale.factor * _extent(parts)
-    for position, (panel, view) in enumerate(zip(panels, views, strict=False)):
+    span = 1.1 * scale.factor * _extent(parts)
+    panels = []
+    for position, view in enumerate(views):
         first = before.get(view.coordinate.name, view)
-        _curves(panel, first if both else view, view if both else None, scale, size=2.0)
-        panel.set_ylim(-1.1 * span, 1.1 * span)
-        ticks(panel, 2 if narrow else 4, 4)
-        panel.tick_params(labelsize=SMALL - 1.0)
-        if position % columns:
-            panel.tick_params(labelleft=False)
+        x, marks = _curves(first if both else view, view if both else None, scale, size=2.0)
         axis = _axis(view, pictures)
-        # On a phone the title above has to do for the name.
-        panel.set_xlabel(axis[max(axis.rfind("("), 0) :] if narrow else axis, fontsize=SMALL)
-        title = _panel_title(first, view, both=both, narrow=narrow)
-        size = SMALL - 1.0 if narrow else SMALL
-        panel.set_title(title, fontsize=size, loc="left", color=INK, pad=4.0)
-    for panel in panels[len(views) :]:
-        panel.set_axis_off()
-    drawn.supylabel(scale.on_axis("mean residual"), x=0.0, fontsize=TEXT)
-    handles, labels = panels[0].get_legend_handles_labels()
-    keywords = {"frameon": False, "fontsize": SMALL, "handlelength": 1.6, "columnspacing": 1.2}
-    drawn.legend(handles, labels, loc="upper left", ncols=3, borderaxespad=0.1, **keywords)
-    return drawn
+        panels.append(
+            Panel(
+                # On a phone the title above has to do for the name.
+                x=replace(
+                    x,
+                    label=axis[max(axis.rfind("("), 0) :] if narrow else axis,
+                    most=2 if narrow else 4,
+                ),
+                y=Axis(-span, span, most=4, numbered=position % columns == 0),
+                marks=marks,
+                height=0.92 * INCH,
+                title=_panel_title(first, view, both=both, narrow=narrow),
+                size=SMALL - 1.0 if narrow else SMALL,
+            )
+        )
+    upright = scale.on_axis("mean residual")
+    return Chart(_width(narrow), panels, columns, legend=True, upright=upright)
 
 
 def most_shown(pictures: Pictures) -> list[View]:
@@ -224,7 +199,7 @@ def most_shown(pictures: Pictures) -> list[View]:
     return [view for view in pictures.after.views if view.coordinate.name in names]
 
 
-def candidates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
+def candidates(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     """What every effect would explain, beside what noise alone reaches.
 
     Parameters
@@ -237,39 +212,39 @@ def candidates(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     if not rows:
         raise InputError("no candidate has a score, so there is nothing to draw")
     rows.sort(key=lambda row: -(row.score or 0.0))
-    drawn, (panel,) = figure(height=0.95 + 0.27 * len(rows), width=NARROW if narrow else WIDTH)
-    at = np.arange(len(rows))
+    at = np.arange(len(rows), dtype=np.float64)
     scores = np.array([100.0 * max(row.score or 0.0, 0.0) for row in rows])
+    noise = np.array([100.0 * (row.threshold or 0.0) for row in rows])
     accepted = {effect.name for effect in diagnosis.effects}
-    colours = [SIMULATED if row.name in accepted else REFUSED for row in rows]
-    panel.barh(at, scores, color=colours, height=0.62)
-    marks = np.array([100.0 * (row.threshold or 0.0) for row in rows])
-    panel.plot(
-        marks,
-        at,
-        linestyle="",
-        marker="|",
-        ms=11,
-        mew=1.6,
-        color=INK,
-        label="what noise alone reaches",
-    )
-    for place, score, mark in zip(at, scores, marks, strict=True):
-        beside(panel, percent(score / 100.0), max(score, mark), float(place))
     longest = LONGEST_NARROW_NAME + 11 if narrow else LONGEST_NAME
-    panel.set_yticks(at, [shortened(row.name.replace("_", " "), longest) for row in rows])
-    panel.invert_yaxis()
-    panel.grid(False, axis="y")
-    panel.set_xlim(0.0, 1.18 * max(float(scores.max()), float(marks.max()), 1.0))
-    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g} %"))
-    panel.set_xlabel("share of the residual explained" if narrow else
-                     "share of the residual that it would explain")  # fmt: skip
-    panel.xaxis.set_major_locator(MaxNLocator(4 if narrow else 6, steps=STEPS))
-    legend_above(panel, 1)
-    return drawn
+    marks: list[Mark] = [
+        Bars(
+            at,
+            np.zeros(len(rows)),
+            scores,
+            [SIMULATED if row.name in accepted else REFUSED for row in rows],
+            0.62,
+        ),
+        Line(noise, at, INK, 0.0, "|", 11.0, "what noise alone reaches"),
+        Words(np.maximum(scores, noise), at, [percent(score / 100.0) for score in scores]),
+    ]
+    panel = Panel(
+        x=Axis(
+            0.0,
+            1.06 * max(float(scores.max()), float(noise.max()), 1.0),
+            f"share of the residual {'explained' if narrow else 'that it would explain'}",
+            4 if narrow else 6,
+            written=lambda value: f"{value:g}{NO_BREAK}%",
+        ),
+        y=_list([shortened(row.name.replace("_", " "), longest) for row in rows]),
+        marks=marks,
+        height=BAR * len(rows),
+        legend=True,
+    )
+    return Chart(_width(narrow), [panel])
 
 
-def errors(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
+def errors(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     """Residual rms before and after, by what rows are for and by held-out recording.
 
     Parameters
@@ -282,29 +257,34 @@ def errors(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     rows = _error_rows(diagnosis, LONGEST_NARROW_NAME if narrow else LONGEST_NAME)
     if not rows:
         raise InputError(f"there is nothing to draw: {diagnosis.sentence}")
-    drawn, (panel,) = figure(height=1.0 + 0.3 * len(rows), width=NARROW if narrow else WIDTH)
-    at = np.arange(len(rows))
+    at = np.arange(len(rows), dtype=np.float64)
     scale = scale_of(diagnosis)
     floor = scale.factor * pictures.floor
     one = scale.factor * np.array([before for _, before, _ in rows])
     two = scale.factor * np.array([after for _, _, after in rows])
-    panel.axvspan(0.0, floor, color=BAND, linewidth=0.0, zorder=0.5, label="noise alone")
+    marks: list[Mark] = [Span("x", 0.0, floor, BAND, "noise alone")]
     if diagnosis.effects:
-        panel.hlines(at, one, two, color=FAINT, linewidth=1.4, zorder=1.5)
-        panel.plot(one, at, "o", color=BEFORE, ms=6, label="before")
-    panel.plot(two, at, "s", color=AFTER, ms=6, label="after" if diagnosis.effects else "residual")
-    panel.set_yticks(at, [name for name, _, _ in rows])
-    panel.set_ylim(len(rows) - 0.4, -0.6)
-    panel.grid(False, axis="y")
-    panel.set_xlim(0.0, 1.08 * max(_extent([one, two]), floor))
-    panel.set_xlabel(scale.on_axis("residual, rms"))
-    panel.xaxis.set_major_locator(MaxNLocator(4 if narrow else 7, steps=STEPS))
-    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
-    legend_above(panel, 3)
-    return drawn
+        marks += [
+            Bars(at, one, two, [FAINT] * len(rows), 0.06),
+            Line(one, at, BEFORE, 0.0, "o", 6.0, "before"),
+        ]
+    marks.append(Line(two, at, AFTER, 0.0, "s", 6.0, "after" if diagnosis.effects else "residual"))
+    panel = Panel(
+        x=Axis(
+            0.0,
+            1.08 * max(_extent([one, two]), floor),
+            scale.on_axis("residual, rms"),
+            4 if narrow else 7,
+        ),
+        y=_list([name for name, _, _ in rows]),
+        marks=marks,
+        height=ROW * len(rows),
+        legend=True,
+    )
+    return Chart(_width(narrow), [panel])
 
 
-def closed_loop(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
+def closed_loop(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     """The tracking error, measured and simulated, and what both models miss of the position.
 
     Parameters
@@ -323,37 +303,64 @@ def closed_loop(diagnosis: Diagnosis, *, narrow: bool = False) -> Figure:
     if tracking is None:
         raise InputError("no loop was replayed, so there is nothing to draw")
     both, scale = bool(diagnosis.effects), loop_scale_of(diagnosis)
-    drawn, (upper, lower) = figure(
-        2,
-        height=4.4 if narrow else 4.2,
-        width=NARROW if narrow else WIDTH,
-        sharex=True,
-        height_ratios=(1.2, 1.0),
-    )
-    buckets = 350 if narrow else 700
     simulated = [("before", tracking.before, tracking.left_before, BEFORE)] if both else []
     simulated.append(("after" if both else "simulated", tracking.after, tracking.left, AFTER))
 
-    def line(panel: Axes, values: np.ndarray, colour: str, width: float, label: str) -> None:
-        shown = thinned(tracking.time, scale.factor * values, buckets)
-        panel.plot(*shown, color=colour, linewidth=width, label=label)
+    def line(values: np.ndarray, colour: str, width: float, label: str) -> Line:
+        trace = _trace(tracking.time, scale.factor * values, colour, width, narrow)
+        return replace(trace, label=label)
 
-    line(upper, tracking.measured, MEASURED, 1.8, "measured")
-    for name, position, left, colour in simulated:
-        line(upper, position, colour, 0.8, name)
-        line(lower, left, colour, 0.8, name)
-    upper.set_ylabel(f"tracking error ({scale.unit})")
-    lower.set_ylabel(f"difference ({scale.unit})")
+    above = [line(tracking.measured, MEASURED, 1.8, "measured")]
+    above += [line(position, colour, 0.8, name) for name, position, _, colour in simulated]
+    below = [line(left, colour, 0.8, name) for name, _, left, colour in simulated]
     sizes = [digits(scale.factor * _rms(left)) for _, _, left, _ in simulated]
     what = "rms" if narrow else "measured − simulated, rms:"
-    named(lower, f"{what} {' → '.join(sizes)} {scale.unit}", narrow)
-    lower.set_xlabel("time in the recording (s)")
-    lower.set_xlim(min(0.0, float(tracking.time[0])), float(tracking.time[-1]))
-    legend_above(upper, 3)
-    for panel in (upper, lower):
-        ticks(panel, 5 if narrow else 9, 4 if narrow else 5)
-    drawn.align_ylabels()
-    return drawn
+    time = _time(tracking.time, narrow)
+
+    def upright(name: str, lines: Sequence[Line]) -> Axis:
+        return around([each.y for each in lines], Axis(0.0, 1.0, name, _up(narrow)))
+
+    panels = [
+        Panel(
+            x=replace(time, numbered=False),
+            y=upright(f"tracking error ({scale.unit})", above),
+            marks=above,
+            height=1.35 * TRACE,
+            legend=True,
+        ),
+        Panel(
+            x=replace(time, label="time in the recording (s)"),
+            y=upright(f"difference ({scale.unit})", below),
+            marks=below,
+            height=1.15 * TRACE,
+            title=f"{what} {' → '.join(sizes)} {scale.unit}",
+            size=SMALL if narrow else TEXT,
+        ),
+    ]
+    return Chart(_width(narrow), panels)
+
+
+def _width(narrow: bool) -> float:
+    return NARROW if narrow else WIDE
+
+
+def _up(narrow: bool) -> int:
+    """Intervals between ticks of a vertical axis."""
+    return 4 if narrow else 5
+
+
+def _time(time: np.ndarray, narrow: bool) -> Axis:
+    return Axis(min(0.0, float(time[0])), float(time[-1]), most=5 if narrow else 9)
+
+
+def _trace(time: np.ndarray, values: np.ndarray, colour: str, width: float, narrow: bool) -> Line:
+    """A line over time, of as many points as can be seen."""
+    return Line(*thinned(time, values, 350 if narrow else 700), colour, width)
+
+
+def _list(names: Sequence[str]) -> Axis:
+    """A vertical axis of names, the first on top."""
+    return Axis(len(names) - 0.4, -0.6, names=tuple(names), grid=False)
 
 
 def _pictures(diagnosis: Diagnosis) -> Pictures:
@@ -362,28 +369,38 @@ def _pictures(diagnosis: Diagnosis) -> Pictures:
     return diagnosis.pictures
 
 
-def _curves(panel: Axes, before: View, after: View | None, scale: Scale, *, size: float) -> None:
-    """Mean residuals and the band of the surrogates, over one coordinate."""
+def _curves(
+    before: View, after: View | None, scale: Scale, *, size: float
+) -> tuple[Axis, list[Mark]]:
+    """Mean residuals and the band of the surrogates, and the horizontal axis that they need."""
     across = _across(before)[0]
     at, low, high, mean = _merged(before, across)
+    first = Line(at, scale.factor * mean, BEFORE, 1.1, "o", size, "before")
+    lines = [first]
+    if after is None:
+        lines = [replace(first, colour=AFTER, marker="s", label="what is left")]
+    else:
+        # Each model may lay its stretches elsewhere: an effort is the modelled one where it is
+        # noisy.
+        at_after, _, _, mean = _merged(after, across)
+        lines.append(Line(at_after, scale.factor * mean, AFTER, 1.1, "s", size, "after"))
+    x = Axis(0.0, 1.0)
     if _logarithmic(before):
         # A coordinate that begins at 0 is linear up to the first stretch that does not.
         least = float(at[at > 0.0].min())
-        panel.set_xscale(
-            "log" if at.min() > 0.0 else "symlog",
-            **({} if at.min() > 0.0 else {"linthresh": least, "linscale": 0.3}),
-        )
-    panel.axhline(0.0, color=FAINT, linewidth=0.7)
-    band = scale.factor * low, scale.factor * high
-    panel.fill_between(at, *band, color=BAND, linewidth=0.0, label="noise alone, 95 %")
-    keywords: dict[str, Any] = {"ms": size, "linewidth": 1.1}
-    if after is None:
-        panel.plot(at, scale.factor * mean, "-s", color=AFTER, label="what is left", **keywords)
-        return
-    panel.plot(at, scale.factor * mean, "-o", color=BEFORE, label="before", **keywords)
-    # Each model may lay its stretches elsewhere: an effort is the modelled one where it is noisy.
-    at, _, _, mean = _merged(after, across)
-    panel.plot(at, scale.factor * mean, "-s", color=AFTER, label="after", **keywords)
+        x = replace(x, scaling="log" if at.min() > 0.0 else "symlog", linear_to=least)
+    x = around([line.x for line in lines], x)
+    ends = np.array([x.low, x.high])
+    zero = Line(ends, np.zeros(2), FAINT, 0.7)
+    band = Area(at, scale.factor * low, scale.factor * high, BAND, "noise alone, 95 %")
+    return x, [zero, band, *lines]
+
+
+def _heights(mark: Mark) -> list[np.ndarray]:
+    """What a mark of a curve covers of the vertical axis."""
+    if isinstance(mark, Area):
+        return [mark.low, mark.high]
+    return [mark.y] if isinstance(mark, Line) else []
 
 
 def _merged(view: View, across: float) -> tuple[np.ndarray, ...]:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from html import escape
 from io import StringIO
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-import matplotlib
 from markupsafe import Markup
-from matplotlib.figure import Figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["inline", "text_of"]
 
@@ -24,6 +25,8 @@ _FINE: Final = re.compile(r"(\.\d\d)\d+")
 
 def text_of(figure: Figure) -> str:
     """A figure as SVG text, the same text for the same figure."""
+    import matplotlib
+
     target = StringIO()
     # Dates and random identifiers would make each text differ from the last.
     with matplotlib.rc_context({"svg.hashsalt": "stiction", "svg.fonttype": "path"}):

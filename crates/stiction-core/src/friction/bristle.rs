@@ -8,12 +8,15 @@ use crate::error::{Error, Result};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::{Scalar, sign};
+use crate::work;
 
 /// Bristles of [`Bristle`].
 pub const BRISTLES: usize = 20;
 const SHARE: f64 = 1.0 / BRISTLES as f64;
 /// Sites of one bristle in a step that are summed one by one; of more their mean is taken.
 const MOST_SITES: f64 = 64.0;
+/// Sites of which the sum takes as long as a step in a row, see [`crate::work`].
+const SITES_OF_A_STEP: f64 = 6.0;
 /// Breaks are counted as far as a float is a whole number.
 const MOST_BREAKS: f64 = 1e15;
 /// How near its limit a bristle is that breaks where a break was located, in limits.
@@ -241,17 +244,19 @@ impl<S: Scalar> Bristle<S> {
         let way = displacement.abs() / self.limit;
         let side = sign(displacement.re());
         let (mut site, mut off, mut all) = (0.0, 0.0, 0.0);
-        let mut sum = S::constant(0.0);
+        let (mut sum, mut sites) = (S::constant(0.0), 0.0);
         for (bristle, bond) in state.bonds.iter().enumerate() {
             let next = self.bonded(bristle, *bond, to.re());
             let breaks = (next.site - bond.site).abs();
             let start = (from - self.place(bristle, *bond)) * side;
             let end = (to - self.place(bristle, next)) * side;
             sum += self.effort(bristle, (*bond, breaks), side, (start, end));
+            sites += breaks.min(MOST_SITES);
             site += SHARE * (next.site + offset(bristle));
             off += SHARE * next.off;
             all += breaks;
         }
+        work::spend((sites / SITES_OF_A_STEP) as u64);
         let force = self.pull(position, site, off);
         if side == 0.0 {
             return (force, force, all);

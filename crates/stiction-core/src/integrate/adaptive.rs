@@ -12,9 +12,10 @@ use super::events::Stepper;
 use super::machine::{Machine, Run};
 use super::row::{Rows, Taken};
 use super::swing::{Landing, Swing, located};
+use crate::error::Error;
 use crate::friction::{FrictionLaw, LawState, Motion};
-use crate::interrupt::Pace;
 use crate::scalar::sign;
+use crate::work::{IN_A_ROW, Meter, STEP};
 
 /// Share of the tolerance that a step may add to the error, by an estimate of one order less.
 const LOCAL: f64 = 0.05;
@@ -35,8 +36,10 @@ const FINEST: f64 = 1.0 / 64.0;
 /// Events without any progress after which a step is taken as it is.
 const MOST_EVENTS: u32 = 16;
 
-/// Plain steps that one of these takes as long as.
-const PER_STEP: u64 = 32;
+/// Evaluations of friction too steep to be linearised take as long as so many others.
+const STEEP: u64 = 3;
+/// Steps of a row are fewer than what is done about them.
+const AROUND: u64 = 2;
 
 /// What a long run cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -52,7 +55,7 @@ pub struct Account {
 }
 
 /// The adaptive integrator: what it carries from step to step, none of it state of the machine.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Adaptive {
     /// Error of a position that is allowed.
     tolerance: f64,
@@ -66,16 +69,16 @@ pub struct Adaptive {
     /// How many times its size what is left of a ring would still move the body.
     over: f64,
     rows: Rows,
-    pace: Pace,
-    /// Steps that are left to be taken.
-    left: u64,
+    meter: Meter,
+    /// Why it came to an end before its time.
+    pub ended: Option<Error>,
     /// What it cost.
     pub account: Account,
 }
 
 impl Adaptive {
-    /// With this error allowed, in at most so many steps; one of the fast integrator lasts `natural`.
-    pub fn new(tolerance: f64, natural: f64, most: u64) -> Self {
+    /// With this error and so much work allowed; a step of the fast integrator lasts `natural`.
+    pub fn new(tolerance: f64, natural: f64, most: f64) -> Self {
         Self {
             tolerance,
             natural,
@@ -84,19 +87,14 @@ impl Adaptive {
             damping: 0.0,
             over: 1.0,
             rows: Rows::new(tolerance, natural),
-            pace: Pace::default(),
-            left: most,
+            meter: Meter::new(most),
+            ended: None,
             account: Account::default(),
         }
     }
 }
 
 impl Adaptive {
-    /// Whether it has taken all steps that it may.
-    pub fn exhausted(&self) -> bool {
-        self.left == 0
-    }
-
     /// Runs on for `span` with input and load held.
     pub fn run<L: FrictionLaw<f64>>(
         &mut self,
@@ -118,8 +116,18 @@ impl Adaptive {
         self.over = 1.0;
         self.rows.begin::<L>(&swing);
         let (mut left, mut stalled, mut mayrest) = (span, 0, true);
-        while left > 0.0 && !self.exhausted() && !self.pace.due(PER_STEP) {
-            self.left -= 1;
+        let evaluation = STEP * if L::STEEP { STEEP } else { 1 };
+        let (mut counted, mut rowed) = (0, 0);
+        while left > 0.0 {
+            let evaluated = swing.evaluations.get() - counted;
+            let alone = evaluated - rowed;
+            // Also what is asked of the contact without an evaluation takes its time.
+            let cost = AROUND * IN_A_ROW * rowed + evaluation * (alone + 1);
+            self.ended = self.meter.take(cost).err();
+            if self.ended.is_some() {
+                break;
+            }
+            (counted, rowed) = (swing.evaluations.get(), 0);
             state.make_room(64);
             if swing.run.velocity == 0.0
                 && let Some(held) = self.hold(&mut swing, law, state, left)
@@ -148,7 +156,10 @@ impl Adaptive {
                     Resting::NotYet => (),
                 }
             }
-            if let Some(passed) = self.row(&mut swing, law, state, left) {
+            let before = swing.evaluations.get();
+            let passed = self.row(&mut swing, law, state, left);
+            rowed = swing.evaluations.get() - before;
+            if let Some(passed) = passed {
                 left = lesser(left, passed, span);
                 continue;
             }

@@ -3,6 +3,7 @@
 use super::contact::Held;
 use crate::friction::{Event, FrictionLaw, Motion};
 use crate::scalar::Scalar;
+use crate::work;
 
 /// Mode changes allowed within one step before the rest is taken in the present mode: a guard
 /// against chatter at a degenerate set of parameters, never reached by a sane one.
@@ -12,6 +13,8 @@ const MOST_EVENTS: u32 = 16;
 pub trait Stepper<S: Scalar, L: FrictionLaw<S>> {
     /// An attempted step.
     type Attempt: Copy;
+    /// What one costs, see [`crate::work`].
+    const COST: u64 = work::STEP;
 
     /// Attempts a step of this duration in the present contact mode.
     fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt;
@@ -114,6 +117,7 @@ fn apart<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
     state: &L::State,
     span: S,
 ) -> P::Attempt {
+    work::spend(P::COST);
     stepper.attempt(law, state, span)
 }
 

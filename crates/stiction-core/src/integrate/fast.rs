@@ -3,7 +3,7 @@
 use super::events::Stepper;
 use super::glide::Verlet;
 use super::machine::{Machine, Run, hold};
-use super::steep;
+use super::{Integrator, steep};
 use crate::effects::Situation;
 use crate::friction::{Channels, FrictionLaw, Motion};
 use crate::scalar::Scalar;
@@ -40,6 +40,7 @@ pub(super) struct Attempt<S, T> {
 
 impl<S: Scalar, L: FrictionLaw<S>, const BARE: bool> Stepper<S, L> for Fast<'_, S, BARE> {
     type Attempt = Attempt<S, L::Trial>;
+    const COST: u64 = Integrator::Fast.of_step::<S>(L::STEEP);
 
     // x₁ = x₀ + h·v₀ + h²/2·a₀,  v₁ = v₀ + h/2·(a₀ + a₁); the part of friction that depends on
     // the velocity at the end is linearised about v₀ + h·a₀, which leaves an error of third order.

@@ -36,8 +36,10 @@ pub use shaft::Beyond;
 
 use std::ops::Range;
 
+use crate::error::Result;
 use crate::friction::FrictionLaw;
 use crate::scalar::Scalar;
+use crate::work::{self, Meter};
 
 /// Which integrator advances the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -64,6 +66,47 @@ const LONGEST_RATE: f64 = 0.3;
 pub const MOST_PARTS: f64 = 1e4;
 /// The reference integrator divides no further for internal variables, however fast they are.
 const MOST_INNER: f64 = 1e5;
+
+/// A step of the reference integrator, in steps of the fast one.
+const REFERENCE: u64 = 5;
+/// A step on friction that rises too steeply to be linearised, likewise.
+const STEEP: u64 = 10;
+/// What the reference makes of such a step.
+const STEEP_REFERENCE: u64 = 80;
+
+impl Integrator {
+    /// What a step costs, see [`crate::work`].
+    pub(crate) const fn of_step<S: Scalar>(self, steep: bool) -> u64 {
+        let steps = match (self, steep) {
+            (Self::Fast, false) => 1,
+            (Self::Fast, true) => STEEP,
+            (Self::Reference, false) => REFERENCE,
+            (Self::Reference, true) => STEEP_REFERENCE,
+        };
+        work::STEP * steps * if S::CARRIES { work::DERIVATIVES } else { 1 }
+    }
+
+    /// What a sample without derivatives costs at most.
+    pub(crate) fn dearest_sample(self) -> f64 {
+        let parts = if self == Self::Fast { MOST_PARTS } else { MOST_INNER };
+        parts * self.of_step::<f64>(true) as f64
+    }
+
+    /// Parts of a sample for the internal variables of the law, as fast as they are now; 0 for the fast
+    /// integrator, which follows them without.
+    #[inline(always)]
+    pub(crate) fn inner<S: Scalar, L: FrictionLaw<S>>(
+        self,
+        law: &L,
+        state: &L::State,
+        dt: f64,
+    ) -> f64 {
+        match self {
+            Self::Fast => 0.0,
+            Self::Reference => (dt * law.fastest_rate(state) / LONGEST_RATE).min(MOST_INNER).ceil(),
+        }
+    }
+}
 
 /// Number of equal parts that a sample of this duration is divided into, so that ω·h stays below
 /// `longest`; above [`MOST_PARTS`] the sample is too long for the machine.
@@ -125,7 +168,8 @@ pub fn step<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
 }
 
 /// Advances body and friction by these of the equal steps of a sample whose input and load are held
-/// (the reference integrator by all of it, in steps of its own). `BARE` promises
+/// (the reference integrator by all of it, in steps of its own); where that is too much work, it ends in
+/// the middle. `BARE` promises
 /// [`Machine::is_bare`]: the same to the bit, without asking at every step for what is not there.
 #[inline]
 #[allow(clippy::too_many_arguments)] // the parts of a motor, borrowed apart
@@ -139,8 +183,10 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
     dt: f64,
     steps: Range<u32>,
     integrator: Integrator,
-) {
+    meter: &mut Meter,
+) -> Result<()> {
     let parts = steps.end;
+    let cost = integrator.of_step::<S>(L::STEEP);
     match integrator {
         Integrator::Fast => {
             let span = S::constant(dt / f64::from(parts));
@@ -148,6 +194,7 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
             if BARE || !machine.counts_work() {
                 for _ in steps {
                     through_events(&mut stepper, law, state, span);
+                    meter.take(cost)?;
                 }
             } else {
                 let rough = machine.roughness(law.greatest_stiffness(), span.re());
@@ -155,12 +202,12 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
                 for _ in steps {
                     through_events(&mut stepper, law, state, span);
                     work.count(machine, stepper.run);
+                    meter.take(cost)?;
                 }
             }
         }
         Integrator::Reference => {
-            let fast = (dt * law.fastest_rate(state) / LONGEST_RATE).min(MOST_INNER).ceil() as u32;
-            let parts = parts.max(fast);
+            let parts = parts.max(integrator.inner(law, state, dt) as u32);
             let span = S::constant(dt / f64::from(parts));
             let mut stepper = reference::Reference { machine, run, input, load };
             let rough = machine.roughness(law.greatest_stiffness(), span.re());
@@ -170,9 +217,11 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
                 if !BARE && machine.counts_work() {
                     work.count(machine, stepper.run);
                 }
+                meter.take(cost)?;
             }
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -224,7 +273,9 @@ mod tests {
                     dt,
                     0..parts,
                     integrator,
-                );
+                    &mut Meter::of_a_sample(),
+                )
+                .unwrap();
                 run
             })
             .collect()

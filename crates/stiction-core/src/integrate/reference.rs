@@ -3,7 +3,7 @@
 use super::events::Stepper;
 use super::fast::Attempt;
 use super::machine::{Machine, Run, hold};
-use super::steep;
+use super::{Integrator, steep};
 use crate::effects::Situation;
 use crate::friction::{FrictionLaw, INTERNAL, Motion};
 use crate::scalar::{Scalar, sign};
@@ -82,6 +82,7 @@ impl<S: Scalar> Reference<'_, S> {
 
 impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Reference<'_, S> {
     type Attempt = Attempt<S, L::Trial>;
+    const COST: u64 = Integrator::Reference.of_step::<S>(L::STEEP);
 
     fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt {
         let run = &*self.run;

@@ -101,6 +101,8 @@ impl Swing<'_> {
 
 impl<L: FrictionLaw<f64>> Stepper<f64, L> for Swing<'_> {
     type Attempt = Landing<L::Trial>;
+    /// Its evaluations are counted.
+    const COST: u64 = 0;
 
     // J·d'' + C·d' + k·d = r(t) with r = E − F + k·d + C·d', d the displacement from the start. A
     // parabola through r at 0, h/2 and h; the position at the end needs the first two alone: the

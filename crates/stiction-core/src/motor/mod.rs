@@ -1,6 +1,7 @@
 //! A motor: machine, friction and the way they run together.
 
 mod column;
+mod cost;
 mod running;
 mod spec;
 mod state;
@@ -13,6 +14,7 @@ use crate::error::{Error, Result};
 use crate::follow::{Efforts, SeesAbout};
 use crate::friction::{AnyState, Entry, LawState, Statistics};
 use crate::integrate::Budget;
+use crate::interrupt::due;
 use crate::kernel::RowKernel;
 use crate::sensitivity::MeasuredMotion;
 use crate::shoot::{Pull, Windows};
@@ -92,11 +94,12 @@ impl Motor {
     ) -> Result<(T, bool)> {
         let before = self.running.standing();
         let done = go(&mut self.running);
-        let sound = done.is_ok() && self.running.is_sound(&before);
+        // What an interrupted run leaves is for nobody.
+        let sound = done.is_ok() && !due() && self.running.is_sound(&before);
         if !sound {
             self.running.return_to(before);
         }
-        done.map(|done| (done, sound))
+        done.map(|done| (done, sound)).map_err(|error| self.spec.blame(error))
     }
 
     /// State of body, drive, effects and friction as named entries.
@@ -159,7 +162,8 @@ impl Motor {
         windows: &Windows<'_>,
     ) -> Result<Vec<f64>> {
         let mut sums = Vec::with_capacity(windows.number(motion.samples()));
-        self.running.shoot(motion, windows, |_, sum| sums.push(sum))?;
+        let shot = self.running.shoot(motion, windows, |_, sum| sums.push(sum));
+        shot.map_err(|error| self.spec.blame(error))?;
         Ok(sums)
     }
 
@@ -170,10 +174,11 @@ impl Motor {
         pull: Pull,
     ) -> Result<(Vec<f64>, Vec<f64>)> {
         let mut rows = (Vec::new(), Vec::new());
-        self.running.accompany(motion, pull, |_, reading, effort| {
+        let went = self.running.accompany(motion, pull, |_, reading, effort| {
             rows.0.push(reading);
             rows.1.push(effort);
-        })?;
+        });
+        went.map_err(|error| self.spec.blame(error))?;
         Ok(rows)
     }
 

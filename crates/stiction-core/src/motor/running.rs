@@ -9,10 +9,10 @@ use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
 use crate::integrate::{
     Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, finer, parts, sample,
 };
-use crate::interrupt::Pace;
 use crate::model::CHUNK;
 use crate::range::{Range, ordinary_motor};
 use crate::scalar::Scalar;
+use crate::work::{self, Meter};
 
 fn whole_parts(parts: f64, most: f64, dt: f64) -> Result<u32> {
     if parts <= most {
@@ -42,6 +42,8 @@ pub struct Running<S: Scalar> {
     pub most_parts: f64,
     /// Within what a step needs no watch.
     pub(crate) range: Range,
+    /// Work that the next runs may make together; what their samples allow without it.
+    pub(crate) allowance: Option<f64>,
 }
 
 impl<S: Scalar> Running<S> {
@@ -63,7 +65,9 @@ impl<S: Scalar> Running<S> {
         let integrator = spec.integrator;
         let plain: Vec<f64> = values.iter().map(|value| value.re()).collect();
         let a_second = with_law!(&law, |law| parts(&machine, law, 1.0, LONGEST_PHASE));
-        let range = Range::new(ordinary_motor(spec, &plain), a_second);
+        // How finely the reference divides hangs on its state.
+        let ordinary = integrator == Integrator::Fast && ordinary_motor(spec, &plain);
+        let range = Range::new(ordinary, a_second);
         Self {
             machine,
             law,
@@ -74,6 +78,7 @@ impl<S: Scalar> Running<S> {
             longest_phase: LONGEST_PHASE,
             most_parts: MOST_PARTS,
             range,
+            allowance: None,
         }
     }
 
@@ -95,9 +100,45 @@ impl<S: Scalar> Running<S> {
         whole_parts(parts, self.most_parts, dt).map(|_| ())
     }
 
+    /// What a sample of this duration costs at least, see [`crate::work`].
+    pub(crate) fn cost(&self, dt: f64) -> f64 {
+        self.parts(dt) * self.of_step() as f64
+    }
+
+    /// The same where this run is under that load.
+    pub(crate) fn cost_here(&self, load: f64, dt: f64) -> f64 {
+        with_law_and_state!(&self.law, &self.state, |law, state| {
+            let plainly = parts(&self.machine, law, dt, self.longest_phase);
+            let finer = finer(&self.machine, law, &self.run, S::constant(load), dt / plainly);
+            let whole = (plainly * finer).max(self.integrator.inner(law, state, dt));
+            whole * self.of_step() as f64
+        })
+    }
+
+    /// What a step costs.
+    fn of_step(&self) -> u64 {
+        with_law!(&self.law, |law| self.integrator.of_step::<S>(steep(law)))
+    }
+
+    fn parts(&self, dt: f64) -> f64 {
+        with_law!(&self.law, |law| parts(&self.machine, law, dt, self.longest_phase))
+    }
+
     /// One sample, at the temperature of the run.
     #[inline]
     pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<()> {
+        self.step_within(input, load, dt, &mut Meter::of_a_sample())
+    }
+
+    /// The same where its work is counted with that of others.
+    #[inline]
+    pub(crate) fn step_within(
+        &mut self,
+        input: f64,
+        load: f64,
+        dt: f64,
+        meter: &mut Meter,
+    ) -> Result<()> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let parts = parts(&self.machine, law, dt, self.longest_phase);
             let finer = finer(&self.machine, law, &self.run, S::constant(load), dt / parts);
@@ -117,11 +158,12 @@ impl<S: Scalar> Running<S> {
                 dt,
                 0..parts,
                 self.integrator,
-            );
+                meter,
+            )?;
             self.machine.wind(&mut self.run, arrived, dt);
             self.machine.remember(&before, &mut self.run);
-        });
-        Ok(())
+            Ok(())
+        })
     }
 
     /// Samples; `row` sees the body, the machine and one state of the law after each.
@@ -156,11 +198,38 @@ impl<S: Scalar> Running<S> {
         dt: PerSample<'_>,
         rows: impl Rows<S>,
     ) -> Result<()> {
-        if self.machine.is_bare() {
-            self.simulate_kind::<true>(inputs, around, added, dt, rows)
+        let longest = dt.greatest();
+        whole_parts(self.parts(longest), self.most_parts, longest)?;
+        let mut meter = Meter::new(self.allowance.unwrap_or_else(|| work::allowed(inputs.len())));
+        meter.foresee(self.foreseen(&around, dt, inputs.len()))?;
+        let done = if self.machine.is_bare() {
+            self.simulate_kind::<true>(inputs, around, added, dt, rows, &mut meter)
         } else {
-            self.simulate_kind::<false>(inputs, around, added, dt, rows)
-        }
+            self.simulate_kind::<false>(inputs, around, added, dt, rows, &mut meter)
+        };
+        self.allowance = self.allowance.map(|_| meter.left());
+        done
+    }
+
+    /// What samples cost at least.
+    pub(crate) fn foreseen(
+        &self,
+        around: &Surroundings<'_>,
+        dt: PerSample<'_>,
+        samples: usize,
+    ) -> f64 {
+        let parts = match dt {
+            PerSample::Same(dt) => self.parts(dt) * samples as f64,
+            PerSample::Each(values) => self.parts(values.iter().sum()),
+        };
+        let glides = self.machine.is_bare() && self.goes_plainly(around);
+        let glides = glides && with_law!(&self.law, |law| law.glides());
+        parts * if glides { work::in_a_row::<S>() } else { self.of_step() } as f64
+    }
+
+    /// Whether steps of a bare body may go in rows.
+    fn goes_plainly(&self, around: &Surroundings<'_>) -> bool {
+        self.integrator == Integrator::Fast && around.is_steady()
     }
 
     fn simulate_kind<const BARE: bool>(
@@ -170,9 +239,10 @@ impl<S: Scalar> Running<S> {
         added: impl Fn(usize) -> S,
         dt: PerSample<'_>,
         mut rows: impl Rows<S>,
+        meter: &mut Meter,
     ) -> Result<()> {
+        let plain = BARE && self.goes_plainly(&around);
         let mut way = self.way.as_mut();
-        let plain = BARE && self.integrator == Integrator::Fast && around.is_steady();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let glides = plain && law.glides();
             let strains = !BARE && self.machine.effects.any();
@@ -180,7 +250,6 @@ impl<S: Scalar> Running<S> {
             let (mut plainly, mut divided) = (1.0, 1);
             let mut room = 0;
             let mut ahead = Ahead::default();
-            let mut pace = Pace::default();
             let mut index = 0;
             while index < inputs.len() {
                 let dt_now = dt.at(index);
@@ -229,14 +298,11 @@ impl<S: Scalar> Running<S> {
                         S::run(Plain { law, state, glide })
                     };
                     room = 0; // what the glide has left of it nobody counted
-                    if pace.due((index - begun) as u64 * u64::from(divided)) {
-                        return Err(Error::Interrupted);
-                    }
+                    let passed = (index - begun) as u64 * u64::from(divided);
+                    meter.take(passed * work::in_a_row::<S>())?;
                     if index == end {
                         continue;
                     }
-                } else if pace.due(u64::from(divided)) {
-                    return Err(Error::Interrupted);
                 }
                 let left = divided - passed;
                 if room < left {
@@ -257,7 +323,8 @@ impl<S: Scalar> Running<S> {
                     dt_now,
                     passed..divided,
                     self.integrator,
-                );
+                    meter,
+                )?;
                 self.machine.wind(&mut self.run, arrived, dt_now);
                 self.machine.remember(&before, &mut self.run);
                 let seen = &*state;
@@ -301,6 +368,11 @@ impl<S: Scalar, A: Fn(usize) -> S> Efforts<S> for Applied<'_, S, A> {
         let passed = 8 * eights.take_while(whole).count();
         passed + efforts[passed..].iter().take_while(|effort| plain(effort)).count()
     }
+}
+
+/// Whether friction of a law rises too steeply to be linearised.
+const fn steep<S: Scalar, L: FrictionLaw<S>>(_: &L) -> bool {
+    L::STEEP
 }
 
 /// Steps of a row of plain steps after which is asked whether to go on.

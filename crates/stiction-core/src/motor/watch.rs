@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::friction::{AnyState, Entry, LawState};
 use crate::integrate::Run;
 use crate::range::sound;
+use crate::work::Meter;
 
 /// Where a motor stood, to go back to.
 #[derive(Debug, Clone)]
@@ -44,7 +45,7 @@ impl Running<f64> {
         if !self.needs_no_watch(input, load, dt) {
             return self.step_watched(input, load, dt);
         }
-        self.step(input, load, dt)?;
+        self.step_within(input, load, dt, &mut Meter::unbounded())?;
         let run = &self.run;
         if (run.position + run.velocity + run.friction).is_finite() {
             return Ok(());
@@ -64,8 +65,19 @@ impl Running<f64> {
     #[cold]
     #[inline(never)]
     pub(crate) fn step_watched(&mut self, input: f64, load: f64, dt: f64) -> Result<()> {
+        self.step_watched_within(input, load, dt, &mut Meter::of_a_sample())
+    }
+
+    /// The same where its work is counted with that of others.
+    pub(crate) fn step_watched_within(
+        &mut self,
+        input: f64,
+        load: f64,
+        dt: f64,
+        meter: &mut Meter,
+    ) -> Result<()> {
         let before = self.standing();
-        let done = self.step(input, load, dt);
+        let done = self.step_within(input, load, dt, meter);
         if done.is_ok() && self.is_sound_throughout(&before) {
             return done;
         }

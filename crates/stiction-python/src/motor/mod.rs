@@ -22,7 +22,7 @@ use crate::arguments::{Names, Text, Words, effects_of, integrator_of, numbers_of
 use crate::arrays::{Around, Each, one_row, target};
 use crate::error::{IntoPython, duration, finite, input_error};
 use crate::friction_model::FrictionModel;
-use crate::interrupt::{all_or_nothing, detached};
+use crate::interrupt::detached;
 use crate::shared::Shared;
 
 /// Base of ``stiction.Motor``: everything that needs no Python.
@@ -147,11 +147,16 @@ type Held<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyDict>, Bound<'py, PyDi
 #[pymethods]
 impl Motor {
     #[new]
-    #[pyo3(signature = (
-        inertia, torque_constant=1.0, friction=None, *, effects=None, gravity_amplitude=0.0,
-        gravity_zero=0.0, weight=0.0, input_limit=f64::INFINITY, servo=None, count=0.0,
-        integrator="fast",
-    ))]
+    #[pyo3(
+        signature = (
+            inertia, torque_constant=1.0, friction=None, *, effects=None, gravity_amplitude=0.0,
+            gravity_zero=0.0, weight=0.0, input_limit=f64::INFINITY, servo=None, count=0.0,
+            integrator=Text::fast(),
+        ),
+        text_signature = "(inertia, torque_constant=1.0, friction=None, *, effects=None, \
+            gravity_amplitude=0.0, gravity_zero=0.0, weight=0.0, input_limit=..., servo=None, \
+            count=0.0, integrator='fast')",
+    )]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn new(
         py: Python<'_>,
@@ -165,7 +170,7 @@ impl Motor {
         input_limit: f64,
         servo: Option<&Bound<'_, PyAny>>,
         count: f64,
-        integrator: &str,
+        integrator: Text,
     ) -> PyResult<Self> {
         let wanted = "give a FrictionModel, for instance FrictionModel('coulomb', coulomb=0.35)";
         let Some(friction) = friction else {
@@ -186,7 +191,7 @@ impl Motor {
             count,
             servo: servo.map(servo_of).transpose()?,
             effects: effects.map(effects_of).transpose()?.unwrap_or_default(),
-            integrator: integrator_of(py, integrator)?,
+            integrator: integrator_of(py, &integrator)?,
             ..MotorSpec::new(inertia, torque_constant, law)
         };
         let mut core = Core::new(spec).or_input_error(py)?;
@@ -336,13 +341,11 @@ impl Motor {
             columns.push((*column, array.as_slice_mut()?));
         }
         let ran = self.core.apart(py, |core| {
-            all_or_nothing(core, |core| {
-                let start = core.running().run.time;
-                if !core.simulate(current, around, dt, &mut columns)? && !shown(&columns) {
-                    return Err(Error::RanUnseen);
-                }
-                Ok((start, core.statistics()))
-            })
+            let start = core.running().run.time;
+            if !core.simulate(current, around, dt, &mut columns)? && !shown(&columns) {
+                return Err(Error::RanUnseen);
+            }
+            Ok((start, core.statistics()))
         });
         let (start, counted) = ran?.or_input_error(py)?;
         Ok((result, n, start, statistics(py, &counted)?))
@@ -411,10 +414,8 @@ impl Motor {
         let mut columns: Vec<(Column, &mut [f64])> =
             kinds.into_iter().zip(arrays.iter_mut().map(Vec::as_mut_slice)).collect();
         let ran = self.core.apart(py, |core| {
-            all_or_nothing(core, |core| {
-                let (account, sound) = core.simulate_segments(&segments, &mut columns)?;
-                if sound || shown(&columns) { Ok(account) } else { Err(Error::RanUnseen) }
-            })
+            let (account, sound) = core.simulate_segments(&segments, &mut columns)?;
+            if sound || shown(&columns) { Ok(account) } else { Err(Error::RanUnseen) }
         });
         let account = ran?.or_input_error(py)?;
         let result = PyDict::new(py);

@@ -57,6 +57,38 @@ def read(path: Path) -> Table:
 FORMAT = Format("NPZ", (".npz",), read)
 
 
+def check_room(path: Path, file: IO[bytes]) -> None:
+    """Refuse an archive whose arrays are larger than what is stored of them, or than a file may be.
+
+    For those who have NumPy read it all, which makes room for what a header asks for.
+
+    Parameters
+    ----------
+    path : Path
+        For the sentence.
+    file : file
+        Open for reading.
+
+    Raises
+    ------
+    InputError
+        It would expand beyond the ceiling.
+    ValueError
+        It is damaged; the errors of a zip archive and of NumPy's headers too.
+    """
+    expansion = Expansion(path)
+    with ZipFile(file) as stored:
+        for member in stored.infolist():
+            name = member.filename.removesuffix(_ENDING)
+            if member.compress_type not in _PACKED:
+                raise ValueError(f"array '{name}' is packed in a way that NumPy does not write")
+            with stored.open(name=member) as opened:
+                header = _header(opened)
+            if header is None:
+                raise ValueError(f"array '{name}' does not hold numbers")
+            expansion.bytes(f"array '{name}'", _stored(name, member, header))
+
+
 def _column(name: str, stored: ZipFile, member: ZipInfo, expansion: Expansion) -> FloatArray | str:
     if not member.filename.endswith(_ENDING):
         return "is no array"
@@ -69,15 +101,22 @@ def _column(name: str, stored: ZipFile, member: ZipInfo, expansion: Expansion) -
         if kind.hasobject:
             # Pickled objects could run code on loading; they are never opened.
             return "holds Python objects, not numbers"
-        # What the header asks for is there, or nothing is made room for.
-        if min(shape, default=0) < 0 or math.prod(shape) * kind.itemsize > member.file_size:
-            raise ValueError(f"array '{name}' is longer than what is stored of it")
+        _stored(name, member, header)
         if reason := unfit(kind.kind, shape):
             return reason
         size = math.prod(shape)
         expansion.bytes(f"array '{name}'", size * (kind.itemsize + 8))
         data = file.read(size * kind.itemsize)
     return vector(np.frombuffer(data, kind, size))
+
+
+def _stored(name: str, member: ZipInfo, header: _Header) -> int:
+    """Bytes of an array: what its header asks for is there, or nothing is made room for."""
+    shape, _, kind = header
+    size = math.prod(shape) * kind.itemsize
+    if min(shape, default=0) < 0 or size > member.file_size:
+        raise ValueError(f"array '{name}' is longer than what is stored of it")
+    return size
 
 
 def _header(file: IO[bytes]) -> _Header | None:

@@ -79,7 +79,9 @@ def _cause(cause: Cause, record: EffectRecord | None, diagnosis: Diagnosis) -> d
     effect = next((each for each in plant.effects if each.name == cause.name), None)
     rows = [row(path, p, "", beside=cause.parameters) for path, p in cause.parameters.items()]
     if record is not None and effect is not None:
-        rows = rows_of_effect(effect, cause.parameters, record, plant, effort_unit_of(diagnosis))
+        rows = rows_of_effect(
+            effect, cause.parameters, cause.waves, record, plant, effort_unit_of(diagnosis)
+        )
     gain = cause.gain
     return {
         "name": cause.name,

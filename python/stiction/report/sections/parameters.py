@@ -63,6 +63,7 @@ def row(
 def rows_of_effect(
     effect: Effect,
     parameters: Mapping[str, FitParameter],
+    waves: Mapping[str, FitParameter],
     record: EffectRecord,
     plant: Plant,
     measured: str,
@@ -75,6 +76,8 @@ def rows_of_effect(
         Of the extended plant.
     parameters : Mapping of str to FitParameter
         What was fitted of it, by path.
+    waves : Mapping of str to FitParameter
+        Amplitudes and phases of its waves, by path.
     record : EffectRecord
         Of the catalogue.
     plant : Plant
@@ -89,13 +92,15 @@ def rows_of_effect(
     names = [*by_name, *(name for name in effect.parameters if name not in by_name)]
     rows = []
     for tail in ("", "_2"):
-        cosine, sine = by_name.get(f"cosine{tail}"), by_name.get(f"sine{tail}")
-        if cosine is not None and sine is not None:
-            name = f"cosine{tail}"
-            wave = cosine, sine
-            rows.append(_amplitude(tail, wave, meanings.get(name, ""), share=name in shares))
+        told = {name: f"effects.{effect.name}.{name}{tail}" for name in ("amplitude", "phase")}
+        whole = told["amplitude"] in waves
+        if whole:
+            cosine = f"cosine{tail}"
+            share = cosine in shares
+            rows.append(_amplitude(waves[told["amplitude"]], tail, meanings[cosine], share=share))
+            rows.append(row(told["phase"], waves[told["phase"]], "at which the wave is highest"))
         for name in names:
-            if name.endswith("_2") != bool(tail):
+            if name.endswith("_2") != bool(tail) or (whole and name.startswith(("cosine", "sine"))):
                 continue
             path, meaning = f"effects.{effect.name}.{name}", meanings.get(name, "")
             if path in parameters:
@@ -124,26 +129,18 @@ def _stated(path: str, value: float, meaning: str, unit: str) -> dict[str, Any]:
     }
 
 
-def _amplitude(
-    tail: str, wave: tuple[FitParameter, FitParameter], meaning: str, *, share: bool
-) -> dict[str, Any]:
-    """The size of a wave, which its parts say only together; ``share``: of something else."""
-    cosine, sine = wave
-    size = math.hypot(cosine.value, sine.value)
-    halves = [0.5 * (p.ci95[1] - p.ci95[0]) for p in (cosine, sine)]
-    half = math.hypot(cosine.value * halves[0], sine.value * halves[1]) / size if size else 0.0
+def _amplitude(amplitude: FitParameter, tail: str, meaning: str, *, share: bool) -> dict[str, Any]:
+    """The size of a wave; ``share``: of something else, in percent."""
     factor = 100.0 if share else 1.0
-    value, interval = between(factor * size, factor * max(size - half, 0.0), factor * (size + half))
-    whole = meaning.replace("amplitude of the cosine part", "amplitude").replace(
-        "as a share of the", "of the"
-    )
+    value, interval = between(*(factor * each for each in (amplitude.value, *amplitude.ci95)))
+    whole = meaning.replace("amplitude of the cosine part", "amplitude")
     return {
         "path": f"amplitude{tail}",
         "name": f"amplitude{tail}",
-        "meaning": f"{whole.replace('as a share of', 'of')}: cosine and sine together",
+        "meaning": whole.replace("as a share of the", "of the").replace("as a share of", "of"),
         "value": value,
         "interval": interval,
-        "unit": "%" if share else cosine.unit.removeprefix("1"),
+        "unit": "%" if share else amplitude.unit.removeprefix("1"),
         "notes": [],
     }
 
