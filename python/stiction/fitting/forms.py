@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from ..errors import InputError
 from ..finite import finite
 from ..loop_form import LoopForm
 from ..motion import SUPPORTS_S, Kernel, noise_of
@@ -66,6 +67,8 @@ ASTRAY: Final = 0.6
 for a dry contact to have been led astray by the readings. Where nothing is missing it came to .06
 to .54 with encoders of 1 024 to 16 384 counts a turn and an effort that is known, and to .6 to .8
 with 2¹⁸ counts and noise of 2 % of the friction that acts in each sample."""
+MATTERS: Final = 1e-3
+"""Share of the measured effort that it must leave there: less, and it does not matter."""
 NARROW: Final = 1.5
 """Kernels that are wider by no more than this show nothing else."""
 ALIKE: Final = 1e-3
@@ -243,8 +246,23 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm]) -> float | None:
         return None
     if plant.inertia <= 0.0 or shortest < LEAST_WINDOWS * horizon:
         return None
-    rigid = not plant.friction.springy or not shows_its_ring(plant, forms)
-    return horizon if rigid else None
+    return horizon if not plant.friction.springy or _rings_unseen(plant, forms) else None
+
+
+def _rings_unseen(plant: Plant, forms: Sequence[WeakForm]) -> bool:
+    """Whether a contact that yields rings unseen, and as stiff as samples show reaches no further.
+
+    Pre-sliding of several counts is none that a contact without any could stand for.
+    """
+    if shows_its_ring(plant, forms):
+        return False
+    held = followable(plant, forms)
+    try:
+        held.friction.model()
+    except InputError:
+        # Its stiffness is bound to another one.
+        return False
+    return not _fine(held, forms)
 
 
 def astray(
@@ -271,7 +289,7 @@ def astray(
     windows : sequence of Rows
         Of the same recordings, simulated.
     """
-    led, own = [], []
+    led, own, measured = [], [], []
     simulated = {each.index: each for each in windows}
     for each in rows:
         shot = simulated.get(each.index)
@@ -285,7 +303,10 @@ def astray(
         counted = shot.mask & (shot.form.time >= time[0]) & (shot.form.time <= time[-1])
         led.append(np.interp(shot.form.time[counted], time, wide))
         own.append(finite(shot.residual(*other))[counted])
-    return bool(led) and _size(own) < ASTRAY * _size(led)
+        measured.append(shot.form.measured(plant)[counted])
+    if not led or _size(led) < MATTERS * _size(measured):
+        return False
+    return _size(own) < ASTRAY * _size(led)
 
 
 def wider_of(
