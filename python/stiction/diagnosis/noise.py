@@ -8,20 +8,18 @@ from typing import Final
 
 import numpy as np
 
+from ..fitting.readings import GAUSSIAN, position_noise
 from ..fitting.rows import Mask, Nuisances, Rows
 from ..plant import Plant
 from ..trajectory import FloatArray
-from ..weak_form import WeakForm
 
-__all__ = ["GAUSSIAN", "Noise", "measure_noise", "position_noise", "seen_effort"]
+__all__ = ["Noise", "measure_noise", "seen_effort"]
 
 LAG_SHARE: Final = 1.0 / 3.0
 """Lag of the second difference that tells noise from misfit, as a share of the kernel's support:
 motion and friction hardly change over it, white noise through the kernel does."""
 FEWEST_ROWS: Final = 50
 """Second differences that have a median worth the name."""
-GAUSSIAN: Final = 1.4826
-"""Standard deviation over median magnitude."""
 
 
 @dataclass(frozen=True)
@@ -84,11 +82,6 @@ def seen_effort(rows: Rows, residuals: Sequence[FloatArray], alone: Sequence[Flo
     weights = np.convolve(form.kernel.weights, [0.5, 0.5])
     effort = max(scatter(residuals) - scatter(alone), 0.0) / _bent(weights, lag * form.stride)
     return float(np.sqrt(effort))
-
-
-def position_noise(form: WeakForm) -> float:
-    """White noise of the position beside the rounding to counts, rad or m."""
-    return float(np.sqrt(max(form.noise**2 - form.count**2 / 12.0, 0.0)))
 
 
 def _counted(rows: Rows, lag: int) -> Mask:
