@@ -584,7 +584,7 @@ def test_findings_hold_every_field_that_others_build_on() -> None:
     for model in (found["baseline"], found["extended"]):
         assert set(model) == {
             "law", "effects", "parameters", "unit", "train_rms", "select_rms", "heldout_rms",
-            "noise_floor_rms", "replay",
+            "noise_floor_rms", "replay", "begins",
         }  # fmt: skip
         for parameter in model["parameters"].values():
             assert set(parameter) == {"value", "ci95", "unit", "at_bound"}
