@@ -154,7 +154,10 @@ class Signatures:
         places = [slice(*ends) for ends in pairwise([0, *ends])]
         evidence.each(fill, list(zip(evidence.shown, places, strict=True)))
         columns = finite(columns)
-        over_fitted = np.concatenate([columns[:, i:j] for i, j in runs(evidence.fitted)], axis=1)
+        over_fitted = columns
+        if not np.all(evidence.fitted):
+            parts = [columns[:, i:j] for i, j in runs(evidence.fitted)]
+            over_fitted = np.concatenate(parts, axis=1)
         return cls(tuple(candidates), columns.T, tuple(slices), over_fitted.T)
 
     @classmethod
