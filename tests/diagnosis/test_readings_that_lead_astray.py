@@ -140,3 +140,19 @@ def test_rows_that_test_stay_sealed_while_motion_is_asked() -> None:
     evidence = Evidence(known, recordings(), through=Through())
     assert borne_out_in_motion(Search([]), evidence).choices == []
     assert evidence.sealed
+
+
+def test_a_plant_that_stands_still_where_the_machine_moved_lacks_something() -> None:
+    """Dahl's spring below its break-away: a dry contact holds whatever acts on it."""
+    spring = st.FrictionModel("dahl", coulomb=10.0, initial_stiffness=4e4, viscous=1.0)
+    found = []
+    for k in range(3):
+        time = np.arange(2500) * 4e-3
+        given = 5.0 * np.sin(2.0 * np.pi * (0.5 + 0.1 * k) * time)
+        moved = st.Motor(0.5, friction=spring).simulate(given[:-1], 4e-3).position
+        rng = np.random.default_rng([60, k])
+        read = np.concatenate([[0.0], moved]) + 2e-7 * rng.standard_normal(len(time))
+        found.append(st.Recording(time, input=given, position=read, kind="below"))
+    told = st.diagnose(replace(plant(), sensor={}), found, threads=1)
+    assert told.verdict not in ("nothing_missing", "missing_effect")
+    assert not any(cause.decided for cause in told.effects)
