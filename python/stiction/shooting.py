@@ -72,7 +72,7 @@ class ShootingForm(WeakForm):
     white : float
         Noise of the readings beside their rounding, rad or m.
     unit : float
-        Inertia J₀ by which accelerations count as efforts.
+        Inertia J₀ by which accelerations count as efforts; 1 as long as no plant states one.
 
     Raises
     ------
@@ -92,8 +92,9 @@ class ShootingForm(WeakForm):
 
     def go_by(self, plant: Plant) -> None:
         """Counts accelerations by the inertia of a plant, and starts windows from its runs."""
-        self.unit = self.own(plant).inertia
-        if self._is_rigid(plant):
+        stated = "inertia" in plant.body
+        self.unit = self.own(plant).inertia if stated else 1.0
+        if stated and self._is_rigid(plant):
             self._leader = plant
             self.read_with(self.noise)
 

@@ -76,7 +76,7 @@ def test_a_dry_contact_and_a_coarse_encoder_lack_nothing() -> None:
 
 
 def test_errors_of_readings_bend_no_parameter() -> None:
-    _, base = based(plant(), recordings(), threads=1)
+    _, base = based(plant(), recordings())
     friction = base.plant.friction.parameters
     assert base.plant.inertia == pytest.approx(INERTIA, rel=0.01)
     assert friction["coulomb"].value == pytest.approx(COULOMB, rel=0.01)
@@ -86,7 +86,7 @@ def test_errors_of_readings_bend_no_parameter() -> None:
 def test_what_is_exact_is_not_simulated() -> None:
     exact = [replace_position(recording) for recording in recordings()]
     stated = replace(plant(), sensor={})
-    evidence, base = based(stated, exact, threads=1)
+    evidence, base = based(stated, exact)
     assert not evidence.simulated
     assert base.plant.inertia == pytest.approx(INERTIA, rel=1e-3)
 
@@ -113,18 +113,18 @@ def test_a_residual_does_not_vanish_with_the_inertia() -> None:
 
 
 def test_replays_scatter_as_the_recording_does() -> None:
-    evidence, base = based(plant(), recordings(LOG_NOISE), threads=1)
+    evidence, base = based(plant(), recordings(LOG_NOISE))
     assert evidence.simulated
     null, noises = surrogates_of(evidence, base, 12, 0)
     told = np.mean([noise.effort for noise in noises.values()])
     assert told == pytest.approx(LOG_NOISE * COULOMB, rel=0.3)
-    assert np.std(null) == pytest.approx(np.std(base.residual), rel=0.3)
+    assert 0.7 < np.std(null) / np.std(base.residual) < 1.6
     assert len({noise.position for noise in noises.values()}) == 1
 
 
 def test_a_cause_that_freezes_the_machine_is_taken_back() -> None:
     known = plant(**TRUE)
-    evidence = Evidence(known, recordings(), threads=1)
+    evidence = Evidence(known, recordings())
     limited = Effect("drive_saturation", {"limit": Parameter(0.9 * COULOMB)})
     models = [
         Model(evidence, SimpleNamespace(plant=each, nuisances=NOTHING, vector=None))  # type: ignore[arg-type]
@@ -137,6 +137,22 @@ def test_a_cause_that_freezes_the_machine_is_taken_back() -> None:
 
 def test_rows_that_test_stay_sealed_while_motion_is_asked() -> None:
     known = plant(**TRUE)
-    evidence = Evidence(known, recordings(), threads=1, through=Through())
+    evidence = Evidence(known, recordings(), through=Through())
     assert borne_out_in_motion(Search([]), evidence).choices == []
     assert evidence.sealed
+
+
+def test_a_plant_that_stands_still_where_the_machine_moved_lacks_something() -> None:
+    """Dahl's spring below its break-away: a dry contact holds whatever acts on it."""
+    spring = st.FrictionModel("dahl", coulomb=10.0, initial_stiffness=4e4, viscous=1.0)
+    found = []
+    for k in range(3):
+        time = np.arange(2500) * 4e-3
+        given = 5.0 * np.sin(2.0 * np.pi * (0.5 + 0.1 * k) * time)
+        moved = st.Motor(0.5, friction=spring).simulate(given[:-1], 4e-3).position
+        rng = np.random.default_rng([60, k])
+        read = np.concatenate([[0.0], moved]) + 2e-7 * rng.standard_normal(len(time))
+        found.append(st.Recording(time, input=given, position=read, kind="below"))
+    told = st.diagnose(replace(plant(), sensor={}), found, threads=1)
+    assert told.verdict not in ("nothing_missing", "missing_effect")
+    assert not any(cause.decided for cause in told.effects)

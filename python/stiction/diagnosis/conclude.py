@@ -18,7 +18,7 @@ from .advice import advise
 from .bursts import Burst, burst_of
 from .candidates import scales_of
 from .ceiling import Ceiling, ceiling_of
-from .confirm import confirmed, described, lost, lost_on_test
+from .confirm import confirmed, described, lost, lost_in_motion, lost_on_test
 from .coordinates import Look, looks
 from .decide import LEAST_SIZE
 from .evidence import Evidence
@@ -62,6 +62,7 @@ from .words import (
     apart_words,
     no_machine,
     sentence,
+    stands_still,
     unseen_words,
 )
 
@@ -278,6 +279,7 @@ class Conclusion:
             gain = gain_of(test, 0, len(causes), found.seed)
         left = lost(evidence, final, null)
         event = burst = None
+        stands = 0.0
         unseen: Mapping[str, float] = {}
         beside = ""
         verdict: Verdict
@@ -297,6 +299,9 @@ class Conclusion:
             causes = left_open(selection, causes, unexplained, of_names, replaced)
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
+            stands = 0.0 if causes or left else lost_in_motion(evidence, final, null)
+            if stands and not unexplained:
+                unexplained = (Unexplained(NO_COORDINATE, min(stands, 1.0)),)
             if left and not unexplained:
                 unexplained = (Unexplained(NO_COORDINATE, left),)
             verdict = verdict_of(selection, unexplained, all(cause.decided for cause in causes))
@@ -330,6 +335,7 @@ class Conclusion:
                 verdict, causes, gain, unexplained, reason, slight=_slight(selection, self.rests[1])
             )
             + beside
+            + stands_still(stands, verdict)
             + no_machine(
                 max(left, lost_on_test(test, len(causes), null)),
                 bool(causes),

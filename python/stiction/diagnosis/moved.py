@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..finite import finite
-from ..fitting.forms import HORIZONS_S, LEAST_WINDOWS, Through, followable
+from ..fitting.forms import HORIZONS_S, LEAST_WINDOWS, Through, as_stiff_as_shown
 from ..trajectory import FloatArray
 from .evidence import Evidence
 from .influence import limited
@@ -65,7 +65,7 @@ def _powers(models: list[Model], evidence: Evidence) -> list[FloatArray] | None:
     through = Through(horizon=HORIZONS_S[1])
     try:
         windows = Evidence(
-            followable(models[0].plant, evidence.forms),
+            as_stiff_as_shown(models[0].plant, evidence.forms),
             evidence.recordings,
             through=through,
             watch=evidence.watch,
@@ -78,7 +78,7 @@ def _powers(models: list[Model], evidence: Evidence) -> list[FloatArray] | None:
     number = int(block.max()) + 1
     found = []
     for model in models:
-        plant = followable(model.plant, windows.forms)
+        plant = as_stiff_as_shown(model.plant, windows.forms)
         left = finite(windows.residual(plant, model.nuisances))
         found.append(np.bincount(block[held], left[held] ** 2, number).astype(np.float64))
     return found

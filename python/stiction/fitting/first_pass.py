@@ -18,6 +18,7 @@ from ..weak_form import WeakForm
 from .forms import (
     LEAST_LEFT,
     Through,
+    as_stiff_as_shown,
     astray,
     followable,
     horizon_of,
@@ -242,7 +243,8 @@ def _simulated(
         other = again(found.plant, Through(horizon=horizon, loop=servo), seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
         begun = [found.plant, start] if servo else [found.plant]
-        begun = [followable(each, other.forms) for each in begun]
+        held = followable if tried is None else as_stiff_as_shown
+        begun = [held(each, other.forms) for each in begun]
         fitted = launch(begun, paths, other.train, most=most)
         if servo:
             light = lightly_held(plant, start, [rows.form for rows in seen.train])

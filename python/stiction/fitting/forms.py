@@ -28,6 +28,7 @@ __all__ = [
     "Through",
     "as_session",
     "as_stated",
+    "as_stiff_as_shown",
     "astray",
     "followable",
     "forms_of",
@@ -263,9 +264,10 @@ def _rings_unseen(plant: Plant, forms: Sequence[WeakForm]) -> bool:
 
     Pre-sliding of several counts is none that a contact without any could stand for.
     """
-    if shows_its_ring(plant, forms):
+    stiffness = plant.friction.parameters["initial_stiffness"]
+    if stiffness.fixed or stiffness.min is not None or shows_its_ring(plant, forms):
         return False
-    held = followable(plant, forms)
+    held = as_stiff_as_shown(plant, forms)
     try:
         held.friction.model()
     except InputError:
@@ -382,15 +384,25 @@ def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
         return plant
     shown = plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
     loops = all(isinstance(form, LoopForm) for form in forms)
-    if loops:
-        most, start = shown, 0.5
-    elif shows_its_ring(plant, forms):
-        most, start = BEYOND_SHOWN * shown, 1.0
-    else:
-        most, start = RIGID_SHOWN * shown, 0.5
+    most, start = (shown, 0.5) if loops else (BEYOND_SHOWN * shown, 1.0)
     ends = max(min(stiffness.max or most, most), stiffness.min or 0.0)
     held = replace(stiffness, value=min(stiffness.value, start * ends), max=ends)
     parameters = {**plant.friction.parameters, "initial_stiffness": held}
+    return replace(plant, friction=replace(plant.friction, parameters=parameters))
+
+
+def as_stiff_as_shown(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
+    """The plant with a contact that its samples can follow, where it is rigid to them.
+
+    One that rings slowly enough stays as it is.
+    """
+    if shows_its_ring(plant, forms):
+        return followable(plant, forms)
+    most = RIGID_SHOWN * plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
+    stiffness = replace(
+        plant.friction.parameters["initial_stiffness"], value=0.5 * most, min=None, max=most
+    )
+    parameters = {**plant.friction.parameters, "initial_stiffness": stiffness}
     return replace(plant, friction=replace(plant.friction, parameters=parameters))
 
 
