@@ -77,6 +77,8 @@ class Progress:
     def gone_through(self, items: Iterable[T], unit: str, of: int | None) -> Iterator[T]:
         """The items, while it is noted which one it is."""
         loop = _Loop(unit, of, time.monotonic())
+        # The first is at work before it comes, where results are gone through.
+        loop.at = 1
         self._loops.append(loop)
         try:
             for loop.at, item in enumerate(items, 1):

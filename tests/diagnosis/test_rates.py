@@ -113,7 +113,7 @@ def without_gains(diagnosis: st.Diagnosis) -> dict[str, Any]:
         del told[part]
     del told["data"]["hashes"], told["data"]["checks"]
     for model in ("baseline", "extended"):
-        del told[model]["heldout_rms"], told[model]["replay"]
+        del told[model]["heldout_rms"], told[model]["replay"], told[model]["begins"]
     for effect in told["effects"]:
         for part in OF_GAIN:
             del effect[part]
