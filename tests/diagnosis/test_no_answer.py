@@ -276,7 +276,7 @@ def test_a_plant_of_which_nothing_is_left_is_no_better_one(
     """A deadband wider than any input left nothing to drive, and nothing that was unexplained."""
     own: Any = SimpleNamespace(power=1.0)
     better: Any = SimpleNamespace(power=left, interrupted=False)
-    evidence: Any = SimpleNamespace(train=[], floor=0.4)
+    evidence: Any = SimpleNamespace(train=[], floor=0.4, simulated=False)
     monkeypatch.setattr(trials, "from_elsewhere", lambda *_: better)
     monkeypatch.setattr(
         trials,
