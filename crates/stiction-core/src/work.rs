@@ -18,11 +18,11 @@ pub const STEP: u64 = 8;
 pub const DERIVATIVES: u64 = 5;
 
 /// Work of any call.
-const FIRST: f64 = 2.4e8;
+const FIRST: f64 = 2e7;
 /// As much more for each sample: a thousand steps.
 const OF_A_SAMPLE: f64 = 8e3;
 /// The same of segments, which are few and long.
-const FIRST_OF_SEGMENTS: f64 = 2.4e8;
+const FIRST_OF_SEGMENTS: f64 = 8e7;
 const OF_A_ROW: f64 = 2e3;
 
 /// Work after which the caller is asked whether to go on: some tenths of a millisecond.
