@@ -179,8 +179,7 @@ class WeakForm:
         and a motion that is smooth throughout never lets a rigid one rest: a law compared along
         the motion of another one would be outdone whatever it is worth.
         """
-        alike = self.simulated or plant.friction.springy == self.springy
-        return self if alike else self._otherwise
+        return self if plant.friction.springy == self.springy else self._otherwise
 
     @cached_property
     def _otherwise(self) -> Self:
@@ -207,7 +206,7 @@ class WeakForm:
             self.kernel,
             noise=noise,
             count=self.count,
-            springy=self.adapts,
+            springy=self.springy,
             prescribed=self.prescribed,
         )
         self.position = self.driving(self.readings)
@@ -232,7 +231,7 @@ class WeakForm:
         machine that noise seems to move has none.
         """
         found = self._thin(self.kernel.second_derivative(readings[1:]))
-        if driving is not None and not (self.adapts or self.prescribed):
+        if driving is not None and not (self.springy or self.prescribed):
             found[self._mean(_moves(driving)) == 0.0] = 0.0
         return found
 
@@ -304,7 +303,7 @@ class WeakForm:
     @cached_property
     def _answers(self) -> FloatArray:
         """Share of an effort to which the motion answers about each stamp; as ``position[1:]``."""
-        if self.adapts or self.prescribed:
+        if self.springy or self.prescribed:
             return np.ones(len(self.position) - 1)
         return _moves(self.position)
 

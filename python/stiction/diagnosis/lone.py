@@ -84,9 +84,7 @@ class Lone:
         )
 
 
-def lone_event(
-    evidence: Evidence, model: Model, test: HeldOut | None, place: int, least: float
-) -> Lone | None:
+def lone_event(evidence: Evidence, model: Model, test: HeldOut | None, place: int) -> Lone | None:
     """The single event of a recording that is cut into blocks, None where there is none.
 
     Parameters
@@ -97,8 +95,6 @@ def lone_event(
     test : HeldOut or None
     place : int
         Of the model among those that were tested.
-    least : float
-        Weighted rms of a residual that matters.
     """
     for index, name in enumerate(evidence.names):
         roles = [
@@ -111,7 +107,7 @@ def lone_event(
         if sum(len(time) > 0 for time, _ in roles) < 2:
             continue
         begin = float(evidence.recordings[index].time[0])
-        found = _event(roles, begin, least)
+        found = _event(roles, begin)
         if found is not None:
             return Lone(name, found[0] - begin, found[1] - begin, _ROLES[found[2]], begin)
     return None
@@ -133,7 +129,7 @@ def _of(
 
 
 def _event(
-    roles: Sequence[tuple[FloatArray, FloatArray]], begin: float, least: float
+    roles: Sequence[tuple[FloatArray, FloatArray]], begin: float
 ) -> tuple[float, float, int] | None:
     """From when to when a single event lasts, and the role of its rows."""
     spans, powers, owners = [], [], []
@@ -146,7 +142,7 @@ def _event(
             owners.append(role)
     mean, size = np.array(powers).T
     usual = float(np.median(mean))
-    out = (mean > TIMES * usual) & (mean > least**2)
+    out = mean > TIMES * usual
     beyond = np.maximum(mean - usual, 0.0) * size
     if not out.any() or float(beyond[out].sum()) < MOST_OF_IT * float(beyond.sum()):
         return None
