@@ -70,12 +70,8 @@ lint: $(READY)
 	$(BIN)/mypy
 	$(BIN)/stubtest stiction._native --ignore-disjoint-bases
 
-# The core's own tests with its assertions on; all others on what the extension was built from, so
-# that a second core need not be compiled for them.
 rust-tests: $(READY)
-	cargo test --quiet -p stiction-core -p stiction-dispatch --lib
-	cargo test --quiet --profile editable -p stiction-core --test '*'
-	cargo test --quiet --profile editable -p stiction-capi
+	cargo test --quiet
 
 # Files go over the processor's cores, each whole, for its tests share what was made once.
 PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --maxprocesses 8 --dist loadfile
