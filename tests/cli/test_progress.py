@@ -51,10 +51,11 @@ class Terminal(io.StringIO):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["fit", "SESSION", "--json"], "recording 2 of 2"),
-        (["simulate", "PLANT", "SESSION", "--json"], "simulating, recording 2 of 2"),
-        (["plan", "PLANT", "--only", "ramps", "--json"], "planning ramps"),
-        (["compare", "coulomb", "--steps", "1000", "--draws", "0", "--json"], "law 1 of 1"),
+        # Which recording it is at when a line is due hangs on how fast the machine is.
+        (["fit", "SESSION", "--json"], r"recording [12] of 2"),
+        (["simulate", "PLANT", "SESSION", "--json"], r"simulating, recording [12] of 2"),
+        (["plan", "PLANT", "--only", "ramps", "--json"], r"planning ramps"),
+        (["compare", "coulomb", "--steps", "1000", "--draws", "0", "--json"], r"law 1 of 1"),
     ],
 )
 def test_off_a_terminal_a_long_command_says_now_and_then_what_it_is_at(
@@ -67,7 +68,7 @@ def test_off_a_terminal_a_long_command_says_now_and_then_what_it_is_at(
     told = capsys.readouterr()
     lines = told.err.splitlines()
     assert all(LINE.fullmatch(line) for line in lines)
-    assert any(said in line for line in lines)
+    assert any(re.search(said, line) for line in lines)
     assert json.loads(told.out)
 
 

@@ -28,6 +28,8 @@ VERBS = ("simulate", "fit", "diagnose", "plan", "demo")
 MOMENTS = 2
 """Of each verb: what is missed by one run is met by the next, for the seed differs."""
 SHORTEST_S = 0.02
+MOST_TRIES = 8
+"""Of a verb that is over before it is interrupted."""
 
 
 @pytest.fixture(scope="module")
@@ -64,8 +66,9 @@ def moments(verb: str, lasts: float, source: random.Random) -> list[float]:
 def test_an_interrupted_command_says_so_and_leaves_whole_files(
     verb: str, tmp_path: Path, lasts: Callable[[str], float], source: random.Random
 ) -> None:
-    answers = []
-    for k, moment in enumerate(moments(verb, lasts(verb), source)):
+    answers: list[int] = []
+    asked = moments(verb, lasts(verb), source)
+    for k, moment in enumerate(asked):
         folder = desk(tmp_path / f"desk{k}")
         running = Running(arguments(verb, folder / "out"), folder)
         time.sleep(moment)
@@ -78,6 +81,9 @@ def test_an_interrupted_command_says_so_and_leaves_whole_files(
             assert "interrupted" in ended.error + ended.out, told
         assert_whole(folder)
         answers.append(ended.status)
+        if 130 not in answers and len(asked) == k + 1 < MOST_TRIES:
+            # What it took the first time it may not take again.
+            asked.append(0.5 * moment)
     assert 130 in answers, "it was over before it was interrupted"
 
 
