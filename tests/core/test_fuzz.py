@@ -374,7 +374,13 @@ def test_every_effect_within_its_bounds_gives_finite_motion(name, data, integrat
     }
     machine = answers(lambda: motor("hook", effects={name: values}, integrator=integrator))
     if machine is not None:
-        run = machine.simulate(np.repeat([0.3, -0.7, 0.0], 20), 1e-4)
+        try:
+            run = machine.simulate(np.repeat([0.3, -0.7, 0.0], 20), 1e-4)
+        except st.InputError as error:
+            # A drive that saturates at a millionth of its input gives 10^9 times as much at 1, and
+            # internal variables of a contact at 10^9 rad/s are dear.
+            assert "more work than" in str(error)  # noqa: PT017
+            return
         # Friction that falls with the square of speed drives the machine, which then runs away
         # by itself and says so.
         driven = values.get("quadratic", 0.0) < 0.0
