@@ -10,14 +10,16 @@ from typing import Final
 import numpy as np
 
 from ..fitting.rows import Mask
+from ..shooting import ShootingForm
 from ..trajectory import FloatArray
+from ..weak_form import WeakForm
 from .evidence import Evidence
 from .gain import HeldOut, gain_of
 from .gains import heldout_gain
 from .model import Model
 from .selection import Search
 
-__all__ = ["confirmed", "described", "lost", "lost_on_test"]
+__all__ = ["confirmed", "described", "lost", "lost_in_motion", "lost_on_test"]
 
 MOST_LOST: Final = 0.5
 """Share of the power of the effort that a plant may leave, beyond noise, on rows that it was not
@@ -75,6 +77,24 @@ def lost(evidence: Evidence, model: Model, null: FloatArray) -> float:
     held = _deciding(evidence)
     effort = evidence.stack(lambda rows: rows.form.whole(model.plant))[held]
     return _beyond(model.residual[held], effort, null[held])
+
+
+def lost_in_motion(evidence: Evidence, model: Model, null: FloatArray) -> float:
+    """The same of the motion of a plant that is simulated over windows; 0 where it is not.
+
+    A contact that sticks below its break-away answers every effort, and stands still where the
+    machine moved.
+    """
+    if not evidence.simulated or evidence.plant.servo:
+        return 0.0
+    held = _deciding(evidence)
+    bent = evidence.stack(lambda rows: _unit_of(rows.form) * rows.form.acceleration)[held]
+    return _beyond(model.residual[held], bent, null[held])
+
+
+def _unit_of(form: WeakForm) -> float:
+    """Inertia by which accelerations of windows count as efforts."""
+    return form.unit if isinstance(form, ShootingForm) else 0.0
 
 
 def lost_on_test(test: HeldOut | None, index: int, null: FloatArray) -> float:
