@@ -64,15 +64,8 @@ LEAST_WINDOWS: Final = 4.0
 MUCH_LEFT: Final = 0.1
 """Share of the measured effort from which on what is left may come from accelerations that are
 wrong."""
-ASTRAY: Final = 0.6
-"""Share of what the weak form leaves through the same kernel that a simulation may leave at most,
-for a dry contact to have been led astray by the readings. Where nothing is missing it came to .06
-to .54 with encoders of 1 024 to 16 384 counts a turn and an effort that is known, and to .6 to .8
-with 2¹⁸ counts and noise of 2 % of the friction that acts in each sample."""
-LED: Final = 0.2
-"""Share of it that readings must make of a plant that is right, for them to be what led it. Where
-nothing is missing they made .5 to 2.3 of it, .3 of what hardly matters; of exact readings with a
-bias of the torque .007, and of an arm far below break-away .002."""
+REMEMBERS: Final = "law.remembers"
+"""Term of laws that an effect stands for which builds friction up over a distance."""
 MATTERS: Final = 1e-3
 """Share of the measured effort that it must leave there: less, and it does not matter."""
 NARROW: Final = 1.5
@@ -250,6 +243,9 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm]) -> float | None:
     shortest = min(form.dt * len(form.readings) for form in forms)
     if any(form.prescribed or form.simulated for form in forms) or plant.servo:
         return None
+    if any(REMEMBERS in effect.record.law_terms for effect in plant.effects):
+        # The contact yields by its effect.
+        return None
     if plant.inertia <= 0.0 or shortest < LEAST_WINDOWS * horizon:
         return None
     return horizon if not plant.friction.springy or _rings_unseen(plant, forms) else None
@@ -283,7 +279,9 @@ def astray(
 
     Both residuals are the same effort but for the friction; both are compared through the kernel of
     the windows. A contact at rest hides whatever else is missing, so that a simulation leaves less
-    for other reasons as well: asked is whether readings make a good part of what is left.
+    for other reasons as well. Asked is whether it leaves less than the readings alone make of a
+    plant that is right: they are then most of what is left along them, and more than what is
+    missing. Readings that are exact, or an arm far below break-away, make a hundredth of it.
 
     Parameters
     ----------
@@ -321,7 +319,7 @@ def astray(
         measured.append(shot.form.measured(plant)[counted])
     if not led or _size(led) < MATTERS * _size(measured):
         return False
-    return _size(own) < ASTRAY * _size(led) and _size(made) > LED * _size(led)
+    return _size(own) < min(_size(made), _size(led))
 
 
 def wider_of(
