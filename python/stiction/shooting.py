@@ -123,6 +123,11 @@ class ShootingForm(WeakForm):
         return True
 
     @property
+    def inertial(self) -> FloatArray:
+        """J₀·K''∗x: what a machine leaves that goes on as it set out; shape (rows,)."""
+        return self.unit * self.acceleration
+
+    @property
     def reached(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
         """Rows that noise of the effort reaches: a machine at rest keeps it to itself."""
         return self.moves

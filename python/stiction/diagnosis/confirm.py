@@ -9,17 +9,16 @@ from typing import Final
 
 import numpy as np
 
-from ..fitting.rows import Mask
+from ..fitting.rows import Mask, Rows
 from ..shooting import ShootingForm
 from ..trajectory import FloatArray
-from ..weak_form import WeakForm
 from .evidence import Evidence
 from .gain import HeldOut, gain_of
 from .gains import heldout_gain
 from .model import Model
 from .selection import Search
 
-__all__ = ["confirmed", "described", "lost", "lost_in_motion", "lost_on_test"]
+__all__ = ["confirmed", "described", "inertial_of", "lost", "lost_in_motion", "lost_on_test"]
 
 MOST_LOST: Final = 0.5
 """Share of the power of the effort that a plant may leave, beyond noise, on rows that it was not
@@ -88,13 +87,14 @@ def lost_in_motion(evidence: Evidence, model: Model, null: FloatArray) -> float:
     if not evidence.simulated or evidence.plant.servo:
         return 0.0
     held = _deciding(evidence)
-    bent = evidence.stack(lambda rows: _unit_of(rows.form) * rows.form.acceleration)[held]
+    bent = evidence.stack(inertial_of)[held]
     return _beyond(model.residual[held], bent, null[held])
 
 
-def _unit_of(form: WeakForm) -> float:
-    """Inertia by which accelerations of windows count as efforts."""
-    return form.unit if isinstance(form, ShootingForm) else 0.0
+def inertial_of(rows: Rows) -> FloatArray:
+    """What a machine leaves of its motion that goes on as it set out; 0 where none is simulated."""
+    form = rows.form
+    return form.inertial if isinstance(form, ShootingForm) else np.zeros(len(form))
 
 
 def lost_on_test(test: HeldOut | None, index: int, null: FloatArray) -> float:
