@@ -22,7 +22,12 @@ STEADY: Final = 0.3
 
 
 def accompanied(
-    form: WeakForm, plant: Plant, start: Start = None, *, position: FloatArray | None = None
+    form: WeakForm,
+    plant: Plant,
+    start: Start = None,
+    *,
+    position: FloatArray | None = None,
+    load: FloatArray | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """A motion near the measured one that the plant makes by itself, and what that took.
 
@@ -37,6 +42,8 @@ def accompanied(
         Friction state at the first row.
     position : numpy.ndarray, shape (rows,), optional
         Takes the place of the motion that drives friction.
+    load : numpy.ndarray, shape (rows - 1,), optional
+        Takes the place of what was recorded to act beside the input.
 
     Returns
     -------
@@ -49,8 +56,9 @@ def accompanied(
     rate = min(PULL_RATE / form.kernel.support, STEADY / form.dt)
     inertia = form.own(plant).inertia
     motor = form.begun(plant, target)
-    motion = form.motion if position is None else form.moved(position)
+    load = form.load[:-1] if load is None else load
+    motion = form.motion if position is None else form.moved(position, load=load)
     readings, pull = motor.accompany(
         motion, inertia * rate**2, 2.0 * inertia * rate, start=start, strict=False
     )
-    return np.concatenate([target[:1], readings]), form.load[:-1] + pull
+    return np.concatenate([target[:1], readings]), load + pull

@@ -35,18 +35,24 @@ class ShootingForm(WeakForm):
     """A recording cut into overlapping windows, in each of which a plant is simulated.
 
     Where the encoder is coarse, friction that is driven by the measured motion is wrong: while the
-    reading stands still the machine moves within a count, and pre-sliding is over after a few.
-    Here its own motion drives it. Each window starts at the smoothed measured position and
-    velocity, with friction, effects and clock as they are after following the measured motion up
-    to there, and runs with the measured input over the support of the kernel. The residual is
+    reading stands still the machine moves within a count, pre-sliding is over after a few, and a
+    dry contact turns round with the reading. Errors of the readings are then errors of the
+    regressors, which bend every fit (errors in variables). Here the plant's own motion drives its
+    friction, and errors of the readings are noise of the output alone. Each window starts at the
+    smoothed measured position and velocity, with friction, effects and clock as they are after
+    following the measured motion up to there, and runs with the measured input over the support
+    of the kernel. Where the contact is rigid the measured motion is smoothed once more by a run of
+    the plant that is drawn to it (see ``accompanied``): it stops where a machine would. The
+    residual is
 
-        r = J·K''∗x̂ − J·K''∗x,
+        r = J₀·K''∗x̂ − J₀·K''∗x,
 
     x̂ simulated and x as it was read. Since J·x̂'' is what drive, load and gravity leave after
     friction, this is the residual of the weak form with K∗F of the plant's own motion: measured
-    minus needed effort, with the same sign. K'' takes out what is linear in time, so position and
-    velocity at the start need no fit. (Multiple shooting: H. G. Bock, in Modelling of Chemical
-    Reaction Systems, Springer (1981).)
+    minus needed effort, with the same sign. J₀ is no parameter: counted by the inertia of a trial,
+    noise of the readings would pull that down, and a plant without any would leave nothing. K''
+    takes out what is linear in time, so position and velocity at the start need no fit. (Multiple
+    shooting: H. G. Bock, in Modelling of Chemical Reaction Systems, Springer (1981).)
 
     A machine at rest leaves next to nothing whatever it lacks: within a count it shows nothing.
 
@@ -65,6 +71,8 @@ class ShootingForm(WeakForm):
         Windows in which the machine was seen to move.
     white : float
         Noise of the readings beside their rounding, rad or m.
+    unit : float
+        Inertia J₀ by which accelerations count as efforts; 1 as long as no plant states one.
 
     Raises
     ------
@@ -75,10 +83,49 @@ class ShootingForm(WeakForm):
     simulated: ClassVar[bool] = True
 
     def __init__(self, plant: Plant, recording: Recording, *, horizon: float) -> None:
+        self._leader: Plant | None = None
         super().__init__(plant, recording, support=horizon, every=horizon / ROWS_PER_HORIZON)
+        self.go_by(plant)
         self.white = float(np.sqrt(max(self.noise**2 - self.count**2 / 12.0, 0.0)))
         least = MOVES_TIMES * max(self.count, 4.0 * self.white)
         self.moves = np.abs(self.velocity) * self.kernel.support > least
+
+    def go_by(self, plant: Plant) -> None:
+        """Counts accelerations by the inertia of a plant, and starts windows from its runs."""
+        stated = "inertia" in plant.body
+        self.unit = self.own(plant).inertia if stated else 1.0
+        if stated and self._is_rigid(plant):
+            self._leader = plant
+            self.read_with(self.noise)
+
+    def _is_rigid(self, plant: Plant) -> bool:
+        """Whether pre-sliding is over within a count."""
+        friction = plant.friction.parameters
+        if not {"coulomb", "initial_stiffness"} <= friction.keys():
+            return not self.springy
+        reach = friction["coulomb"].value / friction["initial_stiffness"].value
+        return reach < max(self.count, self.noise)
+
+    def driving(self, readings: FloatArray, load: FloatArray | None = None) -> FloatArray:
+        """The motion from which windows start, under a load in the place of the recorded one."""
+        smoothed = super().driving(readings)
+        if self._leader is None:
+            return smoothed
+        try:
+            return accompanied(self, self._leader, position=smoothed, load=load)[0]
+        except InputError:
+            # Too stiff for the sample time.
+            return smoothed
+
+    @property
+    def adapts(self) -> bool:
+        """Always: readings tell no more than where a window starts, and no contact rests there."""
+        return True
+
+    @property
+    def inertial(self) -> FloatArray:
+        """J₀·K''∗x: what a machine leaves that goes on as it set out; shape (rows,)."""
+        return self.unit * self.acceleration
 
     @property
     def reached(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
@@ -91,11 +138,11 @@ class ShootingForm(WeakForm):
         NaN where the plant cannot be simulated at this sample time (see ``Motor.simulate``).
         """
         measured = self.measured(plant)
-        return measured, measured - self.own(plant).inertia * self._missed(plant, start)
+        return measured, measured - self.residual(plant, start)
 
     def residual(self, plant: Plant, start: Start = None) -> FloatArray:
         """Measured minus needed effort of every row; NaN as for ``efforts``."""
-        return self.own(plant).inertia * self._missed(plant, start)
+        return self.unit * self._missed(plant, start)
 
     def late(self, plant: Plant) -> FloatArray:
         """As for the weak form where the machine moves; at rest a timing offset shows nothing."""
@@ -115,9 +162,7 @@ class ShootingForm(WeakForm):
             )
         except InputError:
             return np.zeros((len(self), len(wanted)))
-        columns: FloatArray = self.own(plant).inertia * moved.T
-        if "body.inertia" in wanted:
-            columns[:, wanted.index("body.inertia")] += self._missed(plant, start)
+        columns: FloatArray = self.unit * moved.T
         return columns
 
     def signatures(
@@ -149,7 +194,7 @@ class ShootingForm(WeakForm):
             for part, (first, last) in enumerate(pairwise(edges)):
                 mean = (total[starts + last] - total[starts + first]) / (last - first)
                 answer += response[part] * mean
-            columns[:, k] = self.own(plant).inertia * (answer - self._bent(shift))
+            columns[:, k] = self.unit * (answer - self._bent(shift))
         return columns
 
     def missed(
@@ -166,9 +211,9 @@ class ShootingForm(WeakForm):
         load : numpy.ndarray, shape (rows - 1,)
             Beside the recorded input.
         """
-        motion = self.driving(readings)
+        motion = self.driving(readings, load)
         got = self._shot(plant, start, motion, load)
-        missed: FloatArray = self.own(plant).inertia * (got - self.accelerations(readings))
+        missed: FloatArray = self.unit * (got - self.accelerations(readings))
         return missed
 
     def from_readings_alone(self, plant: Plant, start: Start = None) -> FloatArray:

@@ -82,3 +82,8 @@ class Effect:
         known(self.name, effects(), "effect: name")
         freeze(self, Frozen, "parameters")
         check_parameters(self.parameters, f"effect {self.name}:")
+
+    @property
+    def record(self) -> EffectRecord:
+        """The catalogue's record of the effect."""
+        return next(record for record in effects() if record.name == self.name)

@@ -179,7 +179,8 @@ class WeakForm:
         and a motion that is smooth throughout never lets a rigid one rest: a law compared along
         the motion of another one would be outdone whatever it is worth.
         """
-        return self if plant.friction.springy == self.springy else self._otherwise
+        alike = self.simulated or plant.friction.springy == self.springy
+        return self if alike else self._otherwise
 
     @cached_property
     def _otherwise(self) -> Self:
@@ -206,7 +207,7 @@ class WeakForm:
             self.kernel,
             noise=noise,
             count=self.count,
-            springy=self.springy,
+            springy=self.adapts,
             prescribed=self.prescribed,
         )
         self.position = self.driving(self.readings)
@@ -231,7 +232,7 @@ class WeakForm:
         machine that noise seems to move has none.
         """
         found = self._thin(self.kernel.second_derivative(readings[1:]))
-        if driving is not None and not (self.springy or self.prescribed):
+        if driving is not None and not (self.adapts or self.prescribed):
             found[self._mean(_moves(driving)) == 0.0] = 0.0
         return found
 
@@ -303,7 +304,7 @@ class WeakForm:
     @cached_property
     def _answers(self) -> FloatArray:
         """Share of an effort to which the motion answers about each stamp; as ``position[1:]``."""
-        if self.springy or self.prescribed:
+        if self.adapts or self.prescribed:
             return np.ones(len(self.position) - 1)
         return _moves(self.position)
 

@@ -9,15 +9,15 @@ import numpy as np
 
 from ..errors import InputError, NotEnoughData
 from ..fitting.first_pass import WORTH_WIDER, first_pass, share_left
-from ..fitting.forms import wider_of
+from ..fitting.forms import Through, astray, wider_of, windows_of
 from ..fitting.minimise import MOST_EVALUATIONS
 from ..fitting.solve import settled
 from ..plant import Plant
 from ..recording import Recording
 from .evidence import Evidence
-from .model import Model
+from .model import Model, fitted
 
-__all__ = ["based", "based_joined", "based_wider"]
+__all__ = ["based", "based_joined", "based_simulated", "based_wider"]
 
 LOST: Final = 1e-3
 """An inertia that shrinks to this share of what the plant states, or of what the motion told at
@@ -32,13 +32,14 @@ def based(
     *,
     wide: bool = False,
     joined: bool = False,
+    windows: bool = False,
 ) -> tuple[Evidence, Model]:
     """A session and the base that is fitted to its rows of train.
 
     The way is that of `stiction.fit`: a first pass from starts that the data give, a second with
     recordings weighted by what the first left in each. Wider kernels (see ``wider_of``) are tried
     with ``wide`` alone: what a cause explains through narrow ones must not be averaged away.
-    ``joined`` as in ``Evidence``.
+    ``joined`` as in ``Evidence``, ``windows`` as in ``first_pass``.
 
     Returns
     -------
@@ -61,6 +62,7 @@ def based(
         ),
         most=MOST_EVALUATIONS,
         wide=wide,
+        windows=windows,
     )
     evidence = first.seen
     solution = settled(first.solution, evidence.train, most=MOST_EVALUATIONS)
@@ -110,19 +112,67 @@ def based_wider(
     return (other, base) if share_left(base, other.train) < WORTH_WIDER * left else None
 
 
+def based_simulated(
+    plant: Plant,
+    recordings: Sequence[Recording],
+    evidence: Evidence,
+    final: Model,
+) -> tuple[Evidence, Model] | None:
+    """The base simulated over windows, where a rigid contact was led astray; None elsewhere.
+
+    What a cause leaves out hides what the readings do to friction that is led along them. Beside
+    all causes that were found it is asked again.
+
+    Parameters
+    ----------
+    plant : Plant
+        As it is stated.
+    recordings : sequence of Recording
+    evidence : Evidence
+        Of the weak form.
+    final : Model
+        With all causes that were found.
+
+    Returns
+    -------
+    (Evidence, Model) or None
+        After Ctrl-C whatever is there, and its solution is interrupted.
+    """
+    horizon = windows_of(final.plant, evidence.forms)
+    if horizon is None or not final.plant.effects or final.plant.effects == plant.effects:
+        return None
+    through = Through(horizon=horizon)
+    try:
+        windows = Evidence(final.plant, recordings, through=through, watch=evidence.watch)
+        own = fitted(windows, final.plant, final.nuisances)
+        if not own.solution.interrupted and not astray(
+            final.plant,
+            final.nuisances,
+            evidence.train,
+            (own.plant, own.solution.nuisances),
+            windows.train,
+        ):
+            return None
+        return based(plant, recordings, windows=True)
+    except InputError:
+        # What was found along the readings stands.
+        return None
+
+
 def based_joined(
     plant: Plant,
     recordings: Sequence[Recording],
     evidence: Evidence,
 ) -> tuple[Evidence, Model] | None:
-    """The base that is fitted to the rows that decide as well; through wide kernels as before.
+    """The base that is fitted to the rows that decide as well; seen as before.
 
     None where these rows cannot be left out in turn, or no such base describes the machine. After
     Ctrl-C its solution is interrupted.
     """
     wide = any(form.widened for form in evidence.forms)
+    windows = evidence.simulated
     try:
-        return based(plant, recordings, wide=wide, joined=True)
+        return based(plant, recordings, wide=wide, joined=True, windows=windows)
     except InputError:
         return None
 

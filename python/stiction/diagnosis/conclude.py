@@ -18,8 +18,9 @@ from .advice import advise
 from .bursts import Burst, burst_of
 from .candidates import scales_of
 from .ceiling import Ceiling, ceiling_of
-from .confirm import confirmed, described, lost, lost_on_test
+from .confirm import confirmed, described, lost, lost_in_motion, lost_on_test
 from .coordinates import Look, looks
+from .decide import LEAST_SIZE
 from .evidence import Evidence
 from .exact_forms import rests_of
 from .gain import HeldOut, gain_of, residuals_of
@@ -31,6 +32,7 @@ from .listing import in_order
 from .lone import lone_event
 from .loop import borne_out, replayed
 from .model import Model
+from .moved import borne_out_in_motion
 from .noise import Noise
 from .noted import with_checks, with_pushes
 from .omnibus import Rest, rest
@@ -60,6 +62,7 @@ from .words import (
     apart_words,
     no_machine,
     sentence,
+    stands_still,
     unseen_words,
 )
 
@@ -136,7 +139,7 @@ class Conclusion:
         found = with_checks(found, holds_of(self.evidence.shown, final, names))
         held = () if self.brief else self.held
         found = with_checks(found, [each.check for each in held], held_words(held))
-        apart = outlying_in_test(self.evidence, final, self.test, number)
+        apart = outlying_in_test(self.evidence, final, self.test, number, self.relevant)
         found = with_checks(found, apart, apart_words(apart))
         return replayed(replace(found, ceiling=ceiling), self.evidence, self.base, final)
 
@@ -144,7 +147,7 @@ class Conclusion:
     def decided(self) -> Search:
         """The selection, as far as the plant describes the machine with it."""
         selection = described(self.selection, self.evidence, self.null)
-        return borne_out(selection, self.evidence)
+        return borne_out(borne_out_in_motion(selection, self.evidence), self.evidence)
 
     @cached_property
     def rivals(self) -> Sequence[Rival]:
@@ -229,8 +232,19 @@ class Conclusion:
             return surrogates_of(self.evidence, final, number, self.found.seed)[0]
 
         return unnamed(
-            self.evidence, self.confirmed, *self.rests, self.null, null_of_last, self.burst
+            self.evidence,
+            self.confirmed,
+            *self.rests,
+            self.null,
+            null_of_last,
+            self.burst,
+            relevant=self.relevant,
         )
+
+    @cached_property
+    def relevant(self) -> float:
+        """Weighted rms of a residual that matters: less of an effect would have no name either."""
+        return LEAST_SIZE * friction_of(self.evidence, self.base)
 
     @cached_property
     def burst(self) -> Burst | None:
@@ -265,6 +279,7 @@ class Conclusion:
             gain = gain_of(test, 0, len(causes), found.seed)
         left = lost(evidence, final, null)
         event = burst = None
+        stands = 0.0
         unseen: Mapping[str, float] = {}
         beside = ""
         verdict: Verdict
@@ -284,6 +299,9 @@ class Conclusion:
             causes = left_open(selection, causes, unexplained, of_names, replaced)
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
+            stands = 0.0 if causes or left else lost_in_motion(evidence, final, null)
+            if stands and not unexplained:
+                unexplained = (Unexplained(NO_COORDINATE, min(stands, 1.0)),)
             if left and not unexplained:
                 unexplained = (Unexplained(NO_COORDINATE, left),)
             verdict = verdict_of(selection, unexplained, all(cause.decided for cause in causes))
@@ -291,7 +309,7 @@ class Conclusion:
                 "These data cannot be tested: the base imitates every effect, so none could be "
                 "seen."
             )
-            event = None if causes else lone_event(evidence, final, test, 0)
+            event = None if causes else lone_event(evidence, final, test, 0, self.relevant)
             burst = self.burst if event is None else None
             unseen = selection.unseen if event is None else {}
             beside = unseen_words(unseen, verdict != "nothing_missing")
@@ -317,6 +335,7 @@ class Conclusion:
                 verdict, causes, gain, unexplained, reason, slight=_slight(selection, self.rests[1])
             )
             + beside
+            + stands_still(stands, verdict)
             + no_machine(
                 max(left, lost_on_test(test, len(causes), null)),
                 bool(causes),

@@ -9,7 +9,8 @@ from typing import Final
 
 import numpy as np
 
-from ..fitting.rows import Mask
+from ..fitting.rows import Mask, Rows
+from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from .evidence import Evidence
 from .gain import HeldOut, gain_of
@@ -17,7 +18,7 @@ from .gains import heldout_gain
 from .model import Model
 from .selection import Search
 
-__all__ = ["confirmed", "described", "lost", "lost_on_test"]
+__all__ = ["confirmed", "described", "inertial_of", "lost", "lost_in_motion", "lost_on_test"]
 
 MOST_LOST: Final = 0.5
 """Share of the power of the effort that a plant may leave, beyond noise, on rows that it was not
@@ -75,6 +76,25 @@ def lost(evidence: Evidence, model: Model, null: FloatArray) -> float:
     held = _deciding(evidence)
     effort = evidence.stack(lambda rows: rows.form.whole(model.plant))[held]
     return _beyond(model.residual[held], effort, null[held])
+
+
+def lost_in_motion(evidence: Evidence, model: Model, null: FloatArray) -> float:
+    """The same of the motion of a plant that is simulated over windows; 0 where it is not.
+
+    A contact that sticks below its break-away answers every effort, and stands still where the
+    machine moved.
+    """
+    if not evidence.simulated or evidence.plant.servo:
+        return 0.0
+    held = _deciding(evidence)
+    bent = evidence.stack(inertial_of)[held]
+    return _beyond(model.residual[held], bent, null[held])
+
+
+def inertial_of(rows: Rows) -> FloatArray:
+    """What a machine leaves of its motion that goes on as it set out; 0 where none is simulated."""
+    form = rows.form
+    return form.inertial if isinstance(form, ShootingForm) else np.zeros(len(form))
 
 
 def lost_on_test(test: HeldOut | None, index: int, null: FloatArray) -> float:

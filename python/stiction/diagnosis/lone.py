@@ -84,7 +84,9 @@ class Lone:
         )
 
 
-def lone_event(evidence: Evidence, model: Model, test: HeldOut | None, place: int) -> Lone | None:
+def lone_event(
+    evidence: Evidence, model: Model, test: HeldOut | None, place: int, least: float
+) -> Lone | None:
     """The single event of a recording that is cut into blocks, None where there is none.
 
     Parameters
@@ -95,6 +97,8 @@ def lone_event(evidence: Evidence, model: Model, test: HeldOut | None, place: in
     test : HeldOut or None
     place : int
         Of the model among those that were tested.
+    least : float
+        Weighted rms of a residual that matters.
     """
     for index, name in enumerate(evidence.names):
         roles = [
@@ -107,7 +111,7 @@ def lone_event(evidence: Evidence, model: Model, test: HeldOut | None, place: in
         if sum(len(time) > 0 for time, _ in roles) < 2:
             continue
         begin = float(evidence.recordings[index].time[0])
-        found = _event(roles, begin)
+        found = _event(roles, begin, least)
         if found is not None:
             return Lone(name, found[0] - begin, found[1] - begin, _ROLES[found[2]], begin)
     return None
@@ -129,7 +133,7 @@ def _of(
 
 
 def _event(
-    roles: Sequence[tuple[FloatArray, FloatArray]], begin: float
+    roles: Sequence[tuple[FloatArray, FloatArray]], begin: float, least: float
 ) -> tuple[float, float, int] | None:
     """From when to when a single event lasts, and the role of its rows."""
     spans, powers, owners = [], [], []
@@ -142,7 +146,7 @@ def _event(
             owners.append(role)
     mean, size = np.array(powers).T
     usual = float(np.median(mean))
-    out = mean > TIMES * usual
+    out = (mean > TIMES * usual) & (mean > least**2)
     beyond = np.maximum(mean - usual, 0.0) * size
     if not out.any() or float(beyond[out].sum()) < MOST_OF_IT * float(beyond.sum()):
         return None

@@ -8,20 +8,18 @@ from typing import Final
 
 import numpy as np
 
+from ..fitting.readings import GAUSSIAN, position_noise
 from ..fitting.rows import Mask, Nuisances, Rows
 from ..plant import Plant
 from ..trajectory import FloatArray
-from ..weak_form import WeakForm
 
-__all__ = ["GAUSSIAN", "Noise", "measure_noise", "position_noise"]
+__all__ = ["Noise", "measure_noise", "seen_effort"]
 
 LAG_SHARE: Final = 1.0 / 3.0
 """Lag of the second difference that tells noise from misfit, as a share of the kernel's support:
 motion and friction hardly change over it, white noise through the kernel does."""
 FEWEST_ROWS: Final = 50
 """Second differences that have a median worth the name."""
-GAUSSIAN: Final = 1.4826
-"""Standard deviation over median magnitude."""
 
 
 @dataclass(frozen=True)
@@ -63,21 +61,27 @@ def measure_noise(
         Without them readings count as exact.
     """
     form = rows.form
-    count, position = form.count, position_noise(form)
+    seen = seen_effort(rows, [rows.residual(plant, nuisances)], alone)
+    return Noise(position_noise(form), form.count, seen)
+
+
+def seen_effort(rows: Rows, residuals: Sequence[FloatArray], alone: Sequence[FloatArray]) -> float:
+    """Noise of the effort that residuals of a recording hold beside what readings alone make.
+
+    Shapes (rows,) each; 0 where no row tells of it.
+    """
+    form = rows.form
     lag = max(1, round(LAG_SHARE * form.kernel.support / (form.dt * form.stride)))
     counted = _counted(rows, lag)
     if not counted.any():
-        return Noise(position, count, 0.0)
-    variance = _scatter(rows.residual(plant, nuisances), lag, counted)
-    made = float(np.mean([_scatter(each, lag, counted) for each in alone])) if alone else 0.0
+        return 0.0
+
+    def scatter(each: Sequence[FloatArray]) -> float:
+        return float(np.mean([_scatter(one, lag, counted) for one in each])) if each else 0.0
+
     weights = np.convolve(form.kernel.weights, [0.5, 0.5])
-    effort = max(variance - made, 0.0) / _bent(weights, lag * form.stride)
-    return Noise(position, count, float(np.sqrt(effort)))
-
-
-def position_noise(form: WeakForm) -> float:
-    """White noise of the position beside the rounding to counts, rad or m."""
-    return float(np.sqrt(max(form.noise**2 - form.count**2 / 12.0, 0.0)))
+    effort = max(scatter(residuals) - scatter(alone), 0.0) / _bent(weights, lag * form.stride)
+    return float(np.sqrt(effort))
 
 
 def _counted(rows: Rows, lag: int) -> Mask:

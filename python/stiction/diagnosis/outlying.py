@@ -39,7 +39,9 @@ WHOLE: Final = 0.5
 """Of the rows of a full one, from which on a block is compared."""
 
 
-def outlying(evidence: Evidence, model: Model, null: FloatArray) -> tuple[Unexplained, ...]:
+def outlying(
+    evidence: Evidence, model: Model, null: FloatArray, least: float
+) -> tuple[Unexplained, ...]:
     """Recordings in which far more is left than in all others, largest share first.
 
     A mean over recordings hides the one in which a load, a mounting or a clock was another one, and
@@ -53,6 +55,8 @@ def outlying(evidence: Evidence, model: Model, null: FloatArray) -> tuple[Unexpl
         The last one.
     null : numpy.ndarray, shape (n, surrogates)
         Residuals of the surrogates.
+    least : float
+        Weighted rms of a residual that matters.
 
     Returns
     -------
@@ -64,6 +68,7 @@ def outlying(evidence: Evidence, model: Model, null: FloatArray) -> tuple[Unexpl
     number = int(block.max()) + 1
     power = np.bincount(block, model.residual**2, number)
     noise = np.bincount(block, np.mean(null**2, axis=1), number)
+    rows = np.maximum(np.bincount(block, minlength=number), 1)
     of_block = np.zeros(number, dtype=np.int64)
     of_block[block] = recording
     there = noise > 0.0
@@ -74,7 +79,8 @@ def outlying(evidence: Evidence, model: Model, null: FloatArray) -> tuple[Unexpl
     beyond = np.zeros(len(asked))
     for place, index in enumerate(asked):
         own = there & (of_block == index)
-        middle[place] = np.median(power[own]) / np.median(noise[own])
+        if float(np.median(power[own] / rows[own])) > least**2:
+            middle[place] = np.median(power[own]) / np.median(noise[own])
         beyond[place] = max(float(power[own].sum() - noise[own].sum()), 0.0)
     usual = float(np.median(middle))
     if usual >= MOST_TIMES:
@@ -88,7 +94,7 @@ def outlying(evidence: Evidence, model: Model, null: FloatArray) -> tuple[Unexpl
 
 
 def outlying_in_test(
-    evidence: Evidence, model: Model, test: HeldOut | None, index: int
+    evidence: Evidence, model: Model, test: HeldOut | None, index: int, least: float
 ) -> list[tuple[str, Check]]:
     """Recordings that test in which far more is left than in those that train and decide.
 
@@ -105,6 +111,8 @@ def outlying_in_test(
     test : HeldOut, optional
     index : int
         Of the last model there.
+    least : float
+        Weighted rms of a residual that matters.
 
     Returns
     -------
@@ -117,10 +125,10 @@ def outlying_in_test(
     if len(shown) < FEWEST:
         return []
     usual = float(np.median(list(shown.values())))
-    moments = _moments(evidence, model, test, index)
+    moments = _moments(evidence, model, test, index, least)
     told = []
     for recording, middle in _middles(test.cells, test.residuals[index]).items():
-        if usual > 0.0 and middle > MOST_TIMES * usual:
+        if usual > 0.0 and middle > max(MOST_TIMES * usual, least**2):
             what = (
                 f"leaves {middle / usual:.0f} times the power that those leave which train and "
                 "decide"
@@ -133,7 +141,9 @@ def outlying_in_test(
     return told
 
 
-def _moments(evidence: Evidence, model: Model, test: HeldOut, index: int) -> dict[int, str]:
+def _moments(
+    evidence: Evidence, model: Model, test: HeldOut, index: int, least: float
+) -> dict[int, str]:
     """By recording that tests: the second in which it leaves far more than any that was looked at.
 
     A cause that acts for a moment, and by chance in none of the rows that train and decide, is one
@@ -146,7 +156,7 @@ def _moments(evidence: Evidence, model: Model, test: HeldOut, index: int) -> dic
     told: dict[int, str] = {}
     for each in np.argsort(-density):
         own = np.flatnonzero(block == each)
-        if density[each] <= MOST_TIMES_A_BLOCK * most:
+        if density[each] <= max(MOST_TIMES_A_BLOCK * most, least**2):
             break
         if float(np.sum(residual[own] ** 2)) < OF_ITS_POWER * total:
             continue

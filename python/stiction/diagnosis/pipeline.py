@@ -29,7 +29,7 @@ from ..trajectory import FloatArray
 from ..wording import counted
 from ..workers import with_workers
 from .advice import advise
-from .base import based, based_joined, based_wider
+from .base import based, based_joined, based_simulated, based_wider
 from .candidates import left_out
 from .conclude import Conclusion, base_alone, surrogates_of
 from .evidence import Evidence
@@ -233,6 +233,12 @@ def _testable(
         if wider is not None:
             phase(_logger, "screening the effects again, through wider kernels")
             look = again(look, wider) or look
+    if not look.selection.interrupted:
+        final = look.selection.models[-1]
+        shot = based_simulated(found.plant, session.recordings, look.evidence, final)
+        if shot is not None:
+            phase(_logger, "screening the effects again, with the plant simulated over windows")
+            look = again(look, shot) or look
     if acts_for_seconds(look.evidence, look.selection, look.null):
         phase(_logger, "screening limits again, over the rows that decide as well")
         joined = based_joined(found.plant, session.recordings, look.evidence)

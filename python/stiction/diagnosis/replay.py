@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from ..accompanied import accompanied
 from ..catalogue import effects
-from ..errors import InputError
+from ..fitting.readings import as_read, position_noise, slid_of, true_motion
 from ..fitting.rows import Nuisances, Rows
 from ..loop_form import LoopForm
-from ..motion import smooth
 from ..plant import Plant
 from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from ..weak_form import Start, WeakForm
 from .evidence import Evidence
-from .noise import GAUSSIAN, Noise, measure_noise, position_noise
+from .noise import Noise, measure_noise, seen_effort
 
 __all__ = [
     "NoReplayError",
@@ -34,16 +33,10 @@ __all__ = [
 
 _logger = logging.getLogger(__name__)
 
-SMOOTHING_SHARE: Final = 1.0 / 3.0
-"""Support over which the measured motion is smoothed to stand for the true one, as a share of the
-kernel's: rounding is gone, and what the kernel sees is not."""
-
-STEADIER: Final = (4.0, 3.0, 2.0)
-"""Supports of a motion that was steadied over which it is smoothed instead, the widest of them that
-noise allows: what is left of the noise of its speed would be in motion and readings alike, and no
-noise to a replay."""
-BESIDE_NOISE: Final = 1.15
-"""Readings are as far from it then as noise takes them, but for so much."""
+ALIKE: Final = 1e-3
+"""Share by which counts of one sensor differ."""
+MOST_TIMES: Final = 3.0
+"""Of an estimate of noise that replays are asked about: with more they tell nothing."""
 TRIED: Final = 2
 """Readings of a motion without noise of the effort, to see what they make of the residual."""
 
@@ -84,14 +77,36 @@ def surrogate_residuals(
         By recording.
     """
 
-    def one(rows: Rows) -> tuple[FloatArray, Noise]:
+    def measured(rows: Rows) -> tuple[_Replay, Noise]:
         replay = _Replay.of(rows, plant, nuisances)
-        noise = replay.noise()
-        return rows.weight * replay.columns(noise, number, seed), noise
+        return replay, replay.noise()
 
-    found = evidence.each(one, evidence.shown)
-    noises = {rows.index: noise for rows, (_, noise) in zip(evidence.shown, found, strict=True)}
-    return np.concatenate([columns for columns, _ in found]), noises
+    def replayed(found: tuple[_Replay, Noise]) -> FloatArray:
+        replay, noise = found
+        return replay.rows.weight * replay.columns(noise, number, seed)
+
+    found = evidence.each(measured, evidence.shown)
+    if evidence.simulated:
+        found = _of_one_sensor(found)
+    noises = {replay.rows.index: noise for replay, noise in found}
+    return np.concatenate(evidence.each(replayed, found)), noises
+
+
+def _of_one_sensor(found: Sequence[tuple[_Replay, Noise]]) -> list[tuple[_Replay, Noise]]:
+    """The same with one noise of the position for all that one sensor read, the middle one.
+
+    Where a machine rests between two counts readings show no noise, and then it moves.
+    """
+
+    def alike(one: WeakForm, other: WeakForm) -> bool:
+        return bool(np.isclose(one.count, other.count, rtol=ALIKE) and one.dt == other.dt)
+
+    usual = []
+    for replay, noise in found:
+        form = replay.rows.form
+        own = [each.position for other, each in found if alike(form, other.rows.form)]
+        usual.append((replay, replace(noise, position=float(np.median(own)))))
+    return usual
 
 
 def noise_of(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
@@ -118,7 +133,7 @@ class _Replay:
         elif isinstance(form, ShootingForm):
             motion, residual = _shot(form, plant, start)
         else:
-            slid = _slid(form, plant, start)
+            slid = slid_of(form, plant, start)
             if slid is not None:
                 return cls(rows, plant, nuisances, *slid)
             motion, residual = _followed(form, plant, start)
@@ -134,11 +149,31 @@ class _Replay:
         if isinstance(form, ShootingForm):
             start = self.nuisances.start(self.rows.index)
             alone = [form.from_readings_alone(self.plant, start)]
-        else:
-            source = np.random.default_rng(self.rows.index)
-            white, still = position_noise(form), np.zeros(len(self.motion))
-            alone = [self.residual(self.read(white, source), still) for _ in range(TRIED)]
+            return self._as_seen(measure_noise(self.rows, self.plant, self.nuisances, alone), alone)
+        source = np.random.default_rng(self.rows.index)
+        white, still = position_noise(form), np.zeros(len(self.motion))
+        alone = [self.residual(self.read(white, source), still) for _ in range(TRIED)]
         return measure_noise(self.rows, self.plant, self.nuisances, alone)
+
+    def _as_seen(self, noise: Noise, alone: Sequence[FloatArray]) -> Noise:
+        """Noise of which as much is seen in replays as in the recording.
+
+        A machine that rests through a part of its windows keeps noise of the effort to itself, and
+        where it turns round noise does more than through a kernel.
+        """
+        if noise.effort <= 0.0:
+            return noise
+        source = np.random.default_rng([self.rows.index, TRIED])
+        size = len(self.motion)
+        again = [
+            self.residual(
+                self.read(noise.position, source), noise.effort * source.standard_normal(size)
+            )
+            for _ in range(TRIED)
+        ]
+        seen = seen_effort(self.rows, again, alone)
+        times = noise.effort / seen if seen > 0.0 else 1.0
+        return replace(noise, effort=noise.effort * float(np.clip(times, 1.0, MOST_TIMES)))
 
     def columns(self, noise: Noise, number: int, seed: int) -> FloatArray:
         """Residuals of the rows that count, of so many replays; shape (rows, number)."""
@@ -152,13 +187,7 @@ class _Replay:
 
     def read(self, white: float, source: np.random.Generator) -> FloatArray:
         """The motion as the sensor reads it."""
-        form = self.rows.form
-        readings = self.motion + white * source.standard_normal(len(self.motion))
-        if form.count > 0.0:
-            # Where a rigid contact stops between two counts changes what is read of the stop.
-            begin = 0.0 if form.springy else source.uniform(-0.5, 0.5)
-            readings = np.round(readings / form.count + begin) * form.count
-        return readings
+        return as_read(self.rows.form, self.motion, white, source)
 
 
 def _followed(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
@@ -177,38 +206,6 @@ def _followed(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _
         return acted + noise - needed(form.driving(readings), readings)
 
     return motion, residual
-
-
-def _slid(
-    form: WeakForm, plant: Plant, start: Start
-) -> tuple[FloatArray, _Residual, FloatArray] | None:
-    """A motion near the measured one that a plant with a rigid contact makes, residual and load.
-
-    None where there is no such contact, or no such motion: nothing drives a machine that is moved,
-    and one with hardly any inertia cannot be simulated in samples.
-
-    Such a machine stops from one sample to the next. A smoothed motion never does, and what
-    readings make of stops would be no part of the noise.
-    """
-    if form.springy or form.prescribed or plant.servo:
-        return None
-    try:
-        motion, load = accompanied(form, plant, start, position=true_motion(form))
-    except InputError as error:
-        _logger.info("followed instead of simulated: %s", error)
-        return None
-
-    # A contact at rest answers whatever acts on it, noise as well.
-    moves = np.diff(motion) != 0.0
-    inertia = form.own(plant).inertia
-
-    def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
-        driving = form.driving(readings)
-        short = form.short(plant, start, position=driving, load=load)
-        acted = form.given(np.zeros_like(load), load + added[1:] * moves)
-        return short + acted - inertia * form.accelerations(readings, driving)
-
-    return motion, residual, load
 
 
 def _looped(form: LoopForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
@@ -301,15 +298,3 @@ def shared(bias: FloatArray, residual: FloatArray, recording: np.ndarray) -> Flo
     share = np.clip(along / np.maximum(power, 1e-300), 0.0, 1.0)
     found: FloatArray = share[recording] * bias
     return found
-
-
-def true_motion(form: WeakForm) -> FloatArray:
-    """The measured motion without its rounding: what stands for the true one; shape (rows,)."""
-    if form.adapts:
-        return form.position
-    for times in STEADIER if form.steadied > 0.0 else ():
-        found = smooth(form.readings, form.dt, times * form.steadied, drifts=True)
-        off = GAUSSIAN * float(np.median(np.abs(form.readings - found)))
-        if off <= BESIDE_NOISE * form.noise:
-            return found
-    return smooth(form.position, form.dt, max(form.dt, SMOOTHING_SHARE * form.kernel.support))

@@ -357,7 +357,13 @@ def compared_fit(
 
 
 def _too_good(evidence: Evidence, model: Model) -> str:
-    """Why a model that leaves less than noise must is no machine, "" where it leaves that."""
+    """Why a model that leaves less than noise must is no machine, "" where it leaves that.
+
+    A motion of its own has to be the measured one: nothing can take that away, and what noise does
+    to it is told beside a base that may rest where the machine does not.
+    """
+    if evidence.simulated:
+        return ""
     if model.power * model.given >= LEAST_OF_NOISE * evidence.floor:
         return ""
     return "leaves far less than the noise of these data must: it takes away what was measured"

@@ -52,6 +52,8 @@ def unnamed(
     null: FloatArray,
     null_of_last: Callable[[], FloatArray],
     burst: Burst | None = None,
+    *,
+    relevant: float = 0.0,
 ) -> tuple[Unexplained, ...]:
     """What the last model leaves that noise does not explain: coordinates, then single recordings.
 
@@ -67,8 +69,10 @@ def unnamed(
         The same of the last model: a shaft that gives turns noise of the position into effort.
     burst : Burst, optional
         Single moments that hold much of what is left; told where nothing is named.
+    relevant : float
+        Weighted rms of a residual that matters.
     """
-    excess = _excess(evidence, selection.models[-1], null)
+    excess = _excess(evidence, selection.models[-1], null, relevant)
     told = _told(left, LEAST_SIZE)
     if excess < LEAST_EXCESS:
         # A line over time is what the replays took for noise, and none of their making.
@@ -90,13 +94,13 @@ def unnamed(
         open_ = max((each.share for each in told), default=0.0) < WORTH_SHARE * excess
     if open_ and excess > _most_excess(evidence) and selection.choices:
         null = null_of_last()
-        excess = _excess(evidence, selection.models[-1], null)
+        excess = _excess(evidence, selection.models[-1], null, relevant)
     if open_ and excess > _most_excess(evidence):
         bursts = at_moments(evidence, selection.models[-1], null)
         more = Unexplained(MOMENTS.name if bursts else NO_COORDINATE, excess)
         told = (more, *(each for each in told if each.coordinate != more.coordinate))
     told = _behind(burst if not selection.choices else None, told)
-    alone = outlying(evidence, selection.models[-1], null)
+    alone = outlying(evidence, selection.models[-1], null, relevant)
     # One recording stands first where it leaves most; beside a coordinate, in which the others
     # show the same, several of them only make a list longer.
     most = 1 if alone and (not told or alone[0].share > told[0].share) else 0
@@ -222,8 +226,11 @@ def _most_excess(evidence: Evidence) -> float:
     return MOST_EXCESS_RIGID if rigid and not evidence.plant.servo else MOST_EXCESS
 
 
-def _excess(evidence: Evidence, model: Model, null: FloatArray) -> float:
-    """Share of the power left that noise and rounding do not explain, over rows that decide."""
+def _excess(evidence: Evidence, model: Model, null: FloatArray, relevant: float) -> float:
+    """Share of the power left that noise and rounding do not explain, over rows that decide.
+
+    What is too small to matter counts as explained.
+    """
     held = np.zeros(len(evidence.fitted), dtype=bool)
     for plan in evidence.plans:
         held |= plan.held
@@ -233,6 +240,7 @@ def _excess(evidence: Evidence, model: Model, null: FloatArray) -> float:
         rows = held & (recording == index)
         power = float(np.sum(model.residual[rows] ** 2))
         noise = float(np.mean(np.sum(null[rows] ** 2, axis=0)))
+        noise = max(noise, np.count_nonzero(rows) * relevant**2)
         ratios.append(noise / power if power > 0.0 else 1.0)
     # The middle one: a single recording in which the model lost its track says nothing of the rest.
     return 1.0 - float(np.median(ratios))

@@ -234,6 +234,21 @@ def no_machine(left: float, named: bool, verdict: Verdict, by: Compared = EFFORT
     )
 
 
+def stands_still(left: float, verdict: Verdict) -> str:
+    """What to look at first where the simulated plant misses most of the motion, "" elsewhere.
+
+    ``left`` is the share of the power of the accelerations, 0 where it is less.
+    """
+    if not left or verdict != "unexplained":
+        return ""
+    return (
+        f" Simulated over short times, the plant leaves {100 * min(left, 1.0):.0f} % of the power "
+        "of the measured accelerations: it stands still, or moves otherwise, where the machine "
+        "moved. If the machine stays below its break-away, a law without pre-sliding cannot "
+        "describe it: state one that yields, as dahl or maxwell_slip, or record a slide."
+    )
+
+
 def push_words(pushes: Sequence[Push], names: Sequence[str]) -> str:
     """The first pushes, those that are sure in a sentence of their own; "" without any."""
     shown = pushes[:MOST_TOLD]

@@ -18,11 +18,14 @@ from ..weak_form import WeakForm
 from .forms import (
     LEAST_LEFT,
     Through,
+    as_stiff_as_shown,
+    astray,
     followable,
     horizon_of,
     shows_its_ring,
     stiffen,
     wider_of,
+    windows_of,
 )
 from .minimise import Solution, launch, or_from, stopped
 from .pushes import Watch
@@ -105,6 +108,7 @@ def first_pass(
     *,
     most: int,
     wide: bool = True,
+    windows: bool = False,
 ) -> FirstPass[S]:
     """Fit a plant to rows of the weak form, and simulated where these do not do.
 
@@ -125,6 +129,8 @@ def first_pass(
         Evaluations of the residual at most, of each start.
     wide : bool
         Whether wider kernels may be tried.
+    windows : bool
+        Whether it is known already that a rigid contact must be simulated over windows.
 
     Raises
     ------
@@ -136,7 +142,7 @@ def first_pass(
     if found.interrupted:
         return known
     try:
-        known = _simulated(plant, known, found.variables.paths, again, most=most)
+        known = _simulated(plant, known, found.variables.paths, again, most=most, windows=windows)
         if known.solution.interrupted or not wide:
             return known
         return _wider(plant, known, again, most=most)
@@ -225,24 +231,40 @@ def _simulated(
     again: Callable[[Plant, Through, Watch], S],
     *,
     most: int,
+    windows: bool,
 ) -> FirstPass[S]:
     """What is known, fitted on by what is simulated where the weak form does not do."""
     seen, found, start = known.seen, known.solution, known.start
-    horizon = horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
     servo = plant.servo
+    tried = windows_of(found.plant, seen.forms)
+    horizon = tried or horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
     if horizon is not None or servo:
         phase(_logger, "fitting it again, simulated")
         other = again(found.plant, Through(horizon=horizon, loop=servo), seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
         begun = [found.plant, start] if servo else [found.plant]
-        begun = [followable(each, other.forms) for each in begun]
+        held = followable if tried is None else as_stiff_as_shown
+        begun = [held(each, other.forms) for each in begun]
         fitted = launch(begun, paths, other.train, most=most)
         if servo:
             light = lightly_held(plant, start, [rows.form for rows in seen.train])
             fitted = or_from([light], fitted, other.train, most=most)
+        better = (
+            tried is None
+            or windows
+            or astray(
+                found.plant,
+                found.nuisances,
+                seen.train,
+                (fitted.plant, fitted.nuisances),
+                other.train,
+            )
+        )
         fitted = _after(found, fitted)
         if servo or (
-            shows_its_ring(fitted.plant, other.forms) and _lost(fitted, other.train) is None
+            better
+            and shows_its_ring(fitted.plant, other.forms)
+            and _lost(fitted, other.train) is None
         ):
             seen, found = other, fitted
             stiffen(seen.forms, found.plant)

@@ -8,14 +8,17 @@ from typing import Final
 
 import numpy as np
 
+from ..errors import InputError
+from ..finite import finite
 from ..loop_form import LoopForm
-from ..motion import SUPPORTS_S, noise_of
+from ..motion import SUPPORTS_S, Kernel, noise_of
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.session_clock import ages_of, starts_of
 from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
+from .readings import made_by_readings
 from .rows import Nuisances, Rows
 
 __all__ = [
@@ -25,6 +28,8 @@ __all__ = [
     "Through",
     "as_session",
     "as_stated",
+    "as_stiff_as_shown",
+    "astray",
     "followable",
     "forms_of",
     "horizon_of",
@@ -32,6 +37,7 @@ __all__ = [
     "stiffen",
     "told",
     "wider_of",
+    "windows_of",
 ]
 
 EVERY_S: Final = 0.005
@@ -47,6 +53,9 @@ HORIZONS_S: Final = (0.100, 0.300)
 and let a motion that hangs on a break-away run away."""
 BEYOND_SHOWN: Final = 2.0
 """A contact simulated over windows may become so many times stiffer than samples show."""
+RIGID_SHOWN: Final = 0.5
+"""Share of it that stands for a contact which is rigid to the samples: pre-sliding is over within
+less than coarse readings show."""
 RINGS: Final = 3.0
 """Periods of its ring on the pre-sliding stiffness that a window holds: a start that is wrong by a
 count sets a machine ringing, and of a ring three times as fast as itself the kernel leaves 1 %."""
@@ -55,6 +64,10 @@ LEAST_WINDOWS: Final = 4.0
 MUCH_LEFT: Final = 0.1
 """Share of the measured effort from which on what is left may come from accelerations that are
 wrong."""
+REMEMBERS: Final = "law.remembers"
+"""Term of laws that an effect stands for which builds friction up over a distance."""
+MATTERS: Final = 1e-3
+"""Share of the measured effort that it must leave there: less, and it does not matter."""
 NARROW: Final = 1.5
 """Kernels that are wider by no more than this show nothing else."""
 ALIKE: Final = 1e-3
@@ -206,6 +219,109 @@ def horizon_of(
     return float(np.clip(max(drifts, rings), *HORIZONS_S))
 
 
+def windows_of(plant: Plant, forms: Sequence[WeakForm]) -> float | None:
+    """Over how long a rigid contact should be simulated beside the weak form, None for not at all.
+
+    One that rings faster than the samples is rigid to them, and is simulated as stiff as they show.
+    It turns round with the reading, whatever that is off by: whether that matters is known once
+    both residuals were tried (see ``astray``). The window is the longest one: the state at its
+    start comes from the readings too, and the longer the window is the less hangs on it.
+
+    Parameters
+    ----------
+    plant : Plant
+        Fitted through kernels.
+    forms : sequence of WeakForm
+        Of all recordings.
+
+    Returns
+    -------
+    float or None
+        s; the same for all recordings of a session.
+    """
+    horizon = HORIZONS_S[1]
+    shortest = min(form.dt * len(form.readings) for form in forms)
+    if any(form.prescribed or form.simulated for form in forms) or plant.servo:
+        return None
+    if any(REMEMBERS in effect.record.law_terms for effect in plant.effects):
+        # The contact yields by its effect.
+        return None
+    if plant.inertia <= 0.0 or shortest < LEAST_WINDOWS * horizon:
+        return None
+    return horizon if not plant.friction.springy or _rings_unseen(plant, forms) else None
+
+
+def _rings_unseen(plant: Plant, forms: Sequence[WeakForm]) -> bool:
+    """Whether a contact that yields rings unseen, and as stiff as samples show reaches no further.
+
+    Pre-sliding of several counts is none that a contact without any could stand for.
+    """
+    stiffness = plant.friction.parameters["initial_stiffness"]
+    if stiffness.fixed or stiffness.min is not None or shows_its_ring(plant, forms):
+        return False
+    held = as_stiff_as_shown(plant, forms)
+    try:
+        held.friction.model()
+    except InputError:
+        # Its stiffness is bound to another one.
+        return False
+    return not _fine(held, forms)
+
+
+def astray(
+    plant: Plant,
+    nuisances: Nuisances,
+    rows: Sequence[Rows],
+    other: tuple[Plant, Nuisances],
+    windows: Sequence[Rows],
+) -> bool:
+    """Whether friction that is led along the readings leaves much that its own motion does not.
+
+    Both residuals are the same effort but for the friction; both are compared through the kernel of
+    the windows. A contact at rest hides whatever else is missing, so that a simulation leaves less
+    for other reasons as well. Asked is whether it leaves less than the readings alone make of a
+    plant that is right: they are then most of what is left along them, and more than what is
+    missing. Readings that are exact, or an arm far below break-away, make a hundredth of it.
+
+    Parameters
+    ----------
+    plant : Plant
+        Fitted to ``rows``.
+    nuisances : Nuisances
+    rows : sequence of Rows
+        Of the weak form.
+    other : (Plant, Nuisances)
+        Fitted to ``windows``.
+    windows : sequence of Rows
+        Of the same recordings, simulated.
+    """
+    led: list[FloatArray] = []
+    made: list[FloatArray] = []
+    own, measured = [], []
+    simulated = {each.index: each for each in windows}
+    for each in rows:
+        shot = simulated.get(each.index)
+        spacing = each.form.dt * each.form.stride
+        if shot is None or shot.form.kernel.support > len(each.form) * spacing:
+            continue
+        weights = Kernel(shot.form.kernel.support, spacing).weights
+        left = finite(each.residual(plant, nuisances))
+        read = made_by_readings(each.form, plant, nuisances.start(each.index))
+        inside = slice(len(weights) // 2, len(left) - len(weights) // 2)
+        time = each.form.time[inside]
+        counted = shot.mask & (shot.form.time >= time[0]) & (shot.form.time <= time[-1])
+        if read is None:
+            continue
+        for efforts, found in ((left, led), (finite(read), made)):
+            wide = np.convolve(efforts, weights, "valid")
+            found.append(np.interp(shot.form.time[counted], time, wide))
+        own.append(finite(shot.residual(*other))[counted])
+        measured.append(shot.form.measured(plant)[counted])
+    if not led or _size(led) < MATTERS * _size(measured):
+        return False
+    return _size(own) < min(_size(made), _size(led))
+
+
 def wider_of(
     plant: Plant, nuisances: Nuisances, rows: Sequence[Rows], forms: Sequence[WeakForm]
 ) -> float | None:
@@ -264,6 +380,21 @@ def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
     return replace(plant, friction=replace(plant.friction, parameters=parameters))
 
 
+def as_stiff_as_shown(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
+    """The plant with a contact that its samples can follow, where it is rigid to them.
+
+    One that rings slowly enough stays as it is.
+    """
+    if shows_its_ring(plant, forms):
+        return followable(plant, forms)
+    most = RIGID_SHOWN * plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
+    stiffness = replace(
+        plant.friction.parameters["initial_stiffness"], value=0.5 * most, min=None, max=most
+    )
+    parameters = {**plant.friction.parameters, "initial_stiffness": stiffness}
+    return replace(plant, friction=replace(plant.friction, parameters=parameters))
+
+
 def as_stated(plant: Plant, given: Plant) -> Plant:
     """The plant with the upper bound of its stiffness that was given.
 
@@ -283,16 +414,20 @@ def shows_its_ring(plant: Plant, forms: Sequence[WeakForm]) -> bool:
 
     Of a faster ring no reading tells, and each sample would be simulated in thousands of parts.
     """
-    stiffness = plant.friction.parameters["initial_stiffness"].value
-    ring = float(np.sqrt(stiffness / plant.inertia))
+    stiffness = plant.friction.parameters.get("initial_stiffness")
+    if stiffness is None:
+        return True
+    ring = float(np.sqrt(stiffness.value / plant.inertia))
     return ring * max(form.dt for form in forms) < np.pi
 
 
 def stiffen(forms: Sequence[WeakForm], plant: Plant) -> None:
-    """Counts what loops miss as efforts of a plant that was fitted, and no longer of its start."""
+    """Counts what simulations miss as efforts of a plant that was fitted, not of its start."""
     for form in forms:
         if isinstance(form, LoopForm):
             form.stiffen(plant)
+        elif isinstance(form, ShootingForm):
+            form.go_by(plant)
 
 
 def told(forms: Sequence[WeakForm], plant: Plant) -> str:
@@ -308,7 +443,12 @@ def told(forms: Sequence[WeakForm], plant: Plant) -> str:
         return (
             f"The plant was simulated from the measured state over windows of {supports[0]:.0f} ms "
             "(shooting), because the readings of the position are too coarse to drive friction: "
-            f"pre-sliding is over within {FEWEST_COUNTS:.0f} of their steps."
+            + (
+                f"pre-sliding is over within {FEWEST_COUNTS:.0f} of their steps."
+                if plant.friction.springy
+                else "led along them, it leaves much that it does not leave along a motion of its "
+                "own."
+            )
         )
     width = f"{min(supports):.0f}"
     if max(supports) > min(supports) + 0.5:

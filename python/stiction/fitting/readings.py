@@ -1,0 +1,127 @@
+"""What the readings of a motion do to the residual along it."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from ..accompanied import accompanied
+from ..errors import InputError
+from ..motion import smooth
+from ..plant import Plant
+from ..trajectory import FloatArray
+from ..weak_form import Start, WeakForm
+
+__all__ = [
+    "GAUSSIAN",
+    "Residual",
+    "as_read",
+    "made_by_readings",
+    "position_noise",
+    "slid_of",
+    "true_motion",
+]
+
+_logger = logging.getLogger(__name__)
+
+GAUSSIAN: Final = 1.4826
+"""Standard deviation over the median magnitude of a normal distribution."""
+
+SMOOTHING_SHARE: Final = 1.0 / 3.0
+"""Support over which the measured motion is smoothed to stand for the true one, as a share of the
+kernel's: rounding is gone, and what the kernel sees is not."""
+
+STEADIER: Final = (4.0, 3.0, 2.0)
+"""Supports of a motion that was steadied over which it is smoothed instead, the widest of them that
+noise allows: what is left of the noise of its speed would be in motion and readings alike, and no
+noise to a replay."""
+BESIDE_NOISE: Final = 1.15
+"""Readings are as far from it then as noise takes them, but for so much."""
+
+Residual = Callable[[FloatArray, FloatArray], FloatArray]
+"""From readings, and noise that is added to the effort, to the residual; shapes (rows,)."""
+
+
+def position_noise(form: WeakForm) -> float:
+    """White noise of the position beside the rounding to counts, rad or m."""
+    return float(np.sqrt(max(form.noise**2 - form.count**2 / 12.0, 0.0)))
+
+
+def as_read(
+    form: WeakForm, motion: FloatArray, white: float, source: np.random.Generator
+) -> FloatArray:
+    """A motion as the sensor reads it, with this noise beside its rounding; shape (rows,)."""
+    readings = motion + white * source.standard_normal(len(motion))
+    if form.count > 0.0:
+        # Where a rigid contact stops between two counts changes what is read of the stop.
+        begin = 0.0 if form.springy else source.uniform(-0.5, 0.5)
+        readings = np.round(readings / form.count + begin) * form.count
+    return readings
+
+
+def true_motion(form: WeakForm) -> FloatArray:
+    """The measured motion without its rounding: what stands for the true one; shape (rows,)."""
+    if form.adapts:
+        return form.position
+    for times in STEADIER if form.steadied > 0.0 else ():
+        found = smooth(form.readings, form.dt, times * form.steadied, drifts=True)
+        off = GAUSSIAN * float(np.median(np.abs(form.readings - found)))
+        if off <= BESIDE_NOISE * form.noise:
+            return found
+    return smooth(form.position, form.dt, max(form.dt, SMOOTHING_SHARE * form.kernel.support))
+
+
+def slid_of(
+    form: WeakForm, plant: Plant, start: Start
+) -> tuple[FloatArray, Residual, FloatArray] | None:
+    """A motion near the measured one that a plant with a rigid contact makes, residual and load.
+
+    None where there is no such contact, or no such motion: nothing drives a machine that is moved,
+    and one with hardly any inertia cannot be simulated in samples.
+
+    Such a machine stops from one sample to the next. A smoothed motion never does, and what
+    readings make of stops would be no part of the noise.
+    """
+    if form.springy or form.prescribed or plant.servo:
+        return None
+    try:
+        motion, load = accompanied(form, plant, start, position=true_motion(form))
+    except InputError as error:
+        _logger.info("followed instead of simulated: %s", error)
+        return None
+
+    # A contact at rest answers whatever acts on it, noise as well.
+    moves = np.diff(motion) != 0.0
+    inertia = form.own(plant).inertia
+
+    def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
+        driving = form.driving(readings)
+        short = form.short(plant, start, position=driving, load=load)
+        acted = form.given(np.zeros_like(load), load + added[1:] * moves)
+        return short + acted - inertia * form.accelerations(readings, driving)
+
+    return motion, residual, load
+
+
+def made_by_readings(form: WeakForm, plant: Plant, start: Start = None) -> FloatArray | None:
+    """What the readings alone leave of the residual of a plant that is right; shape (rows,).
+
+    A motion near the measured one that the plant makes by itself, read once by the sensor. None
+    where there is no such motion.
+
+    Parameters
+    ----------
+    form : WeakForm
+    plant : Plant
+    start : dict, optional
+        Friction state at the first row.
+    """
+    slid = slid_of(form, plant, start)
+    if slid is None:
+        return None
+    motion, residual, _ = slid
+    readings = as_read(form, motion, position_noise(form), np.random.default_rng(0))
+    return residual(readings, np.zeros(len(motion)))

@@ -1,0 +1,158 @@
+"""A dry contact read by a coarse encoder lacks nothing, and its simulation says so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.diagnosis.base import based
+from stiction.diagnosis.conclude import surrogates_of
+from stiction.diagnosis.evidence import Evidence
+from stiction.diagnosis.model import Model
+from stiction.diagnosis.moved import borne_out_in_motion
+from stiction.diagnosis.selection import Search
+from stiction.fitting.forms import Through
+from stiction.fitting.rows import Nuisances
+from stiction.parameter import Parameter
+from stiction.shooting import ShootingForm
+from stiction.stated import Effect
+
+INERTIA, COULOMB, VISCOUS = 2.4e-3, 0.13, 7.5e-3
+DT = 2e-3
+COUNTS = 1024
+NOTHING = Nuisances()
+FLICKER = 0.2
+"""Counts."""
+LOG_NOISE = 0.02
+"""Of the friction."""
+
+
+def plant(**stated: float) -> st.Plant:
+    """Of the machine, as far as it is stated."""
+    friction = {name: stated[name] for name in ("coulomb", "viscous") if name in stated}
+    raw: dict[str, Any] = {
+        "motion": {"kind": "rotary"},
+        "drive": {"input": "torque_nm"},
+        "friction": {"law": "coulomb", **friction},
+        "sensor": {"counts_per_rev": COUNTS},
+    }
+    return st.Plant.from_dict(raw | ({"body": {"inertia": stated["inertia"]}} if stated else {}))
+
+
+TRUE = {"inertia": INERTIA, "coulomb": COULOMB, "viscous": VISCOUS}
+
+
+@cache
+def recordings(noise: float = 0.0, number: int = 4, seconds: float = 10.0) -> list[st.Recording]:
+    """Sums of sines, simulated from rest and read by the encoder."""
+    found = []
+    for k in range(number):
+        rng = np.random.default_rng([59, k])
+        time = np.arange(round(seconds / DT)) * DT
+        hertz, phase = rng.uniform(0.2, 2.0, 4), rng.uniform(0.0, 2.0 * np.pi, 4)
+        waves = np.sin(2.0 * np.pi * time[:, None] * hertz + phase)
+        given = COULOMB * rng.uniform(0.8, 1.4) * waves.sum(axis=1)
+        motor = plant(**TRUE).motor()
+        moved = motor.simulate(given[:-1], np.full(len(time) - 1, DT)).position
+        step = 2.0 * np.pi / COUNTS
+        flicker = FLICKER * rng.standard_normal(len(time))
+        read = step * np.round(np.concatenate([[0.0], moved]) / step + flicker)
+        logged = given + noise * COULOMB * rng.standard_normal(len(time))
+        found.append(st.Recording(time, input=logged, position=read, kind="sines"))
+    return found
+
+
+def test_a_dry_contact_and_a_coarse_encoder_lack_nothing() -> None:
+    found = st.diagnose(plant(), recordings(), threads=1)
+    assert found.verdict == "nothing_missing"
+    assert not found.effects
+    assert "simulated" in found.data["residual"]
+
+
+def test_errors_of_readings_bend_no_parameter() -> None:
+    _, base = based(plant(), recordings())
+    friction = base.plant.friction.parameters
+    assert base.plant.inertia == pytest.approx(INERTIA, rel=0.01)
+    assert friction["coulomb"].value == pytest.approx(COULOMB, rel=0.01)
+    assert friction["viscous"].value == pytest.approx(VISCOUS, rel=0.02)
+
+
+def test_what_is_exact_is_not_simulated() -> None:
+    exact = [replace_position(recording) for recording in recordings()]
+    stated = replace(plant(), sensor={})
+    evidence, base = based(stated, exact)
+    assert not evidence.simulated
+    assert base.plant.inertia == pytest.approx(INERTIA, rel=1e-3)
+
+
+def replace_position(recording: st.Recording) -> st.Recording:
+    """The same recording of a machine whose position is known as it is, and its input roughly."""
+    assert recording.input is not None
+    motor = plant(**TRUE).motor()
+    steps = np.diff(recording.time)
+    moved = motor.simulate(recording.input[:-1], steps).position
+    rng = np.random.default_rng(len(recording))
+    logged = recording.input + LOG_NOISE * COULOMB * rng.standard_normal(len(recording))
+    position = np.concatenate([[0.0], moved])
+    return st.Recording(recording.time, input=logged, position=position, kind="sines")
+
+
+def test_a_residual_does_not_vanish_with_the_inertia() -> None:
+    stuck = plant(**TRUE | {"coulomb": 100.0 * COULOMB})
+    form = ShootingForm(plant(**TRUE), recordings()[0], horizon=0.3)
+    light = stuck.with_values({"body.inertia": 1e-3 * INERTIA})
+    moved = INERTIA * np.std(form.acceleration)
+    assert np.std(form.residual(stuck)) > 0.5 * moved
+    assert np.std(form.residual(light)) > 0.5 * moved
+
+
+def test_replays_scatter_as_the_recording_does() -> None:
+    evidence, base = based(plant(), recordings(LOG_NOISE))
+    assert evidence.simulated
+    null, noises = surrogates_of(evidence, base, 12, 0)
+    told = np.mean([noise.effort for noise in noises.values()])
+    assert told == pytest.approx(LOG_NOISE * COULOMB, rel=0.3)
+    assert 0.7 < np.std(null) / np.std(base.residual) < 1.6
+    assert len({noise.position for noise in noises.values()}) == 1
+
+
+def test_a_cause_that_freezes_the_machine_is_taken_back() -> None:
+    known = plant(**TRUE)
+    evidence = Evidence(known, recordings())
+    limited = Effect("drive_saturation", {"limit": Parameter(0.9 * COULOMB)})
+    models = [
+        Model(evidence, SimpleNamespace(plant=each, nuisances=NOTHING, vector=None))  # type: ignore[arg-type]
+        for each in (known, replace(known, effects=(limited,)))
+    ]
+    choice = SimpleNamespace(winner=SimpleNamespace(name="drive_saturation"))
+    left = borne_out_in_motion(Search(models, [choice]), evidence)  # type: ignore[list-item]
+    assert not left.choices
+
+
+def test_rows_that_test_stay_sealed_while_motion_is_asked() -> None:
+    known = plant(**TRUE)
+    evidence = Evidence(known, recordings(), through=Through())
+    assert borne_out_in_motion(Search([]), evidence).choices == []
+    assert evidence.sealed
+
+
+def test_a_plant_that_stands_still_where_the_machine_moved_lacks_something() -> None:
+    """Dahl's spring below its break-away: a dry contact holds whatever acts on it."""
+    spring = st.FrictionModel("dahl", coulomb=10.0, initial_stiffness=4e4, viscous=1.0)
+    found = []
+    for k in range(3):
+        time = np.arange(2500) * 4e-3
+        given = 5.0 * np.sin(2.0 * np.pi * (0.5 + 0.1 * k) * time)
+        moved = st.Motor(0.5, friction=spring).simulate(given[:-1], 4e-3).position
+        rng = np.random.default_rng([60, k])
+        read = np.concatenate([[0.0], moved]) + 2e-7 * rng.standard_normal(len(time))
+        found.append(st.Recording(time, input=given, position=read, kind="below"))
+    told = st.diagnose(replace(plant(), sensor={}), found, threads=1)
+    assert told.verdict not in ("nothing_missing", "missing_effect")
+    assert not any(cause.decided for cause in told.effects)
