@@ -15,7 +15,7 @@ from stiction.diagnosis.base import based
 from stiction.diagnosis.conclude import surrogates_of
 from stiction.diagnosis.evidence import Evidence
 from stiction.diagnosis.model import Model
-from stiction.diagnosis.moved import borne_out_in_motion
+from stiction.diagnosis.moved import _powers, borne_out_in_motion
 from stiction.diagnosis.selection import Search
 from stiction.fitting.forms import Through
 from stiction.fitting.rows import Nuisances
@@ -65,6 +65,26 @@ def recordings(noise: float = 0.0, number: int = 4, seconds: float = 10.0) -> li
         read = step * np.round(np.concatenate([[0.0], moved]) / step + flicker)
         logged = given + noise * COULOMB * rng.standard_normal(len(time))
         found.append(st.Recording(time, input=logged, position=read, kind="sines"))
+    return found
+
+
+STUCK = {"inertia": 0.5, "coulomb": 10.0, "viscous": 1.0}
+"""Of an arm that nothing moves beyond its break-away."""
+
+
+@cache
+def below() -> list[st.Recording]:
+    """Of Dahl's spring at half its break-away, read well."""
+    friction = {name: STUCK[name] for name in ("coulomb", "viscous")}
+    spring = st.FrictionModel("dahl", initial_stiffness=4e4, **friction)
+    found = []
+    for k in range(3):
+        time = np.arange(2500) * 4e-3
+        given = 0.5 * STUCK["coulomb"] * np.sin(2.0 * np.pi * (0.5 + 0.1 * k) * time)
+        moved = st.Motor(STUCK["inertia"], friction=spring).simulate(given[:-1], 4e-3).position
+        rng = np.random.default_rng([60, k])
+        read = np.concatenate([[0.0], moved]) + 2e-7 * rng.standard_normal(len(time))
+        found.append(st.Recording(time, input=given, position=read, kind="below"))
     return found
 
 
@@ -125,7 +145,9 @@ def test_replays_scatter_as_the_recording_does() -> None:
 def test_a_cause_that_freezes_the_machine_is_taken_back() -> None:
     known = plant(**TRUE)
     evidence = Evidence(known, recordings())
-    limited = Effect("drive_saturation", {"limit": Parameter(0.9 * COULOMB)})
+    limited = Effect(
+        "drive_saturation", {"share": Parameter(1.0), "limit": Parameter(0.9 * COULOMB)}
+    )
     models = [
         Model(evidence, SimpleNamespace(plant=each, nuisances=NOTHING, vector=None))  # type: ignore[arg-type]
         for each in (known, replace(known, effects=(limited,)))
@@ -133,6 +155,22 @@ def test_a_cause_that_freezes_the_machine_is_taken_back() -> None:
     choice = SimpleNamespace(winner=SimpleNamespace(name="drive_saturation"))
     left = borne_out_in_motion(Search(models, [choice]), evidence)  # type: ignore[list-item]
     assert not left.choices
+
+
+def test_a_cause_is_taken_back_that_is_further_off_than_a_machine_that_hardly_moves() -> None:
+    """Below break-away a dry contact that is too weak flies off, and any limit holds it back."""
+    loose = replace(plant(**STUCK | {"coulomb": 1.0}), sensor={})
+    evidence = Evidence(loose, below())
+    limited = Effect("drive_saturation", {"share": Parameter(1.0), "limit": Parameter(2.0)})
+    models = [
+        Model(evidence, SimpleNamespace(plant=each, nuisances=NOTHING, vector=None))  # type: ignore[arg-type]
+        for each in (loose, replace(loose, effects=(limited,)))
+    ]
+    choice = SimpleNamespace(winner=SimpleNamespace(name="drive_saturation"))
+    powers = _powers(models, evidence)
+    assert powers is not None
+    assert powers.left[1].sum() < 0.5 * powers.left[0].sum()
+    assert not borne_out_in_motion(Search(models, [choice]), evidence).choices  # type: ignore[list-item]
 
 
 def test_rows_that_test_stay_sealed_while_motion_is_asked() -> None:
@@ -143,16 +181,7 @@ def test_rows_that_test_stay_sealed_while_motion_is_asked() -> None:
 
 
 def test_a_plant_that_stands_still_where_the_machine_moved_lacks_something() -> None:
-    """Dahl's spring below its break-away: a dry contact holds whatever acts on it."""
-    spring = st.FrictionModel("dahl", coulomb=10.0, initial_stiffness=4e4, viscous=1.0)
-    found = []
-    for k in range(3):
-        time = np.arange(2500) * 4e-3
-        given = 5.0 * np.sin(2.0 * np.pi * (0.5 + 0.1 * k) * time)
-        moved = st.Motor(0.5, friction=spring).simulate(given[:-1], 4e-3).position
-        rng = np.random.default_rng([60, k])
-        read = np.concatenate([[0.0], moved]) + 2e-7 * rng.standard_normal(len(time))
-        found.append(st.Recording(time, input=given, position=read, kind="below"))
-    told = st.diagnose(replace(plant(), sensor={}), found, threads=1)
+    """A dry contact holds whatever acts on it."""
+    told = st.diagnose(replace(plant(), sensor={}), below(), threads=1)
     assert told.verdict not in ("nothing_missing", "missing_effect")
     assert not any(cause.decided for cause in told.effects)
