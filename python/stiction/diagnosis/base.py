@@ -11,7 +11,8 @@ from ..errors import InputError, NotEnoughData
 from ..fitting.first_pass import WORTH_WIDER, first_pass, share_left
 from ..fitting.forms import Through, astray, wider_of, windows_of
 from ..fitting.minimise import MOST_EVALUATIONS
-from ..fitting.solve import settled
+from ..fitting.sign import turned_round
+from ..fitting.solve import left_by_fit, settled
 from ..plant import Plant
 from ..recording import Recording
 from .evidence import Evidence
@@ -69,7 +70,7 @@ def based(
     evidence.weigh()
     base = Model(evidence, solution)
     if not solution.interrupted:
-        _refuse_what_does_not_move(evidence, first.start, base)
+        _refuse_what_does_not_move(evidence, first.start, base, plant)
     return evidence, base
 
 
@@ -177,7 +178,9 @@ def based_joined(
         return None
 
 
-def _refuse_what_does_not_move(evidence: Evidence, begin: Plant, base: Model) -> None:
+def _refuse_what_does_not_move(
+    evidence: Evidence, begin: Plant, base: Model, stated: Plant
+) -> None:
     """Refuses a base that lost its inertia although the motion would show it.
 
     What is left then is no machine, and every effect that makes the input vanish helps.
@@ -189,8 +192,9 @@ def _refuse_what_does_not_move(evidence: Evidence, begin: Plant, base: Model) ->
     moved = known * float(np.sqrt(np.mean(accelerations**2)))
     left = float(np.sqrt(np.mean(base.residual**2)))
     if found < LOST * known and moved > SHOWS * left:
+        hint = turned_round(stated, evidence.recordings, left_by_fit).rstrip(".")
         raise NotEnoughData(
             f"of an inertia of {known:.3g} the fit leaves {found:.2g}, though the accelerations "
             "would show it: input and motion do not belong together; check their columns, units, "
-            "signs and clocks, or state [body] inertia as fixed"
+            "signs and clocks, or state [body] inertia as fixed" + (f". {hint}" if hint else "")
         )

@@ -10,6 +10,8 @@ from typing import Final
 
 from ..compared import compared_by
 from ..fitting.rows import Rows
+from ..fitting.sign import turned_round
+from ..fitting.solve import left_by_fit
 from ..progress import phase
 from ..recording import Check
 from ..session import Session
@@ -318,6 +320,9 @@ class Conclusion:
         if event is not None and better is None:
             followed = event_words(self.rivals, base, event) if event.fitted else ""
             verdict, reason, unexplained = "not_testable", event.words() + followed, ()
+        missed, hint = max(left, lost_on_test(test, len(causes), null)), ""
+        if missed and verdict == "unexplained":
+            hint = turned_round(found.plant, self.evidence.recordings, left_by_fit)
         before, after = self.rests
         if burst is not None and MOMENTS.name in {each.coordinate for each in unexplained}:
             # Nothing is named then: both are what the base leaves.
@@ -337,11 +342,12 @@ class Conclusion:
             + beside
             + stands_still(stands, verdict)
             + no_machine(
-                max(left, lost_on_test(test, len(causes), null)),
+                missed,
                 bool(causes),
                 verdict,
                 compared_by(final.plant),
-            ),
+            )
+            + (f" {hint}" if hint else ""),
             plant=extended.plant,
             effects=tuple(causes),
             gain=gain,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -34,6 +34,7 @@ from .pushes import Watch
 from .pushes import told as pushes_told
 from .result import FitParameter, FitResult
 from .rows import Nuisances, Rows, primed, require_motion, rows_of
+from .sign import LEFT_WHERE_WRONG, turned_round
 from .slopes import slopes
 from .start import complete, free_paths
 from .starts import started, turned
@@ -151,7 +152,16 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
         raise InputError("there are no recordings to fit; give at least one")
     max_evaluations = whole(max_evaluations, "max_evaluations", least=0)
     with with_workers(None):
-        return _fitted(plant, recordings, max_evaluations)
+        found = _fitted(plant, recordings, max_evaluations)
+        if not (found.success and found.train_relative > LEFT_WHERE_WRONG):
+            return found
+        hint = turned_round(plant, recordings, left_by_fit)
+    return replace(found, split="\n".join(filter(None, (hint, found.split))))
+
+
+def left_by_fit(plant: Plant, recordings: list[Recording]) -> float:
+    """Share of the effort (2-norm) that a fit leaves in the rows that it is fitted to."""
+    return _fitted(plant, recordings, MOST_EVALUATIONS).train_relative
 
 
 def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> FitResult:
