@@ -52,7 +52,7 @@ class Terminal(io.StringIO):
     ("arguments", "said"),
     [
         # Which recording it is at when a line is due hangs on how fast the machine is.
-        (["fit", "SESSION", "--json"], r"recording [12] of 2"),
+        (["fit", "SESSION", "--json"], r"recording [12] of 2|fitting"),
         (["simulate", "PLANT", "SESSION", "--json"], r"simulating, recording [12] of 2"),
         (["plan", "PLANT", "--only", "ramps", "--json"], r"planning ramps"),
         (["compare", "coulomb", "--steps", "1000", "--draws", "0", "--json"], r"law 1 of 1"),

@@ -2,6 +2,7 @@
 
 import math
 import pickle
+import re
 import time
 
 import numpy as np
@@ -378,8 +379,8 @@ def test_every_effect_within_its_bounds_gives_finite_motion(name, data, integrat
             run = machine.simulate(np.repeat([0.3, -0.7, 0.0], 20), 1e-4)
         except st.InputError as error:
             # A drive that saturates at a millionth of its input gives 10^9 times as much at 1, and
-            # internal variables of a contact at 10^9 rad/s are dear.
-            assert "more work than" in str(error)  # noqa: PT017
+            # internal variables of a contact at 10^9 rad/s are dear; a gap of 10^-103 rad is stiff.
+            assert re.search("more work than|too long for this machine", str(error))  # noqa: PT017
             return
         # Friction that falls with the square of speed drives the machine, which then runs away
         # by itself and says so.

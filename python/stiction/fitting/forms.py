@@ -64,6 +64,10 @@ LEAST_WINDOWS: Final = 4.0
 MUCH_LEFT: Final = 0.1
 """Share of the measured effort from which on what is left may come from accelerations that are
 wrong."""
+ASTRAY: Final = 0.6
+"""Share of what the readings alone make, and of what is left along them, that a simulation may
+leave at most for a rigid contact to have been led astray: with more it is noise of the effort that
+is left either way, and the weak form sees what is fast."""
 REMEMBERS: Final = "law.remembers"
 """Term of laws that an effect stands for which builds friction up over a distance."""
 MATTERS: Final = 1e-3
@@ -279,8 +283,8 @@ def astray(
 
     Both residuals are the same effort but for the friction; both are compared through the kernel of
     the windows. A contact at rest hides whatever else is missing, so that a simulation leaves less
-    for other reasons as well. Asked is whether it leaves less than the readings alone make of a
-    plant that is right: they are then most of what is left along them, and more than what is
+    for other reasons as well. Asked is whether it leaves clearly less than the readings alone make
+    of a plant that is right: they are then most of what is left along them, and more than what is
     missing. Readings that are exact, or an arm far below break-away, make a hundredth of it.
 
     Parameters
@@ -319,7 +323,7 @@ def astray(
         measured.append(shot.form.measured(plant)[counted])
     if not led or _size(led) < MATTERS * _size(measured):
         return False
-    return _size(own) < min(_size(made), _size(led))
+    return _size(own) < ASTRAY * min(_size(made), _size(led))
 
 
 def wider_of(
