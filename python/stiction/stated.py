@@ -70,6 +70,11 @@ class Friction:
         """Whether the contact yields before it slides, so that displacements count as they are."""
         return any(parameter.name == "initial_stiffness" for parameter in self.record.parameters)
 
+    @property
+    def sticks(self) -> bool:
+        """Whether the contact rests rigidly, in a mode of its own, until it breaks away."""
+        return "mode" in self.record.outputs and not self.springy
+
 
 @dataclass(frozen=True)
 class Effect:

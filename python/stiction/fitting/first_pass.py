@@ -18,7 +18,6 @@ from ..weak_form import WeakForm
 from .forms import (
     LEAST_LEFT,
     Through,
-    as_stiff_as_shown,
     astray,
     followable,
     horizon_of,
@@ -243,8 +242,7 @@ def _simulated(
         other = again(found.plant, Through(horizon=horizon, loop=servo), seen.watch)
         # Along the measured motion a servo that is not yet understood may lead anywhere.
         begun = [found.plant, start] if servo else [found.plant]
-        held = followable if tried is None else as_stiff_as_shown
-        begun = [held(each, other.forms) for each in begun]
+        begun = [followable(each, other.forms) for each in begun]
         fitted = launch(begun, paths, other.train, most=most)
         if servo:
             light = lightly_held(plant, start, [rows.form for rows in seen.train])

@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 
-from ..errors import InputError
 from ..finite import finite
 from ..loop_form import LoopForm
 from ..motion import SUPPORTS_S, Kernel, noise_of
@@ -226,7 +225,6 @@ def horizon_of(
 def windows_of(plant: Plant, forms: Sequence[WeakForm]) -> float | None:
     """Over how long a rigid contact should be simulated beside the weak form, None for not at all.
 
-    One that rings faster than the samples is rigid to them, and is simulated as stiff as they show.
     It turns round with the reading, whatever that is off by: whether that matters is known once
     both residuals were tried (see ``astray``). The window is the longest one: the state at its
     start comes from the readings too, and the longer the window is the less hangs on it.
@@ -252,24 +250,7 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm]) -> float | None:
         return None
     if plant.inertia <= 0.0 or shortest < LEAST_WINDOWS * horizon:
         return None
-    return horizon if not plant.friction.springy or _rings_unseen(plant, forms) else None
-
-
-def _rings_unseen(plant: Plant, forms: Sequence[WeakForm]) -> bool:
-    """Whether a contact that yields rings unseen, and as stiff as samples show reaches no further.
-
-    Pre-sliding of several counts is none that a contact without any could stand for.
-    """
-    stiffness = plant.friction.parameters["initial_stiffness"]
-    if stiffness.fixed or stiffness.min is not None or shows_its_ring(plant, forms):
-        return False
-    held = as_stiff_as_shown(plant, forms)
-    try:
-        held.friction.model()
-    except InputError:
-        # Its stiffness is bound to another one.
-        return False
-    return not _fine(held, forms)
+    return horizon if plant.friction.sticks else None
 
 
 def astray(
