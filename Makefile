@@ -79,7 +79,7 @@ PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --max
 python-tests: $(READY)
 	$(PYTEST) -m 'not slow'
 
-# What takes long and guards what changes seldom: the simulators that tests use, the table of
+# What takes long and guards what changes seldom: the simulators that tests use, the longest diagnoses, the table of
 # properties, a wheel, the law of the page; then the gate.
 test-slow: $(READY)
 	$(PYTEST) -m slow

@@ -26,6 +26,7 @@ def test_no_recording_stands_alone_for_it(seed: int) -> None:
     assert found.verdict == "nothing_missing", found.sentence
 
 
+@pytest.mark.slow
 def test_a_delay_is_told_beside_it() -> None:
     found = diagnosed(12649002, (("input_delay", 0.03, {"sign": 1.0}),))
     (cause,) = found.effects

@@ -120,6 +120,7 @@ def test_no_law_is_said_to_leave_nothing() -> None:
     assert said.endswith("leaves over 99 % less than coulomb; lugre leaves about as little.")
 
 
+@pytest.mark.slow
 def test_a_better_law_is_told_with_its_gain() -> None:
     found = with_law("hsieh_pan", "maxwell_slip", laws=("all",))
     first = found.laws[0]
@@ -130,6 +131,7 @@ def test_a_better_law_is_told_with_its_gain() -> None:
     assert "hsieh_pan" in found.sentence or found.verdict == "missing_effect"
 
 
+@pytest.mark.slow
 def test_the_right_law_is_not_beaten() -> None:
     found = with_law("maxwell_slip", "maxwell_slip", laws=("all",))
     assert found.verdict == "nothing_missing"

@@ -120,6 +120,7 @@ def without_gains(diagnosis: st.Diagnosis) -> dict[str, Any]:
     return told
 
 
+@pytest.mark.slow
 def test_a_complete_simulation_gives_no_name() -> None:
     assert found(None).effects == ()
 

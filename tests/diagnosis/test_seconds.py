@@ -30,7 +30,7 @@ def diagnosed(seed: int, *hidden: tuple[Any, ...], base: str = "coulomb") -> st.
     ("seed", "base", "name", "size"),
     [
         (12890003, "coulomb", "drive_saturation", 0.004872),
-        (12750007, "maxwell_slip", "voltage_limit", 0.010977),
+        pytest.param(12750007, "maxwell_slip", "voltage_limit", 0.010977, marks=pytest.mark.slow),
     ],
 )
 def test_a_limit_is_named_where_rows_that_decide_are_fitted_too(
@@ -56,6 +56,7 @@ def test_a_limit_that_one_recording_shows_is_not_testable_by_name() -> None:
     assert "the rows of select train as well" in found.split
 
 
+@pytest.mark.slow
 def test_it_is_found_beside_a_name_as_well() -> None:
     """Everything is asked again then, for the name has to be found again."""
     hidden = (("drive_saturation", 0.021924), ("frictional_lag", 0.014924, {"fall": 0.0}))

@@ -14,7 +14,14 @@ NOISE = 2e-3
 LEFT = 0.01
 
 
-@pytest.mark.parametrize("law", [law.name for law in laws()])
+DEAR = ("bristle",)
+"""Laws whose fits take a minute."""
+
+
+@pytest.mark.parametrize(
+    "law",
+    [pytest.param(law.name, marks=pytest.mark.slow if law.name in DEAR else ()) for law in laws()],
+)
 def test_a_law_named_alone_explains_a_machine_that_has_it(law: str) -> None:
     time = DT * np.arange(6000)
     waves = sum(0.45 * np.sin(2 * np.pi * f * time + f) for f in (0.4, 1.1, 2.3))
