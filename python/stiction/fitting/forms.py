@@ -64,9 +64,10 @@ MUCH_LEFT: Final = 0.1
 """Share of the measured effort from which on what is left may come from accelerations that are
 wrong."""
 ASTRAY: Final = 0.6
-"""Share of what the readings alone make, and of what is left along them, that a simulation may
-leave at most for a rigid contact to have been led astray: with more it is noise of the effort that
-is left either way, and the weak form sees what is fast."""
+"""Share of what the readings alone make, of what is left along them, and of the motion itself,
+that a simulation may leave at most for a rigid contact to have been led astray: with more it is
+noise of the effort that is left either way, and the weak form sees what is fast; or the plant
+stands still."""
 REMEMBERS: Final = "law.remembers"
 """Term of laws that an effect stands for which builds friction up over a distance."""
 MATTERS: Final = 1e-3
@@ -266,7 +267,9 @@ def astray(
     the windows. A contact at rest hides whatever else is missing, so that a simulation leaves less
     for other reasons as well. Asked is whether it leaves clearly less than the readings alone make
     of a plant that is right: they are then most of what is left along them, and more than what is
-    missing. Readings that are exact, or an arm far below break-away, make a hundredth of it.
+    missing. Readings that are exact, or an arm far below break-away, make a hundredth of it. And
+    it has to leave less than a machine that goes on as it set out: beside an inertia that was lost
+    in the fit nothing counts that the plant does.
 
     Parameters
     ----------
@@ -282,7 +285,7 @@ def astray(
     """
     led: list[FloatArray] = []
     made: list[FloatArray] = []
-    own, measured = [], []
+    own, measured, inertial = [], [], []
     simulated = {each.index: each for each in windows}
     for each in rows:
         shot = simulated.get(each.index)
@@ -302,9 +305,10 @@ def astray(
             found.append(np.interp(shot.form.time[counted], time, wide))
         own.append(finite(shot.residual(*other))[counted])
         measured.append(shot.form.measured(plant)[counted])
+        inertial.append(plant.inertia * shot.form.acceleration[counted])
     if not led or _size(led) < MATTERS * _size(measured):
         return False
-    return _size(own) < ASTRAY * min(_size(made), _size(led))
+    return _size(own) < ASTRAY * min(map(_size, (made, led, inertial)))
 
 
 def wider_of(
