@@ -139,7 +139,7 @@ def based_simulated(
     (Evidence, Model) or None
         After Ctrl-C whatever is there, and its solution is interrupted.
     """
-    horizon = windows_of(final.plant, evidence.forms)
+    horizon = windows_of(final.plant, evidence.forms, evidence.train)
     if horizon is None or not final.plant.effects or final.plant.effects == plant.effects:
         return None
     through = Through(horizon=horizon)

@@ -235,7 +235,7 @@ def _simulated(
     """What is known, fitted on by what is simulated where the weak form does not do."""
     seen, found, start = known.seen, known.solution, known.start
     servo = plant.servo
-    tried = windows_of(found.plant, seen.forms)
+    tried = windows_of(found.plant, seen.forms, seen.train)
     horizon = tried or horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
     if horizon is not None or servo:
         phase(_logger, "fitting it again, simulated")

@@ -68,6 +68,8 @@ ASTRAY: Final = 0.6
 that a simulation may leave at most for a rigid contact to have been led astray: with more it is
 noise of the effort that is left either way, and the weak form sees what is fast; or the plant
 stands still."""
+SHOWS: Final = 0.01
+"""Share of the measured effort that accelerations must take for windows to be counted by them."""
 REMEMBERS: Final = "law.remembers"
 """Term of laws that an effect stands for which builds friction up over a distance."""
 MATTERS: Final = 1e-3
@@ -223,7 +225,7 @@ def horizon_of(
     return float(np.clip(max(drifts, rings), *HORIZONS_S))
 
 
-def windows_of(plant: Plant, forms: Sequence[WeakForm]) -> float | None:
+def windows_of(plant: Plant, forms: Sequence[WeakForm], rows: Sequence[Rows]) -> float | None:
     """Over how long a rigid contact should be simulated beside the weak form, None for not at all.
 
     It turns round with the reading, whatever that is off by: whether that matters is known once
@@ -236,11 +238,15 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm]) -> float | None:
         Fitted through kernels.
     forms : sequence of WeakForm
         Of all recordings.
+    rows : sequence of Rows
+        That it was fitted to.
 
     Returns
     -------
     float or None
-        s; the same for all recordings of a session.
+        s; the same for all recordings of a session. None also where the inertia hardly shows: what
+        is counted by it tells nothing, and a machine that follows from one sample to the next is
+        slow to simulate.
     """
     horizon = HORIZONS_S[1]
     shortest = min(form.dt * len(form.readings) for form in forms)
@@ -250,6 +256,9 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm]) -> float | None:
         # The contact yields by its effect.
         return None
     if plant.inertia <= 0.0 or shortest < LEAST_WINDOWS * horizon:
+        return None
+    moved = [plant.inertia * each.form.acceleration[each.mask] for each in rows]
+    if _size(moved) < SHOWS * _size([each.form.measured(plant)[each.mask] for each in rows]):
         return None
     return horizon if plant.friction.sticks else None
 

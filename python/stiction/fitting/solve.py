@@ -27,7 +27,7 @@ from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from ..wording import counted
 from ..workers import with_workers
-from .first_pass import first_pass
+from .first_pass import first_pass, launched, share_left
 from .forms import KERNELS, Through, as_session, as_stated, forms_of
 from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stopped
 from .pushes import Watch
@@ -160,8 +160,10 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
 
 
 def left_by_fit(plant: Plant, recordings: list[Recording]) -> float:
-    """Share of the effort (2-norm) that a fit leaves in the rows that it is fitted to."""
-    return _fitted(plant, recordings, MOST_EVALUATIONS).train_relative
+    """Share of the effort (2-norm) that a fit along the readings leaves, beside constants."""
+    seen = _Seen(plant, recordings)
+    _, found = launched(plant, seen.train, most=MOST_EVALUATIONS)
+    return share_left(found, seen.train)
 
 
 def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> FitResult:
