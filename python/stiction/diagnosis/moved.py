@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from ..errors import InputError
 from ..finite import finite
-from ..fitting.forms import HORIZONS_S, LEAST_WINDOWS, Through, as_stiff_as_shown
+from ..fitting.forms import HORIZONS_S, Through, can_be_shot, followable, shows_its_ring
+from ..plant import Plant
 from ..trajectory import FloatArray
+from ..weak_form import WeakForm
 from .confirm import inertial_of
 from .evidence import Evidence
 from .influence import limited
@@ -20,6 +24,10 @@ from .selection import Search
 __all__ = ["borne_out_in_motion"]
 
 AGAINST: Final = "passes, but the motion that is simulated with it comes no nearer"
+
+RIGID_SHOWN: Final = 0.5
+"""Share of the stiffness that samples can follow which stands for a contact that is rigid to them:
+pre-sliding is over within less than coarse readings show."""
 
 _logger = logging.getLogger(__name__)
 
@@ -41,9 +49,11 @@ def borne_out_in_motion(selection: Search, evidence: Evidence) -> Search:
     evidence : Evidence
         The rows that test stay sealed.
     """
-    if not selection.choices or not _can_be_simulated(selection.models, evidence):
+    models = selection.models
+    able = all(can_be_shot(model.plant, evidence.forms) for model in models)
+    if not selection.choices or not able:
         return selection
-    powers = _powers(selection.models, evidence)
+    powers = _powers(models, evidence)
     while powers is not None and selection.choices:
         last = len(selection.choices)
         gain = min(
@@ -54,16 +64,6 @@ def borne_out_in_motion(selection: Search, evidence: Evidence) -> Search:
             break
         selection = selection.without_last(AGAINST)
     return selection
-
-
-def _can_be_simulated(models: list[Model], evidence: Evidence) -> bool:
-    plant, forms = models[0].plant, evidence.forms
-    if evidence.simulated or plant.servo or any(form.prescribed for form in forms):
-        return False
-    shortest = min(form.dt * len(form.readings) for form in forms)
-    if shortest < LEAST_WINDOWS * HORIZONS_S[1]:
-        return False
-    return all(model.plant.inertia > 0.0 for model in models)
 
 
 def _gain(without: FloatArray, with_it: FloatArray) -> float:
@@ -85,7 +85,7 @@ def _powers(models: list[Model], evidence: Evidence) -> _Powers | None:
     through = Through(horizon=HORIZONS_S[1])
     try:
         windows = Evidence(
-            as_stiff_as_shown(models[0].plant, evidence.forms),
+            _as_stiff_as_shown(models[0].plant, evidence.forms),
             evidence.recordings,
             through=through,
             watch=evidence.watch,
@@ -102,6 +102,21 @@ def _powers(models: list[Model], evidence: Evidence) -> _Powers | None:
 
     found = []
     for model in models:
-        plant = as_stiff_as_shown(model.plant, windows.forms)
+        plant = _as_stiff_as_shown(model.plant, windows.forms)
         found.append(power(finite(windows.residual(plant, model.nuisances))))
     return _Powers(found, power(windows.stack(inertial_of)))
+
+
+def _as_stiff_as_shown(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
+    """The plant with a contact that its samples can follow, where it is rigid to them.
+
+    One that rings slowly enough stays as it is.
+    """
+    if shows_its_ring(plant, forms):
+        return followable(plant, forms)
+    most = RIGID_SHOWN * plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
+    stiffness = replace(
+        plant.friction.parameters["initial_stiffness"], value=0.5 * most, min=None, max=most
+    )
+    parameters = {**plant.friction.parameters, "initial_stiffness": stiffness}
+    return replace(plant, friction=replace(plant.friction, parameters=parameters))

@@ -27,8 +27,8 @@ __all__ = [
     "Through",
     "as_session",
     "as_stated",
-    "as_stiff_as_shown",
     "astray",
+    "can_be_shot",
     "followable",
     "forms_of",
     "horizon_of",
@@ -52,9 +52,6 @@ HORIZONS_S: Final = (0.100, 0.300)
 and let a motion that hangs on a break-away run away."""
 BEYOND_SHOWN: Final = 2.0
 """A contact simulated over windows may become so many times stiffer than samples show."""
-RIGID_SHOWN: Final = 0.5
-"""Share of it that stands for a contact which is rigid to the samples: pre-sliding is over within
-less than coarse readings show."""
 RINGS: Final = 3.0
 """Periods of its ring on the pre-sliding stiffness that a window holds: a start that is wrong by a
 count sets a machine ringing, and of a ring three times as fast as itself the kernel leaves 1 %."""
@@ -248,19 +245,23 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm], rows: Sequence[Rows]) ->
         is counted by it tells nothing, and a machine that follows from one sample to the next is
         slow to simulate.
     """
-    horizon = HORIZONS_S[1]
-    shortest = min(form.dt * len(form.readings) for form in forms)
-    if any(form.prescribed or form.simulated for form in forms) or plant.servo:
+    if not plant.friction.sticks or not can_be_shot(plant, forms):
         return None
     if any(REMEMBERS in effect.record.law_terms for effect in plant.effects):
         # The contact yields by its effect.
         return None
-    if plant.inertia <= 0.0 or shortest < LEAST_WINDOWS * horizon:
-        return None
     moved = [plant.inertia * each.form.acceleration[each.mask] for each in rows]
     if _size(moved) < SHOWS * _size([each.form.measured(plant)[each.mask] for each in rows]):
         return None
-    return horizon if plant.friction.sticks else None
+    return HORIZONS_S[1]
+
+
+def can_be_shot(plant: Plant, forms: Sequence[WeakForm]) -> bool:
+    """Whether a plant along a measured motion can be simulated over the longest windows as well."""
+    if plant.servo or any(form.prescribed or form.simulated for form in forms):
+        return False
+    shortest = min(form.dt * len(form.readings) for form in forms)
+    return plant.inertia > 0.0 and shortest >= LEAST_WINDOWS * HORIZONS_S[1]
 
 
 def astray(
@@ -375,21 +376,6 @@ def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
     ends = max(min(stiffness.max or most, most), stiffness.min or 0.0)
     held = replace(stiffness, value=min(stiffness.value, start * ends), max=ends)
     parameters = {**plant.friction.parameters, "initial_stiffness": held}
-    return replace(plant, friction=replace(plant.friction, parameters=parameters))
-
-
-def as_stiff_as_shown(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
-    """The plant with a contact that its samples can follow, where it is rigid to them.
-
-    One that rings slowly enough stays as it is.
-    """
-    if shows_its_ring(plant, forms):
-        return followable(plant, forms)
-    most = RIGID_SHOWN * plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
-    stiffness = replace(
-        plant.friction.parameters["initial_stiffness"], value=0.5 * most, min=None, max=most
-    )
-    parameters = {**plant.friction.parameters, "initial_stiffness": stiffness}
     return replace(plant, friction=replace(plant.friction, parameters=parameters))
 
 
