@@ -18,7 +18,7 @@ import pytest
 import stiction as st
 from stiction.cli import run
 from stiction.cli.answer import folder
-from stiction.cli.interrupt import finished
+from stiction.cli.interrupt import HEARD, ending_soon, finished
 from stiction.fitting import fit
 
 PLANT = """
@@ -77,6 +77,29 @@ def test_what_is_being_written_is_finished() -> None:
         written(2)
     # The second ended it before it was done.
     assert done == [0, 1]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_ctrl_c_is_said_to_be_heard_before_what_there_is_is_written(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    with pytest.raises(KeyboardInterrupt), ending_soon():
+        struck()
+    assert capfd.readouterr().err == f"{HEARD}\n"
+    done = []
+
+    def written(*, before: bool) -> None:
+        with finished(struck=before):
+            struck()
+            done.append(capfd.readouterr().err)
+
+    with pytest.raises(KeyboardInterrupt):
+        written(before=False)
+    assert done == [f"{HEARD}\n"]
+    # Pressed before, it ends what is written at once.
+    with pytest.raises(KeyboardInterrupt):
+        written(before=True)
+    assert len(done) == 1
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 

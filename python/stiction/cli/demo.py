@@ -15,7 +15,7 @@ from ..session import Session
 from ..wording import counted
 from .answer import answer, folder, told_anyway, written
 from .diagnose import told
-from .interrupt import finished
+from .interrupt import ending_soon, finished
 from .progress import progress
 
 __all__ = ["demo"]
@@ -48,8 +48,9 @@ def demo(
     where = folder(out)
     with progress():
         session = demo_session.load()
-        found = run(None, session)
-    with finished():
+        with ending_soon():
+            found = run(None, session)
+    with finished(struck=not found.success):
         _told(session, found, where, as_json=json)
     if not found.success:
         raise KeyboardInterrupt

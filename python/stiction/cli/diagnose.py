@@ -12,7 +12,7 @@ from ..diagnosis import diagnose as run
 from ..diagnosis.result import Diagnosis
 from .answer import answer, folder, told_anyway, written
 from .given import Whole
-from .interrupt import finished
+from .interrupt import ending_soon, finished
 from .progress import progress
 from .sessions import loaded, mended, spared, spoken_of
 
@@ -60,7 +60,7 @@ def diagnose(
         where = Path(f"{session.stem}-diagnosis") if out is None else out
         spared(plant, where)
         folder(where)
-        with spoken_of(session, recordings, plant):
+        with ending_soon(), spoken_of(session, recordings, plant):
             found = run(
                 plant,
                 recordings,
@@ -70,7 +70,7 @@ def diagnose(
                 seed=seed,
                 threads=threads,
             )
-    with finished():
+    with finished(struck=not found.success):
         with told_anyway(str(found), found.to_dict(), as_json=json), progress(), written(where):
             report = found.save(where)
         # The sentence comes first, whatever was mended before it could be said.

@@ -16,7 +16,7 @@ from ..fitting import FitResult
 from ..fitting import fit as run
 from ..session import Session
 from .answer import answer, folder, told_anyway, written
-from .interrupt import finished
+from .interrupt import ending_soon, finished
 from .progress import progress
 from .sessions import loaded, mended, spared, spoken_of
 
@@ -49,14 +49,14 @@ def fit(
         where = Path(f"{session.stem}-fit") if out is None else out
         spared(plant, where)
         folder(where)
-        with spoken_of(session, recordings, plant):
+        with ending_soon(), spoken_of(session, recordings, plant):
             result = run(plant, recordings)
             if not math.isfinite(result.train_rms):
                 raise InputError(
                     "the effort residual is not a finite number; check units, and values far "
                     "beyond what the machine can do"
                 )
-    with finished():
+    with finished(struck=result.interrupted):
         _told(recordings, result, where, session.name, as_json=json)
     if result.interrupted:
         raise KeyboardInterrupt
