@@ -57,6 +57,10 @@ def held():
 
 @pytest.fixture(scope="module")
 def swinging():
+    return swing()
+
+
+def swing():
     """A motion that is long to follow."""
     n = 1_500_000
     position = 1e-3 * np.sin(np.arange(n + 1) * 1e-3)

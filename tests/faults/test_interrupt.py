@@ -1,17 +1,30 @@
-"""Ctrl-C and SIGTERM at any moment: nothing is half there, and Ctrl-C is answered."""
+"""Ctrl-C and SIGTERM at any moment: nothing is half there, and Ctrl-C is answered.
+
+``python -m tests.faults.test_interrupt --number 100`` interrupts at that many moments, of native
+calls and verbs drawn at random, and says how long each took to answer. Beside the clock stands what
+the process did not wait for a processor that others had (Linux tells).
+"""
 
 from __future__ import annotations
 
+import argparse
 import os
 import random
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.process import BaseProcess
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+from tests.core import test_interrupt as native
+from tests.core.rigs import contact, motor
 from tests.faults.verbs import (
     KEEPERS,
     PATIENCE_S,
@@ -20,9 +33,12 @@ from tests.faults.verbs import (
     assert_whole,
     contents,
     desk,
+    forks,
     lay,
     run_verb,
 )
+
+import stiction as st
 
 VERBS = ("simulate", "fit", "diagnose", "plan", "demo")
 MOMENTS = 2
@@ -30,6 +46,10 @@ MOMENTS = 2
 SHORTEST_S = 0.02
 MOST_TRIES = 8
 """Of a verb that is over before it is interrupted."""
+SOON_S = 0.2
+"""In which Ctrl-C is to be answered."""
+BEGUN_S = 1.0
+"""A call is interrupted within its first so many seconds."""
 
 
 @pytest.fixture(scope="module")
@@ -137,3 +157,140 @@ def test_ctrl_c_while_the_program_starts_is_heard(tmp_path: Path, source: random
 
 def test_patience_is_more_than_any_verb_takes(lasts: Callable[[str], float]) -> None:
     assert max(lasts(verb) for verb in VERBS) < 0.9 * PATIENCE_S
+
+
+def fleet() -> Callable[[], Any]:
+    """Samples of many motors."""
+    many = st.Ensemble(motor("hook"), 200)
+    current = np.full(200_000, 0.1)
+    return lambda: many.simulate(current, 1e-4, reduce="last", threads=2)
+
+
+def one_sample() -> Callable[[], Any]:
+    """A single sample of many motors, each of which divides it."""
+    many = st.Ensemble(native.slow(), 3000)
+    return lambda: many.step_many(0.1, 1e-4)
+
+
+def moved() -> Callable[[], Any]:
+    """A contact that is moved."""
+    model, held = contact("hook"), np.zeros(2_000_000)
+    return lambda: model.simulate(held, 1e-4)
+
+
+def smoothing() -> Callable[[], Any]:
+    """Windows without end."""
+    readings, halves = np.zeros(300_000), list(range(400))
+    return lambda: st._native.adaptively_smoothed(readings, 1e-6, halves)
+
+
+def called(name: str) -> Callable[[], Any]:
+    """A call of a motor, ready to be made."""
+    if name in OTHERS:
+        return OTHERS[name]()
+    machine = native.MADE.get(name, lambda: motor("hook"))()
+    motion = native.swing()
+    return lambda: native.CALLS[name](machine, motion)
+
+
+OTHERS: dict[str, Callable[[], Callable[[], Any]]] = {
+    "Ensemble.simulate": fleet,
+    "Ensemble.step_many": one_sample,
+    "FrictionModel.simulate": moved,
+    "adaptively_smoothed": smoothing,
+}
+INTERRUPTED = ("simulate", "fit", "diagnose", "plan", "compare", "paper", "demo")
+"""Verbs that work for long enough."""
+
+
+def _works(name: str, ready: Path) -> None:
+    """Make a call again and again."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        call = called(name)
+        ready.touch()
+        while True:
+            call()
+    except KeyboardInterrupt:
+        os._exit(130)
+
+
+def _waited(process: BaseProcess) -> float:
+    """Seconds that a process waited for a processor; 0 where the system does not say."""
+    with suppress(OSError, ValueError, IndexError):
+        return 1e-9 * int(Path(f"/proc/{process.pid}/schedstat").read_text().split()[1])
+    return 0.0
+
+
+def answered(
+    process: BaseProcess, strike: Callable[[], None], told: Callable[[], bool]
+) -> tuple[float, float]:
+    """How long a process takes to end or to tell that it was interrupted, s.
+
+    By the clock, and without its waits for a processor.
+    """
+    before, last = _waited(process), 0.0
+    began = time.monotonic()
+    strike()
+    while process.is_alive() and not told() and time.monotonic() - began < PATIENCE_S:
+        last = max(last, _waited(process))
+        process.join(0.002)
+    took = time.monotonic() - began
+    return took, took - max(last - before, 0.0)
+
+
+def interrupted(name: str, folder: Path, source: random.Random) -> tuple[int, float, float]:
+    """Interrupt a verb or a call at some moment; its status and what `answered` tells."""
+    if name in INTERRUPTED:
+        running = Running(arguments(name, desk(folder) / "out"), folder)
+        process, number = running.process, lambda: running.strike(signal.SIGINT)
+        told = running.interrupted
+        time.sleep(source.uniform(SHORTEST_S, {"simulate": 0.3}.get(name, 4.0)))
+    else:
+        ready = folder.with_suffix(".ready")
+        process = forks().Process(target=_works, args=(name, ready))
+        process.start()
+        while not ready.exists():
+            time.sleep(0.005)
+        time.sleep(source.uniform(0.0, BEGUN_S))
+
+        def number() -> None:
+            os.kill(process.pid or 0, signal.SIGINT)
+
+        def told() -> bool:
+            return False
+
+    took = answered(process, number, told)
+    process.join()
+    return process.exitcode or 0, *took
+
+
+def main() -> int:
+    """Interrupt at many moments and count."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--number", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=int(time.time()))
+    chosen = parser.parse_args()
+    source = random.Random(chosen.seed)
+    print(f"seed {chosen.seed}")
+    names = [*native.CALLS, *OTHERS, *INTERRUPTED]
+    late = busy = done = over = 0
+    with tempfile.TemporaryDirectory() as where:
+        while done < chosen.number:
+            name = source.choice(names)
+            status, clock, own = interrupted(name, Path(where) / f"{done}-{over}", source)
+            if status == 0:
+                # It was over before it was interrupted.
+                over += 1
+                continue
+            done += 1
+            late += own > SOON_S
+            busy += clock > SOON_S
+            mark = " LATE" if own > SOON_S else ""
+            print(f"{name}: {1e3 * clock:.0f} ms, {1e3 * own:.0f} without waits{mark}", flush=True)
+    print(f"{done - busy} of {done} within {1e3 * SOON_S:.0f} ms, {done - late} without waits")
+    return 1 if late else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -76,13 +76,17 @@ class Running:
     ) -> None:
         self._said = [folder.parent / f"{folder.name}.{name}" for name in ("out", "err")]
         args = (list(words), folder, self._said, before)
-        self.process: BaseProcess = _forks().Process(target=_command, args=args)
+        self.process: BaseProcess = forks().Process(target=_command, args=args)
         self.process.start()
 
     def strike(self, number: int) -> None:
         """Send a signal, where it is still at work."""
         with suppress(ProcessLookupError):
             os.kill(self.process.pid or 0, number)
+
+    def interrupted(self) -> bool:
+        """Whether it says by now that it was interrupted, and writes what there is."""
+        return self._said[1].exists() and "interrupted" in self._said[1].read_text()
 
     def ended(self) -> Ended:
         """How it ended."""
@@ -96,7 +100,7 @@ class Running:
 
 
 @cache
-def _forks() -> multiprocessing.context.ForkServerContext:
+def forks() -> multiprocessing.context.ForkServerContext:
     """Processes that have all imports from the start, and no threads."""
     context = multiprocessing.get_context("forkserver")
     # The server imports before it is told where from.
