@@ -172,7 +172,7 @@ def main() -> int:
     ran, gained = count(args.number, args.seed, args.seconds)
     names: Counter[str] = Counter()
     for case, more in gained:
-        names.update(case.effects)
+        names.update(list(case.effects))
         print(f"{case.name}: by {more:.3g}: {case}")
     print(f"{len(gained)} of {ran} gain energy (seed {args.seed})")
     print(", ".join(f"{name} {times}" for name, times in names.most_common()))
