@@ -8,7 +8,6 @@ mod softest;
 mod state;
 mod stick;
 
-use super::elements::lag::follow;
 use super::elements::loading::{Curve, Loading, VirginCurve};
 use super::elements::plastic::Plastic;
 use super::elements::reachable::reachable;
@@ -69,17 +68,6 @@ impl<S: Scalar> HsiehPan<S> {
         (spring, self.plastic.hardening_rate(hardening, spring))
     }
 
-    /// Filtered force and break-away level after the series force went from `from` to `to`.
-    #[inline(always)]
-    fn breakaway_after(&self, filtered: S, from: S, to: S, duration: S) -> (S, S) {
-        let p = &self.parameters;
-        if !self.rated {
-            return (filtered, p.breakaway);
-        }
-        let filtered = follow(filtered, from, to, duration / p.loading_time).value;
-        (filtered, self.breakaway_at((to - filtered).abs() / p.loading_time))
-    }
-
     /// Whether the hook goes on whatever the slope of the spring. A force at its break-away level
     /// cannot stick; with the damper on the spring the series cannot stop short: it catches at rest.
     #[inline(always)]
@@ -103,12 +91,6 @@ impl<S: Scalar> HsiehPan<S> {
         }
         let at = self.curve.virgin_inverse(trial.series);
         (self.parameters.slip_distance * self.curve.virgin(at).slope - pull).re() <= 0.0
-    }
-
-    #[inline(always)]
-    fn breakaway_at(&self, rate: S) -> S {
-        let p = &self.parameters;
-        p.coulomb + (p.breakaway - p.coulomb) * (-(rate / p.loading_rate)).exp()
     }
 }
 
@@ -513,11 +495,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         let walk = state.spring.walk(&self.curve, motion.displacement - (plastic - state.plastic));
         let (force, _) = self.rates(state, motion, internal, channels);
         let (series, _) = self.series_force(walk.end.force, hardening, motion.velocity);
-        let breakaway = if self.rated {
-            self.breakaway_at((series - filtered).abs() / self.parameters.loading_time)
-        } else {
-            self.parameters.breakaway
-        };
+        let (filtered, breakaway) = self.breakaway_ahead(state, filtered, series, motion.duration);
         let damping = self.parameters.damping;
         let slope = walk.end.slope * channels.level * motion.duration + damping;
         HsiehPanTrial {

@@ -1,5 +1,6 @@
 //! Steps of a sticking hook.
 
+use super::super::elements::lag::follow;
 use super::super::elements::plastic::Creep;
 use super::super::elements::series;
 use super::super::elements::spring::Walk;
@@ -7,6 +8,9 @@ use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;
 use super::state::{HsiehPanState, HsiehPanTrial, Mode};
 use crate::scalar::Scalar;
+
+/// Steps of the reference integrator above this share of τ: Runge-Kutta is good to the fifth power of it.
+const LONGEST_FILTER: f64 = 0.3;
 
 impl<S: Scalar> HsiehPan<S> {
     /// A step of a sticking hook.
@@ -83,5 +87,38 @@ impl<S: Scalar> HsiehPan<S> {
                 hardening: state.hardening + creep.hardening,
             },
         }
+    }
+
+    /// Filtered force and break-away level after the series force went from `from` to `to`.
+    #[inline(always)]
+    pub(super) fn breakaway_after(&self, filtered: S, from: S, to: S, duration: S) -> (S, S) {
+        let p = &self.parameters;
+        if !self.rated {
+            return (filtered, p.breakaway);
+        }
+        let filtered = follow(filtered, from, to, duration / p.loading_time).value;
+        (filtered, self.breakaway_at((to - filtered).abs() / p.loading_time))
+    }
+
+    /// The same for the reference integrator, which came to this filtered force by itself. A step of many
+    /// averaging times is beyond what Runge-Kutta is stable for, and is taken as the fast one does.
+    pub(super) fn breakaway_ahead(
+        &self,
+        state: &HsiehPanState<S>,
+        filtered: S,
+        series: S,
+        duration: S,
+    ) -> (S, S) {
+        let p = &self.parameters;
+        if !self.rated || duration.re() > LONGEST_FILTER * p.loading_time.re() {
+            return self.breakaway_after(state.filtered, state.series, series, duration);
+        }
+        (filtered, self.breakaway_at((series - filtered).abs() / p.loading_time))
+    }
+
+    #[inline(always)]
+    pub(super) fn breakaway_at(&self, rate: S) -> S {
+        let p = &self.parameters;
+        p.coulomb + (p.breakaway - p.coulomb) * (-(rate / p.loading_rate)).exp()
     }
 }
