@@ -16,12 +16,15 @@ import numpy.typing as npt
 from .errors import InputError
 
 __all__ = [
+    "MOST_WHOLE",
+    "each_of",
     "instance",
     "mapping",
     "memory_for",
     "names",
     "numbers",
     "path",
+    "real",
     "regular",
     "shown",
     "unmasked",
@@ -38,8 +41,34 @@ _NO_FILES: Final = {
     stat.S_IFCHR: "device",
     stat.S_IFBLK: "device",
 }
+_REAL: Final = "biufO"
+"""Kinds of numpy's types; Python's own numbers, Decimal and Fraction among them, are objects."""
+MOST_WHOLE: Final = 2**62
+"""What a counter of the machine holds."""
 _WORTH_ASKING: Final = 2.0**26
 """Bytes."""
+
+
+def each_of(given: Any, where: str, remedy: str) -> Iterator[Any]:
+    """Go through a sequence.
+
+    Parameters
+    ----------
+    given : iterable
+    where : str
+        What it is called.
+    remedy : str
+        What to give instead.
+
+    Raises
+    ------
+    InputError
+        Nothing that can be gone through: a number, also as an array of no dimensions.
+    """
+    try:
+        return iter(given)
+    except TypeError:
+        raise InputError(f"{where} = {shown(given)} is no sequence; give {remedy}") from None
 
 
 def instance(given: object, kind: type[T] | UnionType, where: str, remedy: str) -> T:
@@ -136,9 +165,7 @@ def names(given: Any, where: str) -> list[str]:
     """
     if isinstance(given, str):
         raise InputError(f"{where} = '{given}' is a word; give a sequence of names")
-    if not isinstance(given, Iterable):
-        raise InputError(f"{where} = {shown(given)} is no sequence; give a sequence of names")
-    names = list(given)
+    names = list(each_of(given, where, "a sequence of names"))
     for k, name in enumerate(names):
         if not isinstance(name, str):
             raise InputError(f"{where}[{k}] = {shown(name)} is no word; give a sequence of names")
@@ -233,9 +260,25 @@ def numbers(given: Any, where: str) -> npt.NDArray[np.float64]:
     """
     unmasked(given, where)
     try:
-        array: npt.NDArray[np.float64] = np.asarray(given, dtype=np.float64)
+        array: npt.NDArray[np.float64] = np.asarray(real(given), dtype=np.float64)
     except (OverflowError, TypeError, ValueError) as error:
         raise InputError(f"{where} is not an array of numbers: {error}") from None
+    return array
+
+
+def real(given: Any) -> npt.NDArray[Any]:
+    """An array of what can be read as real numbers.
+
+    Dates, words and complex numbers are of another kind: numpy would make floats of them.
+
+    Raises
+    ------
+    TypeError
+        Anything else.
+    """
+    array = np.asarray(given)
+    if array.dtype.kind not in _REAL:
+        raise TypeError(f"the type is {array.dtype}")
     return array
 
 
@@ -271,7 +314,10 @@ def written(file: Path) -> Iterator[None]:
 
 def shown(given: object) -> str:
     """An object in a sentence: short, on one line."""
-    shown = " ".join(repr(given).split())
-    if len(shown) > 60 or type(given).__repr__ is object.__repr__:
+    try:
+        shown = " ".join(repr(given).split())
+    except Exception:  # what is foreign may fail to show itself, and Python does for huge numbers
+        shown = ""
+    if not shown or len(shown) > 60 or type(given).__repr__ is object.__repr__:
         return f"a {type(given).__name__}"
     return shown

@@ -12,6 +12,7 @@ use stiction_core::finite::check;
 use stiction_core::motor::{PerSample, Surroundings};
 
 use crate::error::{IntoPython, duration, input_error};
+use crate::real::{KINDS, kind_of, real};
 
 static ASARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
 static IS_MASKED: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
@@ -35,19 +36,7 @@ pub fn numbers<'py>(
     refuse_masked(name, values)?;
     let array = match values.cast::<PyArrayDyn<f64>>() {
         Ok(array) if array.is_c_contiguous() => array.clone(),
-        _ => {
-            let options = PyDict::new(py);
-            options.set_item("dtype", "float64")?;
-            options.set_item("order", "C")?;
-            let converted = ASARRAY
-                .import(py, "numpy", "asarray")?
-                .call((values,), Some(&options))
-                .map_err(|error| {
-                    let reason = error.value(py).to_string();
-                    input_error(py, format!("{name} is not an array of numbers: {reason}"))
-                })?;
-            converted.cast_into::<PyArrayDyn<f64>>()?
-        }
+        _ => converted(name, values)?,
     };
     if array.ndim() == 0 {
         return Err(input_error(
@@ -59,6 +48,27 @@ pub fn numbers<'py>(
         return Err(input_error(py, format!("{name} is empty; give at least one sample")));
     }
     Ok(array.readonly())
+}
+
+/// What can be read as real numbers, as an array of them.
+fn converted<'py>(name: &str, values: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let py = values.py();
+    let wrong =
+        |why: &dyn Display| input_error(py, format!("{name} is not an array of numbers: {why}"));
+    let refused = |error: PyErr| wrong(error.value(py));
+    let asarray = ASARRAY.import(py, "numpy", "asarray")?;
+    let array = asarray.call1((values,)).map_err(refused)?;
+    let dtype = array.getattr("dtype")?;
+    let kind = kind_of(&dtype)?;
+    // Python's own numbers, Fraction and Decimal among them, are objects.
+    if kind != "O" && !KINDS.contains(&kind) {
+        return Err(wrong(&format_args!("the type is {dtype}")));
+    }
+    let options = PyDict::new(py);
+    options.set_item("dtype", "float64")?;
+    options.set_item("order", "C")?;
+    let array = asarray.call((array,), Some(&options)).map_err(refused)?;
+    Ok(array.cast_into::<PyArrayDyn<f64>>()?)
 }
 
 /// Refuses an array that is masked somewhere: what lies under the mask is no reading.
@@ -109,7 +119,7 @@ impl<'py> Each<'py> {
     ) -> PyResult<Self> {
         let Some(value) = value else { return Ok(Self::Same(neutral)) };
         let py = value.py();
-        if let Ok(number) = value.extract::<f64>() {
+        if let Ok(number) = real(value) {
             return crate::error::finite(py, name, number).map(Self::Same);
         }
         let array = samples(name, value)?;

@@ -11,6 +11,7 @@ use crate::arguments::{Names, Text, threads_of};
 use crate::arrays::{Each, numbers, samples};
 use crate::error::{IntoPython, duration, finite, input_error};
 use crate::motor::Motor;
+use crate::real::real;
 use crate::shared::Shared;
 
 /// Base of ``stiction.Ensemble``: everything that needs no Python.
@@ -36,7 +37,7 @@ impl<'py> Table<'py> {
         let Some(given) = given else { return Ok(Self::Same(0.0)) };
         let py = given.py();
         if n.is_some()
-            && let Ok(number) = given.extract::<f64>()
+            && let Ok(number) = real(given)
         {
             return finite(py, name, number).map(Self::Same);
         }
@@ -123,7 +124,7 @@ impl Ensemble {
         &self,
         py: Python<'py>,
         current: &Bound<'py, PyAny>,
-        dt: f64,
+        #[pyo3(from_py_with = real)] dt: f64,
         load: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Reached<'py>> {
         let members = self.core.lock(py)?.len();

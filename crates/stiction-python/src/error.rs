@@ -88,14 +88,27 @@ pub fn outcome<'a>(
     what: &str,
     results: impl IntoIterator<Item = &'a [f64]>,
 ) -> PyResult<()> {
+    if strict {
+        checked(py, what, ", or strict=False to have them as they are", results)
+    } else {
+        Ok(())
+    }
+}
+
+/// The same where there is no way to have them.
+pub fn checked<'a>(
+    py: Python<'_>,
+    what: &str,
+    way: &str,
+    results: impl IntoIterator<Item = &'a [f64]>,
+) -> PyResult<()> {
     for values in results {
-        if strict && let Err(Error::BadSample { place, given, .. }) = check(what, values) {
+        if let Err(Error::BadSample { place, given, .. }) = check(what, values) {
             return Err(input_error(
                 py,
                 format!(
                     "the {what} left the range of floats: number {place} is {given}, though all that \
-                     was given is finite; give numbers nearer to those of a machine, or \
-                     strict=False to have them as they are"
+                     was given is finite; give numbers nearer to those of a machine{way}"
                 ),
             ));
         }

@@ -13,6 +13,7 @@ use stiction_core::model::{FrictionModel as Core, LawSpec};
 use crate::arguments::Text;
 use crate::arrays::{Each, samples};
 use crate::error::{FASTEST, IntoPython, duration, finite, input_error, velocity};
+use crate::real::{real, real_or_none};
 use crate::shared::Shared;
 use crate::state::{from_dict, keywords, to_dict};
 
@@ -104,11 +105,11 @@ impl FrictionModel {
     fn step(
         &self,
         py: Python<'_>,
-        velocity: f64,
-        dt: f64,
-        load: f64,
-        effort: f64,
-        temperature: Option<f64>,
+        #[pyo3(from_py_with = real)] velocity: f64,
+        #[pyo3(from_py_with = real)] dt: f64,
+        #[pyo3(from_py_with = real)] load: f64,
+        #[pyo3(from_py_with = real)] effort: f64,
+        #[pyo3(from_py_with = real_or_none)] temperature: Option<f64>,
     ) -> PyResult<f64> {
         let velocity = self::velocity(py, velocity)?;
         let dt = duration(py, "dt", dt)?;
@@ -143,7 +144,7 @@ impl FrictionModel {
         &self,
         py: Python<'py>,
         velocity: &Bound<'py, PyAny>,
-        dt: f64,
+        #[pyo3(from_py_with = real)] dt: f64,
         load: Option<&Bound<'py, PyAny>>,
         effort: Option<&Bound<'py, PyAny>>,
         temperature: Option<&Bound<'py, PyAny>>,
@@ -214,11 +215,11 @@ impl FrictionModel {
     fn trial(
         &self,
         py: Python<'_>,
-        velocity: f64,
-        dt: f64,
-        load: f64,
-        effort: f64,
-        temperature: Option<f64>,
+        #[pyo3(from_py_with = real)] velocity: f64,
+        #[pyo3(from_py_with = real)] dt: f64,
+        #[pyo3(from_py_with = real)] load: f64,
+        #[pyo3(from_py_with = real)] effort: f64,
+        #[pyo3(from_py_with = real_or_none)] temperature: Option<f64>,
     ) -> PyResult<(f64, f64)> {
         let velocity = self::velocity(py, velocity)?;
         let dt = duration(py, "dt", dt)?;

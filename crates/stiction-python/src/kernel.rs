@@ -5,6 +5,7 @@ use stiction_core::kernel::RowKernel as Core;
 
 use crate::arrays::one_row;
 use crate::error::{IntoPython, finite};
+use crate::real::real;
 
 /// What rows of an effort residual are seen through: means about stamps.
 ///
@@ -55,7 +56,7 @@ impl RowKernel {
         weights: &Bound<'_, PyAny>,
         second: &Bound<'_, PyAny>,
         every: i64,
-        inertia: f64,
+        #[pyo3(from_py_with = real)] inertia: f64,
         held: bool,
     ) -> PyResult<Self> {
         let numbers =

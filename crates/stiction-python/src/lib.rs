@@ -11,6 +11,7 @@ mod interrupt;
 mod kernel;
 mod motion;
 mod motor;
+mod real;
 mod shared;
 mod smoothing;
 mod state;

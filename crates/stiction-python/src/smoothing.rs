@@ -5,8 +5,9 @@ use pyo3::prelude::*;
 use stiction_core::smoothing;
 
 use crate::arrays::one_row;
-use crate::error::{finite, input_error, outcome};
+use crate::error::{checked, finite, input_error};
 use crate::interrupt::detached;
+use crate::real::real;
 
 /// Positions behind readings, each from the widest window that noise does not refute.
 ///
@@ -31,7 +32,7 @@ use crate::interrupt::detached;
 pub fn adaptively_smoothed<'py>(
     py: Python<'py>,
     readings: &Bound<'py, PyAny>,
-    noise: f64,
+    #[pyo3(from_py_with = real)] noise: f64,
     halves: Vec<usize>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let readings = one_row("readings", readings)?;
@@ -44,7 +45,7 @@ pub fn adaptively_smoothed<'py>(
         return Err(input_error(py, format!("halves = {halves:?} are no windows; {wanted}")));
     }
     let smoothed = detached(py, || smoothing::adaptively_smoothed(given, noise, &halves))?;
-    outcome(py, true, "smoothed readings", [smoothed.as_slice()])?;
+    checked(py, "smoothed readings", "", [smoothed.as_slice()])?;
     Ok(PyArray1::from_vec(py, smoothed))
 }
 
@@ -69,7 +70,7 @@ pub fn adaptively_smoothed<'py>(
 pub fn played<'py>(
     py: Python<'py>,
     readings: &Bound<'py, PyAny>,
-    width: f64,
+    #[pyo3(from_py_with = real)] width: f64,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let readings = one_row("readings", readings)?;
     let width = finite(py, "width", width)?;
@@ -79,6 +80,6 @@ pub fn played<'py>(
     }
     let given = readings.as_slice()?;
     let found = py.detach(|| smoothing::played(given, width));
-    outcome(py, true, "followed readings", [found.as_slice()])?;
+    checked(py, "followed readings", "", [found.as_slice()])?;
     Ok(PyArray1::from_vec(py, found))
 }

@@ -8,6 +8,7 @@ use stiction_core::friction::Entry;
 use crate::arguments::Text;
 use crate::arrays::samples;
 use crate::error::input_error;
+use crate::real::real;
 
 /// A state as a dict.
 pub fn to_dict<'py>(
@@ -43,7 +44,7 @@ pub fn from_dict(state: &Bound<'_, PyDict>) -> PyResult<Vec<(String, Entry)>> {
             let Text(name) = name
                 .extract()
                 .map_err(|_: PyErr| input_error(py, format!("state key {name} is not a word")))?;
-            if let Ok(number) = value.extract::<f64>() {
+            if let Ok(number) = real(&value) {
                 return Ok((name, Entry::Number(number)));
             }
             let wrong = |shape: &[usize]| {
@@ -91,7 +92,7 @@ pub fn keywords(
         if let Ok(Text(word)) = value.extract() {
             words.push((name, word));
         } else if !value.is_instance_of::<PyBool>()
-            && let Ok(number) = value.extract::<f64>()
+            && let Ok(number) = real(&value)
         {
             numbers.push((name, number));
         } else {

@@ -23,6 +23,7 @@ use crate::arrays::{Around, Each, one_row, target};
 use crate::error::{IntoPython, duration, finite, input_error};
 use crate::friction_model::FrictionModel;
 use crate::interrupt::detached;
+use crate::real::{real, real_or_none};
 use crate::shared::Shared;
 
 /// Base of ``stiction.Motor``: everything that needs no Python.
@@ -160,16 +161,16 @@ impl Motor {
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn new(
         py: Python<'_>,
-        inertia: f64,
-        torque_constant: f64,
+        #[pyo3(from_py_with = real)] inertia: f64,
+        #[pyo3(from_py_with = real)] torque_constant: f64,
         friction: Option<&Bound<'_, PyAny>>,
         effects: Option<&Bound<'_, PyAny>>,
-        gravity_amplitude: f64,
-        gravity_zero: f64,
-        weight: f64,
-        input_limit: f64,
+        #[pyo3(from_py_with = real)] gravity_amplitude: f64,
+        #[pyo3(from_py_with = real)] gravity_zero: f64,
+        #[pyo3(from_py_with = real)] weight: f64,
+        #[pyo3(from_py_with = real)] input_limit: f64,
         servo: Option<&Bound<'_, PyAny>>,
-        count: f64,
+        #[pyo3(from_py_with = real)] count: f64,
         integrator: Text,
     ) -> PyResult<Self> {
         let wanted = "give a FrictionModel, for instance FrictionModel('coulomb', coulomb=0.35)";
@@ -228,10 +229,10 @@ impl Motor {
     fn step(
         &self,
         py: Python<'_>,
-        current: f64,
-        dt: f64,
-        load: f64,
-        temperature: Option<f64>,
+        #[pyo3(from_py_with = real)] current: f64,
+        #[pyo3(from_py_with = real)] dt: f64,
+        #[pyo3(from_py_with = real)] load: f64,
+        #[pyo3(from_py_with = real_or_none)] temperature: Option<f64>,
         enabled: bool,
     ) -> PyResult<(f64, f64)> {
         let current = finite(py, "current", current)?;
@@ -382,7 +383,7 @@ impl Motor {
         py: Python<'py>,
         durations: &Bound<'py, PyAny>,
         current: &Bound<'py, PyAny>,
-        tolerance: f64,
+        #[pyo3(from_py_with = real)] tolerance: f64,
         times: Option<&Bound<'py, PyAny>>,
         load: Option<&Bound<'py, PyAny>>,
         temperature: Option<&Bound<'py, PyAny>>,

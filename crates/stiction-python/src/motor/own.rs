@@ -10,6 +10,7 @@ use stiction_core::servo::Servo;
 
 use super::Motor;
 use crate::error::{IntoPython, finite};
+use crate::real::real;
 use crate::state::{from_dict, to_dict};
 
 fn servo_settings<'py>(py: Python<'py>, servo: &Servo) -> PyResult<Bound<'py, PyDict>> {
@@ -104,10 +105,10 @@ impl Motor {
     fn reset(
         &self,
         py: Python<'_>,
-        position: f64,
-        velocity: f64,
-        time: f64,
-        path: f64,
+        #[pyo3(from_py_with = real)] position: f64,
+        #[pyo3(from_py_with = real)] velocity: f64,
+        #[pyo3(from_py_with = real)] time: f64,
+        #[pyo3(from_py_with = real)] path: f64,
     ) -> PyResult<()> {
         let position = finite(py, "position", position)?;
         let velocity = crate::error::velocity(py, velocity)?;

@@ -8,6 +8,7 @@ use super::Motor;
 use crate::arguments::{Names, Shots};
 use crate::error::{IntoPython, finite, input_error, outcome};
 use crate::motion::Motion;
+use crate::real::real;
 
 /// Two arrays: readings, efforts of the pull.
 type Accompanied<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
@@ -95,8 +96,8 @@ impl Motor {
         &self,
         py: Python<'py>,
         motion: &Bound<'py, Motion>,
-        stiffness: f64,
-        damping: f64,
+        #[pyo3(from_py_with = real)] stiffness: f64,
+        #[pyo3(from_py_with = real)] damping: f64,
         start: Option<&Bound<'py, PyAny>>,
         strict: bool,
     ) -> PyResult<Accompanied<'py>> {
