@@ -17,9 +17,10 @@ from . import given
 from ._native import Ensemble as _Ensemble
 from .errors import InputError, UnknownName
 from .frozen import Frozen, freeze, path_of
+from .keys import choice
 from .motor import Motor
 from .trajectory import FloatArray
-from .wording import did_you_mean, listed
+from .wording import listed
 
 __all__ = ["Ensemble", "EnsembleRun", "Reduce", "simulate_ensemble"]
 
@@ -159,7 +160,7 @@ class Ensemble(_Ensemble):
         """See the class."""
         given.instance(motor, Motor, "ensemble: motor", "a Motor")
         if members is not None:
-            members = given.whole(members, "members", least=1)
+            members = given.whole(members, "members", least=1, most=given.MOST_WHOLE)
         rows = _rows_by_path(motor, parameters, members)
         sizes = {len(row) for row in rows.values()}
         if members is None and len(sizes) != 1:
@@ -220,11 +221,10 @@ class Ensemble(_Ensemble):
             inner steps than 1000 a sample of a machine in the mean after the first 10 million,
             more rows than there is memory for.
         """
-        if reduce is not None and reduce not in _REDUCTIONS:
-            near = did_you_mean(str(reduce), _REDUCTIONS)
-            raise InputError(f"reduce = '{reduce}' is unknown{near}; known: {listed(_REDUCTIONS)}")
+        if reduce is not None:
+            choice(reduce, _REDUCTIONS, "reduce")
         names = given.names(outputs, "outputs")
-        every = given.whole(every, "every", least=1)
+        every = given.whole(every, "every", least=1, most=given.MOST_WHOLE)
         if threads is None:
             threads = min(os.cpu_count() or 1, MOST_THREADS)
         threads = given.whole(threads, "threads", least=1)

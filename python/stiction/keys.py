@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from .errors import InputError
+from .given import shown
 from .wording import did_you_mean, listed
 
 __all__ = ["choice", "known"]
@@ -27,5 +28,7 @@ def choice(given: Any, allowed: Iterable[str], where: str) -> str:
     allowed = list(allowed)
     if not isinstance(given, str) or given not in allowed:
         near = did_you_mean(given, allowed) if isinstance(given, str) else ""
-        raise InputError(f"{where} = {given!r} is unknown{near}; allowed are {listed(allowed)}")
+        raise InputError(
+            f"{where} = {shown(given)} is unknown{near}; allowed are {listed(allowed)}"
+        )
     return given

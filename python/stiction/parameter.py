@@ -8,6 +8,7 @@ from numbers import Real
 from typing import Any
 
 from .errors import InputError
+from .given import shown
 
 __all__ = ["Parameter"]
 
@@ -26,12 +27,23 @@ class Parameter:
         Bounds for a fit, beyond those of the catalogue.
     fixed : bool
         Whether a fit leaves it alone.
+
+    Raises
+    ------
+    InputError
+        A value or a bound that is no number.
     """
 
     value: float
     min: float | None = None
     max: float | None = None
     fixed: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("value", "min", "max"):
+            given = getattr(self, name)
+            if given is not None or name == "value":
+                number(given, f"Parameter: {name}")
 
     def to_toml(self) -> float | dict[str, float | bool]:
         """What a plant file holds: a plain number where there is nothing else to say."""
@@ -90,7 +102,9 @@ def number(given: Any, where: str) -> float:
     """
     if isinstance(given, bool) or not isinstance(given, Real):
         kind = type(given).__name__
-        raise InputError(f"{where}: {given!r} is a {kind}; allowed is a number")
+        told = shown(given)
+        what = "" if told == f"a {kind}" else f"{told} "
+        raise InputError(f"{where}: {what}is a {kind}; allowed is a number")
     try:
         converted = float(given)
     except OverflowError:  # TOML has no largest integer

@@ -16,6 +16,7 @@ from .catalogue import effects
 from .drive import check_servo, gain_name, servo_numbers
 from .errors import InputError
 from .frozen import ByPath, Frozen, freeze, path_of
+from .keys import choice
 from .motor import Motor
 from .parameter import Parameter, number
 from .recording.units import Motion
@@ -71,8 +72,11 @@ class Plant:
 
     def __post_init__(self) -> None:
         freeze(self, Frozen, "drive", "body", "sensor", "controller")
+        choice(self.motion, plant_file.MOTIONS, f"{self.source}: motion")
         given.instance(self.friction, Friction, f"{self.source}: friction", "a Friction")
         check_parameters(self.body, f"{self.source}: [body]")
+        where = f"{self.source}: effects"
+        object.__setattr__(self, "effects", tuple(given.each_of(self.effects, where, "Effects")))
         for effect in self.effects:
             given.instance(effect, Effect, f"{self.source}: an effect", "an Effect")
 

@@ -194,6 +194,8 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         ``Plant.load`` and ``Recording.load`` refuse.
     """
     path = given.path(path, "load")
+    if plant is not None:
+        given.instance(plant, Plant, "load: plant", "a Plant, as Plant.load returns it")
     table = read_toml(path, least='plant = "…" and one [[recordings]]')
     source = str(path)
     known(table, _TABLES, source)

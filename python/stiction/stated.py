@@ -9,7 +9,7 @@ from ._native import FrictionModel
 from .catalogue import EffectRecord, LawRecord, effects, laws
 from .errors import UnknownName
 from .frozen import Frozen, freeze
-from .given import instance, word
+from .given import instance, mapping, word
 from .parameter import Parameter
 from .wording import did_you_mean, listed
 
@@ -23,7 +23,7 @@ def check_parameters(given: Mapping[str, Parameter], where: str) -> None:
     ------
     InputError
     """
-    for name, value in given.items():
+    for name, value in mapping(given, where, "Parameters by name").items():
         instance(value, Parameter, f"{where} {name}", "a Parameter of stiction.parameter")
 
 

@@ -14,6 +14,7 @@ from . import given
 from .atomic_files import replacing
 from .errors import InputError
 from .motor import Motor
+from .parameter import number
 from .trajectory import FloatArray, Trajectory
 
 __all__ = ["stream"]
@@ -78,9 +79,8 @@ def stream(
     50
     """
     given.instance(motor, Motor, "stream: motor", "a Motor")
-    if not isinstance(currents, Iterable):
-        raise InputError(f"stream: currents = {currents!r} is no sequence; give chunks of inputs")
-    every = given.whole(every, "every", least=1)
+    chunks = given.each_of(currents, "stream: currents", "chunks of inputs")
+    every = given.whole(every, "every", least=1, most=given.MOST_WHOLE)
     dt, load = (_number(each, name) for each, name in ((dt, "dt"), (load, "load")))
     if checkpoint is not None:
         checkpoint = given.path(checkpoint, "checkpoint")
@@ -89,7 +89,7 @@ def stream(
                 f"{checkpoint}: is no place for a checkpoint; name a file in a folder that is there"
             )
     names = given.names(outputs, "outputs")
-    return _streamed(motor, currents, dt, tuple(names), every, checkpoint, load)
+    return _streamed(motor, chunks, dt, tuple(names), every, checkpoint, load)
 
 
 def _has_place(file: Path) -> bool:
@@ -101,10 +101,7 @@ def _has_place(file: Path) -> bool:
 
 
 def _number(value: object, name: str) -> float:
-    try:
-        return float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        raise InputError(f"stream: {name} = {value!r} is not a number") from None
+    return number(value, f"stream: {name}")
 
 
 def _streamed(

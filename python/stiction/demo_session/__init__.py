@@ -17,6 +17,7 @@ import numpy as np
 from .. import session as sessions
 from ..atomic_files import create_text, subfolder
 from ..errors import InputError
+from ..given import path as file_path
 from ..given import vacant
 from ..session import Session
 
@@ -53,9 +54,10 @@ def copy(folder: str | Path) -> list[Path]:
     Raises
     ------
     InputError
-        One of the files is there already, or they cannot be written; nothing is overwritten.
+        No path; one of the files is there already, or they cannot be written; nothing is
+        overwritten.
     """
-    folder = Path(folder)
+    folder = file_path(folder, "demo_session.copy")
     # Ship small, hand out readable: text takes three times the space.
     texts = {name: (_FOLDER / name).read_text(encoding="utf-8") for name in _TEXTS}
     texts["session.toml"] = texts["session.toml"].replace('.npz"', '.csv"')

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -12,7 +12,10 @@ from ..errors import InputError
 from ..trajectory import FloatArray
 from .rig import RigLike, build_motor
 
-__all__ = ["STATES", "Bench", "as_read", "whole_samples"]
+__all__ = ["STATES", "Bench", "above_0", "as_read", "fits", "samples_of", "whole_samples"]
+
+MOST_SAMPLES: Final = 10_000_000
+"""Of an experiment: a gigabyte, and some minutes."""
 
 STATES = ("plastic", "hardening", "spring", "spring_force")
 """States of a law that an experiment records, where the law has them."""
@@ -109,9 +112,34 @@ def as_read(position: FloatArray, count: float) -> FloatArray:
     return np.asarray(np.round(position / count) * count if count > 0.0 else position)
 
 
+def above_0(value: float, where: str, unit: str) -> float:
+    """Refuse what is not above 0."""
+    if not value > 0.0:
+        raise InputError(f"{where} = {value:g} {unit}; give more than 0")
+    return value
+
+
+def fits(samples: float, what: str) -> int:
+    """Refuse more samples than an experiment has room for."""
+    if not samples <= MOST_SAMPLES:
+        raise InputError(
+            f"{what} takes {samples:.3g} samples, and {MOST_SAMPLES} is the most; give a longer dt "
+            "or a shorter experiment"
+        )
+    return round(samples)
+
+
+def samples_of(duration: float, dt: float) -> int:
+    """Number of samples in a duration, to the nearest."""
+    if not duration >= 0.0:
+        raise InputError(f"a duration is {duration:g} s; give 0 or more")
+    # Of two floats above 0 the greatest quotient is inf, and no error.
+    return fits(float(np.divide(duration, above_0(dt, "dt", "s"))), f"{duration:g} s")
+
+
 def whole_samples(duration: float, dt: float) -> int:
     """Number of samples in a duration, which must be a whole number of them."""
-    samples = round(duration / dt)
+    samples = samples_of(duration, dt)
     if samples < 1 or abs(samples * dt - duration) > 1e-6 * dt * max(samples, 1):
         raise InputError(
             f"dt = {dt:g} s does not divide {duration:g} s of the experiment; "

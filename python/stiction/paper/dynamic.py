@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arguments import checked
 from ..errors import InputError
 from ..trajectory import FloatArray
-from .bench import Bench, whole_samples
+from .bench import Bench, fits, whole_samples
 from .result import Known, MotionResult, Number, arcsec, counted_off
 from .rig import ARC_SECOND, RigLike, is_illustrative
 
@@ -125,6 +126,7 @@ class PulseTrains(MotionResult):
     rest_hardening: FloatArray
 
 
+@checked
 def experiment_1(
     *,
     target: float = 24.0 * ARC_SECOND,
@@ -254,6 +256,7 @@ def _numbers_1(run: RampAndCut, standard: bool) -> dict[str, Number]:
     return numbers
 
 
+@checked
 def experiment_2(
     *,
     target: float = 12.0 * ARC_SECOND,
@@ -331,6 +334,7 @@ def experiment_2(
     )
 
 
+@checked
 def experiment_3(
     *,
     sizes: Sequence[float] = PULSE_SIZES,
@@ -376,9 +380,10 @@ def experiment_3(
     """
     if pulses < 1 or not len(sizes):
         raise InputError(f"experiment_3: {len(sizes)} trains of {pulses} pulses; give at least one")
-    sizes = tuple(float(size) for size in sizes)
+    sizes = tuple(sizes)
     bench = Bench(rig, integrator, dt, encoder_count)
     on, off = whole_samples(0.02, dt), whole_samples(0.08, dt)
+    fits(float(on + off) * pulses * len(sizes), f"{len(sizes)} trains of {pulses} pulses")
     for size in sizes:
         bench.apply(np.tile(np.concatenate([np.full(on, size), np.zeros(off)]), pulses))
     record = bench.record()

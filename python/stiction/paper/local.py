@@ -9,6 +9,8 @@ from typing import Final
 import numpy as np
 
 from .._native import FrictionModel
+from ..arguments import checked
+from ..errors import InputError
 from ..motor import Motor
 from ..trajectory import FloatArray
 from .result import Number, Result, arcsec
@@ -17,6 +19,8 @@ from .stick_slip import SLIDING
 
 __all__ = ["LocalVariation", "local_variation"]
 
+MOST_PLACES: Final = 1000
+MOST_SHARE: Final = 0.6
 _DT: Final = 5e-4  # s
 _RAMP_RATE: Final = 0.25  # N·m/s, that of experiment 1
 _LONGEST: Final = 4.0  # s
@@ -49,6 +53,7 @@ class LocalVariation(Result):
     path: tuple[FloatArray, ...]
 
 
+@checked
 def local_variation(*, places: int = 12, share: float = 0.5, periods: int = 2) -> LocalVariation:
     """Ramp the torque at places round the shaft, several times at each.
 
@@ -70,6 +75,11 @@ def local_variation(*, places: int = 12, share: float = 0.5, periods: int = 2) -
     -------
     LocalVariation
 
+    Raises
+    ------
+    InputError
+        Places, a share or periods out of these bounds.
+
     Source
     ------
     Hsieh, Pan, Wear 242 (2000), §2.2.1, P1 and P2.
@@ -80,6 +90,13 @@ def local_variation(*, places: int = 12, share: float = 0.5, periods: int = 2) -
     >>> run.numbers["greatest break-away over the least"].value > 2.0
     True
     """
+    if not 1 <= places <= MOST_PLACES:
+        raise InputError(f"local_variation: places = {places}; give 1 to {MOST_PLACES}")
+    if not 0.0 <= share < MOST_SHARE:
+        raise InputError(
+            f"local_variation: share = {share:g}; give 0 to less than {MOST_SHARE:g}: beyond, the "
+            "ramps do not break every place away, or have nothing to break"
+        )
     wave = {"position_dependent_friction": {"cosine": share, "order": float(periods)}}
     base = illustrative_motor(integrator="fast", **SLIDING)
     law, keywords = base.friction_settings()

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._native import FrictionModel
+from ..arguments import checked
 from ..errors import InputError
 from ..trajectory import FloatArray
+from .bench import above_0
 from .result import Number, Result
 from .rig import ARC_SECOND, RigLike, build_friction
 
@@ -40,6 +42,7 @@ class LoopAreas(Result):
     loops: tuple[tuple[FloatArray, FloatArray], ...]
 
 
+@checked
 def loop_areas(
     *,
     distances: Sequence[float] = DISTANCES,
@@ -79,8 +82,10 @@ def loop_areas(
     law = build_friction(rig, damping=0.0, hardening_coefficient=0.0)
     if law.law != "hsieh_pan":
         raise InputError(f"loop_areas: the curve of law '{law.law}' is not known here")
-    if not all(distance > 0.0 for distance in distances):
-        raise InputError("loop_areas: a distance is not above 0; give rad above 0")
+    if not distances:
+        raise InputError("loop_areas: there are no distances; give at least one, in rad")
+    for k, each in enumerate(distances):
+        above_0(each, f"loop_areas: distances[{k}]", "rad")
     loops = tuple(_loop(law.copy(), distance) for distance in distances)
     area = np.array([float(np.sum(0.5 * (F[1:] + F[:-1]) * np.diff(x))) for x, F in loops])
     distance = np.array(distances, dtype=np.float64)

@@ -10,7 +10,7 @@ import numpy as np
 
 from .._native import FrictionModel
 from ..errors import InputError
-from .bench import STATES, Bench, as_record, whole_samples
+from .bench import STATES, Bench, above_0, as_record, fits, samples_of, whole_samples
 from .rig import RigLike
 
 __all__ = ["FORCE_STEP", "RAMP_RATE", "ForcePath", "motor_path"]
@@ -58,6 +58,11 @@ class ForcePath:
         self.reverse_points: list[int] = []
         reached = []
         force = start
+        above_0(ramp_rate, "ramp_rate", "N·m/s")
+        ways = np.abs(np.diff([start, *levels]))
+        fits(
+            (np.sum(ways) / ramp_rate + max(hold, 0.0) * len(ways)) / above_0(step, "dt", "s"), "it"
+        )
         for level in levels:
             self._through(force, float(level), abs(level - force) / ramp_rate, step)
             if hold > 0.0:
@@ -125,10 +130,11 @@ def motor_path(
     """The motor through ramps (steps at an infinite rate) and holds; record and ends of holds."""
     bench = Bench(rig, integrator, dt, encoder_count)
     held = whole_samples(hold, dt)
+    above_0(ramp_rate, "ramp_rate", "N·m/s")
     reached = []
     force = 0.0
     for level in levels:
-        ramped = round(abs(level - force) / ramp_rate / dt)
+        ramped = samples_of(abs(level - force) / ramp_rate, dt)
         ramp = force + (level - force) * np.arange(1, ramped + 1) / max(ramped, 1)
         bench.apply(np.concatenate([ramp, np.full(held, float(level))]))
         reached.append(bench.samples - 1)

@@ -19,8 +19,10 @@ import numpy as np
 
 from .. import catalogue
 from .._native import FrictionModel
+from ..arguments import checked
 from ..errors import InputError
 from ..trajectory import FloatArray
+from .bench import fits
 from .dynamic import STEP
 from .paths import FORCE_STEP, RAMP_RATE, ForcePath, motor_path
 from .result import Known, MotionResult, Number, Result, arcsec, counted_off
@@ -173,6 +175,7 @@ class DahlTest(Result):
     position: FloatArray
 
 
+@checked
 def static_test(
     case: int = 1,
     *,
@@ -252,6 +255,8 @@ def static_test(
     own_levels = levels is not None
     if levels is None:
         levels = chosen.levels
+    elif not levels:
+        raise InputError("static_test: there are no levels; give at least one, in N·m")
     else:
         letters = tuple(_letter(index) for index in range(len(levels)))
     if driven == "force":
@@ -300,6 +305,7 @@ def static_test(
     )
 
 
+@checked
 def hardening_cycles(
     *,
     amplitude: float = 0.3,
@@ -351,6 +357,7 @@ def hardening_cycles(
         raise InputError(
             f"hardening_cycles: law '{law.law}' has no plastic module; give 'hsieh_pan'"
         )
+    fits(half_cycles, "hardening_cycles")
     if half_cycles < 1:
         raise InputError(f"hardening_cycles: {half_cycles} half cycles; give at least one")
     levels = [amplitude * (-1.0) ** index for index in range(half_cycles)]
@@ -375,6 +382,7 @@ def hardening_cycles(
     )
 
 
+@checked
 def nested_loops(*, rig: RigLike = None, dt: float = FORCE_STEP) -> NestedLoops:
     """Loops within loops of the spring alone: every reverse point is met again and forgotten.
 
@@ -443,6 +451,7 @@ def nested_loops(*, rig: RigLike = None, dt: float = FORCE_STEP) -> NestedLoops:
     )
 
 
+@checked
 def dahl_on_static_1(*, stiffness: float = 2063.0, coulomb: float = 0.5) -> DahlTest:
     """Dahl's law on static test 1: loops that never close.
 

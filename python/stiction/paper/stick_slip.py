@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import checked
 from ..errors import InputError
 from ..trajectory import FloatArray
-from .bench import as_read
+from .bench import above_0, as_read, samples_of
 from .result import MotionResult, Number
 from .rig import RigLike, build_motor
 
@@ -19,6 +19,8 @@ __all__ = ["SLIDING", "StickSlip", "stick_slip"]
 SLIDING = {"breakaway": 0.5, "coulomb": 0.35, "stribeck_velocity": 0.05, "viscous": 0.05}
 """What the hook adds to the illustrative rig; ours, since the paper ends where slip begins."""
 
+FEWEST = 4
+"""Samples: numbers are of the second half."""
 # Slower than this the rotor counts as standing still, as a share of the pulling speed.
 _STANDING = 0.1
 
@@ -42,6 +44,7 @@ class StickSlip(MotionResult):
     breakaways: int
 
 
+@checked
 def stick_slip(
     speed: float = 0.1,
     *,
@@ -85,12 +88,13 @@ def stick_slip(
     >>> stick_slip(1.0).numbers["share of time standing still"].value
     0.0
     """
-    if not (math.isfinite(speed) and speed > 0.0):
-        raise InputError(f"stick_slip: speed = {speed} rad/s; give a speed above 0")
+    above_0(speed, "stick_slip: speed", "rad/s")
     if rig is None or isinstance(rig, Mapping):
         rig = {**SLIDING, **(rig or {})}
     motor = build_motor(rig, integrator)
-    steps = round(duration / dt)
+    steps = samples_of(duration, dt)
+    if steps < FEWEST:
+        raise InputError(f"stick_slip: {steps} samples in {duration:g} s; give {FEWEST} or more")
     position, velocity = np.empty(steps), np.empty(steps)
     x = v = 0.0
     early = 0

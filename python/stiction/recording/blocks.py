@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError, NotEnoughData
+from ..parameter import number
 from .units import FloatArray
 
 FEWEST_BLOCKS: Final = 3
@@ -43,6 +44,7 @@ def check_lengths_of(block_s: float, edge_s: float) -> None:
     ------
     InputError
     """
+    block_s, edge_s = number(block_s, "split: block_s"), number(edge_s, "split: edge_s")
     if not (math.isfinite(block_s) and block_s > 0.0):
         raise InputError(f"split: block_s is {block_s!r}; give a length above 0 in seconds")
     if not 0.0 <= edge_s <= 0.25 * block_s:

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError
+from ..given import shown
 from ..wording import listed
 from .columns import CANONICAL, ROLES, Column, Columns
 from .repair import check_lengths
@@ -123,8 +124,8 @@ def read_channels(
 
 
 def _check_choice(name: str, value: str | None, allowed: tuple[str, ...]) -> None:
-    if value is not None and value not in allowed:
-        raise InputError(f"{name} is {value!r}; give one of {', '.join(allowed)}")
+    if value is not None and not (isinstance(value, str) and value in allowed):
+        raise InputError(f"{name} is {shown(value)}; give one of {', '.join(allowed)}")
 
 
 def _choose(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..frozen import Frozen
-from ..given import instance, mapping, numbers
+from ..given import instance, mapping, numbers, real, shown
 from ..given import path as file_path
 from ..parameter import number
 from ..wording import did_you_mean
@@ -363,8 +363,11 @@ def recordings_of(given: Any, where: str) -> tuple[Recording, ...]:
     """
     if isinstance(given, Recording):
         return (given,)
-    found = tuple(given) if isinstance(given, Iterable) and not isinstance(given, str) else (given,)
     wanted = "a Session, as stiction.load returns it, or Recordings"
+    try:
+        found = (given,) if isinstance(given, str) else tuple(given)
+    except TypeError:
+        found = (given,)
     return tuple(instance(each, Recording, f"{where}: a recording", wanted) for each in found)
 
 
@@ -374,8 +377,8 @@ def _flat(name: str, given: npt.ArrayLike) -> FloatArray:
         # What is masked is missing, as NaN is.
         given = np.ma.filled(given.astype(np.float64), np.nan)
     try:
-        array = np.asarray(given)
-        if array.dtype.kind not in "biuf":
+        array = real(given)
+        if array.dtype.kind == "O":
             raise TypeError(f"the type is {array.dtype}")
         flat = np.array(array, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
@@ -397,35 +400,39 @@ def _labels(
     cold: bool,
     settings: Mapping[str, float] | None,
 ) -> dict[str, Any]:
-    if role is not None and role not in SPLIT_ROLES:
+    if role is not None and not (isinstance(role, str) and role in SPLIT_ROLES):
         raise InputError(
             f"Recording: the role is {role!r}{did_you_mean(str(role), SPLIT_ROLES)}; "
             f"give {', '.join(SPLIT_ROLES)}, or none"
         )
     if not isinstance(kind, str):
         raise InputError(f"Recording: the kind is {kind!r}; give text")
-    if (
-        isinstance(start_s, bool)
-        or not isinstance(start_s, (int, float, np.number))
-        or not math.isfinite(start_s)
-    ):
-        raise InputError(f"Recording: start_s is {start_s!r}; give a finite number of seconds")
+    start_s = _finite(start_s, "start_s", "a finite number of seconds")
     if not isinstance(cold, (bool, np.bool_)):
         raise InputError(f"Recording: cold is {cold!r}; give True or False")
     settings = mapping(settings, "Recording: settings", "names and numbers")
-    for name, value in settings.items():
+    for name in settings:
         if name not in SETTINGS:
             raise InputError(
                 f"Recording: there is no setting '{name}'{did_you_mean(name, SETTINGS)}; the "
                 f"settings are {', '.join(SETTINGS)}"
             )
-        if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
-            raise InputError(f"Recording: the setting {name} is {value!r}; give a number")
-        if not math.isfinite(value):
-            raise InputError(f"Recording: the setting {name} is {value!r}; give a finite number")
-    own = {name: float(value) for name, value in settings.items()}
-    settled = {"role": role, "kind": kind, "start_s": float(start_s), "cold": bool(cold)}
+    own = {
+        name: _finite(value, f"the setting {name}", "a finite number")
+        for name, value in settings.items()
+    }
+    settled = {"role": role, "kind": kind, "start_s": start_s, "cold": bool(cold)}
     return {**settled, "settings": Frozen(own)}
+
+
+def _finite(given: Any, name: str, wanted: str) -> float:
+    try:
+        value = number(given, name)
+    except InputError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"Recording: {name} is {shown(given)}; give {wanted}")
+    return value
 
 
 def _check_channels(source: str, values: Mapping[str, FloatArray]) -> None:

@@ -71,7 +71,7 @@ class Table:
 
     def heading(self, name: str) -> str:
         """A column's name, with the unit below it in brackets where it has none itself."""
-        below = self.units.get(name)
+        below = self.units.get(word(name, "Table.heading: name"))
         return name if below is None or bracketed_unit(name) else f"{name} [{below}]"
 
     def place(self, row: int) -> str:

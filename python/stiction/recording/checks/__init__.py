@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ...given import instance
 from ..recording import Recording
 from . import clock, readings
 from .finding import Check, Verdict
@@ -39,7 +40,13 @@ def check(recording: Recording) -> tuple[Check, ...]:
     tuple of Check
         At least one of each name, ``"fine"`` ones included, always in the same order; where the
         effort is a stress a note that says so.
+
+    Raises
+    ------
+    InputError
+        No recording.
     """
+    instance(recording, Recording, "check: recording", "a Recording")
     return (
         *readings.missing(recording),
         *readings.stress(recording),

@@ -9,6 +9,7 @@ import os
 from pathlib import Path
 
 from ...errors import InputError
+from ...given import path as file_path
 from ...given import regular
 from ...wording import nearest
 from ..row_count import complete
@@ -42,10 +43,10 @@ def read_table(path: str | os.PathLike[str]) -> Table:
     Raises
     ------
     InputError
-        If the file is missing, empty, a folder, of an unknown kind, or not what its ending says;
-        if it says how many rows it has, and has others.
+        No path; if the file is missing, empty, a folder, of an unknown kind, or not what its ending
+        says; if it says how many rows it has, and has others.
     """
-    file = Path(path)
+    file = file_path(path, "read_table")
     # Asking for a file of an overlong name fails as reading one does.
     try:
         if file.is_dir():
