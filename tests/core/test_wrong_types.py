@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
 import stiction as st
+from stiction import demo_session, paper
 from stiction.compare import compare
 from stiction.parameter import Parameter
 from stiction.plan import plan
+from stiction.recording import check, read_table
 from stiction.stated import Effect, Friction
 
 ROWS = np.arange(300.0)
@@ -177,7 +180,103 @@ REFUSED = {
         lambda: st.Ensemble(motor(), 10**12),
         "GiB) for 1000000000000 machines; give fewer",
     ),
-    "members beyond numbers": (lambda: st.Ensemble(motor(), 10**30), "machines; give fewer"),
+    "members beyond numbers": (
+        lambda: st.Ensemble(motor(), 10**30),
+        "members = 1000000000000000000000000000000 is out of bounds",
+    ),
+    "members beyond digits": (
+        lambda: st.Ensemble(motor(), 10**5000),
+        "members = a int is out of bounds",
+    ),
+    "every beyond counters": (lambda: ensemble(every=10**30), "is out of bounds: give a whole"),
+    "a reduction in numbers": (lambda: ensemble(reduce=np.zeros((2, 2))), "reduce = array([["),
+    "complex currents": (
+        lambda: motor().simulate(ROWS * 1j, DT),
+        "current is not an array of numbers: the type is complex128",
+    ),
+    "dates for currents": (
+        lambda: motor().simulate(ROWS.astype("datetime64[s]"), DT),
+        "current is not an array of numbers: the type is datetime64[s]",
+    ),
+    "times for currents": (
+        lambda: motor().run(ROWS.astype("timedelta64[s]"), DT),
+        "current is not an array of numbers: the type is timedelta64[s]",
+    ),
+    "words for currents": (
+        lambda: motor().simulate(["1", "2"], DT),
+        "current is not an array of numbers: the type is <U1",
+    ),
+    "records for currents": (
+        lambda: ensemble(load=np.zeros(5, dtype=[("a", float)])),
+        "load is not an array of numbers: the type is [('a', '<f8')]",
+    ),
+    "a complex load": (
+        lambda: motor().simulate(ROWS, DT, load=np.complex128(1j)),
+        "load is not an array of numbers: the type is complex128",
+    ),
+    "a complex chunk": (lambda: streamed([ROWS * 1j]), "a chunk is not an array of numbers"),
+    "a chunk of no dimensions": (lambda: streamed(np.array(3.0)), "is no sequence; give chunks"),
+    "outputs of no dimensions": (
+        lambda: motor().simulate(ROWS, DT, outputs=np.array(3.0)),
+        "outputs = array(3.) is no sequence; give",
+    ),
+    "a complex state": (
+        lambda: setattr(motor(), "state", motor().state | {"position": np.complex128(1j)}),
+        "state entry 'position'",
+    ),
+    "a complex parameter": (
+        lambda: st.FrictionModel("coulomb", coulomb=np.complex128(1j)),
+        "coulomb of coulomb is a complex128; allowed is a number",
+    ),
+    "a session of no dimensions": (lambda: st.Session(np.array(3.0)), "a recording is array(3.)"),
+    "a parameter in a range": (lambda: Parameter(range(3)), "range(0, 3) is a range; allowed"),
+    "a bound in a word": (lambda: Parameter(1.0, "a"), "min: 'a' is a str; allowed is a number"),
+    "no effects": (
+        lambda: st.Plant(Friction("coulomb"), effects=None),
+        "effects = None is no sequence; give Effects",
+    ),
+    "a motion in numbers": (
+        lambda: st.Plant(Friction("coulomb"), motion=np.zeros((2, 2))),
+        "motion = array([[0., 0.], [0., 0.]]) is unknown",
+    ),
+    "a plant that is none": (
+        lambda: st.load("session.toml", plant=True),
+        "plant is True; give a Plant",
+    ),
+    "a role in numbers": (lambda: recording(role=np.zeros((2, 2))), "the role is array([["),
+    "a start beyond floats": (lambda: recording(start_s=10**400), "give a finite number of sec"),
+    "blocks of nothing": (
+        lambda: st.Session(recording()).split(block_s=None),
+        "split: block_s: None is a NoneType; allowed is a number",
+    ),
+    "an edge in an array": (
+        lambda: st.Session(recording()).split(edge_s=np.zeros((0, 2))),
+        "split: edge_s",
+    ),
+    "a check of nothing": (lambda: check(None), "recording is None; give a Recording"),
+    "a table of nothing": (lambda: read_table(None), "None is not a path"),
+    "a demo nowhere": (lambda: demo_session.copy("\ud800"), "no name that a file can have"),
+    "an experiment in words": (
+        lambda: paper.stick_slip("fast"),
+        "stick_slip: speed: 'fast' is a str; allowed is a number",
+    ),
+    "an experiment without end": (
+        lambda: paper.stick_slip(duration=1e300),
+        "samples, and 10000000 is the most",
+    ),
+    "an experiment backwards": (
+        lambda: paper.experiment_2(hold=-1.0),
+        "a duration is -1 s; give 0 or more",
+    ),
+    "ramps that do not rise": (
+        lambda: paper.static_test(ramp_rate=0.0),
+        "ramp_rate = 0 N·m/s; give more than 0",
+    ),
+    "a single size": (lambda: paper.experiment_3(sizes=3.0), "give a sequence of numbers"),
+    "half a pulse": (lambda: paper.experiment_3(pulses=2.5), "give a whole number"),
+    "no distances": (lambda: paper.loop_areas(distances=[]), "there are no distances"),
+    "no places": (lambda: paper.local_variation(places=0), "places = 0; give 1 to 1000"),
+    "no levels": (lambda: paper.static_test(levels=[]), "there are no levels"),
 }
 
 
@@ -199,6 +298,11 @@ def test_their_good_twins_are_taken() -> None:
     assert len(st.Ensemble(motor(), np.int64(2))) == 2
     assert ensemble(every=np.int64(2)).position.shape == (1, 2)
     assert plant().with_values({"inertia": np.float32(0.5)}).inertia == 0.5
+    assert Parameter(np.float32(0.5)).value == 0.5
+    plain = motor().simulate([1, True, np.float32(3.0), Fraction(1, 2)], np.array(DT))
+    assert len(plain) == 4
+    assert paper.loop_areas(distances=np.array([1e-4])).area.shape == (1,)
+    assert paper.stick_slip(np.array(0.5), duration=np.float32(0.125)).speed == 0.5
     unmasked = np.ma.array([1.0, 2.0], mask=[0, 0])
     assert len(motor().simulate(unmasked, DT)) == 2
     few = np.ma.array(ROWS, mask=ROWS == 7.0)
