@@ -28,6 +28,8 @@ FOREIGN = (
     "np.array(3.0)", "np.array(['a'])", "object", "np.zeros(0)", "range(3)", "[None]", "[1, 'a']",
     "np.array([1.0], dtype=object)", "np.array([1j])", "np.float32(0.1)", "np.int64(3)",
     "np.zeros((0, 2))", "np.ma.masked", "np.datetime64('2020')", "(lambda: 1)", "Ellipsis",
+    "np.complex128(1j)", "np.array(['2020'], dtype='datetime64[D]')", "np.timedelta64(3)",
+    "{'a': 1.0}", "{1.0, 2.0}", "iter([1.0])", "[1.0, 1.0]", "np.array([1.0, np.nan])",
 )  # fmt: skip
 """Values of another kind than what is wanted."""
 LARGE = ("1e16", "-1e30", "1e150", "-1e154", "1e300", "-1e304", "1e308", "-1.7e308")
@@ -60,6 +62,10 @@ class Draw:
     def odd(self) -> bool:
         """Whether the next value is one that nobody would give."""
         return self.random.random() < self.wild
+
+    def odd_one(self) -> str:
+        """A value that nobody would give: of another kind, an extreme number, an odd word."""
+        return str(self.pick(self.pick((FOREIGN, FOREIGN, EXTREMES, ODD_TEXTS))))
 
     def chance(self, share: float) -> bool:
         return self.random.random() < share

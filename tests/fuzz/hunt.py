@@ -28,6 +28,8 @@ CPU_S = 5.0
 """What a line may take on the few samples that cases have."""
 LONG_CPU_S = 90.0
 """And one that simulates many times: a fit, a diagnosis, a comparison."""
+FORMS = 4
+"""Calls in a line that looks whether a state comes back."""
 WALL_TIMES = 12.0
 """Longer than so many times its patience on the clock, a case does not work: it waits."""
 IDLE = 0.01
@@ -62,7 +64,10 @@ def patience(line: str, name: str) -> float:
     """Seconds of processor that a line may take."""
     slow = name in LONG or name.startswith(("paper.", "command.", "report."))
     heavy = callee(line) in LONG or "made(" in line or "paper." in line
-    return LONG_CPU_S if slow or heavy else CPU_S
+    if slow or heavy:
+        return LONG_CPU_S
+    # Each of four forms goes on by itself, and may come to the ceiling of a call.
+    return FORMS * CPU_S if line.startswith("round_trips(") else CPU_S
 
 
 class Worker:

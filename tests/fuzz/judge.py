@@ -39,6 +39,8 @@ NOT_REPEATED = ("seconds", "cost", "cost_ns", "path", "source", "version", "crea
 RAW = ("Motor.run", "Motor.run_segments", "Ensemble.run", "recording.Table.find",
        "recording.read_table", "Nothing.step")  # fmt: skip
 """What hands numbers to a caller that looks whether they are finite, or reads what is missing."""
+AS_THEY_ARE = "strict=False"
+"""How a caller asks for numbers that may be none, as a fit does whose trials run away."""
 UNENDED = re.compile(r"([\s,;:(\[{]|\b(?:and|or|to|of|in|is|the))$")
 INSIDE = re.compile(
     r"has no attribute|index out of (?:range|bounds)|unsupported operand|Traceback|"
@@ -46,7 +48,7 @@ INSIDE = re.compile(
 )
 """Words of Python's own about what a program did, which a reader of a sentence never did."""
 ADDRESS = re.compile(r"at 0x[0-9a-f]{6,}")
-MAKERS = ("wave", "spoiled", "masked", "positive", "scaled", "file", *DAMAGES)
+MAKERS = ("real", "wave", "spoiled", "masked", "positive", "scaled", "file", *DAMAGES)
 """What makes arguments, and may be asked for what cannot be made."""
 HOUSE = (st.InputError,)
 
@@ -152,7 +154,7 @@ def _step(line: str, names: dict[str, Any]) -> tuple[list[Find], str]:
     if heard:
         said = f"{heard[0].category.__name__}: {heard[0].message}"
         return [Find("warning", called, said, line)], ""
-    reason = unsound(value, called)
+    reason = "" if AS_THEY_ARE in line else unsound(value, called)
     if reason:
         return [Find("not finite", called, reason, line)], ""
     return [], digest_of(value)
@@ -245,7 +247,9 @@ def _by_the_call_itself(error: BaseException, line: str) -> bool:
     within = [f for f in inner if f.filename != "<case>"]
     if isinstance(error, TypeError | OverflowError) and not within:
         return True
-    if isinstance(error, TypeError | OverflowError) and str(error).startswith("argument '"):
+    if isinstance(error, TypeError | OverflowError) and any(
+        note.startswith("while processing '") for note in getattr(error, "__notes__", ())
+    ):
         return True
     # What the arguments themselves raise, before anything is called.
     if not within and isinstance(error, KeyError | IndexError | ZeroDivisionError | ValueError):

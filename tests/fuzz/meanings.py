@@ -12,6 +12,8 @@ from .files import kinds
 from .surface import Target
 from .world import needed
 
+ALONE = 0.3
+"""Of plain cases, how many have one argument of any kind."""
 Drawer = Callable[[Draw], str]
 
 STARTS = sorted({p.name for law in LAWS.values() for p in law.start})
@@ -256,14 +258,18 @@ def arguments(draw: Draw, target: Target) -> str:
         return ""
     texts = []
     must = needed(signature)
+    known = [n for n, p in signature.parameters.items() if n not in ("self", "cls")
+             and p.kind not in (p.VAR_KEYWORD, p.VAR_POSITIONAL)]  # fmt: skip
+    # Among plain ones a single argument is odd now and then: many odd ones hide one another.
+    alone = draw.pick(known) if known and draw.wild == 0.0 and draw.chance(ALONE) else ""
     for name, parameter in signature.parameters.items():
         if name in ("self", "cls") or parameter.kind is parameter.VAR_KEYWORD:
             continue
         if name not in must and parameter.kind is not parameter.VAR_POSITIONAL:
             likely = name in ("friction", "members", "noise", "max_evaluations", "surrogates")
-            if not draw.chance(0.9 if likely else 0.3):
+            if name != alone and not draw.chance(0.9 if likely else 0.3):
                 continue
-        text = argument(draw, target, name, parameter)
+        text = draw.odd_one() if name == alone else argument(draw, target, name, parameter)
         keyword = parameter.kind is parameter.KEYWORD_ONLY or name not in must
         texts.append(f"{name}={text}" if keyword and parameter.kind is not
                      parameter.VAR_POSITIONAL else text)  # fmt: skip

@@ -38,9 +38,16 @@ def wave(n: int, seed: int = 0, size: float = 1.0) -> np.ndarray:
     return np.where(rng.random(n) < 0.05, 0.0, values)
 
 
+def real(values: Any) -> np.ndarray:
+    """A new array of floats; what is complex becomes none without a warning, which is no find."""
+    if np.iscomplexobj(values):
+        raise TypeError("complex numbers")
+    return np.array(values, dtype=float)
+
+
 def spoiled(values: Any, place: int, value: Any) -> np.ndarray:
     """An array with another value in one place."""
-    array = np.array(values, dtype=float)
+    array = real(values)
     if array.size:
         array.flat[place % array.size] = value
     return array
@@ -48,7 +55,7 @@ def spoiled(values: Any, place: int, value: Any) -> np.ndarray:
 
 def masked(values: Any, place: int) -> np.ma.MaskedArray[Any, Any]:
     """An array that is masked in one place."""
-    array = np.ma.array(np.asarray(values, dtype=float))
+    array = np.ma.array(real(values))
     if array.size:
         array[place % array.size] = np.ma.masked
     return array
@@ -56,12 +63,12 @@ def masked(values: Any, place: int) -> np.ma.MaskedArray[Any, Any]:
 
 def positive(values: Any) -> np.ndarray:
     """Magnitudes of numbers, none of them 0."""
-    return np.abs(np.array(values, dtype=float)) + 1e-7
+    return np.abs(real(values)) + 1e-7
 
 
 def scaled(factor: Any, values: Any) -> np.ndarray:
     """Numbers times a factor."""
-    return np.asarray(factor, dtype=float) * np.array(values, dtype=float)
+    return real(factor) * real(values)
 
 
 def motor(law: str = "coulomb", **keywords: Any) -> st.Motor:
@@ -112,6 +119,7 @@ PRODUCERS: dict[str, Callable[[], Any]] = {
     "Parameter": lambda: stiction.parameter.Parameter(0.1, 0.0, 1.0),
     "RowKernel": lambda: st._native.RowKernel([0.25, 0.5, 0.25], [1.0, -2.0, 1.0], 1, 0.01),
     "Motion": lambda: st.Motion(1e-3 * wave(51), wave(50), 1e-3),
+    "CancelToken": lambda: st._native.CancelToken(),
     "Table": lambda: stiction.recording.Table(Path("t"), {"a": np.ones(3)}),
 }
 """What makes one of a class, where no constructor is drawn."""
