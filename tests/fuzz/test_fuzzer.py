@@ -23,6 +23,7 @@ from .cases import program
 from .hunt import Tally, Task, Worker, hunt
 from .judge import Find, fault_of_sentence, judge
 from .shrink import shrunk
+from .surface import targets
 
 LINES = ["x = motor()", "x.simulate([0.1, 0.2], 1e-3, load=0.5)", "x.step(0.1, 1e-3)"]
 SOUND = st.Motor.simulate
@@ -106,6 +107,9 @@ def planted(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[Callable[...,
     monkeypatch.setattr(hunting, "CPU_S", 0.2)
     monkeypatch.setattr(hunting, "WALL_TIMES", 10.0)
     workers = []
+
+    # What is called is found out before there is a fault, whose signature is another.
+    targets()
 
     def plant(fault: Callable[..., Any]) -> Worker:
         monkeypatch.setattr(st.Motor, "simulate", fault)

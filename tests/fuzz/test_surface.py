@@ -11,12 +11,13 @@ import stiction as st
 from stiction.recording.formats import FORMATS
 
 from . import surface
-from .cases import LONG, names, program
-from .draw import EFFECTS, LAWS
+from .cases import LONG, names, program, receiver
+from .draw import EFFECTS, LAWS, Draw
 from .files import WRITERS, kinds, writer
 from .hunt import CPU_S, patience
 from .judge import run
 from .surface import EXCLUDED, PARTS, reason_to_pass, targets
+from .world import PRODUCERS
 
 SEEDS = 40
 """Cases among which one is taken as it is."""
@@ -42,6 +43,23 @@ def test_everything_in_the_packages_list_is_looked_at() -> None:
     known = {path for path, _ in surface.named()}
     assert {f"stiction.{name}" for name in st.__all__ if name != "__version__"} <= known
     assert {"stiction.plan.plan", "stiction.compare.compare", "stiction._native.played"} <= known
+
+
+def test_there_is_one_of_every_class_to_call() -> None:
+    owners = {t.owner.__name__ for t in targets().values() if t.owner is not None}
+    drawn = {name for name in owners if "made(" not in receiver(Draw("0"), owner_of(name))}
+    returned = {
+        getattr(inspect.signature(f).return_annotation, "__name__", "")
+        or str(inspect.signature(f).return_annotation)
+        for _, f in surface.named()
+        if inspect.isfunction(f)
+    }
+    # A result is one of any experiment.
+    assert owners <= drawn | PRODUCERS.keys() | returned | {"Result", "MotionResult"}
+
+
+def owner_of(name: str) -> type:
+    return next(t.owner for t in targets().values() if t.owner and t.owner.__name__ == name)
 
 
 def test_a_new_method_and_a_new_function_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
