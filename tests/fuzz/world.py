@@ -40,9 +40,10 @@ def wave(n: int, seed: int = 0, size: float = 1.0) -> np.ndarray:
 
 def real(values: Any) -> np.ndarray:
     """A new array of floats; what is complex becomes none without a warning, which is no find."""
-    if np.iscomplexobj(values):
+    array = np.array(values)
+    if array.dtype.kind == "c":
         raise TypeError("complex numbers")
-    return np.array(values, dtype=float)
+    return array.astype(float)
 
 
 def spoiled(values: Any, place: int, value: Any) -> np.ndarray:

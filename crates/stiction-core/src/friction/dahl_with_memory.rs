@@ -131,6 +131,11 @@ impl<S: Scalar> FrictionLaw<S> for DahlWithMemory<S> {
     }
 
     #[inline(always)]
+    fn glide_cost(&self) -> u64 {
+        3
+    }
+
+    #[inline(always)]
     fn glide<E: Efforts<S>, V: Seen<S, MaxwellSlipState<S>>>(
         &self,
         state: &mut MaxwellSlipState<S>,

@@ -234,6 +234,11 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
     }
 
     #[inline(always)]
+    fn glide_cost(&self) -> u64 {
+        3
+    }
+
+    #[inline(always)]
     fn glide<E: Efforts<S>, V: Seen<S, BristleState<S>>>(
         &self,
         state: &mut BristleState<S>,

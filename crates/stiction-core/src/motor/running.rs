@@ -222,9 +222,13 @@ impl<S: Scalar> Running<S> {
             PerSample::Same(dt) => self.parts(dt) * samples as f64,
             PerSample::Each(values) => self.parts(values.iter().sum()),
         };
-        let glides = self.machine.is_bare() && self.goes_plainly(around);
-        let glides = glides && with_law!(&self.law, |law| law.glides());
-        parts * if glides { work::in_a_row::<S>() } else { self.of_step() } as f64
+        let plain = self.machine.is_bare() && self.goes_plainly(around);
+        let cost = with_law!(&self.law, |law| if plain && law.glides() {
+            work::in_a_row::<S>() * law.glide_cost()
+        } else {
+            self.of_step()
+        });
+        parts * cost as f64
     }
 
     /// Whether steps of a bare body may go in rows.
@@ -299,7 +303,7 @@ impl<S: Scalar> Running<S> {
                     };
                     room = 0; // what the glide has left of it nobody counted
                     let passed = (index - begun) as u64 * u64::from(divided);
-                    meter.take(passed * work::in_a_row::<S>())?;
+                    meter.take(passed * work::in_a_row::<S>() * law.glide_cost())?;
                     if index == end {
                         continue;
                     }

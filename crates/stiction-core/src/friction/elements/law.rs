@@ -135,6 +135,12 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn glides(&self) -> bool {
         false
     }
+    /// What a step of [`FrictionLaw::glide`] takes, in steps in a row of a law with one exponential
+    /// ([`crate::work`]).
+    #[inline(always)]
+    fn glide_cost(&self) -> u64 {
+        1
+    }
     /// Goes on through plain steps of a bare body for as long as there are any: steps in which
     /// nothing turns round and no mode changes, at level 1. The same to the bit as `advance` and
     /// `commit` step by step, in a loop that the law keeps short.
