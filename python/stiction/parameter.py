@@ -100,7 +100,9 @@ def number(given: Any, where: str) -> float:
     InputError
         Anything else.
     """
-    if isinstance(given, bool) or not isinstance(given, Real):
+    # numpy calls a span of time a whole number.
+    timed = getattr(getattr(given, "dtype", None), "kind", "f") not in "iuf"
+    if isinstance(given, bool) or not isinstance(given, Real) or timed:
         kind = type(given).__name__
         told = shown(given)
         what = "" if told == f"a {kind}" else f"{told} "

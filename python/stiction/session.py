@@ -8,7 +8,6 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
-from numbers import Integral
 from pathlib import Path
 from typing import Any
 
@@ -111,7 +110,8 @@ class Session:
         InputError
             No whole number.
         """
-        given.instance(index, Integral, "Session.clock: index", "a whole number")
+        most = given.MOST_WHOLE
+        index = given.whole(index, "Session.clock: index", least=-most, most=most)
         time = self.recordings[index].time
         clock: FloatArray = time - time[0] + self.starts[index]
         return clock

@@ -230,6 +230,14 @@ REFUSED = {
     ),
     "a session of no dimensions": (lambda: st.Session(np.array(3.0)), "a recording is array(3.)"),
     "a parameter in a range": (lambda: Parameter(range(3)), "range(0, 3) is a range; allowed"),
+    "a parameter in seconds": (
+        lambda: Parameter(np.timedelta64(3, "s")),
+        "is a timedelta64; allowed is a number",
+    ),
+    "a recording in seconds": (
+        lambda: st.Session(recording()).clock(np.timedelta64(0, "s")),
+        "Session.clock: index = ",
+    ),
     "a bound in a word": (lambda: Parameter(1.0, "a"), "min: 'a' is a str; allowed is a number"),
     "no effects": (
         lambda: st.Plant(Friction("coulomb"), effects=None),

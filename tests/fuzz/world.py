@@ -48,7 +48,7 @@ def real(values: Any) -> np.ndarray:
 
 def spoiled(values: Any, place: int, value: Any) -> np.ndarray:
     """An array with another value in one place."""
-    array = real(values)
+    array, value = real(values), value if isinstance(value, int) else real(value)
     if array.size:
         array.flat[place % array.size] = value
     return array

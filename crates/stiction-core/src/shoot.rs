@@ -16,10 +16,6 @@ const COARSE_PHASE: f64 = 0.3;
 /// of a fit that strays there would take minutes.
 const MOST_SHOT_PARTS: f64 = 2e3;
 
-/// Windows may overlap as often as they have samples: work grows with those of the motion, each of which
-/// counts so many times at most.
-const OVERLAP: usize = 2;
-
 /// Windows of equal length along a motion, evenly spaced, and what is read off each of them.
 #[derive(Debug, Clone, Copy)]
 pub struct Windows<'a> {
@@ -74,8 +70,8 @@ impl<S: Scalar> Running<S> {
         let actual: Option<&dyn Fn(f64) -> S> =
             if sensor.misreads() { Some(&behind) } else { None };
         let length = windows.weights.len();
-        let shots = windows.number(motion.samples()).saturating_mul(length);
-        let all = work::allowed(shots.min(motion.samples().saturating_mul(OVERLAP)));
+        // Windows may overlap as often as they have samples: what was given is the motion.
+        let all = work::allowed(motion.samples());
         let mut left = all;
         let mut reached = 0;
         for window in 0..windows.number(motion.samples()) {
