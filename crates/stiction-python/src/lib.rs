@@ -43,6 +43,8 @@ mod _native {
 
     use pyo3::prelude::*;
 
+    use super::real::real;
+
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         super::shared::count_forks(module)
@@ -61,7 +63,11 @@ mod _native {
 
         /// Returns its first argument.
         #[pyo3(text_signature = "($self, velocity, dt)")]
-        fn step(&self, velocity: f64, dt: f64) -> f64 {
+        fn step(
+            &self,
+            #[pyo3(from_py_with = real)] velocity: f64,
+            #[pyo3(from_py_with = real)] dt: f64,
+        ) -> f64 {
             let _ = dt;
             velocity
         }

@@ -23,6 +23,9 @@ pub fn real_or_none(value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
 
 #[inline(never)]
 fn converted(value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    if value.hasattr("mask")? {
+        return Err(PyTypeError::new_err("must be real number, not masked"));
+    }
     if !value.is_instance_of::<PyInt>()
         && let Ok(dtype) = value.getattr("dtype")
         && !kind_of(&dtype).is_ok_and(|kind| KINDS.contains(&kind))
