@@ -203,6 +203,7 @@ class Motor:
         start: dict[str, float] | None = None,
         threads: int = 1,
         strict: bool = True,
+        kept: Iterable[int] | None = None,
     ) -> _Floats: ...
     def shoot(
         self,

@@ -17,7 +17,7 @@ from .plant import Plant
 from .residual import started, starting_velocity
 from .stated import Effect
 from .trajectory import FloatArray
-from .weak_form import Candidate, Start, WeakForm
+from .weak_form import Candidate, Places, Start, WeakForm
 
 if TYPE_CHECKING:
     from .motor import Motor
@@ -204,7 +204,11 @@ class LoopForm(WeakForm):
         return columns
 
     def signatures(
-        self, plant: Plant, candidates: Sequence[Candidate], start: Start = None
+        self,
+        plant: Plant,
+        candidates: Sequence[Candidate],
+        start: Start = None,
+        kept: Places | None = None,
     ) -> FloatArray:
         """Derivatives of the residual by the gains of effects that are not there, exact.
 
@@ -233,7 +237,7 @@ class LoopForm(WeakForm):
             columns[:, own] = found
             for k in set(batch) - set(smooth):
                 columns[:, places[k]] = self._tried(plant, candidates[k], records, left, start)
-        return columns
+        return columns if kept is None else columns[kept]
 
     def _tried(
         self,

@@ -11,7 +11,7 @@ import numpy as np
 from .accompanied import accompanied
 from .errors import InputError
 from .trajectory import FloatArray
-from .weak_form import Candidate, Start, WeakForm
+from .weak_form import Candidate, Places, Start, WeakForm
 
 if TYPE_CHECKING:
     from .plant import Plant
@@ -166,7 +166,11 @@ class ShootingForm(WeakForm):
         return columns
 
     def signatures(
-        self, plant: Plant, candidates: Sequence[Candidate], start: Start = None
+        self,
+        plant: Plant,
+        candidates: Sequence[Candidate],
+        start: Start = None,
+        kept: Places | None = None,
     ) -> FloatArray:
         """Derivatives of measured minus needed effort by the gains of effects that are not there.
 
@@ -195,7 +199,7 @@ class ShootingForm(WeakForm):
                 mean = (total[starts + last] - total[starts + first]) / (last - first)
                 answer += response[part] * mean
             columns[:, k] = self.unit * (answer - self._bent(shift))
-        return columns
+        return columns if kept is None else columns[kept]
 
     def missed(
         self, plant: Plant, start: Start, readings: FloatArray, load: FloatArray

@@ -33,12 +33,13 @@ if TYPE_CHECKING:
     from .plant import Plant
     from .recording import Recording
 
-__all__ = ["Around", "Candidate", "Start", "WeakForm"]
+__all__ = ["Around", "Candidate", "Places", "Start", "WeakForm"]
 
 Start = dict[str, float] | None
 """Friction state at the first row of a recording; None where it was never moved."""
 Candidate = tuple[str, dict[str, float]]
 """An effect that may be missing, with the values of its shape parameters."""
+Places = np.ndarray[Any, np.dtype[np.intp]]
 
 
 class Around(TypedDict):
@@ -473,7 +474,11 @@ class WeakForm:
         return columns
 
     def signatures(
-        self, plant: Plant, candidates: Sequence[Candidate], start: Start = None
+        self,
+        plant: Plant,
+        candidates: Sequence[Candidate],
+        start: Start = None,
+        kept: Places | None = None,
     ) -> FloatArray:
         """Derivatives of measured minus needed effort by the gains of effects that are not there.
 
@@ -483,16 +488,23 @@ class WeakForm:
         candidates : sequence of (str, dict)
             Name of an effect and values of its shape parameters.
         start : dict, optional
+        kept : numpy.ndarray of int, optional
+            Rows that are wanted, rising; all n of them without it.
 
         Returns
         -------
-        numpy.ndarray, shape (n, gains)
+        numpy.ndarray, shape (kept, gains)
             In the order of the candidates and of the gains of each.
         """
         motor = self.begun(plant, self.position)
         rows = self._rows(plant)
         found = motor.signature_columns(
-            self.motion, list(candidates), rows, start=start, strict=False
+            self.motion,
+            list(candidates),
+            rows,
+            start=start,
+            strict=False,
+            kept=None if kept is None else kept.tolist(),
         )
         columns: FloatArray = found.T
         return columns

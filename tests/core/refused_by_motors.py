@@ -7,6 +7,8 @@ import stiction as st
 from .refused_by_contacts import DT, INF, NAN, machine, model, read_only, with_state
 from .rigs import INERTIA, motor
 
+ROWS = st._native.RowKernel([0.25, 0.5, 0.25], [0.25, 0.0, -0.5, 0.0, 0.25], 2)
+
 # (what is wrong, its good twin, words that the sentence must hold)
 MOTORS = {
     "no friction": (
@@ -303,6 +305,15 @@ MOTORS = {
         lambda: machine().signatures(st.Motion([0.0, 0.1], [0.1], DT), 3),
         lambda: machine().signatures(st.Motion([0.0, 0.1], [0.1], DT), []),
         ["candidates is 3"],
+    ),
+    "signature of rows that do not rise": (
+        lambda: machine().signature_columns(
+            st.Motion(np.zeros(60), np.zeros(59), DT), [("cogging", {})], ROWS, kept=[3, 2]
+        ),
+        lambda: machine().signature_columns(
+            st.Motion(np.zeros(60), np.zeros(59), DT), [("cogging", {})], ROWS, kept=[2, 3]
+        ),
+        ["kept", "rise", "from 0 to below"],
     ),
     "signatures on no thread": (
         lambda: machine().signatures(st.Motion([0.0, 0.1], [0.1], DT), [], threads=0),

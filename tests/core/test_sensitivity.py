@@ -313,6 +313,11 @@ def test_rows_and_columns_are_efforts_and_derivatives_seen_through_the_kernel(he
     columns = machine.signature_columns(st.Motion(path, current, 1e-3), CANDIDATES, rows)
     expected = seen(machine.signatures(st.Motion(path, current, 1e-3), CANDIDATES))
     assert np.allclose(columns, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
+    # Of some rows the same numbers, wherever a stretch ends.
+    kept = np.flatnonzero(np.arange(columns.shape[1]) % 7 < 3)
+    motion = st.Motion(path, current, 1e-3)
+    some = machine.signature_columns(motion, CANDIDATES, rows, kept=kept.tolist())
+    assert np.array_equal(some, columns[:, kept])
 
 
 CANDIDATES = [

@@ -9,7 +9,8 @@ import stiction as st
 from stiction.diagnosis.candidates import Candidate, Scales, candidates
 from stiction.diagnosis.evidence import Plan
 from stiction.diagnosis.regression import project
-from stiction.diagnosis.screen import Problem, Score, Signatures, screen
+from stiction.diagnosis.screen import Problem, Score, screen
+from stiction.diagnosis.signatures import Signatures
 from stiction.parameter import Parameter
 from stiction.stated import Effect
 
@@ -28,7 +29,7 @@ def test_projection_takes_off_what_the_base_explains_and_the_same_from_held_rows
     other = other_base.project(source.standard_normal(200))
     assert np.allclose(base[fit].T @ other.fit, 0.0, atol=1e-10)
     many = source.standard_normal((70, 120)).T
-    left, share = (own(many) for own in (other_base.off, other_base.share))
+    left, share = other_base.off(many), other_base.directions.T @ many
     assert np.allclose(left.T @ left, many.T @ many - share.T @ share, rtol=0.0, atol=1e-12)
 
 
@@ -36,17 +37,14 @@ def test_a_second_wave_has_another_order() -> None:
     (record,) = (each for each in st.effects() if each.name == "cogging")
     scales = Scales((0.1, 1.0), (1.0, 2.0, 3.0), True, {})
     whole = tuple(candidates(record, scales))
-    columns = np.zeros((4, 2 * len(whole)))
-    slices = tuple(slice(2 * k, 2 * k + 2) for k in range(len(whole)))
+    columns, every = np.zeros((4, 2 * len(whole))), np.ones(4, dtype=bool)
     effect = Effect("cogging", {"order": Parameter(2.0, fixed=True)})
-    second = Signatures(whole, columns, slices, columns).second_of(effect)
+    second = Signatures.given(whole, columns, every).second_of(effect)
     assert [each.shape["order"] for each in second.candidates] == [1.0, 3.0]
     assert all(each.second for each in second.candidates)
     # Where an order is free a neighbour may come to it as well.
     free = tuple(candidates(record, Scales((0.1, 1.0), (1.0, 2.0, 3.0, 4.0, 5.0), False, {})))
-    slices = tuple(slice(2 * k, 2 * k + 2) for k in range(len(free)))
-    columns = np.zeros((4, 10))
-    second = Signatures(free, columns, slices, columns).second_of(effect)
+    second = Signatures.given(free, np.zeros((4, 10)), every).second_of(effect)
     assert [each.shape["order"] for each in second.candidates] == [4.0, 5.0]
 
 
@@ -58,16 +56,13 @@ def tried() -> tuple[Candidate, ...]:
 
 def screened(columns: np.ndarray, base: np.ndarray, residual: np.ndarray) -> dict[str, Score]:
     """Scores of all candidates, of which each has as many of the columns as it has gains."""
-    every, slices, at = tried(), [], 0
-    for each in every:
-        slices.append(slice(at, at + len(each.gains)))
-        at += len(each.gains)
+    every = tried()
+    gains = sum(len(each.gains) for each in every)
     fit = np.arange(ROWS) < FITTED
     null = np.random.default_rng(3).standard_normal((ROWS, SURROGATES))
     block = np.arange(ROWS) // 20
     problem = Problem(residual, base, null, block, fit, [Plan(fit, ~fit)])
-    own = np.asfortranarray(columns[:, :at])
-    signatures = Signatures(every, own, tuple(slices), np.asfortranarray(own[fit]))
+    signatures = Signatures.given(every, columns[:, :gains], fit)
     return {score.candidate.name: score for score in screen(problem, signatures, 1.0)}
 
 

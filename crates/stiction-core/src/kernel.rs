@@ -33,26 +33,37 @@ impl RowKernel<'_> {
 
     /// Measured minus needed effort, from derivatives at the sample ends: `needed` and `driven`
     /// efforts, and how far the centre of mass is `ahead` of the reading; empty where all are 0.
-    pub fn column(&self, [needed, driven, ahead]: [&[f64]; 3], column: &mut [f64]) {
-        Width::widest().run(Seen { kernel: self, needed, driven, ahead, column });
+    pub fn column(&self, traces: [&[f64]; 3], column: &mut [f64]) {
+        self.column_of(traces, 0.., column);
+    }
+
+    /// The same at some of the places, counted from the first sample that is given.
+    pub fn column_of(
+        &self,
+        [needed, driven, ahead]: [&[f64]; 3],
+        places: impl Iterator<Item = usize> + Clone,
+        column: &mut [f64],
+    ) {
+        Width::widest().run(Seen { kernel: self, needed, driven, ahead, places, column });
     }
 }
 
 /// A column that is being filled.
-struct Seen<'a> {
+struct Seen<'a, P> {
     kernel: &'a RowKernel<'a>,
     needed: &'a [f64],
     driven: &'a [f64],
     ahead: &'a [f64],
+    places: P,
     column: &'a mut [f64],
 }
 
-impl Task for Seen<'_> {
+impl<P: Iterator<Item = usize> + Clone> Task for Seen<'_, P> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Self { kernel, needed, driven, ahead, column } = self;
+        let Self { kernel, needed, driven, ahead, places, column } = self;
         let RowKernel { mean, second, every, inertia, held } = *kernel;
         let mut short = Vec::new();
         if held && any(driven) {
@@ -62,12 +73,12 @@ impl Task for Seen<'_> {
             short.extend(both.map(|((one, next), needed)| needed - 0.5 * (one + next)));
         }
         let needed = if short.is_empty() { needed } else { &short };
-        for (place, value) in column.iter_mut().enumerate() {
+        for (value, place) in column.iter_mut().zip(places.clone()) {
             let first = place * every + 1;
             *value = -inner(&needed[first..first + mean.len()], mean);
         }
         if any(ahead) {
-            for (place, value) in column.iter_mut().enumerate() {
+            for (value, place) in column.iter_mut().zip(places) {
                 let first = place * every;
                 *value -= inertia * inner(&ahead[first..first + second.len()], second);
             }
@@ -124,5 +135,7 @@ mod tests {
         assert_eq!(column, [2.5, 4.5, 6.5, 8.5]);
         kernel.column([&zeros, &zeros, &square], &mut column);
         assert_eq!(column, [-6.0; 4]);
+        kernel.column_of([&ramp, &zeros, &zeros], [1, 3].into_iter(), &mut column[..2]);
+        assert_eq!(column[..2], [-4.0, -8.0]);
     }
 }

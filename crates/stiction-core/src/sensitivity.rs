@@ -262,38 +262,50 @@ impl Target for [&mut [f64]; 3] {
 /// A column of rows seen through a kernel.
 pub(crate) struct Column<'a> {
     kernel: &'a RowKernel<'a>,
+    /// The places that are wanted, in their order; all without it.
+    kept: Option<&'a [usize]>,
     values: &'a mut [f64],
-    /// How many of them are there.
+    /// How many places there are, and how many of them were passed.
+    places: usize,
     done: usize,
 }
 
 impl Target for Column<'_> {
     fn take(&mut self, begin: usize, traces: Stretch<'_>) {
-        let places = self.kernel.rows(begin + traces[0].len()).min(self.values.len());
+        let places = self.kernel.rows(begin + traces[0].len()).min(self.places);
         if places <= self.done {
             return;
         }
         let from = self.done * self.kernel.every - begin;
-        let values = &mut self.values[self.done..places];
         let left = traces.map(|trace| trace.get(from..).unwrap_or_default());
-        self.kernel.column(left, values);
+        match self.kept {
+            None => self.kernel.column(left, &mut self.values[self.done..places]),
+            Some(kept) => {
+                let own = [self.done, places].map(|end| kept.partition_point(|place| *place < end));
+                let wanted = kept[own[0]..own[1]].iter().map(|place| place - self.done);
+                self.kernel.column_of(left, wanted, &mut self.values[own[0]..own[1]]);
+            }
+        }
         self.done = places;
     }
 }
 
-/// So many columns, one after the other, and the targets that fill them; of a motion that is shorter than
-/// a kernel they are empty.
+/// So many columns, one after the other, of these places or of all, and the targets that fill them; of a
+/// motion of too few samples for a kernel they are empty.
 pub(crate) fn columns<'a>(
     values: &'a mut [f64],
     number: usize,
     kernel: &'a RowKernel<'a>,
+    samples: usize,
+    kept: Option<&'a [usize]>,
 ) -> Vec<Column<'a>> {
     let rows = values.len() / number.max(1);
+    let places = kernel.rows(samples);
     let mut left = values;
     let mut next = || {
         let own;
         (own, left) = std::mem::take(&mut left).split_at_mut(rows);
-        Column { kernel, values: own, done: 0 }
+        Column { kernel, kept, values: own, places, done: 0 }
     };
     (0..number).map(|_| next()).collect()
 }
@@ -321,7 +333,7 @@ pub fn follow_columns(
     kernel: &RowKernel<'_>,
 ) -> Result<Vec<f64>> {
     let mut values = vec![0.0; paths.len() * kernel.rows(motion.samples())];
-    let mut targets = columns(&mut values, paths.len(), kernel);
+    let mut targets = columns(&mut values, paths.len(), kernel, motion.samples(), None);
     follow_into(spec, start, motion, paths, Some(kernel), &mut targets)?;
     Ok(values)
 }

@@ -3,16 +3,17 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use stiction_dispatch::{Task, Width};
-
-use crate::effects::{AnyEffect, EffectRecord, Effects, Hook, Passage, Situation, neutral_values};
+use crate::effects::{EffectRecord, Hook};
 use crate::interrupt;
 use crate::kernel::RowKernel;
 use crate::motor::{EffectSpec, MotorSpec, Running};
-use crate::scalar::{COLUMNS, Dual, Scalar};
+use crate::scalar::{COLUMNS, Dual};
 use crate::sensitivity::{EffortSensitivity, MeasuredMotion, Start, Target, columns, seeded};
 use crate::traces::Traces;
-use crate::trig;
+
+mod direct;
+
+use direct::{Direct, at_once};
 
 /// Follows given positions and differentiates the efforts by every gain of effects that the motor
 /// does not have, each at the gain 0 and at its own shape; rows in the order of the candidates and
@@ -33,18 +34,21 @@ pub fn signatures(
 }
 
 /// The same, of measured minus needed effort seen through a kernel: all rows of the first gain,
-/// then all of the next.
+/// then all of the next. Of all places of the kernel, or of those `kept`, which rise: hundreds of
+/// columns of a long motion take no more room than what is looked at of them.
 pub fn signature_columns(
     spec: &MotorSpec,
     start: Start<'_>,
     motion: &MeasuredMotion<'_>,
     candidates: &[EffectSpec],
-    kernel: &RowKernel<'_>,
+    kernel: (&RowKernel<'_>, Option<&[usize]>),
     threads: usize,
 ) -> Vec<f64> {
     let number = gains_of(candidates).len();
-    let mut values = vec![0.0; number * kernel.rows(motion.samples())];
-    let targets = columns(&mut values, number, kernel);
+    let (kernel, kept) = kernel;
+    let rows = kept.map_or_else(|| kernel.rows(motion.samples()), <[usize]>::len);
+    let mut values = vec![0.0; number * rows];
+    let targets = columns(&mut values, number, kernel, motion.samples(), kept);
     signatures_into(spec, start, motion, candidates, threads, Some(kernel), targets);
     values
 }
@@ -77,7 +81,11 @@ fn signatures_into(
         list.push((place, target));
     }
     if !direct.is_empty() {
-        at_once(spec, start, motion, candidates, direct);
+        let list = direct.into_iter().map(|((index, gain), target)| {
+            let EffectSpec { record, values } = &candidates[index];
+            Direct { record, values, gain, target }
+        });
+        at_once(spec, start, motion, kernel, list.collect());
     }
     let work = Mutex::new(apart(seeded, candidates).into_iter());
     let next = || work.lock().unwrap_or_else(PoisonError::into_inner).next();
@@ -129,230 +137,6 @@ fn acts_at_once(record: &EffectRecord) -> bool {
     })
 }
 
-/// Share of the usual input by which a gain of the input map is moved to see what it does; such maps
-/// are made of straight pieces, so any small step gives the derivative.
-const SMALL: f64 = 1e-6;
-
-/// What a sample holds for effects that act at once.
-struct Sample {
-    at: Situation<f64>,
-    passage: Passage<f64>,
-    /// ∂friction/∂(level of dry, of viscous friction, effort): a contact at rest answers an effort.
-    by: [f64; 3],
-    command: f64,
-    /// ∂(effort of the drive)/∂command.
-    gain: f64,
-}
-
-/// Traces of effects that act at once: what one unit of a gain adds to level, effort or input, times
-/// the derivative by that. One pass carries the derivatives by the levels, whatever the number of
-/// gains; and what is proportional to a wave over position is asked once, whatever the number of
-/// orders.
-fn at_once<T: Target>(
-    spec: &MotorSpec,
-    start: Start<'_>,
-    motion: &MeasuredMotion<'_>,
-    candidates: &[EffectSpec],
-    targets: Vec<Seeded<T>>,
-) {
-    let along = Along::of(spec, start, motion);
-    if interrupt::due() {
-        return;
-    }
-    let number = motion.samples();
-    let (mut needed, mut driven) = (vec![0.0; number], vec![0.0; number]);
-    let mut fill = |unit: &Unit, wave: &[f64], target: &mut T| {
-        let (needed, driven) = (&mut *needed, &mut *driven);
-        let driven = if unit.driven.is_empty() { &mut driven[..0] } else { driven };
-        let rigid = along.rigid;
-        Width::widest().run(Modulated { unit, wave, rigid, needed, driven });
-        target.take(0, [needed, driven, &[]]);
-    };
-    let even = vec![1.0; number];
-    let mut waves = Vec::new();
-    for ((index, gain), mut target) in targets {
-        if interrupt::due() {
-            return;
-        }
-        let EffectSpec { record, values } = &candidates[index];
-        match record.facts.wave() {
-            None => fill(&along.unit(record, values, gain), &even, &mut target),
-            Some(shape) => {
-                let order = record.parameters.iter().position(|p| p.name == shape);
-                let sine = record.facts.gains.last() == Some(&record.parameters[gain].name);
-                waves.push((order.map_or(0.0, |place| values[place]), record, sine, target));
-            }
-        }
-    }
-    // Effects of one order share their waves.
-    waves.sort_by(|one, other| one.0.total_cmp(&other.0));
-    let positions: Vec<f64> = along.samples.iter().map(|sample| sample.at.position).collect();
-    let (mut cosines, mut sines) = (even, vec![0.0; number]);
-    let mut carriers: Vec<(&str, Unit)> = Vec::new();
-    let mut present = None;
-    for (order, record, sine, mut target) in waves {
-        if interrupt::due() {
-            return;
-        }
-        if present != Some(order) {
-            present = Some(order);
-            trig::waves(order, &positions, &mut cosines, &mut sines);
-        }
-        let known = carriers.iter().position(|(name, _)| *name == record.name);
-        let known = known.unwrap_or_else(|| {
-            carriers.push((record.name, along.carrier(record)));
-            carriers.len() - 1
-        });
-        fill(&carriers[known].1, if sine { &sines } else { &cosines }, &mut target);
-    }
-}
-
-/// What a unit of a gain does in every sample.
-struct Unit {
-    /// To friction: by the levels, and by how a contact answers an effort.
-    friction: Vec<f64>,
-    /// Effort that is added; empty where there is none.
-    added: Vec<f64>,
-    /// What the drive gives; empty where there is none.
-    driven: Vec<f64>,
-}
-
-/// Traces of a gain whose unit comes and goes with a wave.
-struct Modulated<'a> {
-    unit: &'a Unit,
-    wave: &'a [f64],
-    rigid: bool,
-    needed: &'a mut [f64],
-    driven: &'a mut [f64],
-}
-
-impl Task for Modulated<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { unit, wave, rigid, needed, driven } = self;
-        for ((needed, friction), wave) in needed.iter_mut().zip(&unit.friction).zip(wave) {
-            *needed = friction * wave;
-        }
-        if rigid {
-            // As `Running::follow_about` has it.
-            for k in 1..needed.len() {
-                needed[k - 1] = 0.5 * (needed[k - 1] + needed[k]);
-            }
-        }
-        for ((needed, added), wave) in needed.iter_mut().zip(&unit.added).zip(wave) {
-            *needed -= added * wave;
-        }
-        for ((driven, own), wave) in driven.iter_mut().zip(&unit.driven).zip(wave) {
-            *driven = own * wave;
-        }
-    }
-}
-
-/// The samples along a motion.
-struct Along {
-    samples: Vec<Sample>,
-    /// Whether their friction is its mean over each of them.
-    rigid: bool,
-    /// Greatest command.
-    usual: f64,
-}
-
-impl Along {
-    fn of(spec: &MotorSpec, start: Start<'_>, motion: &MeasuredMotion<'_>) -> Self {
-        let (samples, rigid) = samples_along(spec, start, motion);
-        let usual = samples.iter().map(|sample| sample.command.abs()).fold(0.0, f64::max);
-        Self { samples, rigid, usual }
-    }
-
-    /// What a unit of the gain at this place does, the other parameters as given.
-    fn unit(&self, record: &EffectRecord, values: &[f64], gain: usize) -> Unit {
-        let mapped = record.hooks.contains(&Hook::InputMap);
-        let adds = record.hooks.contains(&Hook::AddedEffort);
-        let unit = if mapped && self.usual > 0.0 { SMALL * self.usual } else { 1.0 };
-        let mut own = values.to_vec();
-        own[gain] = unit;
-        let mut effects = Effects::new(AnyEffect::build(record.name, &own));
-        let room = |wanted| Vec::with_capacity(if wanted { self.samples.len() } else { 0 });
-        let mut found = Unit { friction: room(true), added: room(adds), driven: room(mapped) };
-        for sample in &self.samples {
-            effects.remember(&sample.passage);
-            let (dry, viscous) = effects.sums(&sample.at);
-            let (mut added, mut moved) = (0.0, 0.0);
-            if adds {
-                added = effects.effort(&sample.at) / unit;
-                found.added.push(added);
-            }
-            if mapped {
-                let input = effects.input(sample.command, &sample.at) - sample.command;
-                moved = sample.gain * input / unit;
-                found.driven.push(moved);
-            }
-            let levels = (dry - 1.0) * sample.by[0] + (viscous - 1.0) * sample.by[1];
-            found.friction.push(levels / unit + (added + moved) * sample.by[2]);
-        }
-        found
-    }
-
-    /// What an effect that is proportional to a wave over position does where the wave is 1.
-    fn carrier(&self, record: &EffectRecord) -> Unit {
-        let place = |name: &str| record.parameters.iter().position(|p| p.name == name);
-        let mut values = neutral_values(record);
-        if let Some(order) = record.facts.wave().and_then(place) {
-            values[order] = 0.0;
-        }
-        let cosine = record.facts.gains.first().and_then(|name| place(name));
-        self.unit(record, &values, cosine.unwrap_or(0))
-    }
-}
-
-/// The samples, and whether their friction is its mean over each of them.
-fn samples_along(
-    spec: &MotorSpec,
-    start: Start<'_>,
-    motion: &MeasuredMotion<'_>,
-) -> (Vec<Sample>, bool) {
-    let values: Vec<f64> = spec.parameters().into_iter().map(|(_, value)| value).collect();
-    let mut running = seeded(spec, start, &values, &[]);
-    let seeds = [1.0, 1.0, 0.0];
-    let [level, viscous, effort] = std::array::from_fn(|k| Dual::variable(seeds[k], k));
-    running.machine.effects.seed(level, viscous, effort);
-    let drive = running.machine.drive;
-    let mut before = (running.actual(motion.positions[0]), running.run.friction.re());
-    let mut samples = Vec::with_capacity(motion.samples());
-    let mut rigid = false;
-    running.follow(motion, |k, efforts, there| {
-        let (friction, at) = (efforts.friction, there.situation());
-        rigid = efforts.mean.is_some();
-        let mean = efforts.mean.unwrap_or(friction);
-        let position = at.position.re();
-        let (displacement, span) = (position - before.0, motion.dt.at(k));
-        let passage = Passage { displacement, friction: before.1, span };
-        before = (position, friction.re());
-        let command = there.command().re();
-        samples.push(Sample {
-            at: Situation {
-                position,
-                velocity: at.velocity.re(),
-                time: at.time.re(),
-                path: at.path.re(),
-                moved: at.moved.re(),
-                load: at.load.re(),
-                sliding: at.sliding.re(),
-                temperature: at.temperature,
-                wound: at.wound.re(),
-                enabled: at.enabled,
-            },
-            passage,
-            by: [mean.partial(0), mean.partial(1), mean.partial(2)],
-            command,
-            gain: if at.enabled { drive.slope(command, at.velocity.re()) } else { 0.0 },
-        });
-    });
-    (samples, rigid)
-}
-
 /// The motor with the candidates of a pass, given as rows of candidate and place of its gain.
 fn with_candidates(
     spec: &MotorSpec,
@@ -379,8 +163,7 @@ fn with_candidates(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::effects::EFFECTS;
+    use crate::effects::{AnyEffect, EFFECTS, Effects, Situation, neutral_values};
 
     #[test]
     fn what_is_proportional_to_a_wave_is_its_carrier_times_the_wave() {

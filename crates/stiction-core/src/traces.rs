@@ -13,6 +13,44 @@ const STRETCH: usize = 512;
 /// Derivatives by one parameter in some samples: needed, driven, ahead; empty where all are 0.
 pub type Stretch<'a> = [&'a [f64]; 3];
 
+/// Which samples of a motion are there at once: those of a stretch, and those before it that a kernel
+/// still asks for.
+#[derive(Debug, Clone, Copy)]
+pub struct Reach {
+    samples: usize,
+    room: usize,
+    /// Samples that a place of the kernel covers, and from one place to the next.
+    covers: Option<(usize, usize)>,
+}
+
+impl Reach {
+    /// In a motion of so many samples, seen sample by sample or through a kernel.
+    pub fn of(samples: usize, kernel: Option<&RowKernel<'_>>) -> Self {
+        let covers = kernel.map(|kernel| (kernel.second.len(), kernel.every));
+        let covered = covers.map_or(0, |(width, every)| width + every);
+        let room = samples.min(covered + STRETCH.max(covered));
+        Self { samples, room, covers }
+    }
+
+    /// Samples of the motion.
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// How many of them there is room for.
+    pub fn room(&self) -> usize {
+        self.room
+    }
+
+    /// The first sample that is still asked for once all before `end` are there.
+    pub fn kept_from(&self, end: usize) -> usize {
+        self.covers.map_or(end, |(width, every)| {
+            let places = (end + 1).saturating_sub(width).div_ceil(every);
+            end.min(places * every)
+        })
+    }
+}
+
 /// Room for the samples of a stretch and for those before it that a kernel still asks for.
 #[derive(Debug)]
 pub struct Traces {
@@ -20,29 +58,22 @@ pub struct Traces {
     rows: [Vec<f64>; 3],
     /// Which of them held anything but 0 so far; needed is there in any case.
     there: [bool; 3],
-    /// Samples of the motion, and how many of them there is room for.
-    samples: usize,
-    room: usize,
-    /// Samples that a place of the kernel covers, and from one place to the next.
-    reach: Option<(usize, usize)>,
+    reach: Reach,
     columns: usize,
 }
 
 impl Traces {
     /// For a motion of so many samples, seen sample by sample or through a kernel.
     pub fn new(samples: usize, kernel: Option<&RowKernel<'_>>) -> Self {
-        let reach = kernel.map(|kernel| (kernel.second.len(), kernel.every));
-        let covered = reach.map_or(0, |(width, every)| width + every);
-        let room = samples.min(covered + STRETCH.max(covered));
-        let there = [true, false, false];
-        Self { rows: Default::default(), there, samples, room, reach, columns: 0 }
+        let reach = Reach::of(samples, kernel);
+        Self { rows: Default::default(), there: [true, false, false], reach, columns: 0 }
     }
 
     /// The same for so many columns.
     pub fn of(&mut self, columns: usize) -> &mut Self {
         self.columns = columns;
         for rows in &mut self.rows {
-            rows.resize(rows.len().max(columns * self.room), 0.0);
+            rows.resize(rows.len().max(columns * self.reach.room), 0.0);
         }
         self
     }
@@ -51,14 +82,6 @@ impl Traces {
     pub fn to<'a>(&'a mut self, take: &'a mut Take<'a>) -> Filling<'a> {
         self.there = [true, false, false];
         Filling { traces: self, begin: 0, end: 0, take }
-    }
-
-    /// The first sample that is still asked for once all before `end` are there.
-    fn kept_from(&self, end: usize) -> usize {
-        self.reach.map_or(end, |(width, every)| {
-            let places = (end + 1).saturating_sub(width).div_ceil(every);
-            end.min(places * every)
-        })
     }
 }
 
@@ -79,7 +102,7 @@ impl Filling<'_> {
     /// Takes the derivatives of the next sample.
     #[inline(always)]
     pub fn put(&mut self, sample: usize, of: [&Dual; 3]) {
-        let Traces { rows, there, room, columns, .. } = &mut *self.traces;
+        let Traces { rows, there, reach: Reach { room, .. }, columns } = &mut *self.traces;
         for ((rows, there), dual) in rows.iter_mut().zip(there).zip(of) {
             if !*there {
                 if !dual.derivative_is_nonzero() {
@@ -100,7 +123,7 @@ impl Filling<'_> {
     /// Hands over what is there, and keeps what is asked for again.
     #[inline(never)]
     pub fn hand_over(&mut self) {
-        let Traces { rows, there, room, columns, samples, .. } = &mut *self.traces;
+        let Traces { rows, there, reach: Reach { room, samples, .. }, columns } = &mut *self.traces;
         let (begin, end) = (self.begin, self.end);
         for column in 0..*columns {
             let own = column * *room..column * *room + (end - begin);
@@ -112,7 +135,7 @@ impl Filling<'_> {
             return;
         }
         let room = *room;
-        self.begin = self.traces.kept_from(end);
+        self.begin = self.traces.reach.kept_from(end);
         for rows in &mut self.traces.rows {
             for row in rows.chunks_exact_mut(room) {
                 row.copy_within(self.begin - begin..end - begin, 0);

@@ -86,6 +86,19 @@ fn refuse_masked(name: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
     Ok(())
 }
 
+/// Places that rise, each below an end.
+pub fn rising(name: &str, places: &Bound<'_, PyAny>, end: usize) -> PyResult<Vec<usize>> {
+    let found: Vec<usize> = places.extract().unwrap_or_else(|_| vec![end]);
+    let rise = found.is_sorted_by(|one, next| one < next);
+    if rise && found.last().is_none_or(|last| *last < end) {
+        return Ok(found);
+    }
+    let told = format!(
+        "{name} is no sequence of whole numbers that rise; give some from 0 to below {end}"
+    );
+    Err(input_error(places.py(), told))
+}
+
 /// A one-dimensional [`samples`].
 pub fn one_row<'py>(
     name: &str,

@@ -71,10 +71,10 @@ class Base:
         """Columns of the fitted rows alone, without what the base explains; same shape."""
         return fit - self._left @ (self._left.T @ fit)
 
-    def share(self, fit: FloatArray) -> FloatArray:
-        """What of columns of the fitted rows lies in each direction of the base; shape (p, k)."""
-        found: FloatArray = self._left.T @ fit
-        return found
+    @property
+    def directions(self) -> FloatArray:
+        """Directions of the base over the fitted rows, each of length 1; shape (n_fit, p)."""
+        return self._left
 
     def project(self, columns: FloatArray) -> Projected:
         """Columns of all rows, shape (n, k) or (n,), without what the base explains."""

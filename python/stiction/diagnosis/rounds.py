@@ -23,9 +23,10 @@ from .fewer import MIMIC, chained, dropped_by_the_latest, join, without
 from .model import Model, without_effect
 from .replay import centre, shared
 from .result import CandidateRow
-from .screen import Score, Signatures
+from .screen import Score
 from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
+from .signatures import Signatures
 from .together import pass_together, passes_beside
 from .trials import LESSER, SLIGHT, Screening, compared_fit, promises, unstuck, whole_fit
 

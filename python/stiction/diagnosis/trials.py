@@ -29,7 +29,8 @@ from .model import (
     without_effect,
 )
 from .noisy_motion import told_by_noise
-from .screen import Problem, Score, Signatures, likelier, screen
+from .screen import Problem, Score, likelier, screen
+from .signatures import Signatures
 
 __all__ = [
     "LESSER",
@@ -179,7 +180,7 @@ class Screening:
         if candidate.record.swings:
             plant = replace(base.plant, effects=(*base.plant.effects, effect))
             column = base.residual - finite(self.evidence.residual(plant, base.nuisances))
-            there = Signatures.single(self.evidence, candidate, column)
+            there = Signatures.given([candidate], column[:, None], self.evidence.fitted)
         else:
             shape = {name: effect.parameters[candidate.own(name)].value for name in candidate.shape}
             there = Signatures.of(
@@ -219,7 +220,7 @@ class Screening:
             return finite(self.evidence.residual(less, model.nuisances)) - model.residual
         index = self.signatures.candidates.index(score.candidate)
         gains = model.gains(score.candidate)
-        explained: FloatArray = self.signatures.columns[:, self.signatures.slices[index]] @ gains
+        explained: FloatArray = self.signatures.whole([index])[index] @ gains
         return explained
 
     def _left_by(self, model: Model) -> Problem:
@@ -259,7 +260,7 @@ def _from_screening(
     if not np.any(gains):
         typical = {each.name: each.typical for each in score.candidate.record.parameters}
         gains = np.array([typical[name] for name in score.candidate.record.gains])
-    explained = signatures.columns[:, signatures.slices[index]] @ score.gains
+    explained = signatures.whole([index])[index] @ score.gains
 
     def begun(share: float, like: Candidate, gains: FloatArray) -> Plant:
         return with_effect(stepped(base, share * explained), like, (share * gains).tolist())
@@ -302,11 +303,11 @@ def _alike(
     found = [(candidate, gains)]
     if not candidate.record.swings or candidate.resonance > 0.0:
         return found
-    own = signatures.over_fitted[:, signatures.slices[index]]
-    for other, place in zip(signatures.candidates, signatures.slices, strict=True):
+    own = signatures.over_fitted(index)
+    for place, other in enumerate(signatures.candidates):
         alike = other.name == candidate.name and other.resonance == 0.0
         if alike and other is not candidate:
-            column = signatures.over_fitted[:, place]
+            column = signatures.over_fitted(place)
             times = float(np.sum(own * column)) / max(float(np.sum(column**2)), 1e-300)
             found.append((other, times * gains))
     return found

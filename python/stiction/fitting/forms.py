@@ -22,6 +22,7 @@ from .rows import Nuisances, Rows
 
 __all__ = [
     "EVERY_S",
+    "FOLLOWED",
     "KERNELS",
     "LEAST_LEFT",
     "Through",
@@ -52,6 +53,8 @@ HORIZONS_S: Final = (0.100, 0.300)
 and let a motion that hangs on a break-away run away."""
 BEYOND_SHOWN: Final = 2.0
 """A contact simulated over windows may become so many times stiffer than samples show."""
+FOLLOWED: Final = frozenset({"initial_stiffness", "damping"})
+"""What of a contact ends where it can be simulated."""
 RINGS: Final = 3.0
 """Periods of its ring on the pre-sliding stiffness that a window holds: a start that is wrong by a
 count sets a machine ringing, and of a ring three times as fast as itself the kernel leaves 1 %."""
@@ -364,32 +367,38 @@ def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
 
     A loop is simulated whole, with a contact no stiffer than its samples show (see
     ``shows_its_ring``). Windows may come somewhat further, to where they are given up: without an
-    end a contact that is rigid would be simulated stiffer and stiffer, each time for longer.
+    end a contact that is rigid would be simulated stiffer and stiffer, each time for longer. Nor is
+    it damped more than critically where it ends: what stops a machine within a small part of a
+    sample is no other for stopping it in a smaller one, and is simulated in as many steps more.
     """
-    stiffness = plant.friction.parameters.get("initial_stiffness")
     # What is moved as its recording says rings with nothing, however stiff it is.
-    if stiffness is None or stiffness.fixed or plant.prescribed_motion:
+    if "initial_stiffness" not in plant.friction.parameters or plant.prescribed_motion:
         return plant
-    shown = plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
+    shown = np.pi / max(form.dt for form in forms)
     loops = all(isinstance(form, LoopForm) for form in forms)
-    most, start = (shown, 0.5) if loops else (BEYOND_SHOWN * shown, 1.0)
-    ends = max(min(stiffness.max or most, most), stiffness.min or 0.0)
-    held = replace(stiffness, value=min(stiffness.value, start * ends), max=ends)
-    parameters = {**plant.friction.parameters, "initial_stiffness": held}
+    beyond, start = (1.0, 0.5) if loops else (BEYOND_SHOWN, 1.0)
+    ends = {
+        "initial_stiffness": beyond * plant.inertia * shown**2,
+        "damping": 2.0 * float(np.sqrt(beyond)) * plant.inertia * shown,
+    }
+    parameters = dict(plant.friction.parameters)
+    for name in ends.keys() & parameters.keys():
+        own = parameters[name]
+        if not own.fixed:
+            most = max(min(own.max or ends[name], ends[name]), own.min or 0.0)
+            parameters[name] = replace(own, value=min(own.value, start * most), max=most)
     return replace(plant, friction=replace(plant.friction, parameters=parameters))
 
 
 def as_stated(plant: Plant, given: Plant) -> Plant:
-    """The plant with the upper bound of its stiffness that was given.
+    """The plant with the upper bounds of its stiffness and damping that were given.
 
-    One that ``followable`` set is an end of what can be simulated, and says nothing of the machine.
+    Those that ``followable`` set are ends of what can be simulated, and say nothing of the machine.
     """
-    stiffness = plant.friction.parameters.get("initial_stiffness")
-    if stiffness is None:
-        return plant
-    stated = given.friction.parameters.get("initial_stiffness")
-    most = None if stated is None else stated.max
-    parameters = {**plant.friction.parameters, "initial_stiffness": replace(stiffness, max=most)}
+    parameters = dict(plant.friction.parameters)
+    for name in FOLLOWED & parameters.keys():
+        stated = given.friction.parameters.get(name)
+        parameters[name] = replace(parameters[name], max=None if stated is None else stated.max)
     return replace(plant, friction=replace(plant.friction, parameters=parameters))
 
 

@@ -62,7 +62,10 @@ SELECT_IS_FITTED: Final = (
     "fits those of train alone, and may end at values a little different."
 )
 """The one thing in which a fit and the base of a diagnosis differ."""
-STIFFNESS: Final = "friction.initial_stiffness"
+MOST_FOLLOWED: Final = {
+    "friction.initial_stiffness": "the stiffest contact",
+    "friction.damping": "the most damped contact",
+}
 """What windows can follow up to an end that nobody stated."""
 WEIGHT_FLOOR: Final = 0.1
 """A recording weighs at most this many times less residual than the worst one has."""
@@ -418,7 +421,7 @@ def _errors(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> tuple[f
 def _bound_sentences(
     parameters: dict[str, FitParameter], given: Plant, *, followed: bool
 ) -> tuple[str, ...]:
-    """What ended at a bound; ``followed``: the stiffness ends where windows stop following it.
+    """What ended at a bound; ``followed``: a contact ends where windows stop following it.
 
     Only a bound that ``given`` states can be widened.
     """
@@ -427,9 +430,9 @@ def _bound_sentences(
         if not p.at_bound:
             continue
         value = f"{p.value:.6g}" + (f" {p.unit}" if p.unit != "1" else "")
-        if path == STIFFNESS and p.at_bound == "upper" and followed:
+        if path in MOST_FOLLOWED and p.at_bound == "upper" and followed:
             sentences.append(
-                f"{path} ended at {value}, the stiffest contact that can be simulated between "
+                f"{path} ended at {value}, {MOST_FOLLOWED[path]} that can be simulated between "
                 "these samples: record more often to tell it"
             )
         elif states_bound(given, path, p.at_bound):

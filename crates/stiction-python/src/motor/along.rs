@@ -10,7 +10,7 @@ use stiction_core::signatures::{signature_columns, signatures};
 
 use super::Motor;
 use crate::arguments::{Names, candidates_of, gains_of, threads_of};
-use crate::arrays::{Around, Each, one_row, target};
+use crate::arrays::{Around, Each, one_row, rising, target};
 use crate::error::{IntoPython, is_finite, outcome};
 use crate::interrupt::detached;
 use crate::kernel::RowKernel;
@@ -276,6 +276,8 @@ impl Motor {
     ///     As for ``follow_rows``.
     /// candidates, start, threads, strict
     ///     As for ``signatures``.
+    /// kept : sequence of int, optional
+    ///     Rows that are wanted, rising from 0; all of them without it.
     ///
     /// Returns
     /// -------
@@ -285,8 +287,8 @@ impl Motor {
     /// Raises
     /// ------
     /// InputError
-    ///     As for ``signatures``.
-    #[pyo3(signature = (motion, candidates, kernel, *, start=None, threads=1, strict=true))]
+    ///     As for ``signatures``; rows that do not rise, or that are not there.
+    #[pyo3(signature = (motion, candidates, kernel, *, start=None, threads=1, strict=true, kept=None))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn signature_columns<'py>(
         &self,
@@ -297,17 +299,22 @@ impl Motor {
         start: Option<&Bound<'py, PyAny>>,
         threads: i64,
         strict: bool,
+        kept: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let motion = motion.get();
         let measured = motion.measured();
         let threads = threads_of(py, threads)?;
         let list = candidates_of(candidates)?;
         let kernel = kernel.get().core();
+        let rows = kernel.rows(motion.samples());
+        let kept = kept.map(|kept| rising("kept", kept, rows)).transpose()?;
         let values = self.beside(py, start, |spec, start| {
-            signature_columns(spec, start, &measured, &list, &kernel, threads)
+            let kernel = (&kernel, kept.as_deref());
+            signature_columns(spec, start, &measured, &list, kernel, threads)
         })?;
         outcome(py, strict, "derivatives", [values.as_slice()])?;
-        PyArray1::from_vec(py, values).reshape([gains_of(&list), kernel.rows(motion.samples())])
+        let rows = kept.map_or(rows, |kept| kept.len());
+        PyArray1::from_vec(py, values).reshape([gains_of(&list), rows])
     }
 
     /// Exact derivatives of position and velocity by parameters, from the present state; the motor
