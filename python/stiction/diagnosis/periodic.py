@@ -27,6 +27,8 @@ __all__ = [
 
 PHASES: Final = 24
 """Stretches of a period."""
+AT_ONCE: Final = 4096
+"""Rows of which the waves of all orders are there at once."""
 LOWEST_LINE: Final = 10
 """Hz; what is slower comes with the motion, not with time."""
 NEIGHBOURS: Final = (2, 8)
@@ -126,13 +128,27 @@ def order_views(
     friction : float
         Weighted rms of the friction.
     """
-    waves = waves_of(orders, position)
-    scans = [_Scan(each, orders, weights) for each in asked]
-    for plan in plans:
-        fit, held = _Waves(waves[:, :, plan.fit]), _Waves(waves[:, :, plan.held])
-        for scan in scans:
-            scan.add(plan, fit, held)
-    return [scan.view(waves, weights, friction) for scan in scans]
+    scans = [_Scan(each, orders, weights, len(plans)) for each in asked]
+    pieces = [slice(at, at + AT_ONCE) for at in range(0, len(position), AT_ONCE)]
+    for rows in pieces:
+        waves = waves_of(orders, position[rows])
+        for k, plan in enumerate(plans):
+            for role, mask in enumerate((plan.fit, plan.held)):
+                within = mask[rows]
+                if np.any(within):
+                    some = _Waves(waves[:, :, within])
+                    for scan in scans:
+                        scan.add(k, role, some, rows.start + np.flatnonzero(within))
+    for scan in scans:
+        scan.judge()
+    phases = np.empty((len(scans), len(position)), dtype=np.int64)
+    for rows in pieces:
+        waves = waves_of(orders, position[rows])
+        for own, scan in zip(phases, scans, strict=True):
+            cosine, sine = waves[:, scan.best]
+            phase = np.mod(np.arctan2(sine, cosine), 2.0 * np.pi)
+            own[rows] = np.minimum((phase / (2.0 * np.pi) * PHASES).astype(np.int64), PHASES - 1)
+    return [scan.view(own, weights, friction) for own, scan in zip(phases, scans, strict=True)]
 
 
 class _Waves:
@@ -157,38 +173,51 @@ class _Waves:
 class _Scan:
     """What each order explains of a residual and its surrogates."""
 
-    def __init__(self, asked: Asked, orders: Sequence[float], weights: FloatArray) -> None:
+    def __init__(
+        self, asked: Asked, orders: Sequence[float], weights: FloatArray, plans: int
+    ) -> None:
         self.asked = asked
         factor = asked.factor
         self.grown = weights
         if factor is not None:
             self.grown = weights * factor / np.sqrt(np.mean(factor**2) + 1e-300)
-        self.explained = np.zeros((len(orders), asked.both.shape[1]))
+        number = asked.both.shape[1]
+        # Of each plan the rows that it fits, and those that it holds out.
+        self.normal = np.zeros((plans, 2, len(orders), 2, 2))
+        self.pushed = np.zeros((plans, 2, len(orders), 2, number))
+        self.explained = np.zeros((len(orders), number))
         self.removed = np.zeros_like(self.explained)
-        self.total = np.zeros(asked.both.shape[1])
+        self.total = np.zeros(number)
         self.rows = 0
 
-    def add(self, plan: Plan, fit: _Waves, held: _Waves) -> None:
-        """Adds what one plan tells."""
-        both, grown = self.asked.both, self.grown
-        left = both[plan.held]
-        self.total += np.sum(left**2, axis=0)
-        self.rows += len(left)
-        normal, pushed = fit.products(grown[plan.fit], both[plan.fit])
-        gains = np.linalg.pinv(normal, rcond=1e-10, hermitian=True) @ pushed
-        self.explained += np.sum(gains * pushed, axis=1)
-        normal, pushed = held.products(grown[plan.held], left)
-        self.removed += np.sum(gains * (2.0 * pushed - normal @ gains), axis=1)
+    def add(self, plan: int, role: int, waves: _Waves, rows: np.ndarray) -> None:
+        """Adds what some rows tell a plan, which fits them (0) or holds them out (1)."""
+        both = self.asked.both[rows]
+        normal, pushed = waves.products(self.grown[rows], both)
+        self.normal[plan, role] += normal
+        self.pushed[plan, role] += pushed
+        if role == 1:
+            self.total += np.sum(both**2, axis=0)
+            self.rows += len(rows)
 
-    def view(self, waves: FloatArray, weights: FloatArray, friction: float) -> View:
-        """The order that explains most."""
+    def judge(self) -> None:
+        """What each order explains where it is fitted, and takes off where it is not."""
+        for normal, pushed in zip(self.normal, self.pushed, strict=True):
+            gains = np.linalg.pinv(normal[0], rcond=1e-10, hermitian=True) @ pushed[0]
+            self.explained += np.sum(gains * pushed[0], axis=1)
+            self.removed += np.sum(gains * (2.0 * pushed[1] - normal[1] @ gains), axis=1)
+
+    @property
+    def best(self) -> int:
+        """The order that explains most of the residual."""
+        return int(np.argmax(self.explained[:, 0]))
+
+    def view(self, index: np.ndarray, weights: FloatArray, friction: float) -> View:
+        """The order that explains most, over its phase; ``index`` tells the part of each row."""
         both = self.asked.both
         best = np.argmax(self.explained, axis=0)
         own = self.removed[best, np.arange(both.shape[1])]
         shares = own / np.maximum(self.total, 1e-300)
-        cosine, sine = waves[:, int(best[0])]
-        phase = np.mod(np.arctan2(sine, cosine), 2.0 * np.pi)
-        index = np.minimum((phase / (2.0 * np.pi) * PHASES).astype(np.int64), PHASES - 1)
         # In units of effort: of what grows with something, at its usual size.
         curves = means(index, both * (_sign_of(self.asked.factor) / weights)[:, None], PHASES)
         low, high = np.quantile(curves[:, 1:], [0.025, 0.975], axis=1)
