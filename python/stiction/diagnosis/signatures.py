@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -25,6 +25,13 @@ __all__ = ["Alike", "Block", "Signatures"]
 FEW: Final = 32
 """Candidates of which columns of all rows are kept, should they be asked for again."""
 
+BUDGET: Final = 96_000_000
+"""Bytes of columns that are held as they are. Of longer sessions they are held in single precision:
+rounding of 6·10⁻⁸ in each row by itself, of which sums over rows, which are formed in double
+precision, keep next to nothing; far more is lost in what is chosen by them."""
+MADE, WIDENED = 32_000_000, 8_000_000
+"""Bytes of columns that are made, or widened, at once: each time, recordings are gone along."""
+
 _Beside = Callable[[Sequence[int]], FloatArray]
 
 
@@ -39,12 +46,22 @@ class Block:
     rows : slice
         Among the fitted rows.
     values : numpy.ndarray, shape (gains, rows)
-        Weighted; each gain in one piece.
+        Weighted; each gain in one piece, in single precision where there are too many.
     """
 
     first: int
     rows: slice
-    values: FloatArray
+    values: np.ndarray[Any, np.dtype[np.floating]]
+
+    def parts(self) -> Iterator[tuple[slice, FloatArray]]:
+        """Gains and their columns in double precision, some at a time."""
+        number = len(self.values)
+        if self.values.dtype != np.float32:
+            yield slice(self.first, self.first + number), self.values.astype(np.float64, copy=False)
+            return
+        for some in _pieces(number, WIDENED // (8 * max(self.values.shape[1], 1))):
+            at = slice(self.first + some.start, self.first + some.stop)
+            yield at, self.values[some].astype(np.float64)
 
     def of(self, gains: slice) -> Block | None:
         """What it holds of these gains, None for nothing."""
@@ -92,7 +109,7 @@ class Alike:
             for total, k in zip(normal, places, strict=True):
                 if block.holds(slices[k]):
                     start = slices[k].start - block.first
-                    part = block.values[start : start + number]
+                    part = block.values[start : start + number].astype(np.float64, copy=False)
                     total += part @ part.T
         bounds = np.array(
             [list(zip(*signatures.candidates[k].bounds, strict=True)) for k in places]
@@ -111,7 +128,7 @@ class Signatures:
     """Derivatives of what the plant needs by the gains of candidates, at zero gain.
 
     The residual is what is measured less what is needed: a signature that resembles it is missing.
-    There are hundreds of columns: of them only the fitted rows are held, once, recording by
+    There are hundreds of columns: of those only the fitted rows are held, once, recording by
     recording. The others are made again for the few candidates that are asked for.
 
     Attributes
@@ -167,7 +184,8 @@ class Signatures:
         swung = seen.swung(swinging)
         # Simulations cost more than to hold what they came to.
         held = seen.sloped(sloping, ~fitted) if evidence.simulated else None
-        blocks = [Block(0, *own) for own in seen.blocks(sloping, fitted)] if sloping else []
+        single = 8 * slices[-1].stop * np.count_nonzero(fitted) > BUDGET if slices else False
+        blocks = seen.blocks(sloping, fitted, single=single)
         if swinging:
             blocks.append(Block(at, slice(0, int(fitted.sum())), swung[:, fitted]))
         swung = swung[:, ~fitted]
@@ -257,8 +275,8 @@ class Signatures:
         """Sᵀ times columns of the fitted rows, shape (n_fit,) or (n_fit, k); shape (gains, …)."""
         found = np.zeros((self.gains, *vectors.shape[1:]))
         for block in self.blocks:
-            own = slice(block.first, block.first + len(block.values))
-            found[own] += block.values @ vectors[block.rows]
+            for own, values in block.parts():
+                found[own] += values @ vectors[block.rows]
         return found
 
     def products_by(self, vector: FloatArray, pieces: np.ndarray) -> FloatArray:
@@ -269,11 +287,11 @@ class Signatures:
         """
         found = np.zeros((self.gains, int(pieces.max()) + 1))
         for block in self.blocks:
-            own = slice(block.first, block.first + len(block.values))
             piece, within = pieces[block.rows], vector[block.rows]
             ends = [0, *(np.flatnonzero(np.diff(piece)) + 1).tolist(), len(piece)]
-            for start, stop in pairwise(ends):
-                found[own, piece[start]] += block.values[:, start:stop] @ within[start:stop]
+            for own, values in block.parts():
+                for start, stop in pairwise(ends):
+                    found[own, piece[start]] += values[:, start:stop] @ within[start:stop]
         return found
 
 
@@ -302,30 +320,54 @@ class _Seen:
         number = _slices(candidates)[-1].stop if candidates else 0
         if number == 0 or not np.any(rows):
             return np.zeros((number, int(rows.sum())))
-        return np.concatenate([values for _, values in self.blocks(candidates, rows)], axis=1)
+        found = np.empty((number, int(rows.sum())))
+        for block in self.blocks(candidates, rows):
+            found[block.first : block.first + len(block.values), block.rows] = block.values
+        return found
 
-    def blocks(self, candidates: Sequence[Candidate], rows: Mask) -> list[tuple[slice, FloatArray]]:
-        """The same a recording each, with their place among the rows that are wanted."""
-        wanted = [(each.name, dict(each.shape)) for each in candidates]
+    def blocks(
+        self, candidates: Sequence[Candidate], rows: Mask, *, single: bool = False
+    ) -> list[Block]:
+        """The same a recording each, with their place among the rows that are wanted.
+
+        ``single`` asks for columns in single precision, made a part of them at a time.
+        """
+        slices = _slices(candidates)
         shown = self.evidence.shown
         ends = np.cumsum([0, *(np.count_nonzero(each.mask) for each in shown)]).tolist()
         own = [rows[start:stop] for start, stop in pairwise(ends)]
 
-        def seen(place: tuple[Rows, float, Mask]) -> FloatArray:
+        def seen(place: tuple[Rows, float, Mask]) -> list[Block]:
             each, weight, some = place
             kept = np.flatnonzero(each.mask)[some]
             start = self.nuisances.start(each.index)
-            # Hundreds of columns: each is written once, in one piece, and never copied.
-            found = each.form.signatures(self.plant, wanted, start, kept).T
-            found *= -weight
-            return finite(found)
+            at_once = MADE // (16 * len(kept)) if single else len(slices)
+            found = []
+            for piece in _pieces(len(slices), at_once):
+                wanted = [(one.name, dict(one.shape)) for one in candidates[piece]]
+                # Hundreds of columns: each is written once, in one piece.
+                values = each.form.signatures(self.plant, wanted, start, kept).T
+                values *= -weight
+                values = finite(values)
+                if single:
+                    values = values.astype(np.float32)
+                found.append(Block(slices[piece][0].start, slice(0, len(kept)), values))
+            return found
 
         places = zip(shown, self.weights, own, strict=True)
-        there = [(each, weight, some) for each, weight, some in places if np.any(some)]
-        found = self.evidence.each(seen, there)
-        ends = np.cumsum([0, *(values.shape[1] for values in found)]).tolist()
-        stretches = [slice(start, stop) for start, stop in pairwise(ends)]
-        return list(zip(stretches, found, strict=True))
+        there = [place for place in places if np.any(place[2])] if slices else []
+        at, placed = 0, []
+        for found in self.evidence.each(seen, there):
+            end = at + found[0].rows.stop
+            placed += [replace(block, rows=slice(at, end)) for block in found]
+            at = end
+        return placed
+
+
+def _pieces(number: int, at_once: int) -> list[slice]:
+    """So many, some at a time."""
+    some = max(1, at_once)
+    return [slice(k, min(k + some, number)) for k in range(0, number, some)]
 
 
 def _slices(candidates: Sequence[Candidate]) -> tuple[slice, ...]:
