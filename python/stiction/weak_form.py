@@ -165,7 +165,7 @@ class WeakForm:
         self.stride = 1 if every is None else max(1, round(every / self.dt))
         load = recording.channels.get("load")
         self.load = np.zeros_like(x) if load is None else held(time, stamps, load)
-        self.effort = driven / plant.gain
+        self.effort = driven if plant.gain == 1.0 else driven / plant.gain
         self.springy = plant.friction.springy
         self.readings = x
         self.read_with(noise)

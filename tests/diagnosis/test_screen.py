@@ -61,7 +61,7 @@ def screened(columns: np.ndarray, base: np.ndarray, residual: np.ndarray) -> dic
     fit = np.arange(ROWS) < FITTED
     null = np.random.default_rng(3).standard_normal((ROWS, SURROGATES))
     block = np.arange(ROWS) // 20
-    problem = Problem(residual, base, null, block, fit, [Plan(fit, ~fit)])
+    problem = Problem(residual, base, null[fit], block, fit, [Plan(fit, ~fit)])
     signatures = Signatures.given(every, columns[:, :gains], fit)
     return {score.candidate.name: score for score in screen(problem, signatures, 1.0)}
 

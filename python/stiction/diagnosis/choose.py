@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
 from .candidates import FALL, scales_of
 from .chance import TOO_NEAR, by_chance, unrepeated
 from .decide import OUT_OF_RANGE, Trial
 from .gains import paired_z
+
+_Contribution = np.ndarray[Any, np.dtype[np.floating]]
 
 __all__ = ["ALIKE", "DECIDED_Z", "Choice", "choose", "covers", "parallel", "strangers"]
 
@@ -210,8 +211,9 @@ def _cosine(one: Trial, other: Trial) -> float:
     return parallel(one.score.signature, other.score.signature)
 
 
-def parallel(a: FloatArray, b: FloatArray) -> float:
+def parallel(one: _Contribution, other: _Contribution) -> float:
     """Magnitude of the cosine of two contributions, shape (n,) each; 0 where one is 0."""
+    a, b = (each.astype(np.float64, copy=False) for each in (one, other))
     norm = float(np.linalg.norm(a) * np.linalg.norm(b))
     return abs(float(a @ b)) / norm if norm > 0.0 else 0.0
 

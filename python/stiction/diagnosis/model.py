@@ -99,6 +99,10 @@ class Model:
         """Derivatives of ``residual`` by what was fitted and does not stand at a bound."""
         return self._slopes(self.evidence.shown)
 
+    def forget(self) -> None:
+        """Lets go of the derivatives: they are found again where somebody asks."""
+        self.__dict__.pop("columns", None)
+
     @cached_property
     def fitted_columns(self) -> FloatArray:
         """The same of the fitted rows alone."""
@@ -329,10 +333,12 @@ def fitted(
 
 def power_of(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
     """Weighted power that a plant leaves in the rows of train; infinite where it runs away."""
-    power = 0.0
-    for rows in evidence.train:
+
+    def left(rows: Rows) -> float:
         own = rows.weight * rows.residual(plant, nuisances)[rows.mask]
-        power += float(own @ own)
+        return float(own @ own)
+
+    power = sum(evidence.each(left, evidence.train))
     return power if np.isfinite(power) else float("inf")
 
 

@@ -69,7 +69,8 @@ class Base:
 
     def off(self, fit: FloatArray) -> FloatArray:
         """Columns of the fitted rows alone, without what the base explains; same shape."""
-        return fit - self._left @ (self._left.T @ fit)
+        found = self._left @ (self._left.T @ fit)
+        return np.subtract(fit, found, out=found)
 
     @property
     def directions(self) -> FloatArray:

@@ -74,6 +74,7 @@ def search(
     tried: list[Candidate] = []
     try:
         bias, centred = centre(null)
+        centred = centred[evidence.fitted]
         bias = shared(bias, base.residual, evidence.cells.recording)
         tried = _candidates(evidence, base, without, found)
         if not tried:
@@ -98,6 +99,9 @@ def search(
             _logger.info("found %s", choice.winner.name)
             found.choices[-1] = sharpened(screening, found.choices[-1])
             found.models[-1] = unstuck(_settled(found.choices[-1].winner.model))
+            for trial in trials:
+                if trial is not choice.winner:
+                    trial.model.forget()
             dropped |= dropped_by_the_latest(evidence, found)
             rests |= join(screening, found)
             rests |= _take_back(screening, found)

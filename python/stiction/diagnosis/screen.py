@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -48,8 +48,8 @@ class Problem:
         Weighted, less the bias that the surrogates show.
     base : numpy.ndarray, shape (n, p)
         Derivatives by the parameters of the base and by nuisances.
-    null : numpy.ndarray, shape (n, surrogates)
-        Residuals in which nothing is to be found.
+    null : numpy.ndarray, shape (n_fit, surrogates)
+        Residuals of the fitted rows in which nothing is to be found.
     block : numpy.ndarray of int, shape (n,)
         Block of 1 s of each row.
     fitted : numpy.ndarray of bool, shape (n,)
@@ -83,8 +83,8 @@ class Score:
         Share of the signature's power that the base cannot imitate.
     visible : float
         Score that the effect would have if its effort were 2 % of the friction.
-    signature : numpy.ndarray, shape (n_fit,)
-        What the effect contributes, base projected off.
+    signature : numpy.ndarray of float32, shape (n_fit,)
+        What the effect contributes, base projected off: for angles between effects alone.
     """
 
     candidate: Candidate
@@ -94,7 +94,7 @@ class Score:
     heldout: float
     left: float
     visible: float
-    signature: FloatArray
+    signature: np.ndarray[Any, np.dtype[np.float32]]
 
     @property
     def testable(self) -> bool:
@@ -131,7 +131,7 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     base = project(problem.base, Plan(problem.fitted, problem.fitted))
     fitted = problem.fitted
     # What is free of the base has the same products with columns as with what is left of them.
-    residual, null = base.off(problem.residual[fitted]), base.off(problem.null[fitted])
+    residual, null = base.off(problem.residual[fitted]), base.off(problem.null)
     power = max(float(residual @ residual), 1e-300)
     within = signatures.products(base.directions).T
     scan = _Scan.of(signatures, within)
@@ -176,7 +176,7 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
                 heldout=heldout[index],
                 left=left,
                 visible=left * len(residual) * (SEEN_SIZE * friction) ** 2 / power,
-                signature=part @ gains[index],
+                signature=(part @ gains[index]).astype(np.float32),
             )
         )
     return sorted(scores, key=lambda s: -s.score)
@@ -320,14 +320,13 @@ def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) ->
     number = int(problem.block.max()) + 1
     before = np.zeros(number)
     after = {index: np.zeros(number) for index in chosen}
-    columns = signatures.whole(chosen)
     for plan in problem.plans:
         base = project(problem.base, plan)
         residual = base.project(problem.residual)
         block = problem.block[plan.held]
         before += np.bincount(block, residual.held**2, number)
-        for index in chosen:
-            part = base.project(columns[index])
+        for index, columns in signatures.whole(chosen):
+            part = base.project(columns)
             normal, product = part.fit.T @ part.fit, part.fit.T @ residual.fit
             (inverse,) = _inverses(normal[None])
             low, high = np.array(signatures.candidates[index].bounds).T

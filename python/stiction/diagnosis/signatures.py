@@ -16,6 +16,7 @@ from ..fitting.rows import Mask, Nuisances, Rows
 from ..plant import Plant
 from ..stated import Effect
 from ..trajectory import FloatArray
+from ..weak_form import Places
 from .candidates import Candidate
 from .evidence import Evidence
 from .model import with_effect
@@ -29,7 +30,7 @@ BUDGET: Final = 96_000_000
 """Bytes of columns that are held as they are. Of longer sessions they are held in single precision:
 rounding of 6·10⁻⁸ in each row by itself, of which sums over rows, which are formed in double
 precision, keep next to nothing; far more is lost in what is chosen by them."""
-MADE, WIDENED = 32_000_000, 8_000_000
+MADE, WIDENED = 8_000_000, 8_000_000
 """Bytes of columns that are made, or widened, at once: each time, recordings are gone along."""
 
 _Beside = Callable[[Sequence[int]], FloatArray]
@@ -251,7 +252,7 @@ class Signatures:
                 found[start : start + len(part.values), part.rows] = part.values
         return found.T
 
-    def whole(self, indices: Sequence[int]) -> dict[int, FloatArray]:
+    def whole(self, indices: Sequence[int]) -> Iterator[tuple[int, FloatArray]]:
         """Columns of some candidates over all rows that may be looked at; shape (n, q) each."""
         new = sorted(set(indices) - self.known.keys())
         if new and not np.all(self.fitted):
@@ -261,14 +262,18 @@ class Signatures:
             ends = np.cumsum([self.slices[k].stop - self.slices[k].start for k in new])
             others = np.split(self.beside(new), ends[:-1])
             self.known.update(zip(new, others, strict=True))
-        found = {}
         for k in indices:
             own = self.over_fitted(k)
             columns = np.empty((len(self.fitted), own.shape[1]))
             columns[self.fitted] = own
             if k in self.known:
                 columns[~self.fitted] = self.known[k].T
-            found[k] = columns
+            yield k, columns
+
+    def explained(self, index: int, gains: FloatArray) -> FloatArray:
+        """What gains of a candidate explain of all rows that may be looked at; shape (n,)."""
+        ((_, columns),) = self.whole([index])
+        found: FloatArray = columns @ gains
         return found
 
     def products(self, vectors: FloatArray) -> FloatArray:
@@ -332,36 +337,34 @@ class _Seen:
 
         ``single`` asks for columns in single precision, made a part of them at a time.
         """
-        slices = _slices(candidates)
-        shown = self.evidence.shown
+        slices, shown = _slices(candidates), self.evidence.shown
+        if not slices:
+            return []
         ends = np.cumsum([0, *(np.count_nonzero(each.mask) for each in shown)]).tolist()
-        own = [rows[start:stop] for start, stop in pairwise(ends)]
+        places, at = [], 0
+        for each, weight, within in zip(shown, self.weights, pairwise(ends), strict=True):
+            kept = np.flatnonzero(each.mask)[rows[slice(*within)]]
+            if len(kept):
+                places.append((each, weight, kept, slice(at, at + len(kept))))
+            at += len(kept)
+        # In one piece: of many smaller ones freed memory does not find its way back.
+        all_of = np.empty((slices[-1].stop if single else 0, at), dtype=np.float32)
 
-        def seen(place: tuple[Rows, float, Mask]) -> list[Block]:
-            each, weight, some = place
-            kept = np.flatnonzero(each.mask)[some]
+        def seen(place: tuple[Rows, float, Places, slice]) -> Block:
+            each, weight, kept, at = place
             start = self.nuisances.start(each.index)
-            at_once = MADE // (16 * len(kept)) if single else len(slices)
-            found = []
-            for piece in _pieces(len(slices), at_once):
+            for piece in _pieces(len(slices), MADE // (16 * len(kept)) if single else len(slices)):
                 wanted = [(one.name, dict(one.shape)) for one in candidates[piece]]
                 # Hundreds of columns: each is written once, in one piece.
                 values = each.form.signatures(self.plant, wanted, start, kept).T
                 values *= -weight
                 values = finite(values)
                 if single:
-                    values = values.astype(np.float32)
-                found.append(Block(slices[piece][0].start, slice(0, len(kept)), values))
-            return found
+                    first, last = slices[piece][0].start, slices[piece][-1].stop
+                    all_of[first:last, at] = values
+            return Block(0, at, all_of[:, at] if single else values)
 
-        places = zip(shown, self.weights, own, strict=True)
-        there = [place for place in places if np.any(place[2])] if slices else []
-        at, placed = 0, []
-        for found in self.evidence.each(seen, there):
-            end = at + found[0].rows.stop
-            placed += [replace(block, rows=slice(at, end)) for block in found]
-            at = end
-        return placed
+        return self.evidence.each(seen, places)
 
 
 def _pieces(number: int, at_once: int) -> list[slice]:

@@ -98,8 +98,8 @@ class Screening:
     ----------
     evidence : Evidence
     signatures : Signatures
-    centred : numpy.ndarray, shape (n, surrogates)
-        Residuals of the surrogates about their mean.
+    centred : numpy.ndarray, shape (n_fit, surrogates)
+        Residuals of the surrogates about their mean, over the fitted rows.
     bias : numpy.ndarray, shape (n,)
         Their mean, as far as the residual shares it.
     friction : float
@@ -220,8 +220,7 @@ class Screening:
             return finite(self.evidence.residual(less, model.nuisances)) - model.residual
         index = self.signatures.candidates.index(score.candidate)
         gains = model.gains(score.candidate)
-        explained: FloatArray = self.signatures.whole([index])[index] @ gains
-        return explained
+        return self.signatures.explained(index, gains)
 
     def _left_by(self, model: Model) -> Problem:
         evidence = self.evidence
@@ -260,7 +259,7 @@ def _from_screening(
     if not np.any(gains):
         typical = {each.name: each.typical for each in score.candidate.record.parameters}
         gains = np.array([typical[name] for name in score.candidate.record.gains])
-    explained = signatures.whole([index])[index] @ score.gains
+    explained = signatures.explained(index, score.gains)
 
     def begun(share: float, like: Candidate, gains: FloatArray) -> Plant:
         return with_effect(stepped(base, share * explained), like, (share * gains).tolist())
