@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 
@@ -430,20 +431,25 @@ class Plant:
         return self._motor(self.inertia or 1.0, "fast")
 
     def _motor(self, inertia: float, integrator: str) -> Motor:
+        return Motor(inertia, integrator=integrator, **self._settings)
+
+    @cached_property
+    def _settings(self) -> dict[str, Any]:
+        """What a motor of this plant is made with: a fit makes one for every recording."""
         zero = self.body.get("gravity_zero_rad")
-        return Motor(
-            inertia,
-            self.gain,
-            self.friction.model(),
-            effects={e.name: {n: p.value for n, p in e.parameters.items()} for e in self.effects},
-            gravity_amplitude=self.gravity,
-            gravity_zero=0.0 if zero is None else zero.value,
-            weight=self.weight,
-            input_limit=float(self.drive.get("limit", np.inf)),
-            servo=servo_numbers(self.drive),
-            count=self.count,
-            integrator=integrator,
-        )
+        return {
+            "torque_constant": self.gain,
+            "friction": self.friction.model(),
+            "effects": {
+                e.name: {n: p.value for n, p in e.parameters.items()} for e in self.effects
+            },
+            "gravity_amplitude": self.gravity,
+            "gravity_zero": 0.0 if zero is None else zero.value,
+            "weight": self.weight,
+            "input_limit": float(self.drive.get("limit", np.inf)),
+            "servo": servo_numbers(self.drive),
+            "count": self.count,
+        }
 
     def simulate(
         self,
