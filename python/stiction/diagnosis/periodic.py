@@ -142,8 +142,9 @@ def order_views(
     for scan in scans:
         scan.judge()
     phases = np.empty((len(scans), len(position)), dtype=np.int64)
+    wanted = orders[: max(max(scan.best for scan in scans) + 1, 2)]
     for rows in pieces:
-        waves = waves_of(orders, position[rows])
+        waves = waves_of(wanted, position[rows])
         for own, scan in zip(phases, scans, strict=True):
             cosine, sine = waves[:, scan.best]
             phase = np.mod(np.arctan2(sine, cosine), 2.0 * np.pi)

@@ -133,21 +133,31 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     # What is free of the base has the same products with columns as with what is left of them.
     residual, null = base.off(problem.residual[fitted]), base.off(problem.null)
     power = max(float(residual @ residual), 1e-300)
-    within = signatures.products(base.directions).T
+    # All at once: columns are gone through no more often than has to be.
+    products = signatures.products(np.column_stack([residual, base.directions, null]))
+    count = 1 + base.directions.shape[1]
+    within, of_null = products[:, 1:count].T, products[:, count:]
     scan = _Scan.of(signatures, within)
-    gains, explained = scan.regressed(signatures.products(residual))
+    gains, explained = scan.regressed(products[:, 0])
     forms = [candidate.form for candidate in signatures.candidates]
     best: dict[str, int] = {}
     for index, form in enumerate(forms):
         if form not in best or explained[index] > explained[best[form]]:
             best[form] = index
-    heldout = _heldout(problem, signatures, list(best.values()))
+    chosen = list(best.values())
+    signatures.ask(chosen)
+    if signatures.single:
+        # They chose; what counts of what was chosen is measured again.
+        for index in chosen:
+            part = base.off(signatures.over_fitted(index))
+            gains[index], explained[index] = _measured(part, residual, signatures.candidates[index])
+    heldout = _heldout(problem, signatures, chosen)
     # What explains most and carries over: taken out for the thresholds of all others.
     carrying = [index for index in best.values() if heldout[index] > 0.0]
     strongest = max(carrying or best.values(), key=lambda index: explained[index])
     unexplained = residual - base.off(signatures.over_fitted(strongest)) @ gains[strongest]
     null_power = np.maximum(np.sum(null**2, axis=0), 1e-300)
-    noise = scan.explained(signatures.products(null)) / null_power
+    noise = scan.explained(of_null) / null_power
     turn = _Turned(signatures, base.directions, within, problem.block[fitted], null.shape[1])
     turned = scan.explained(turn.products(unexplained)) / power
     own = {form: np.array(forms) == form for form in best}
@@ -315,6 +325,21 @@ def _threshold(noise: FloatArray, turned: FloatArray) -> float:
     )
 
 
+def _measured(
+    part: FloatArray, residual: FloatArray, candidate: Candidate
+) -> tuple[FloatArray, float]:
+    """Gains of one candidate within its bounds, and the power that they take away.
+
+    Shapes (n_fit, q) and (n_fit,), the base taken off both.
+    """
+    normal, product = part.T @ part, part.T @ residual
+    (inverse,) = _inverses(normal[None])
+    low, high = np.array(candidate.bounds).T
+    best = (inverse @ product)[None]
+    (gains,) = bounded(normal[None], product[None], best, low[None], high[None])
+    return gains, float(2.0 * gains @ product - gains @ normal @ gains)
+
+
 def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) -> dict[int, float]:
     """Share of the held-out power that each chosen candidate removes, over all plans."""
     number = int(problem.block.max()) + 1
@@ -325,14 +350,9 @@ def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) ->
         residual = base.project(problem.residual)
         block = problem.block[plan.held]
         before += np.bincount(block, residual.held**2, number)
-        for index, columns in signatures.whole(chosen):
-            part = base.project(columns)
-            normal, product = part.fit.T @ part.fit, part.fit.T @ residual.fit
-            (inverse,) = _inverses(normal[None])
-            low, high = np.array(signatures.candidates[index].bounds).T
-            (gains,) = bounded(
-                normal[None], product[None], (inverse @ product)[None], low[None], high[None]
-            )
+        for index in chosen:
+            part = base.project(signatures.whole(index))
+            gains, _ = _measured(part.fit, residual.fit, signatures.candidates[index])
             left = residual.held - part.held @ gains
             after[index] += np.bincount(block, left**2, number)
     shares = {}

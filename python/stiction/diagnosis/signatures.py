@@ -31,7 +31,9 @@ BUDGET: Final = 96_000_000
 rounding of 6·10⁻⁸ in each row by itself, of which sums over rows, which are formed in double
 precision, keep next to nothing; far more is lost in what is chosen by them."""
 MADE, WIDENED = 8_000_000, 8_000_000
-"""Bytes of columns that are made, or widened, at once: each time, recordings are gone along."""
+"""Bytes of columns that are made, or widened, at once."""
+OFTEN: Final = 8
+"""Times that a recording is gone along for that."""
 
 _Beside = Callable[[Sequence[int]], FloatArray]
 
@@ -143,7 +145,7 @@ class Signatures:
         Which of the rows that may be looked at these are.
     beside : callable
         Columns of some candidates, by their places, which rise, over the other rows, weighted;
-        shape (gains, n_other).
+        shape (gains, n_other). Over all rows where those that are held are in single precision.
     known : dict of int to numpy.ndarray
         What was asked for last.
     """
@@ -184,17 +186,19 @@ class Signatures:
         seen = _Seen(evidence, plant, nuisances, weights)
         swung = seen.swung(swinging)
         # Simulations cost more than to hold what they came to.
-        held = seen.sloped(sloping, ~fitted) if evidence.simulated else None
-        single = 8 * slices[-1].stop * np.count_nonzero(fitted) > BUDGET if slices else False
+        bytes_of_all = 8 * slices[-1].stop * np.count_nonzero(fitted) if slices else 0
+        single = not evidence.simulated and bytes_of_all > BUDGET
+        others = np.ones_like(fitted) if single else ~fitted
+        held = seen.sloped(sloping, others) if evidence.simulated else None
         blocks = seen.blocks(sloping, fitted, single=single)
         if swinging:
             blocks.append(Block(at, slice(0, int(fitted.sum())), swung[:, fitted]))
-        swung = swung[:, ~fitted]
+        swung = swung[:, others]
 
         def beside(places: Sequence[int]) -> FloatArray:
             wanted = [k for k in places if k < len(sloping)]
             if held is None:
-                found = seen.sloped([candidates[k] for k in wanted], ~fitted)
+                found = seen.sloped([candidates[k] for k in wanted], others)
             else:
                 found = held[_columns(slices, wanted)]
             return np.concatenate([found, swung[[k - len(sloping) for k in places[len(wanted) :]]]])
@@ -241,8 +245,27 @@ class Signatures:
             lambda places: self.beside([own[k] for k in places]),
         )
 
+    @property
+    def single(self) -> bool:
+        """Whether columns are held in single precision."""
+        return any(block.values.dtype == np.float32 for block in self.blocks)
+
+    def ask(self, indices: Sequence[int]) -> None:
+        """Makes what is not held of some candidates, all at once."""
+        new = sorted(set(indices) - self.known.keys())
+        if not new or (np.all(self.fitted) and not self.single):
+            return
+        if len(self.known) + len(new) > FEW:
+            self.known.clear()
+            new = sorted(set(indices))
+        ends = np.cumsum([self.slices[k].stop - self.slices[k].start for k in new])
+        self.known.update(zip(new, np.split(self.beside(new), ends[:-1]), strict=True))
+
     def over_fitted(self, index: int) -> FloatArray:
         """Columns of one candidate over the fitted rows; shape (n_fit, q)."""
+        if self.single:
+            self.ask([index])
+            return self.known[index][:, self.fitted].T
         own = self.slices[index]
         found = np.zeros((own.stop - own.start, int(self.fitted.sum())))
         for block in self.blocks:
@@ -252,28 +275,21 @@ class Signatures:
                 found[start : start + len(part.values), part.rows] = part.values
         return found.T
 
-    def whole(self, indices: Sequence[int]) -> Iterator[tuple[int, FloatArray]]:
-        """Columns of some candidates over all rows that may be looked at; shape (n, q) each."""
-        new = sorted(set(indices) - self.known.keys())
-        if new and not np.all(self.fitted):
-            if len(self.known) + len(new) > FEW:
-                self.known.clear()
-                new = sorted(set(indices))
-            ends = np.cumsum([self.slices[k].stop - self.slices[k].start for k in new])
-            others = np.split(self.beside(new), ends[:-1])
-            self.known.update(zip(new, others, strict=True))
-        for k in indices:
-            own = self.over_fitted(k)
-            columns = np.empty((len(self.fitted), own.shape[1]))
-            columns[self.fitted] = own
-            if k in self.known:
-                columns[~self.fitted] = self.known[k].T
-            yield k, columns
+    def whole(self, index: int) -> FloatArray:
+        """Columns of one candidate over all rows that may be looked at; shape (n, q)."""
+        self.ask([index])
+        if self.single:
+            return self.known[index].T
+        own = self.over_fitted(index)
+        columns = np.empty((len(self.fitted), own.shape[1]))
+        columns[self.fitted] = own
+        if index in self.known:
+            columns[~self.fitted] = self.known[index].T
+        return columns
 
     def explained(self, index: int, gains: FloatArray) -> FloatArray:
         """What gains of a candidate explain of all rows that may be looked at; shape (n,)."""
-        ((_, columns),) = self.whole([index])
-        found: FloatArray = columns @ gains
+        found: FloatArray = self.whole(index) @ gains
         return found
 
     def products(self, vectors: FloatArray) -> FloatArray:
@@ -350,10 +366,13 @@ class _Seen:
         # In one piece: of many smaller ones freed memory does not find its way back.
         all_of = np.empty((slices[-1].stop if single else 0, at), dtype=np.float32)
 
+        def at_once(rows: int) -> int:
+            return max(MADE // (16 * rows), len(slices) // OFTEN) if single else len(slices)
+
         def seen(place: tuple[Rows, float, Places, slice]) -> Block:
             each, weight, kept, at = place
             start = self.nuisances.start(each.index)
-            for piece in _pieces(len(slices), MADE // (16 * len(kept)) if single else len(slices)):
+            for piece in _pieces(len(slices), at_once(len(kept))):
                 wanted = [(one.name, dict(one.shape)) for one in candidates[piece]]
                 # Hundreds of columns: each is written once, in one piece.
                 values = each.form.signatures(self.plant, wanted, start, kept).T
