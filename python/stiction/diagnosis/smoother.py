@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..trajectory import FloatArray
 from .coordinates import Coordinate, Look
 from .evidence import Evidence
-from .view import FEWEST_ROWS, View, limit, means
+from .view import FEWEST_ROWS, View, limit, means, sums
 
 __all__ = ["BINS", "SLOW_BINS", "smoother", "stacked"]
 
@@ -84,7 +84,6 @@ def smoother(
     # Rows that have no place in this coordinate lie in a last stretch, of which nothing is taken.
     placed = np.isfinite(values)
     index, bins = _stretches(coordinate, evidence, values, placed, edges)
-    grown = factor[:, None]
     removed, total = np.zeros(both.shape[1]), np.zeros(both.shape[1])
     rows = 0
     for plan in evidence.plans:
@@ -93,8 +92,11 @@ def smoother(
         rows += len(held)
         counted = held[placed[plan.held]] if within else held
         total += np.sum(counted**2, axis=0)
-        kept = held - grown[plan.held] * curve[index[plan.held]]
-        removed += np.sum(held**2 - kept**2, axis=0)
+        # Σr² − Σ(r − f·c)² from sums over stretches alone.
+        own, place = factor[plan.held], index[plan.held]
+        pushed = sums(place, held * own[:, None], bins + 1)[:bins]
+        power = np.bincount(place, own**2, bins + 1)[:bins, None]
+        removed += np.sum(curve[:bins] * (2.0 * pushed - curve[:bins] * power), axis=0)
     shares = removed / np.maximum(total, 1e-300)
     threshold = limit(shares[1:surrogates])
     if slow:

@@ -67,7 +67,9 @@ def limit(at_null: FloatArray) -> float:
 
 def sums(index: np.ndarray, columns: FloatArray, bins: int) -> FloatArray:
     """Sum of each column in each stretch; shape (bins, k)."""
-    return np.column_stack([np.bincount(index, column, bins) for column in columns.T])
+    # Each in one piece: what lies apart is waited for.
+    lying = np.ascontiguousarray(columns.T)
+    return np.column_stack([np.bincount(index, column, bins) for column in lying])
 
 
 def means(index: np.ndarray, columns: FloatArray, bins: int) -> FloatArray:
