@@ -18,18 +18,25 @@ from stiction.shooting import ShootingForm
 from stiction.weak_form import WeakForm
 
 
-def bristles(stiffness: float | dict[str, Any]) -> Plant:
-    own = {"law": "lugre", "coulomb": 0.3, "initial_stiffness": stiffness}
+def bristles(stiffness: float | dict[str, Any], **others: float) -> Plant:
+    own = {"law": "lugre", "coulomb": 0.3, "initial_stiffness": stiffness, **others}
     return plant("lugre", friction=own, body={"inertia": TRUE["inertia"]})
 
 
 def test_a_rigid_contact_is_not_simulated_stiffer_and_stiffer() -> None:
     """Bristles on a machine without any: of a ring that no sample shows nothing is believed."""
     windows = [ShootingForm(plant(), recorded(), horizon=0.1)]
-    stiff = bristles(1e9)
+    stiff = bristles(1e9, damping=50.0)
     held = followable(stiff, windows).friction.parameters["initial_stiffness"]
     assert held.value == held.max
     assert not shows_its_ring(followable(stiff, windows), windows)
+    damping = followable(stiff, windows).friction.parameters["damping"]
+    # Critically, at the stiffness where it ends.
+    critical = 2.0 * np.sqrt(held.value * TRUE["inertia"])
+    assert damping.max == pytest.approx(critical, rel=1e-12)
+    assert damping.value == min(50.0, critical)
+    back = as_stated(followable(stiff, windows), stiff).friction.parameters
+    assert back["damping"].max is None
     soft = bristles(100.0)
     assert followable(soft, windows).friction.parameters["initial_stiffness"].value == 100.0
 
