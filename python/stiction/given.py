@@ -6,6 +6,7 @@ import os
 import stat
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from numbers import Real
 from pathlib import Path
 from types import UnionType
 from typing import Any, Final, TypeVar
@@ -26,6 +27,7 @@ __all__ = [
     "path",
     "real",
     "regular",
+    "share",
     "shown",
     "unmasked",
     "vacant",
@@ -212,6 +214,23 @@ def whole(given: Any, name: str, *, least: int, most: int | None = None) -> int:
             f"{name} = {shown(given)} is out of bounds: give a whole number from {least}{upto}"
         )
     return number
+
+
+def share(given: Any, name: str) -> float:
+    """Take a share above 0 and below 1.
+
+    Raises
+    ------
+    InputError
+        Anything else.
+    """
+    number = given if isinstance(given, Real) and not isinstance(given, bool) else None
+    if number is None or not 0.0 < float(number) < 1.0:
+        raise InputError(
+            f"{name} = {shown(given)} is out of bounds: give a share above 0 and below 1, such as "
+            "0.01"
+        )
+    return float(number)
 
 
 def unmasked(given: object, where: str) -> None:

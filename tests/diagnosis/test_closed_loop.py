@@ -296,23 +296,33 @@ def test_a_loop_that_a_cause_makes_worse_is_said_on_the_first_screen(
         ((1.0, 3.0, 0.9), 2),
     ],
 )
-@pytest.mark.parametrize("servo", [True, False])
-def test_what_leads_the_loop_of_a_servo_astray_is_no_cause(
-    errors: tuple[float | None, ...], kept: int, servo: bool, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("loop_of", ["servo", "controller", ""])
+@pytest.mark.parametrize("sealed", [True, False])
+def test_what_leads_the_simulated_loop_astray_is_no_cause(
+    errors: tuple[float | None, ...],
+    kept: int,
+    loop_of: str,
+    sealed: bool,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(loop, "_runs", lambda _evidence, model, _wanted: (model.error, []))
     monkeypatch.setattr(loop, "_rms", lambda _evidence, error, _parts: error)
     evidence = SimpleNamespace(
-        plant=SimpleNamespace(servo=servo),
-        recordings=[SimpleNamespace(position=np.zeros(9), channels=())],
-        split=SimpleNamespace(train=[SimpleNamespace(recording=0)], select=[]),
+        plant=SimpleNamespace(
+            servo=loop_of == "servo", controller=loop_of == "controller", prescribed_motion=False
+        ),
+        recordings=[SimpleNamespace(position=np.zeros(9), channels=("reference",))],
+        split=SimpleNamespace(
+            train=[SimpleNamespace(recording=0)], select=[], test=[SimpleNamespace(recording=0)]
+        ),
+        sealed=sealed,
     )
     names = ("first", "second")[: len(errors) - 1]
     rows = {name: CandidateRow(name, 0.5, 0.1, 0.2, "accepted") for name in names}
     choices = [SimpleNamespace(winner=SimpleNamespace(name=name)) for name in names]
     models = [SimpleNamespace(error=error) for error in errors]
     found = loop.borne_out(Search(models, choices, rows), evidence)  # type: ignore[arg-type]
-    kept = kept if servo else len(names)
+    kept = kept if loop_of else len(names)
     assert [choice.winner.name for choice in found.choices] == list(names[:kept])
     assert found.models == models[: kept + 1]
     dropped = [found.rows[name].reason for name in names[kept:]]

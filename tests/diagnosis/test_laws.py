@@ -169,8 +169,8 @@ def test_a_law_that_leads_nowhere_is_fitted_to_its_end_only_where_it_was_asked_f
     seen: list[laws.Rival] = []
     whole = laws.rivals_of
 
-    def looks(*given: Any) -> list[laws.Rival]:
-        seen.extend(whole(*given))
+    def looks(*given: Any, **named: Any) -> list[laws.Rival]:
+        seen.extend(whole(*given, **named))
         return seen
 
     monkeypatch.setattr("stiction.diagnosis.conclude.rivals_of", looks)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from ..diagnosis import SURROGATES
+from ..diagnosis import SMALLEST, SURROGATES
 from ..diagnosis import diagnose as run
 from ..diagnosis.result import Diagnosis
 from .answer import answer, folder, told_anyway, written
@@ -25,6 +25,7 @@ def diagnose(
     without: tuple[str, ...] = (),
     laws: str = "",
     surrogates: Whole = SURROGATES,
+    smallest: float = SMALLEST,
     seed: Whole = 0,
     threads: Whole | None = None,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
@@ -45,6 +46,8 @@ def diagnose(
         Other laws to compare with the plant's: "all", or names with commas between.
     surrogates
         Replays of the fitted plant with noise alone, which thresholds come from.
+    smallest
+        Share of the friction: what contributes less gets no name.
     seed
         Of everything random.
     threads
@@ -67,6 +70,7 @@ def diagnose(
                 without=without,
                 laws=names,
                 surrogates=surrogates,
+                smallest=smallest,
                 seed=seed,
                 threads=threads,
             )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
@@ -22,14 +22,14 @@ from .candidates import scales_of
 from .ceiling import Ceiling, ceiling_of
 from .confirm import confirmed, described, lost, lost_in_motion, lost_on_test
 from .coordinates import Look, looks
-from .decide import LEAST_SIZE
+from .decide import SMALLEST
 from .evidence import Evidence
 from .exact_forms import rests_of
 from .gain import HeldOut, gain_of, residuals_of
 from .held_numbers import Held, held_numbers, held_words
 from .holds import holds_of
 from .laws import THE_LAW, Rival, better_laws, event_words, law_rows, rivals_of
-from .left_open import left_open, waves_left_open
+from .left_open import beside_another_law, left_open, waves_left_open
 from .listing import in_order
 from .lone import lone_event
 from .loop import borne_out, replayed
@@ -101,6 +101,10 @@ class Conclusion:
     others : sequence of str
         Laws that were asked for.
     checks : sequence of (str, Check)
+    smallest : float
+        Share of the friction that an effect has to contribute to be worth a name.
+    restated : bool
+        The law is not the one that was stated.
     interrupted : bool
         Then no further laws are fitted.
     brief : bool
@@ -115,8 +119,11 @@ class Conclusion:
     null: FloatArray
     others: Sequence[str]
     checks: Sequence[tuple[str, Check]]
+    smallest: float = SMALLEST
+    restated: bool = False
     interrupted: bool = False
     brief: bool = False
+    _known_rests: dict[int, Rest] = field(default_factory=dict)
 
     def diagnosis(self) -> Diagnosis:
         """Verdict and words; after a first Ctrl-C in here those that need nothing more."""
@@ -152,11 +159,34 @@ class Conclusion:
         return borne_out(borne_out_in_motion(selection, self.evidence), self.evidence)
 
     @cached_property
+    def lacking(self) -> bool:
+        """Whether the plant lacks something, named or not, before the rows that test are asked."""
+        if self.decided.choices:
+            return True
+        final = self.decided.models[-1]
+        return bool(lost(self.evidence, final, self.null) or self._unnamed(self.decided))
+
+    @cached_property
     def rivals(self) -> Sequence[Rival]:
         """Other laws, fitted."""
-        rivals = [] if self.interrupted else rivals_of(self.decided, self.others)
+        if self.interrupted:
+            return []
+        rivals = rivals_of(self.decided, self.others, lacking=self.lacking)
         self.interrupted = self.interrupted or self.decided.interrupted
         return rivals
+
+    @cached_property
+    def better(self) -> list[Rival]:
+        """The law to state and those that leave about as little; empty where none clearly helps."""
+        last = len(self.decided.models) - 1
+        return better_laws(self.rivals, last, self.test, self.found.seed)
+
+    @property
+    def law_words(self) -> str:
+        """What a better law means, in a sentence."""
+        first, *others = self.better
+        own = self.base.plant.friction.law
+        return first.words(own, bool(self.confirmed.choices), [each.law for each in others])
 
     @cached_property
     def opened(self) -> list[Rows]:
@@ -173,7 +203,8 @@ class Conclusion:
     @cached_property
     def confirmed(self) -> Search:
         """The selection that the rows that test bear out."""
-        return confirmed(self.decided, self.test, self.found.seed)
+        selection = confirmed(self.decided, self.test, self.found.seed)
+        return borne_out(selection, self.evidence)
 
     @cached_property
     def _centred(self) -> tuple[FloatArray, FloatArray]:
@@ -189,16 +220,18 @@ class Conclusion:
     @cached_property
     def rests(self) -> tuple[Rest, Rest]:
         """What base and last model leave, in every coordinate."""
-        base, final = self.base, self.confirmed.models[-1]
-        orders = scales_of(self.evidence, base.plant).orders
-        (bias, centred), friction = self._centred, friction_of(self.evidence, base)
+        return self._rest(self.base), self._rest(self.confirmed.models[-1])
 
-        def left_by(model: Model) -> Rest:
+    def _rest(self, model: Model) -> Rest:
+        """What a model leaves, in every coordinate."""
+        if id(model) not in self._known_rests:
+            orders = scales_of(self.evidence, self.base.plant).orders
+            (bias, centred), friction = self._centred, friction_of(self.evidence, self.base)
             left = model.residual - bias
-            return rest(self.evidence, self._seen, orders, left, centred, friction)
-
-        left = left_by(final)
-        return left_by(base) if final is not base else left, left
+            self._known_rests[id(model)] = rest(
+                self.evidence, self._seen, orders, left, centred, friction
+            )
+        return self._known_rests[id(model)]
 
     @cached_property
     def own(self) -> tuple[tuple[View, View], ...]:
@@ -227,7 +260,11 @@ class Conclusion:
     @cached_property
     def unexplained(self) -> tuple[Unexplained, ...]:
         """What is left and has no name."""
-        final = self.confirmed.models[-1]
+        return self._unnamed(self.confirmed, self.burst)
+
+    def _unnamed(self, selection: Search, burst: Burst | None = None) -> tuple[Unexplained, ...]:
+        """The same of a selection."""
+        final = selection.models[-1]
 
         def null_of_last() -> FloatArray:
             number = self.null.shape[1]
@@ -235,18 +272,19 @@ class Conclusion:
 
         return unnamed(
             self.evidence,
-            self.confirmed,
-            *self.rests,
+            selection,
+            self._rest(self.base),
+            self._rest(final),
             self.null,
             null_of_last,
-            self.burst,
+            burst,
             relevant=self.relevant,
         )
 
     @cached_property
     def relevant(self) -> float:
         """Weighted rms of a residual that matters: less of an effect would have no name either."""
-        return LEAST_SIZE * friction_of(self.evidence, self.base)
+        return self.smallest * friction_of(self.evidence, self.base)
 
     @cached_property
     def burst(self) -> Burst | None:
@@ -272,9 +310,7 @@ class Conclusion:
         baseline = summary_of(evidence, base, results[id(base)], test, 0, floor)
         number = len(selection.choices)
         extended = summary_of(evidence, final, results[id(final)], test, number, floor)
-        own_law, last = base.plant.friction.law, len(self.decided.models) - 1
-        laws = better_laws(self.rivals, last, test, found.seed)
-        better = laws[0] if laws else None
+        better = self.better[0] if self.better else None
         causes = causes_of(selection, results[id(final)], test, found.seed, sole=better is None)
         gain = None
         if causes and test is not None:
@@ -299,6 +335,7 @@ class Conclusion:
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
             replaced = {name for each in self.held for name in each.instead}
             causes = left_open(selection, causes, unexplained, of_names, replaced)
+            causes = beside_another_law(causes) if self.restated else causes
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
             stands = 0.0 if causes or left else lost_in_motion(evidence, final, null)
@@ -331,11 +368,7 @@ class Conclusion:
             found,
             verdict=verdict,
             sentence=_opening(self.interrupted, bool(causes))
-            + (
-                ""
-                if better is None
-                else f"{better.words(own_law, bool(causes), [r.law for r in laws[1:]])} "
-            )
+            + (f"{self.law_words} " if self.better else "")
             + sentence(
                 verdict, causes, gain, unexplained, reason, slight=_slight(selection, self.rests[1])
             )

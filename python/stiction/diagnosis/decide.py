@@ -32,7 +32,9 @@ __all__ = [
     "LEAST_Z",
     "OUT_OF_RANGE",
     "PENALTY",
+    "SMALLEST",
     "Trial",
+    "emptied",
     "judge",
 ]
 
@@ -63,8 +65,8 @@ MOST_UNEVEN: Final = 0.3
 the effect imitates something else."""
 OUT_OF_RANGE: Final = float("inf")
 """Stands for that where its shape says that it is something else; no strengths add as much."""
-LEAST_SIZE: Final = 0.001
-"""Contribution, as a share of the friction, below which an effect is of no relevance."""
+SMALLEST: Final = 0.001
+"""Contribution, as a share of the friction, below which an effect is not worth a name."""
 
 
 @dataclass(frozen=True)
@@ -147,11 +149,28 @@ class Trial:
         return self.candidate.name
 
 
-def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size: float) -> Trial:
+def emptied(base: Model, model: Model) -> str:
+    """What a model takes away in place of explaining it, "" where it leaves that."""
+    if model.given <= LEAST_GIVEN:
+        return "takes away the effort itself, so that nothing is left to explain"
+    if model.plant.inertia < LEAST_INERTIA * base.plant.inertia:
+        return "takes away the inertia, so that hardly any motion is left to explain"
+    return ""
+
+
+def judge(
+    base: Model,
+    score: Score,
+    model: Model,
+    contributed: FloatArray,
+    size: float,
+    smallest: float = SMALLEST,
+) -> Trial:
     """Compares a refitted candidate with the base it was added to.
 
     ``contributed`` is what the effect explains of each row, shape (n,): blocks in which it can do
-    nothing say nothing of it.
+    nothing say nothing of it. ``size`` is its rms as a share of the friction's, and ``smallest``
+    what is worth a name of that.
     """
     block = base.evidence.cells.block
     power = np.bincount(block, contributed**2, int(block.max()) + 1)
@@ -161,7 +180,6 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     explained = 1.0 - model.power / base.power if base.power > 0.0 else 0.0
     untold = score.candidate.record.slope_misleads(loop=base.evidence.loop)
     freed = not untold and explained > MOST_TIMES * max(score.score, score.threshold)
-    reason = ""
     by_blocks = lone = False
     strength = model.strength(score.candidate)
     # What is known so well where it was fitted, rows held out may confirm, however they vary.
@@ -169,12 +187,10 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
     confirmed = cache(
         lambda: strength >= SURE and is_confirmed(base, model, contributed, whole=gain_known)
     )
-    empty = model.given <= LEAST_GIVEN
+    reason = emptied(base, model)
+    empty = bool(reason)
     if empty:
-        reason = "takes away the effort itself, so that nothing is left to explain"
-    elif model.plant.inertia < LEAST_INERTIA * base.plant.inertia:
-        empty = True
-        reason = "takes away the inertia, so that hardly any motion is left to explain"
+        pass
     elif explained <= 0.0:
         reason = "fits no better than without it"
     elif explained <= score.threshold:
@@ -189,14 +205,14 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         )
     elif unseen and not confirmed():
         reason = "the rows held out hardly excite it"
-        by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
+        by_blocks = strength >= LEAST_STRENGTH and size >= smallest
     elif gain <= 0.0:
         reason = "does not help on rows held out"
     elif gain <= LEAST_GAIN:
         reason = f"gains {100 * gain:.2f} % on rows held out, below {100 * LEAST_GAIN:.2f} %"
         if strength >= SURE and hardly_excited(base, contributed, LEAST_GAIN):
             reason = f"{reason}, which hardly excite it"
-            unseen, by_blocks = True, size >= LEAST_SIZE
+            unseen, by_blocks = True, size >= smallest
     elif gain > MOST_AGAIN * (again := max(explained, gained_again(base, model))):
         reason = (
             f"gains {gain / again:.0f} times on rows held out what it explains where it "
@@ -204,15 +220,15 @@ def judge(base: Model, score: Score, model: Model, contributed: FloatArray, size
         )
     elif z <= LEAST_Z and not confirmed():
         reason = f"its held-out gain is {z:.2f} standard errors, below {LEAST_Z:.2f}"
-        by_blocks = strength >= LEAST_STRENGTH and size >= LEAST_SIZE
+        by_blocks = strength >= LEAST_STRENGTH and size >= smallest
     elif without_the_best(base, model, contributed) <= 0.5 * LEAST_GAIN and not confirmed():
         reason = "gains on rows held out in one recording alone"
-        lone = size >= LEAST_SIZE and recordings_acted_in(base, contributed) <= 1
+        lone = size >= smallest and recordings_acted_in(base, contributed) <= 1
     elif strength < LEAST_STRENGTH:
         reason = f"its strength is {strength:.2f} standard errors, below {LEAST_STRENGTH:.2f}"
-    elif size < LEAST_SIZE:
+    elif size < smallest:
         reason = (
-            f"contributes {100 * size:.2g} % of the friction, below the {100 * LEAST_SIZE:.2g} % "
+            f"contributes {100 * size:.2g} % of the friction, below the {100 * smallest:.2g} % "
             "that matter"
         )
     open_ = not reason or by_blocks

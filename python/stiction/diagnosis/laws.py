@@ -27,6 +27,7 @@ from .candidates import scales_of
 from .choose import DECIDED_Z
 from .gain import Gain, HeldOut, gain_of
 from .gains import heldout_gain
+from .left_open import OF_A_LAW
 from .lone import Lone
 from .model import LEAST_GIVEN, Model, fitted, power_of
 from .result import Advice, LawRow
@@ -47,10 +48,10 @@ __all__ = [
 THE_LAW: Final = "the friction law"
 """What is left depends on, where another law leaves less of it."""
 YIELDING: Final = "maxwell_slip"
-"""Law that is tried unasked beside names given to a plant whose law does not yield: a contact that
-does imitates many effects then."""
-OF_A_LAW: Final = frozenset({"breakaway", "creep", "memory"})
-"""Families of effects that say how friction goes with speed, time and reversals, as laws do."""
+RIGID: Final = "coulomb"
+"""Laws that are tried unasked where a plant lacks something, each where the plant's own law is of
+the other kind: a contact that yields under a law that does not, and one that sticks under a law
+that yields, imitate many effects, a dead band of the drive first of all."""
 WORTH_A_TERM: Final = 0.95
 """Share of the power that an optional term of a law may leave at most to stay in a comparison."""
 FALL: Final = ("breakaway", "stribeck_velocity")
@@ -137,19 +138,23 @@ class Rival:
         )
 
     @property
+    def stated(self) -> Friction:
+        """The law as somebody would state it, with what a fit leaves alone where it has that."""
+        given = {} if self.model is None else self.model.plant.friction.parameters
+        named = [*_left_alone(self.law), *(FALL if FALL[-1] in given else ())]
+        return Friction(self.law, {name: given[name] for name in named if name in given})
+
+    @property
     def terms(self) -> tuple[str, ...]:
         """Terms that nobody stated and this fit has: ``"compliance = 4.2e-07"``."""
-        if self.model is None:
-            return ()
-        given = self.model.plant.friction.parameters
-        named = [*_left_alone(self.law), *(FALL if FALL[-1] in given else ())]
-        return tuple(f"{n} = {given[n].value:.2g}" for n in named if n in given)
+        return tuple(f"{n} = {each.value:.2g}" for n, each in self.stated.parameters.items())
 
-    def advice(self) -> Advice:
-        """What to do about it."""
+    def advice(self, *, followed: bool = False) -> Advice:
+        """What to do about it; ``followed`` where the diagnosis has gone on with the law."""
         stated = joined([f'law = "{self.law}"', *self.terms])
+        then = ", as the extended plant does" if followed else " and diagnose again"
         return Advice(
-            f"state {stated} in the plant file and diagnose again",
+            f"state {stated} in the plant file{then}",
             "effects beside a law that lacks something stand for that",
             (),
         )
@@ -169,7 +174,7 @@ def law_names(wanted: Sequence[str], own: str) -> list[str]:
     return [name for name in dict.fromkeys(wanted) if name != own]
 
 
-def rivals_of(selection: Search, wanted: Sequence[str]) -> list[Rival]:
+def rivals_of(selection: Search, wanted: Sequence[str], *, lacking: bool) -> list[Rival]:
     """The laws to compare, fitted.
 
     Parameters
@@ -177,11 +182,11 @@ def rivals_of(selection: Search, wanted: Sequence[str]) -> list[Rival]:
     selection : Search
     wanted : sequence of str
         Names of laws that were asked for.
+    lacking : bool
+        Whether the plant lacks something, named or not.
     """
-    names = list(wanted)
-    rigid = not selection.models[0].plant.friction.springy
-    if rigid and selection.choices and YIELDING not in names:
-        names.append(YIELDING)
+    other_kind = RIGID if selection.models[0].plant.friction.springy else YIELDING
+    names = list(dict.fromkeys([*wanted, *([other_kind] if lacking else [])]))
     rivals = []
     for law in steps(names, "law"):
         made = attempt(f"the comparison with {law}", partial(_rival, selection, law, law in wanted))

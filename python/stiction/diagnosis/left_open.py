@@ -13,14 +13,26 @@ from .exact_forms import doubted
 from .passing import MOMENTS
 from .result import Cause, Unexplained
 from .selection import Search
-from .words import ALONE, MAY_BE_NOTHING, OUTWEIGHED, PARTLY, UNREPEATED
+from .words import ALONE, MAY_BE_NOTHING, OF_ANOTHER_LAW, ONE_CURVE, OUTWEIGHED, PARTLY, UNREPEATED
 
-__all__ = ["known_by_themselves", "left_open", "outweighed", "waves_left_open"]
+__all__ = [
+    "OF_A_LAW",
+    "beside_another_law",
+    "known_by_themselves",
+    "left_open",
+    "of_one_curve",
+    "outweighed",
+    "waves_left_open",
+]
 
 MUCH_LEFT: Final = 0.5
 """What is left without a name counts against one name where it is worth this share of what that one
 took: right names came to 0.4 but for one, and what was named of a contact whose law has another
 form to 0.6 and more."""
+OF_A_LAW: Final = frozenset({"breakaway", "creep", "memory"})
+"""Families of effects that say how friction goes with speed, time and reversals, as laws do."""
+CURVE: Final = "speed, odd in direction"
+"""How the coordinate of an effect ends that is a part of the curve of friction over speed."""
 
 
 def left_open(
@@ -48,6 +60,7 @@ def left_open(
     found = known_by_themselves(selection, found)
     doubts = dict.fromkeys(outweighed(selection, left), OUTWEIGHED)
     doubts |= dict.fromkeys(selection.partly, PARTLY)
+    doubts |= dict.fromkeys(of_one_curve(selection), ONE_CURVE)
     return [
         replace(
             cause,
@@ -65,6 +78,34 @@ def waves_left_open(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
         replace(cause, decided=False, doubt=UNREPEATED) if unrepeated(final, cause.name) else cause
         for cause in causes
     ]
+
+
+def beside_another_law(causes: Sequence[Cause]) -> list[Cause]:
+    """Causes beside a law that nobody stated: undecided where that law may be what has them.
+
+    It stands for its kind, sticking or yielding, and how friction goes with speed, time and
+    reversals is a law's own business.
+    """
+    return [
+        replace(cause, decided=False, doubt=OF_ANOTHER_LAW) if cause.family in OF_A_LAW else cause
+        for cause in causes
+    ]
+
+
+def of_one_curve(selection: Search) -> Set[str]:
+    """Which further names go with speed alone, as an earlier one does, and are not beyond doubt.
+
+    Friction over speed is one curve. What is added to the first name of a part of it may be a part
+    of its own, or what the form of the first one, which is its author's and not the machine's,
+    leaves of it.
+    """
+    final = selection.models[-1]
+    named = [
+        choice.winner.candidate
+        for choice in selection.choices
+        if choice.winner.candidate.record.coordinate.endswith(CURVE)
+    ]
+    return {each.name for each in named[1:] if final.strength(each) < SURE}
 
 
 def outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:

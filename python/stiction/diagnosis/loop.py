@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Replay", "borne_out", "replayed"]
 
-LOOP_AGAINST: Final = "passes, but the simulated loop of the servo does worse with it"
+LOOP_AGAINST: Final = "passes, but the simulated loop does worse with it"
 
 _logger = logging.getLogger(__name__)
 
@@ -81,7 +81,7 @@ def replayed(found: Diagnosis, evidence: Evidence, base: Model, final: Model) ->
     wanted = sorted({part.recording for part in (*split.train, *split.test)})
     plant = base.plant
     wanted = [index for index in wanted if _has_loop(plant, evidence.recordings[index])]
-    if not (plant.controller or plant.servo) or plant.prescribed_motion or not wanted:
+    if not _is_controlled(plant) or not wanted:
         return found
     before, told = _runs(evidence, base, wanted)
     after, told_after = (before, told) if final is base else _runs(evidence, final, wanted)
@@ -105,20 +105,22 @@ def replayed(found: Diagnosis, evidence: Evidence, base: Model, final: Model) ->
 
 
 def borne_out(selection: Search, evidence: Evidence) -> Search:
-    """The selection without the last causes with which the loop of a servo does clearly worse.
+    """The selection without the last causes with which the simulated loop does clearly worse.
 
-    The effort of a servo is what its stated law makes of the measured motion, which may err as
-    friction does: what explains it better and leads the simulated servo astray is no cause. Rows
-    that test stay sealed.
+    Effort along a measured motion errs with the readings, and that of a servo with its stated law:
+    what explains it better and leads the simulated loop astray is no cause. Judged on the rows that
+    fit and decide; on those that test once they are open: they choose nothing, and may take a name
+    away.
 
     Parameters
     ----------
     selection : Search
     evidence : Evidence
     """
-    if not (evidence.plant.servo and selection.choices):
+    if not (_is_controlled(evidence.plant) and selection.choices):
         return selection
-    parts = (*evidence.split.train, *evidence.split.select)
+    split = evidence.split
+    parts = (*split.train, *split.select) if evidence.sealed else split.test
     wanted = sorted({part.recording for part in parts})
     wanted = [k for k in wanted if _has_loop(evidence.plant, evidence.recordings[k])]
     if not wanted:
@@ -133,6 +135,10 @@ def borne_out(selection: Search, evidence: Evidence) -> Search:
             break
         selection = selection.without_last(LOOP_AGAINST)
     return selection
+
+
+def _is_controlled(plant: Plant) -> bool:
+    return bool(plant.controller or plant.servo) and not plant.prescribed_motion
 
 
 def _has_loop(plant: Plant, recording: Recording) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, Final, NamedTuple
@@ -14,7 +14,7 @@ import numpy as np
 from .. import __version__
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import told as residual_told
-from ..given import instance, whole
+from ..given import instance, share, whole
 from ..plant import Plant
 from ..products import on_one_thread
 from ..progress import phase
@@ -32,16 +32,17 @@ from .advice import advise
 from .base import based, based_joined, based_simulated, based_wider
 from .candidates import left_out
 from .conclude import Conclusion, base_alone, surrogates_of
+from .decide import SMALLEST
 from .evidence import Evidence
-from .laws import law_names
+from .laws import THE_LAW, law_names
 from .model import Model
 from .noise import Noise
-from .result import Diagnosis
+from .result import Diagnosis, Unexplained
 from .rounds import search
 from .seconds import acts_for_seconds, asked_before, holds_more, with_rows_of
 from .selection import Search
 
-__all__ = ["SURROGATES", "diagnose"]
+__all__ = ["SMALLEST", "SURROGATES", "diagnose"]
 
 SURROGATES: Final = 24
 """Replays of the base with noise; more make thresholds smoother and cost in proportion."""
@@ -72,6 +73,7 @@ def diagnose(
     without: Sequence[str] = (),
     laws: Sequence[str] = (),
     surrogates: int = SURROGATES,
+    smallest: float = SMALLEST,
     seed: int = 0,
     threads: int | None = None,
 ) -> Diagnosis:
@@ -92,6 +94,8 @@ def diagnose(
         Other laws to compare with the plant's, or ``("all",)``.
     surrogates : int
         Replays of the base with noise alone, from 4 to 1000.
+    smallest : float
+        Share of the friction, above 0 and below 1: what contributes less (rms) gets no name.
     seed : int
         Same data and seed, same findings, at any number of threads.
     threads : int, optional
@@ -117,10 +121,15 @@ def diagnose(
         raise InputError('session: plant is missing; write plant = "plant.toml", or give one')
     instance(machine, Plant, "diagnose: plant", "a Plant, as Plant.load returns it")
     surrogates = whole(surrogates, "surrogates", least=4, most=MOST_SURROGATES)
+    smallest = share(smallest, "smallest")
     seed = whole(seed, "seed", least=0)
     threads = None if threads is None else whole(threads, "threads", least=1)
-    unwanted = left_out(_names("without", without))
-    others = law_names(_names("laws", laws), machine.friction.law)
+    asked = _Asked(
+        without=left_out(_names("without", without)),
+        laws=law_names(_names("laws", laws), machine.friction.law),
+        surrogates=surrogates,
+        smallest=smallest,
+    )
     checks = checks_of(entire.recordings)
     data: dict[str, Any] = {
         "checks": [
@@ -140,6 +149,7 @@ def diagnose(
         data=data,
         version=__version__,
         seed=seed,
+        smallest=smallest,
     )
     usable, fault = _usable(checks, entire, machine)
     # What is missing, and whether anything is, hangs on it.
@@ -151,7 +161,7 @@ def diagnose(
     else:
         try:
             with with_workers(threads):
-                found = _testable(found, usable, unwanted, others, surrogates, checks)
+                found = _testable(found, usable, asked, checks)
             found = replace(found, sentence=" ".join(filter(None, (found.sentence, fault, doubt))))
         except NotEnoughData as error:
             told = str(error)
@@ -212,21 +222,22 @@ def _is_driven(recording: Recording) -> bool:
 def _testable(
     found: Diagnosis,
     session: Session,
-    without: Sequence[str],
-    others: Sequence[str],
-    surrogates: int,
+    asked: _Asked,
     checks: Sequence[tuple[str, Check]],
+    *,
+    restated: bool = False,
 ) -> Diagnosis:
-    """The diagnosis of data that can be used."""
+    """The diagnosis of data that can be used; ``restated`` with another law than was stated."""
+    whole = found
     number = counted(len(session), "recording")
     phase(_logger, "looking through %s and fitting the base", number)
     evidence, base = based(found.plant, session.recordings)
-    found, null = _replayed(found, evidence, base, surrogates)
+    found, null = _replayed(found, evidence, base, asked.surrogates)
     if null is None:
         return base_alone(found, evidence, base)
     phase(_logger, "screening the effects")
-    look = _Searched(found, evidence, base, null, search(evidence, base, null, without=without))
-    again = partial(_again, surrogates=surrogates, without=without)
+    look = _Searched(found, evidence, base, null, asked.search(evidence, base, null))
+    again = partial(_again, asked=asked)
     if not look.selection.interrupted:
         final = look.selection.models[-1]
         wider = based_wider(found.plant, session.recordings, evidence, final)
@@ -243,23 +254,75 @@ def _testable(
         phase(_logger, "screening limits again, over the rows that decide as well")
         joined = based_joined(found.plant, session.recordings, look.evidence)
         before = look.selection
-        second = joined and again(look, joined, without=(*without, *asked_before(before)))
+        others = asked._replace(without=(*asked.without, *asked_before(before)))
+        second = joined and _again(look, joined, asked=others)
         if second and holds_more(second.selection, before):
             look = second._replace(selection=with_rows_of(second.selection, before))
     selection = look.selection
     # Every decision is taken: now, and once, the rows that test.
-    return Conclusion(
+    conclusion = Conclusion(
         look.found,
         session,
         look.evidence,
         look.base,
         selection,
         look.null,
-        others,
+        asked.laws,
         checks,
+        asked.smallest,
+        restated,
         interrupted=selection.interrupted,
         brief=selection.interrupted,
-    ).diagnosis()
+    )
+    told = conclusion.diagnosis()
+    if restated or not told.better_law or not told.success:
+        return told
+
+    def of(plant: Plant) -> Diagnosis:
+        began = replace(whole, plant=plant)
+        return _testable(began, session, asked._replace(laws=()), checks, restated=True)
+
+    return _restated(told, conclusion, of)
+
+
+def _restated(
+    told: Diagnosis, conclusion: Conclusion, again: Callable[[Plant], Diagnosis]
+) -> Diagnosis:
+    """The diagnosis of the plant with the law that is the better one, where that can be told.
+
+    What is named beside a law that lacks something stands for that. Where the other law is outdone
+    in its turn, neither is right, and what was told of the plant as it was stated stays.
+    """
+    better, law = conclusion.better[0], told.better_law
+    phase(_logger, "diagnosing again, with law %s", law)
+    beside = again(replace(conclusion.found.plant, friction=better.stated))
+    if not beside.success or beside.better_law or beside.verdict == "not_testable":
+        return told
+    nothing = beside.verdict == "nothing_missing"
+    return replace(
+        beside,
+        verdict="unexplained" if nothing else beside.verdict,
+        unexplained=(Unexplained(THE_LAW, better.beside),) if nothing else beside.unexplained,
+        sentence=f"{conclusion.law_words} With {law}: {beside.sentence}",
+        laws=told.laws,
+        better_law=law,
+        advice=(better.advice(followed=True), *beside.advice),
+    )
+
+
+class _Asked(NamedTuple):
+    """What a diagnosis is to look for."""
+
+    without: Sequence[str]
+    """Effects that are not tried."""
+    laws: Sequence[str]
+    """Others to compare."""
+    surrogates: int
+    smallest: float
+
+    def search(self, evidence: Evidence, base: Model, null: FloatArray) -> Search:
+        """The search for effects beside a base."""
+        return search(evidence, base, null, without=self.without, smallest=self.smallest)
 
 
 class _Searched(NamedTuple):
@@ -276,12 +339,11 @@ def _again(
     look: _Searched,
     seen: tuple[Evidence, Model],
     *,
-    surrogates: int,
-    without: Sequence[str],
+    asked: _Asked,
 ) -> _Searched | None:
     """The same search with another base; None after Ctrl-C: what was found is the best so far."""
-    found, null = _replayed(look.found, *seen, surrogates)
-    selection = None if null is None else search(*seen, null, without=without)
+    found, null = _replayed(look.found, *seen, asked.surrogates)
+    selection = None if null is None else asked.search(*seen, null)
     if null is None or selection is None or selection.interrupted:
         look.selection.interrupted = True
         return None

@@ -87,6 +87,8 @@ class Cause(_Gained):
     chosen : Mapping of str to float
         By path: numbers of it that were not fitted, but taken from those that were tried, as the
         order of a wave is.
+    size : float
+        rms of the effort that it contributes, as a share of the friction's.
     """
 
     name: str
@@ -102,6 +104,7 @@ class Cause(_Gained):
     doubt: str = ""
     waves: Mapping[str, FitParameter] = field(default_factory=dict)
     chosen: Mapping[str, float] = field(default_factory=dict)
+    size: float = 0.0
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters", "waves", "chosen")
@@ -119,6 +122,7 @@ class Cause(_Gained):
             "class": self.family,
             "decided": self.decided,
             "look_alikes": list(self.look_alikes),
+            "size": self.size,
             "parameters": {
                 path: {"value": p.value, "ci95": list(p.ci95), "unit": p.unit}
                 for path, p in self.parameters.items()
@@ -334,6 +338,8 @@ class Diagnosis:
         How much of the error could be explained, where recordings were made twice.
     better_law : str
         Friction law that alone explains clearly more than what was named, "" where none does.
+    smallest : float
+        Share of the friction that an effect has to contribute (rms) to be worth a name.
     pictures : Pictures or None
         What the figures are drawn from.
     """
@@ -358,6 +364,7 @@ class Diagnosis:
     split: str = field(default="", repr=False)
     ceiling: Ceiling | None = None
     better_law: str = ""
+    smallest: float = 0.0
     pictures: Pictures | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -378,6 +385,7 @@ class Diagnosis:
             "gain": None if self.gain is None else self.gain.to_dict(),
             "candidates": [row.to_dict() for row in self.candidates],
             "laws": [row.to_dict() for row in self.laws],
+            "better_law": self.better_law or None,
             "baseline": None if self.baseline is None else self.baseline.to_dict(),
             "extended": None if self.extended is None else self.extended.to_dict(),
             "unexplained": [left.to_dict() for left in self.unexplained],
@@ -385,6 +393,7 @@ class Diagnosis:
             "data": {**self.data, "chosen": self._chosen, "complete": self.success},
             "version": self.version,
             "seed": self.seed,
+            "smallest": self.smallest,
             "seconds": self.seconds,
         }
 

@@ -16,7 +16,7 @@ from . import listing
 from .beside import left_by_forms
 from .candidates import FALL, Candidate, candidates, present, scales_of
 from .choose import ALIKE, Choice, choose, covers, parallel
-from .decide import LEAST_GAIN, LEAST_STRENGTH, Trial
+from .decide import LEAST_GAIN, LEAST_STRENGTH, SMALLEST, Trial, emptied
 from .evidence import Evidence
 from .exact_forms import several
 from .fewer import MIMIC, chained, dropped_by_the_latest, join, without
@@ -57,7 +57,12 @@ _logger = logging.getLogger(__name__)
 
 
 def search(
-    evidence: Evidence, base: Model, null: FloatArray, *, without: Sequence[str] = ()
+    evidence: Evidence,
+    base: Model,
+    null: FloatArray,
+    *,
+    without: Sequence[str] = (),
+    smallest: float = SMALLEST,
 ) -> Search:
     """Adds effects to a base as long as one passes.
 
@@ -69,6 +74,8 @@ def search(
         Residuals of the surrogates.
     without : sequence of str
         Effects that are not tried.
+    smallest : float
+        Share of the friction that an effect has to contribute to be worth a name.
     """
     found = Search([base])
     tried: list[Candidate] = []
@@ -80,7 +87,8 @@ def search(
         if not tried:
             return found
         signatures = Signatures.of(evidence, base.plant, base.nuisances, tried)
-        screening = Screening(evidence, signatures, centred, bias, friction_of(evidence, base))
+        friction = friction_of(evidence, base)
+        screening = Screening(evidence, signatures, centred, bias, friction, smallest)
         evidence.floor = float(np.mean(np.sum(null[evidence.fitted] ** 2, axis=0)))
         dropped: set[str] = set()
         rests: set[str] = set()
@@ -102,6 +110,11 @@ def search(
             for trial in trials:
                 if trial is not choice.winner:
                     trial.model.forget()
+            if empties := emptied(base, found.models[-1]):
+                # A fit that was stopped short of that is no better for it.
+                rests.add(choice.winner.name)
+                found.take_back(empties)
+                continue
             dropped |= dropped_by_the_latest(evidence, found)
             rests |= join(screening, found)
             rests |= _take_back(screening, found)

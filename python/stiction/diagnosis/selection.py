@@ -57,6 +57,11 @@ class Search:
         """Families of the causes that are named."""
         return {choice.winner.candidate.record.family for choice in self.choices}
 
+    def take_back(self, reason: str) -> None:
+        """Takes the last cause back while the search goes on."""
+        less = self.without_last(reason)
+        self.models, self.choices, self.rows = less.models, less.choices, less.rows
+
     def without_last(self, reason: str) -> Search:
         """The same without the last cause, which is refused for this reason."""
         name = self.choices[-1].winner.name

@@ -82,6 +82,7 @@ def causes_of(
                 coordinate=record.coordinate,
                 waves=waves,
                 chosen={path: value for path, value in own.items() if path not in fitted_values},
+                size=choice.winner.size,
             )
         )
     return causes

@@ -16,7 +16,7 @@ from ..plant import Plant
 from ..progress import phase
 from ..trajectory import FloatArray
 from .candidates import Candidate
-from .decide import Trial, judge
+from .decide import SMALLEST, Trial, judge
 from .evidence import Evidence
 from .model import (
     REFIT_CONVERGED,
@@ -104,6 +104,8 @@ class Screening:
         Their mean, as far as the residual shares it.
     friction : float
         Weighted rms of what the base needs beside inertia.
+    smallest : float
+        Share of it that an effect has to contribute to be worth a name.
     kept : list of (Model, list of Score)
         Of the last few models that were screened: they are asked for again and again.
     """
@@ -113,6 +115,7 @@ class Screening:
     centred: FloatArray
     bias: FloatArray
     friction: float
+    smallest: float = SMALLEST
     kept: list[tuple[Model, list[Score]]] = field(default_factory=list)
 
     def scores(self, model: Model) -> list[Score]:
@@ -161,7 +164,7 @@ class Screening:
     def judged(self, base: Model, score: Score, model: Model, explained: FloatArray) -> Trial:
         """A model with a candidate, judged; ``explained`` is what that does, shape (n,)."""
         size = float(np.sqrt(np.mean(explained**2))) / max(self.friction, 1e-300)
-        trial = judge(base, score, model, explained, size)
+        trial = judge(base, score, model, explained, size, self.smallest)
         reason = (
             trial.reason
             or _too_good(self.evidence, model)

@@ -31,6 +31,8 @@ __all__ = [
     "MAY_BE_NOTHING",
     "MORE_MAY_BE",
     "NO_COORDINATE",
+    "OF_ANOTHER_LAW",
+    "ONE_CURVE",
     "OUTWEIGHED",
     "PARTLY",
     "UNREPEATED",
@@ -71,6 +73,10 @@ LEAVES_NOTHING = "what is left goes with {}, and of that it leaves nothing where
 """Why a name may be a relative of the cause that no catalogue has."""
 MAY_BE_NOTHING = "every one of its numbers may be 0"
 """Why a name beside another one may be what the form of that leaves."""
+OF_ANOTHER_LAW = "another law of that kind may have it of itself"
+"""Why a name beside a law that nobody stated may be none."""
+ONE_CURVE = "friction over speed is one curve, and another form of it may explain both names"
+"""Why a further name of a part of that curve may be none."""
 MOST_TOLD = 3
 """Pushes that a sentence names."""
 MOST_ROWS = 5

@@ -1,0 +1,161 @@
+"""A contact that yields stated of one that sticks, and what only the other kind of law tells."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from tests.ordinary.draw import Spec, ordinary
+from tests.ordinary.files import write
+
+import stiction as st
+from stiction.diagnosis import left_open
+from stiction.diagnosis.choose import Trial, choose
+from stiction.diagnosis.decide import emptied
+from stiction.diagnosis.laws import THE_LAW
+from stiction.diagnosis.result import Cause
+
+SHORT: Any = {"seconds": 8.0, "recordings": 3, "dt": 0.004, "counts": 131072, "loop": "open"}
+
+
+def session(folder: Path, spec: Spec) -> st.Session:
+    return st.load(write(ordinary(spec), folder))
+
+
+def test_a_law_that_yields_is_told_of_a_dry_contact_and_the_diagnosis_goes_on(
+    tmp_path: Path,
+) -> None:
+    # In place of the law a dead band of the drive explains what a dry contact holds at rest.
+    found = st.diagnose(None, session(tmp_path, Spec(11, law="dahl", contact="dry", **SHORT)))
+    assert found.better_law == "coulomb"
+    assert found.to_dict()["better_law"] == "coulomb"
+    assert "The friction law itself lacks something: coulomb" in found.sentence
+    assert "With coulomb: Nothing" in found.sentence
+    assert found.effects == ()
+    assert [left.coordinate for left in found.unexplained] == [THE_LAW]
+    assert found.verdict == "unexplained"
+    # What is handed over is the plant with the law that is the better one.
+    assert found.plant.friction.law == "coulomb"
+    assert found.advice[0].experiment == (
+        'state law = "coulomb" in the plant file, as the extended plant does'
+    )
+
+
+def test_what_is_missing_beside_the_better_law_is_named_there(tmp_path: Path) -> None:
+    spec = Spec(11, law="dahl", contact="dry", hidden="viscous_quadratic", size=0.3, **SHORT)
+    found = st.diagnose(None, session(tmp_path, spec))
+    assert found.better_law == "coulomb"
+    assert "With coulomb: The simulation lacks" in found.sentence
+    assert "viscous_quadratic" in [cause.name for cause in found.effects]
+
+
+@pytest.mark.parametrize("hidden", ["torque_bias", "direction_asymmetry"])
+def test_two_levels_of_a_dry_contact_are_one_level_and_a_bias(hidden: str, tmp_path: Path) -> None:
+    spec = Spec(12, law="coulomb", contact="dry", hidden=hidden, size=0.2, **SHORT)
+    found = st.diagnose(None, session(tmp_path, spec))
+    assert found.verdict == "ambiguous"
+    (cause,) = found.effects
+    assert {cause.name, *cause.look_alikes} >= {"torque_bias", "direction_asymmetry"}
+    assert not cause.decided
+
+
+def trial(name: str, worth: float, law: str, *gains: float) -> Trial:
+    friction = SimpleNamespace(
+        sticks=law == "coulomb", parameters={"coulomb": SimpleNamespace(value=1.0)}
+    )
+    model: Any = SimpleNamespace(
+        plant=SimpleNamespace(friction=friction, effects=()),
+        gains=lambda _: gains,
+        blocks=((), ()),
+    )
+    record = SimpleNamespace(family="offset", shapes=(), second=(), gains=())
+    candidate = SimpleNamespace(name=name, record=record, parameters=len(gains), shape={})
+    # Contributions that have nothing in common: only what is known of the contact makes them one.
+    signature = [1.0, 0.0] if name == "torque_bias" else [0.0, 1.0]
+    score: Any = SimpleNamespace(candidate=candidate, signature=signature)
+    return Trial(score, model, 0.5, 5.0, worth, 50.0, 0.1, "")
+
+
+@pytest.mark.parametrize(
+    ("law", "bias", "rivals"),
+    [("coulomb", 0.3, ("direction_asymmetry",)), ("coulomb", 1.2, ()), ("dahl", 0.3, ())],
+)
+def test_a_bias_that_outweighs_the_level_or_bends_a_spring_is_told(
+    law: str, bias: float, rivals: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        "stiction.diagnosis.choose.parallel", lambda one, other: float(one == other)
+    )
+    found = choose(
+        [trial("torque_bias", 2.0, law, bias), trial("direction_asymmetry", 1.0, law, 0.2, 0.1)]
+    )
+    assert found is not None
+    assert found.winner.name == "torque_bias"
+    assert tuple(each.name for each in found.rivals) == rivals
+
+
+def test_a_fit_that_lost_its_inertia_or_its_input_is_no_cause() -> None:
+    def model(inertia: float, given: float) -> Any:
+        return SimpleNamespace(plant=SimpleNamespace(inertia=inertia), given=given)
+
+    base = model(1.0, 1.0)
+    assert emptied(base, model(0.9, 1.0)) == ""
+    assert "the inertia" in emptied(base, model(0.1, 1.0))
+    assert "the effort itself" in emptied(base, model(1.0, 0.005))
+
+
+def cause(name: str, family: str) -> Cause:
+    return Cause(name, family, True, (), {}, None, "", "", "", "")
+
+
+def test_beside_a_law_that_nobody_stated_what_laws_have_is_not_decided() -> None:
+    named = [cause("creep_hardening", "creep"), cause("cogging", "cogging")]
+    found = left_open.beside_another_law(named)
+    assert [each.decided for each in found] == [False, True]
+    assert found[0].doubt
+
+
+@pytest.mark.parametrize(
+    ("names", "strength", "doubted"),
+    [
+        (("stribeck", "viscous_quadratic"), 6.0, {"viscous_quadratic"}),
+        (("viscous_quadratic", "stribeck"), 6.0, {"stribeck"}),
+        (("stribeck", "viscous_quadratic"), 60.0, set()),
+        (("stribeck", "cogging"), 6.0, set()),
+        (("viscous_quadratic",), 6.0, set()),
+    ],
+)
+def test_a_second_name_of_the_curve_over_speed_may_be_the_form_of_the_first(
+    names: tuple[str, ...], strength: float, doubted: set[str]
+) -> None:
+    records = {record.name: record for record in st.effects()}
+    choices = [
+        SimpleNamespace(
+            winner=SimpleNamespace(candidate=SimpleNamespace(name=name, record=records[name]))
+        )
+        for name in names
+    ]
+    model = SimpleNamespace(strength=lambda _: strength)
+    selection: Any = SimpleNamespace(models=[model], choices=choices)
+    assert left_open.of_one_curve(selection) == doubted
+
+
+@pytest.mark.parametrize("smallest", [0.0, 1.0, -0.1, True, "1", float("nan")])
+def test_what_is_no_share_is_refused(smallest: Any, tmp_path: Path) -> None:
+    recordings = session(tmp_path, Spec(11, law="coulomb", contact="dry", **SHORT))
+    with pytest.raises(st.InputError, match="is out of bounds: give a share"):
+        st.diagnose(None, recordings, smallest=smallest)
+
+
+def test_what_is_smaller_than_was_asked_for_gets_no_name(tmp_path: Path) -> None:
+    spec = Spec(12, law="coulomb", contact="dry", hidden="torque_bias", size=0.1, **SHORT)
+    recordings = session(tmp_path, spec)
+    named, *_ = st.diagnose(None, recordings).effects
+    assert 0.01 < named.size < 0.1
+    found = st.diagnose(None, recordings, smallest=0.2)
+    assert found.effects == ()
+    assert found.to_dict()["smallest"] == 0.2
+    reasons = {row.name: row.reason for row in found.candidates}
+    assert "below the 20 % that matter" in reasons["torque_bias"]
