@@ -159,3 +159,19 @@ def test_what_is_smaller_than_was_asked_for_gets_no_name(tmp_path: Path) -> None
     assert found.to_dict()["smallest"] == 0.2
     reasons = {row.name: row.reason for row in found.candidates}
     assert "below the 20 % that matter" in reasons["torque_bias"]
+
+
+def test_what_is_missing_and_fast_is_no_noise_once_it_has_a_name(tmp_path: Path) -> None:
+    # Twelve periods a turn of a quick machine: noise, for who does not know of them.
+    spec = Spec(52, law="coulomb", contact="dry", hidden="cogging", size=0.15, **SHORT)
+    found = st.diagnose(None, session(tmp_path, spec))
+    before, after = found.baseline, found.extended
+    assert before is not None
+    assert after is not None
+    assert "cogging" in [cause.name for cause in found.effects]
+    assert after.noise_floor_rms == before.noise_floor_rms < 0.5 * before.train_rms
+    gap = before.train_rms**2 - after.noise_floor_rms**2
+    assert found.gap_closed == pytest.approx(
+        min(1.0, (before.train_rms**2 - after.train_rms**2) / gap)
+    )
+    assert found.to_dict()["gap_closed"] == found.gap_closed > 0.5

@@ -570,8 +570,9 @@ def test_findings_hold_every_field_that_others_build_on() -> None:
     recordings = [recorded(k, role=role) for k, role in enumerate(("train", "select", "test"))]
     found = st.diagnose(true_plant(), recordings, surrogates=4, laws=("coulomb",)).to_dict()
     assert list(found) == [
-        "schema", "verdict", "sentence", "effects", "gain", "candidates", "laws", "baseline",
-        "extended", "unexplained", "advice", "data", "version", "seed", "seconds",
+        "schema", "verdict", "sentence", "effects", "gain", "gap_closed", "candidates", "laws",
+        "better_law", "baseline", "extended", "unexplained", "advice", "data", "version", "seed",
+        "smallest", "seconds",
     ]  # fmt: skip
     assert found["schema"] == 1
     assert {row["name"] for row in found["candidates"]} == {e.name for e in st.effects()}

@@ -6,7 +6,7 @@ import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 from ..compared import compared_by
 from ..fitting.rows import Rows
@@ -97,7 +97,9 @@ class Conclusion:
     selection : Search
         As the search left it.
     null : numpy.ndarray, shape (n, surrogates)
-        Residuals of the surrogates.
+        Residuals of the surrogates of the base.
+    noises : mapping of int to Noise
+        By recording: what those were made with.
     others : sequence of str
         Laws that were asked for.
     checks : sequence of (str, Check)
@@ -117,6 +119,7 @@ class Conclusion:
     base: Model
     selection: Search
     null: FloatArray
+    noises: Mapping[int, Noise]
     others: Sequence[str]
     checks: Sequence[tuple[str, Check]]
     smallest: float = SMALLEST
@@ -124,6 +127,7 @@ class Conclusion:
     interrupted: bool = False
     brief: bool = False
     _known_rests: dict[int, Rest] = field(default_factory=dict)
+    _known_replays: dict[int, tuple[FloatArray, Mapping[int, Noise]]] = field(default_factory=dict)
 
     def diagnosis(self) -> Diagnosis:
         """Verdict and words; after a first Ctrl-C in here those that need nothing more."""
@@ -135,11 +139,21 @@ class Conclusion:
             self.interrupted = self.brief = True
             return self._whole()
 
+    def _noise_entry(self, index: int, noise: Noise) -> dict[str, Any]:
+        return {
+            "recording": self.evidence.names[index],
+            "position": noise.position,
+            "count": noise.count,
+            "effort": noise.effort,
+        }
+
     def _whole(self) -> Diagnosis:
         final = self.confirmed.models[-1]
         ceiling = self.ceiling
+        noises = self.noises if self.brief else self._replays(final)[1]
         data = {
             **self.found.data,
+            "noise": [self._noise_entry(index, noise) for index, noise in noises.items()],
             "replicates": None if ceiling is None else ceiling.to_dict(),
         }
         found = self._told(replace(self.found, data=data))
@@ -222,6 +236,20 @@ class Conclusion:
         """What base and last model leave, in every coordinate."""
         return self._rest(self.base), self._rest(self.confirmed.models[-1])
 
+    def _replays(self, model: Model) -> tuple[FloatArray, Mapping[int, Noise]]:
+        """Residuals of surrogates of a model, and the noise that they were made with.
+
+        What a base lacks may be as fast as noise, and is no noise once it has a name.
+        """
+        if id(model) not in self._known_replays:
+            number = self.null.shape[1]
+            self._known_replays[id(model)] = (
+                (self.null, self.noises)
+                if model is self.base
+                else surrogates_of(self.evidence, model, number, self.found.seed)
+            )
+        return self._known_replays[id(model)]
+
     def _rest(self, model: Model) -> Rest:
         """What a model leaves, in every coordinate."""
         if id(model) not in self._known_rests:
@@ -265,18 +293,13 @@ class Conclusion:
     def _unnamed(self, selection: Search, burst: Burst | None = None) -> tuple[Unexplained, ...]:
         """The same of a selection."""
         final = selection.models[-1]
-
-        def null_of_last() -> FloatArray:
-            number = self.null.shape[1]
-            return surrogates_of(self.evidence, final, number, self.found.seed)[0]
-
         return unnamed(
             self.evidence,
             selection,
             self._rest(self.base),
             self._rest(final),
             self.null,
-            null_of_last,
+            lambda: self._replays(final)[0],
             burst,
             relevant=self.relevant,
         )
@@ -304,7 +327,7 @@ class Conclusion:
         """Verdict and words, from everything that was measured."""
         evidence, selection, test, null = self.evidence, self.confirmed, self.test, self.null
         base, final = selection.models[0], selection.models[-1]
-        floor = floor_of(evidence, null)
+        floor = floor_of(evidence, null if self.brief else self._replays(final)[0])
         scales = scales_of(evidence, base.plant)
         results = {id(m): evaluated(m, scales) for m in (base, final)}
         baseline = summary_of(evidence, base, results[id(base)], test, 0, floor)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, Final, NamedTuple
@@ -232,11 +232,11 @@ def _testable(
     number = counted(len(session), "recording")
     phase(_logger, "looking through %s and fitting the base", number)
     evidence, base = based(found.plant, session.recordings)
-    found, null = _replayed(found, evidence, base, asked.surrogates)
-    if null is None:
+    found, replays = _replayed(found, evidence, base, asked.surrogates)
+    if replays is None:
         return base_alone(found, evidence, base)
     phase(_logger, "screening the effects")
-    look = _Searched(found, evidence, base, null, asked.search(evidence, base, null))
+    look = _Searched(found, evidence, base, *replays, asked.search(evidence, base, replays[0]))
     again = partial(_again, asked=asked)
     if not look.selection.interrupted:
         final = look.selection.models[-1]
@@ -267,6 +267,7 @@ def _testable(
         look.base,
         selection,
         look.null,
+        look.noises,
         asked.laws,
         checks,
         asked.smallest,
@@ -332,6 +333,7 @@ class _Searched(NamedTuple):
     evidence: Evidence
     base: Model
     null: FloatArray
+    noises: Mapping[int, Noise]
     selection: Search
 
 
@@ -342,17 +344,17 @@ def _again(
     asked: _Asked,
 ) -> _Searched | None:
     """The same search with another base; None after Ctrl-C: what was found is the best so far."""
-    found, null = _replayed(look.found, *seen, asked.surrogates)
-    selection = None if null is None else asked.search(*seen, null)
-    if null is None or selection is None or selection.interrupted:
+    found, replays = _replayed(look.found, *seen, asked.surrogates)
+    selection = None if replays is None else asked.search(*seen, replays[0])
+    if replays is None or selection is None or selection.interrupted:
         look.selection.interrupted = True
         return None
-    return _Searched(found, *seen, null, selection)
+    return _Searched(found, *seen, *replays, selection)
 
 
 def _replayed(
     found: Diagnosis, evidence: Evidence, base: Model, surrogates: int
-) -> tuple[Diagnosis, FloatArray | None]:
+) -> tuple[Diagnosis, tuple[FloatArray, Mapping[int, Noise]] | None]:
     """What is known with a base, and what noise would leave of it; None where Ctrl-C ended it."""
     dealt = evidence.split.to_dict()
     told = [TRAIN_IS_FITTED] if evidence.split.select else []
@@ -368,17 +370,6 @@ def _replayed(
         if base.solution.interrupted:
             raise KeyboardInterrupt
         phase(_logger, "replaying it with noise, %d times", surrogates)
-        null, noises = surrogates_of(evidence, base, surrogates, found.seed)
+        return found, surrogates_of(evidence, base, surrogates, found.seed)
     except KeyboardInterrupt:
         return found, None
-    measured = [_noise_entry(evidence, index, noise) for index, noise in noises.items()]
-    return replace(found, data={**found.data, "noise": measured}), null
-
-
-def _noise_entry(evidence: Evidence, index: int, noise: Noise) -> dict[str, Any]:
-    return {
-        "recording": evidence.names[index],
-        "position": noise.position,
-        "count": noise.count,
-        "effort": noise.effort,
-    }

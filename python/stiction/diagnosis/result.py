@@ -371,6 +371,20 @@ class Diagnosis:
         freeze(self, Frozen, "data")
 
     @property
+    def gap_closed(self) -> float | None:
+        """Share of the power beyond noise that the causes explain, over the rows fitted.
+
+        None where nothing is named, or where the baseline leaves no more than noise.
+        """
+        before, after = self.baseline, self.extended
+        if not self.effects or before is None or after is None:
+            return None
+        gap = before.train_rms**2 - after.noise_floor_rms**2
+        if not gap > 0.0:
+            return None
+        return min((before.train_rms**2 - after.train_rms**2) / gap, 1.0)
+
+    @property
     def schema(self) -> int:
         """Version of the form of findings.json."""
         return SCHEMA
@@ -383,6 +397,7 @@ class Diagnosis:
             "sentence": self.sentence,
             "effects": [cause.to_dict() for cause in self.effects],
             "gain": None if self.gain is None else self.gain.to_dict(),
+            "gap_closed": self.gap_closed,
             "candidates": [row.to_dict() for row in self.candidates],
             "laws": [row.to_dict() for row in self.laws],
             "better_law": self.better_law or None,

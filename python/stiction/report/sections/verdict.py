@@ -114,5 +114,6 @@ def _errors(diagnosis: Diagnosis) -> dict[str, Any] | None:
         "floor": scale.text(floor),
         # Noise is that of the rows fitted: recordings held out may be quieter, and nothing that
         # was called unexplained lies within it.
+        "closed": None if diagnosis.gap_closed is None else percent(diagnosis.gap_closed, 0),
         "within": diagnosis.verdict != "unexplained" and after.train_rms <= floor,
     }
