@@ -175,3 +175,20 @@ def test_what_is_missing_and_fast_is_no_noise_once_it_has_a_name(tmp_path: Path)
         min(1.0, (before.train_rms**2 - after.train_rms**2) / gap)
     )
     assert found.to_dict()["gap_closed"] == found.gap_closed > 0.5
+
+
+def test_a_delay_is_found_where_the_base_has_taken_half_a_sample_of_it(tmp_path: Path) -> None:
+    # Simulated over windows, an offset of timing and a delay are one slope: no score tells of it.
+    spec = Spec(
+        5_770_012,
+        law="coulomb",
+        hidden="input_delay",
+        size=0.1559517219096808,
+        contact="dry",
+        seconds=30.841489440739025,
+    )
+    found = st.diagnose(None, session(tmp_path, spec))
+    named = {name for cause in found.effects for name in (cause.name, *cause.look_alikes)}
+    assert "input_delay" in named
+    assert found.gain is not None
+    assert found.gain.value > 0.5

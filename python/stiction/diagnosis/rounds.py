@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from ..catalogue import EffectRecord, effects
+from ..fitting.rows import timing_bound
 from ..plant import Plant
 from ..trajectory import FloatArray
 from . import listing
@@ -49,6 +50,8 @@ STRIBECK: Final = "stribeck"
 """A fall of friction with speed: where there is one, or is not to be looked for, a lag has none."""
 SWINGS: Final = "second mass"
 """Hook of effects whose mass swings faster than the samples of a servo show."""
+LEANS: Final = 0.5
+"""Share of the greatest offset of timing from which on a base may have taken a delay for one."""
 RELATED: Final = 0.2
 """Cosine from which on one member of a family may be a part of another; waves of different orders
 have next to none."""
@@ -195,7 +198,8 @@ def _round(
     outstanding = {score.candidate.name for score in _outstanding(scores)}
     passing = [s for s in scores if promises(s) or s.candidate.name in outstanding]
     trials: list[Trial] = []
-    asked = [s for s in scores if _is_asked(screening, s) and s not in passing[:REFITTED]]
+    base = found.models[-1]
+    asked = [s for s in scores if _is_asked(screening, base, s) and s not in passing[:REFITTED]]
     try:
         return *_refitted(screening, found, scores, passing, asked, trials), trials
     except KeyboardInterrupt:
@@ -300,17 +304,22 @@ def _outstanding(scores: Sequence[Score]) -> list[Score]:
     return [s for s in testable if s.score > max(least, s.threshold)]
 
 
-def _is_asked(screening: Screening, score: Score) -> bool:
+def _is_asked(screening: Screening, base: Model, score: Score) -> bool:
     """Whether a candidate is refitted beside those that passed, whatever it does held out.
 
     A loop bends itself far towards a goal that is late or held back, and from there the slope of
     such a cause tells nothing of it, nor does its score. And what a limit of the grid does on other
     rows says little of the one that the rows have; where moments are left that nothing has
-    explained, nor does what it explains.
+    explained, nor does what it explains. And where rows are simulated, a delay and the offset of
+    timing that a plant without one may have are the same slope: a base that leans on its offset
+    leaves no score to a delay.
     """
     record, evidence = score.candidate.record, screening.evidence
     if evidence.loop and record.before_drive:
         return True
+    if record.late and evidence.simulated:
+        most = timing_bound(base.plant, evidence.shown)
+        return abs(base.nuisances.timing) > LEANS * most > 0.0
     beyond_noise = score.score > score.threshold or evidence.joined
     return record.limits and score.testable and beyond_noise
 
@@ -453,7 +462,7 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
         _as_it_is(screening, less, score, whole) or screening.trial(less, score)
         for score in screening.scores(less)
         if score.candidate.name in kin
-        and (score.score > score.threshold or _is_asked(screening, score))
+        and (score.score > score.threshold or _is_asked(screening, less, score))
     ]
     again = choose(trials, screening.encompasses)
     if again is None:
