@@ -14,8 +14,8 @@ import stiction as st
 from stiction.diagnosis import left_open
 from stiction.diagnosis.choose import Trial, choose
 from stiction.diagnosis.decide import emptied
-from stiction.diagnosis.laws import THE_LAW
 from stiction.diagnosis.result import Cause
+from stiction.diagnosis.words import THE_LAW
 
 SHORT: Any = {"seconds": 8.0, "recordings": 3, "dt": 0.004, "counts": 131072, "loop": "open"}
 
@@ -36,9 +36,11 @@ def test_a_law_that_yields_is_told_of_a_dry_contact_and_the_diagnosis_goes_on(
     assert found.effects == ()
     assert [left.coordinate for left in found.unexplained] == [THE_LAW]
     assert found.verdict == "unexplained"
+    page = found.save(tmp_path / "out").read_text("utf-8")
+    assert "still follows some coordinates" not in page
     # What is handed over is the plant with the law that is the better one.
     assert found.plant.friction.law == "coulomb"
-    assert found.advice[0].experiment == (
+    assert found.advice[-1].experiment == (
         'state law = "coulomb" in the plant file, as the extended plant does'
     )
 

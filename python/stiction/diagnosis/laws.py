@@ -33,7 +33,7 @@ from .model import LEAST_GIVEN, Model, fitted, power_of
 from .result import Advice, LawRow
 from .selection import Search
 from .within import left_within
-from .words import joined
+from .words import THE_LAW, joined
 
 __all__ = [
     "THE_LAW",
@@ -45,8 +45,6 @@ __all__ = [
     "rivals_of",
 ]
 
-THE_LAW: Final = "the friction law"
-"""What is left depends on, where another law leaves less of it."""
 YIELDING: Final = "maxwell_slip"
 RIGID: Final = "coulomb"
 """Laws that are tried unasked where a plant lacks something, each where the plant's own law is of

@@ -307,7 +307,7 @@ def _restated(
         sentence=f"{conclusion.law_words} With {law}: {beside.sentence}",
         laws=told.laws,
         better_law=law,
-        advice=(better.advice(followed=True), *beside.advice),
+        advice=(*beside.advice, better.advice(followed=True)),
     )
 
 

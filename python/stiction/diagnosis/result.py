@@ -371,6 +371,11 @@ class Diagnosis:
         freeze(self, Frozen, "data")
 
     @property
+    def restated(self) -> bool:
+        """Whether all but ``laws`` is told of the plant with the better law."""
+        return bool(self.better_law) and self.plant.friction.law == self.better_law
+
+    @property
     def gap_closed(self) -> float | None:
         """Share of the power beyond noise that the causes explain, over the rows fitted.
 

@@ -35,6 +35,7 @@ __all__ = [
     "ONE_CURVE",
     "OUTWEIGHED",
     "PARTLY",
+    "THE_LAW",
     "UNREPEATED",
     "WORSE",
     "gain_words",
@@ -73,6 +74,8 @@ LEAVES_NOTHING = "what is left goes with {}, and of that it leaves nothing where
 """Why a name may be a relative of the cause that no catalogue has."""
 MAY_BE_NOTHING = "every one of its numbers may be 0"
 """Why a name beside another one may be what the form of that leaves."""
+THE_LAW = "the friction law"
+"""What is left depends on, where another law leaves less of it."""
 OF_ANOTHER_LAW = "another law of that kind may have it of itself"
 """Why a name beside a law that nobody stated may be none."""
 ONE_CURVE = "friction over speed is one curve, and another form of it may explain both names"

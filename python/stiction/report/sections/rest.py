@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ...compared import compared_by
+from ...diagnosis.words import THE_LAW
 from ..numbers import percent
 from ..scale import scale_of
 from ..views import hint
@@ -33,6 +34,8 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
             "hint": hint(each.coordinate, diagnosis.plant),
         }
         for each in diagnosis.unexplained
+        # What the stated law lacked is no rest beside the one that has taken its place.
+        if not (diagnosis.restated and each.coordinate == THE_LAW)
     ]
     rows = [
         {
