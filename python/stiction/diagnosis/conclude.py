@@ -70,6 +70,8 @@ from .words import (
 
 __all__ = ["Conclusion", "base_alone", "surrogates_of"]
 
+TOLD_BY: Final = 8
+"""Replays that tell the power which noise leaves: its mean over them, and no threshold."""
 MESSAGE: Final = "interrupted: this is the best so far"
 UNFITTED: Final = "The fit of the plant was not finished, and no effect was looked for yet."
 UNSEARCHED: Final = "The plant was fitted, and no effect was looked for yet."
@@ -242,7 +244,7 @@ class Conclusion:
         What a base lacks may be as fast as noise, and is no noise once it has a name.
         """
         if id(model) not in self._known_replays:
-            number = self.null.shape[1]
+            number = min(self.null.shape[1], TOLD_BY)
             self._known_replays[id(model)] = (
                 (self.null, self.noises)
                 if model is self.base
