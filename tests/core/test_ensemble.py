@@ -135,7 +135,7 @@ def test_members_start_where_the_motor_is() -> None:
         ({"parameters": {"creep_rate": ["a", "b"]}}, "not an array of numbers"),
         ({"parameters": {"creep_rate": [1.0] * 3}}, "shape"),
         ({"load": np.zeros((3, 10))}, "load has shape"),
-        ({"reduce": "mean"}, "known: last, rms"),
+        ({"reduce": "mean"}, "allowed are last, rms"),
         ({"reduce": "rms", "every": 2}, "give one of them"),
         ({"target": 1.0}, "leave it out"),
         ({"every": 0}, "whole number from 1"),
