@@ -44,6 +44,7 @@ def _counts(rows):
             ("a name", rate(told, lambda r: r["found"])),
             ("a sure name", rate(told, confident)),
             ("unexplained", rate(told, _is("unexplained"))),
+            ("of these the law is told", rate([r for r in told if _is("unexplained")(r)], _law)),
             ("a name, or unexplained", rate(told, lambda r: not _silent(r))),
             ("not testable, or a fault of the data", rate(told, _refused)),
             ("right: nothing is missing", rate(told, _is("nothing_missing"))),
@@ -59,6 +60,10 @@ def _counts(rows):
             (f"rms from {CLEAR:g}: silence", rate(clear, _is("nothing_missing"))),
         ]
     return table(("what", "measured (95 % Wilson interval)"), lines)
+
+
+def _law(row):
+    return bool(row.get("better_law"))
 
 
 def _is(verdict):
