@@ -339,7 +339,13 @@ class Plant:
         -------
         list of (str, int, float)
             Path of what follows, place of the path that it follows, and the factor between them.
+
+        Raises
+        ------
+        InputError
+            Something else than paths.
         """
+        paths = given.names(paths, f"{self.source}: paths")
         stated = self.friction.parameters
         found = []
         for record in self.friction.record.parameters:
