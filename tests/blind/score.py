@@ -106,7 +106,7 @@ def told(answer):
         "verdict": findings["verdict"],
         "found": [_cause(cause, families) for cause in findings["effects"]],
         "unexplained": [[each["coordinate"], each["share"]] for each in findings["unexplained"]],
-        "better_law": findings["better_law"],
+        "better_law": findings.get("better_law"),
         "gain": None if findings["gain"] is None else findings["gain"]["value"],
         "candidates": findings["candidates"],
         "base_rms": base.get("train_rms"),

@@ -214,7 +214,7 @@ CONTACTS = {
     ),
     "words in an array": (
         lambda: model().simulate(["a", "b"], DT),
-        lambda: model().simulate(["1", "2"], DT),
+        lambda: model().simulate([1, 2.0], DT),
         ["velocity", "numbers"],
     ),
     "ragged lists": (
