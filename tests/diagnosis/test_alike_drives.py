@@ -34,6 +34,7 @@ def added(made, torque):
     return st.diagnose(as_plant(made), as_session(made, inputs), threads=1)
 
 
+@pytest.mark.slow
 def test_a_limit_is_named_though_it_acts_in_one_recording_of_each_role():
     made, found = hidden("drive_saturation", 9900008, "coulomb")
     limit = made.effects[0].shape["limit"]
@@ -48,6 +49,7 @@ def test_a_limit_is_named_though_it_acts_in_one_recording_of_each_role():
     assert reached == pytest.approx(limit, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_limit_that_comes_down_with_speed_is_named_and_a_small_part_beyond_it_is_none():
     """A drive that is out of voltage gives no more, however much is asked for."""
     _, found = hidden("voltage_limit", 12750007, "coulomb", 0.0106)
@@ -60,6 +62,7 @@ def test_a_limit_that_comes_down_with_speed_is_named_and_a_small_part_beyond_it_
     assert "beyond a limit nothing gets through" in row_of(found, "voltage_limit").reason
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["library", "foreign"])
 def test_a_part_that_is_lost_of_large_inputs_is_a_torque_constant_that_falls(form):
     """Beyond a soft knee a twentieth is lost: a limit with a small share fits that best."""

@@ -16,6 +16,7 @@ HIDDEN = ("drive_deadband", 0.0129)
 SPEC = {"seed": 5810023, "base": "maxwell_slip", "hidden": (HIDDEN,)}
 
 
+@pytest.mark.slow
 def test_an_effect_towards_which_the_base_has_bent_itself_is_found() -> None:
     (made,) = make_sessions([SPEC])
     plant, session = as_plant(made), as_session(made)
@@ -29,6 +30,7 @@ def test_an_effect_towards_which_the_base_has_bent_itself_is_found() -> None:
     assert found.gain.ci95[0] > 0.2
 
 
+@pytest.mark.slow
 def test_a_base_at_a_kink_keeps_no_cause_from_being_found() -> None:
     """On hsieh_pan a base may end where it does not follow once the effect is there."""
     hidden = (("position_dependent_friction:foreign", 0.01495),)
@@ -39,6 +41,7 @@ def test_a_base_at_a_kink_keeps_no_cause_from_being_found() -> None:
     assert found.gain.value > 0.7
 
 
+@pytest.mark.slow
 def test_a_shape_far_from_every_signature_is_no_freed_base() -> None:
     """Signatures of a lag end at usual speeds; of this one they explain a fifth of what it does."""
     hidden = (("frictional_lag", 0.013034, {"fall": 0.0}),)

@@ -79,6 +79,7 @@ def test_what_comes_in_many_windows_is_no_single_moment() -> None:
     assert found(acting(*everywhere, size=12.0)) is None
 
 
+@pytest.mark.slow
 def test_a_limit_that_is_reached_once_is_not_nothing() -> None:
     """Nothing that was not fitted shows it: it has no name, and a fifth of what is left."""
     made = make_session(12900003, base="coulomb", hidden=(("voltage_limit:foreign", 0.014022),))

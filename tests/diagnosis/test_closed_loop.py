@@ -351,6 +351,7 @@ def test_the_report_shows_the_loop_where_there_is_one(
     assert bare.to_dict()["baseline"]["replay"] is None
 
 
+@pytest.mark.slow
 def test_blocks_of_a_single_recording_are_told_apart_and_a_loop_may_run_away() -> None:
     machine = plant(KINDS["pd"])
     recording = by_hand(machine, goals(20.0))

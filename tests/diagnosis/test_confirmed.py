@@ -123,6 +123,7 @@ def test_what_does_little_where_it_is_to_be_confirmed_is_hardly_excited_there(
     assert not hardly_excited(base(True), cause, 0.025)
 
 
+@pytest.mark.slow
 def test_what_shows_where_it_was_fitted_alone_is_not_testable() -> None:
     """A limit that is reached in one recording: turned round with its second it is told as well."""
     made = make_session(12750006, hidden=(("voltage_limit", 0.012414),))

@@ -38,6 +38,7 @@ def passed_the_score(sessions: Sequence[Any]) -> float:
     return float(np.mean([row.score > row.threshold for row in rows]))  # type: ignore[operator]
 
 
+@pytest.mark.slow
 def test_without_calibration_the_score_lets_noise_through(monkeypatch: pytest.MonkeyPatch) -> None:
     # Held-out rows, blocks and strength still refuse what the score lets through: of twelve such
     # sessions none got a name. It is the score's own gate that must be seen to fail.

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pytest
 from tests.blind.resolve import recorded
 from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
@@ -61,6 +62,7 @@ def test_only_a_reference_that_is_followed_takes_the_place_of_the_motion() -> No
         assert looked(other) is None
 
 
+@pytest.mark.slow
 def test_what_a_controller_answers_to_noise_is_no_cause() -> None:
     made = even_session()
     found = st.diagnose(as_plant(made), as_session(made), threads=1)

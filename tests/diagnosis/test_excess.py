@@ -13,6 +13,7 @@ from stiction.diagnosis.result import Unexplained
 from stiction.diagnosis.words import NO_COORDINATE, sentence
 
 
+@pytest.mark.slow
 def test_what_goes_with_no_coordinate_is_told_beside_coordinates_that_show_little():
     # Beside a law that cannot be right: the machine remembers its reversals, LuGre does not.
     made = make_session(311)

@@ -18,6 +18,7 @@ from stiction.diagnosis.sharpen import _held
 LAG_ALONE = {"fall": 0.0}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "size"),
     [(12340001, 0.0123), pytest.param(12340019, 0.01235, id="found as a fall and its lag")],
@@ -59,6 +60,7 @@ def test_no_friction_rises_from_rest_and_late() -> None:
         assert (stated["excess"].value < 0.0) == (candidate.shape["fall"] == 0.0)
 
 
+@pytest.mark.slow
 def test_where_a_fall_is_stated_its_lag_is_found_alone() -> None:
     """A fall that comes late took over the one that the plant states, and left neither known."""
     made = make_session(12340003, base="coulomb", hidden=(("frictional_lag", 0.0125, LAG_ALONE),))

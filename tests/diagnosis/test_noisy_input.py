@@ -41,6 +41,7 @@ def diagnosed(noise: float, *, acts: bool, late: int = 0) -> Diagnosis:
     return diagnose(plant, Session(recordings), without=("input_delay", "current_loop_lag"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("noise", "acts"), [(0.01, False), (0.04, False), (0.04, True)])
 def test_noise_of_the_input_is_nothing_missing(noise: float, acts: bool) -> None:
     found = diagnosed(noise, acts=acts)
@@ -48,6 +49,7 @@ def test_noise_of_the_input_is_nothing_missing(noise: float, acts: bool) -> None
     assert not found.effects
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("acts", [False, True])
 def test_an_answer_that_comes_late_is_still_told(acts: bool) -> None:
     found = diagnosed(0.02, acts=acts, late=4)

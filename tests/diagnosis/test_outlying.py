@@ -34,6 +34,7 @@ def test_a_torque_in_one_recording_that_decides_is_told():
     assert f"recording {chosen + 1} alone" in found.sentence
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turns", [True, False])
 def test_an_inertia_that_changes_with_the_angle_is_no_sure_error_of_the_encoder(turns):
     hidden = () if turns else (("encoder_eccentricity", 0.012),)

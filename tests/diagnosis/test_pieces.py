@@ -518,6 +518,7 @@ def test_what_may_be_a_relative_instead_leaves_a_name_undecided() -> None:
     assert [relatives(selection, k) for k in range(3)] == [[], ["0.9"], []]
 
 
+@pytest.mark.slow
 def test_an_interrupted_refit_ends_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*given: Any, **named: Any) -> Model:
         model = fitted(*given, **named)

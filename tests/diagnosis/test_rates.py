@@ -125,6 +125,7 @@ def test_a_complete_simulation_gives_no_name() -> None:
     assert found(None).effects == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", HIDDEN)
 def test_a_hidden_effect_is_named_or_listed_as_a_look_alike(name: str) -> None:
     first = found(name).effects[0]

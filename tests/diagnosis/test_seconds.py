@@ -26,6 +26,7 @@ def diagnosed(seed: int, *hidden: tuple[Any, ...], base: str = "coulomb") -> st.
     return st.diagnose(as_plant(made), as_session(made))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "base", "name", "size"),
     [
@@ -65,6 +66,7 @@ def test_it_is_found_beside_a_name_as_well() -> None:
     assert found.verdict == "missing_effect"
 
 
+@pytest.mark.slow
 def test_a_moment_in_rows_that_test_alone_is_told_and_decides_nothing() -> None:
     found = diagnosed(12900021, ("drive_saturation:foreign", 0.013579))
     assert (found.verdict, found.effects) == ("nothing_missing", ())

@@ -41,6 +41,7 @@ def found(case: Any) -> Any:
     return st.diagnose(as_plant(made), as_session(made))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("orders", TWO_WAVES)
 def test_two_waves_pass_together_where_one_does_not(orders: tuple[float, float]) -> None:
     diagnosis = found(TWO_WAVES[orders])
@@ -51,6 +52,7 @@ def test_two_waves_pass_together_where_one_does_not(orders: tuple[float, float])
     assert tuple(effect.parameters[name].value for name in ("order", "order_2")) == orders
 
 
+@pytest.mark.slow
 def test_a_contact_rests_within_a_distance_of_its_own() -> None:
     (made,) = make_sessions([RESTS.spec])
     diagnosis = st.diagnose(as_plant(made), as_session(made))

@@ -15,6 +15,7 @@ CASES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("base", CASES)
 def test_both_are_named(base: str) -> None:
     seed, hidden = CASES[base]

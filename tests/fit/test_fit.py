@@ -193,6 +193,7 @@ def test_what_a_plant_leaves_open_moves_with_the_parameter_it_follows(
         assert np.abs(exact - chord).max() < 1e-4 * np.abs(chord).max(), path
 
 
+@pytest.mark.slow
 def test_intervals_cover_the_truth_about_as_often_as_they_say() -> None:
     # White noise on the effort alone, position exact: nothing but noise biases the estimate.
     covered = tried = 0

@@ -28,6 +28,7 @@ def test_noise_of_a_sensor_does_not_lower_the_friction(noise: float) -> None:
         assert found[name].value == pytest.approx(value, rel=3e-3), name
 
 
+@pytest.mark.slow
 def test_intervals_cover_the_truth_where_readings_are_noisy() -> None:
     covered = 0
     for seed in SEEDS:

@@ -133,6 +133,7 @@ def test_a_ring_alone_gives_inertia_and_damper_and_warns_of_the_rest(recordings)
     assert width[1] > 10.0 * width[0]
 
 
+@pytest.mark.slow
 def test_slow_recordings_leave_inertia_and_damper_open(recordings):
     found = estimate(*recordings(3, ("holds",)))
     open_ = {name for name, each in found.parameters.items() if not each.determined}
@@ -172,6 +173,7 @@ def test_little_noise_does_not_slow_the_creep(seed):
     assert rate.ci95[0] < TRUTH["creep_rate"] < rate.ci95[1]
 
 
+@pytest.mark.slow
 def test_readings_without_noise_are_warned_of():
     dt, torque = torques()["experiment 2"]
     run = paper.illustrative_motor().simulate(torque, dt, outputs=("position",))

@@ -77,6 +77,7 @@ def mean_error(plant: st.Plant, recordings: list[st.Recording]) -> float:
     return float(np.mean([free_run(plant, r).mean_absolute for r in held]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "table", "held", "published"),
     [

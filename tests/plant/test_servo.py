@@ -233,6 +233,7 @@ def test_gear_losses_are_named():
     assert [cause.name for cause in found.effects] == ["load_dependent_friction"]
 
 
+@pytest.mark.slow
 def test_fit_and_diagnosis_of_a_servo_end_in_the_same_machine():
     free = plant(torque_constant={"value": 0.6, "fixed": False})
     dealt = ["train", "train", "train", "test"]

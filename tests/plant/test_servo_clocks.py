@@ -85,6 +85,7 @@ def test_rows_of_an_uneven_clock_are_those_of_the_recording() -> None:
     np.testing.assert_allclose(again.time, recording.time[1:], atol=0.02 * DT)
 
 
+@pytest.mark.slow
 def test_a_goal_that_comes_a_part_of_a_sample_late_is_no_friction() -> None:
     late = Servo(proportional=1.2, tardy=0.3)
     found = st.diagnose(st.Plant.from_dict(PLANT), session(late, even(1600), jumps=True))
@@ -102,6 +103,7 @@ def test_what_a_servo_answers_to_its_noise_is_no_response() -> None:
     assert found.verdict == "nothing_missing", found.sentence
 
 
+@pytest.mark.slow
 def test_a_servo_that_warms_up_is_simulated_as_warm_as_it_is() -> None:
     """Each recording was begun cold by the loop that bears a name out, and none bore this one."""
     warm = Servo(proportional=1.2, cold=1.0, warming=25.0)
