@@ -11,11 +11,12 @@ from tests.ordinary.draw import Spec, ordinary
 from tests.ordinary.files import write
 
 import stiction as st
-from stiction.diagnosis import left_open
+from stiction.diagnosis import left_open, pipeline
 from stiction.diagnosis.choose import Trial, choose
 from stiction.diagnosis.decide import emptied
 from stiction.diagnosis.result import Cause
 from stiction.diagnosis.words import THE_LAW
+from stiction.errors import NotEnoughData
 
 SHORT: Any = {"seconds": 8.0, "recordings": 3, "dt": 0.004, "counts": 131072, "loop": "open"}
 
@@ -43,6 +44,34 @@ def test_a_law_that_yields_is_told_of_a_dry_contact_and_the_diagnosis_goes_on(
     assert found.advice[-1].experiment == (
         'state law = "coulomb" in the plant file, as the extended plant does'
     )
+
+
+@pytest.mark.parametrize(
+    ("fault", "success"), [(NotEnoughData("too short"), True), (KeyboardInterrupt(), False)]
+)
+def test_what_was_told_stays_where_the_diagnosis_with_the_better_law_comes_to_nothing(
+    fault: BaseException,
+    success: bool,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    left_out: list[str],
+) -> None:
+    whole, begun = pipeline.based, []
+
+    def based(*given: Any) -> Any:
+        begun.append(given)
+        if len(begun) > 1:
+            raise fault
+        return whole(*given)
+
+    monkeypatch.setattr(pipeline, "based", based)
+    found = st.diagnose(None, session(tmp_path, Spec(11, law="dahl", contact="dry", **SHORT)))
+    assert len(begun) == 2
+    assert found.success is success
+    assert len(left_out) == success
+    assert found.better_law == "coulomb"
+    assert found.plant.friction.law == "dahl"
+    assert "The friction law itself lacks something: coulomb" in found.sentence
 
 
 def test_what_is_missing_beside_the_better_law_is_named_there(tmp_path: Path) -> None:
@@ -132,11 +161,8 @@ def test_beside_a_law_that_nobody_stated_what_laws_have_is_not_decided() -> None
 def test_a_second_name_of_the_curve_over_speed_may_be_the_form_of_the_first(
     names: tuple[str, ...], strength: float, doubted: set[str]
 ) -> None:
-    records = {record.name: record for record in st.effects()}
     choices = [
-        SimpleNamespace(
-            winner=SimpleNamespace(candidate=SimpleNamespace(name=name, record=records[name]))
-        )
+        SimpleNamespace(winner=SimpleNamespace(name=name, candidate=SimpleNamespace(name=name)))
         for name in names
     ]
     model = SimpleNamespace(strength=lambda _: strength)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 from ..compared import compared_by
 from ..fitting.rows import Rows
@@ -68,7 +68,7 @@ from .words import (
     unseen_words,
 )
 
-__all__ = ["Conclusion", "base_alone", "surrogates_of"]
+__all__ = ["MESSAGE", "Conclusion", "base_alone", "surrogates_of"]
 
 TOLD_BY: Final = 8
 """Replays that tell the power which noise leaves: its mean over them, and no threshold."""
@@ -141,21 +141,16 @@ class Conclusion:
             self.interrupted = self.brief = True
             return self._whole()
 
-    def _noise_entry(self, index: int, noise: Noise) -> dict[str, Any]:
-        return {
-            "recording": self.evidence.names[index],
-            "position": noise.position,
-            "count": noise.count,
-            "effort": noise.effort,
-        }
-
     def _whole(self) -> Diagnosis:
         final = self.confirmed.models[-1]
         ceiling = self.ceiling
         noises = self.noises if self.brief else self._replays(final)[1]
         data = {
             **self.found.data,
-            "noise": [self._noise_entry(index, noise) for index, noise in noises.items()],
+            "noise": [
+                {"recording": self.evidence.names[index], **asdict(noise)}
+                for index, noise in noises.items()
+            ],
             "replicates": None if ceiling is None else ceiling.to_dict(),
         }
         found = self._told(replace(self.found, data=data))

@@ -31,8 +31,8 @@ took: right names came to 0.4 but for one, and what was named of a contact whose
 form to 0.6 and more."""
 OF_A_LAW: Final = frozenset({"breakaway", "creep", "memory"})
 """Families of effects that say how friction goes with speed, time and reversals, as laws do."""
-CURVE: Final = "speed, odd in direction"
-"""How the coordinate of an effect ends that is a part of the curve of friction over speed."""
+OVER_SPEED: Final = frozenset({"stribeck", "viscous_quadratic"})
+"""Effects that are parts of one curve, that of friction over speed."""
 
 
 def left_open(
@@ -101,9 +101,7 @@ def of_one_curve(selection: Search) -> Set[str]:
     """
     final = selection.models[-1]
     named = [
-        choice.winner.candidate
-        for choice in selection.choices
-        if choice.winner.candidate.record.coordinate.endswith(CURVE)
+        choice.winner.candidate for choice in selection.choices if choice.winner.name in OVER_SPEED
     ]
     return {each.name for each in named[1:] if final.strength(each) < SURE}
 

@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from .. import __version__
+from ..best_effort import Failure, attempt
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import told as residual_told
 from ..given import instance, share, whole
@@ -31,7 +32,7 @@ from ..workers import with_workers
 from .advice import advise
 from .base import based, based_joined, based_simulated, based_wider
 from .candidates import left_out
-from .conclude import Conclusion, base_alone, surrogates_of
+from .conclude import MESSAGE, Conclusion, base_alone, surrogates_of
 from .decide import SMALLEST
 from .evidence import Evidence
 from .laws import THE_LAW, law_names
@@ -292,12 +293,22 @@ def _restated(
     """The diagnosis of the plant with the law that is the better one, where that can be told.
 
     What is named beside a law that lacks something stands for that. Where the other law is outdone
-    in its turn, neither is right, and what was told of the plant as it was stated stays.
+    in its turn, neither is right, and what was told of the plant as it was stated stays. So it does
+    where this comes to nothing, and after Ctrl-C.
     """
     better, law = conclusion.better[0], told.better_law
     phase(_logger, "diagnosing again, with law %s", law)
-    beside = again(replace(conclusion.found.plant, friction=better.stated))
-    if not beside.success or beside.better_law or beside.verdict == "not_testable":
+    plant = replace(conclusion.found.plant, friction=better.stated)
+    ended = replace(told, success=False, message=MESSAGE)
+    try:
+        beside = attempt(f"the diagnosis with {law}", partial(again, plant))
+    except KeyboardInterrupt:
+        return ended
+    if isinstance(beside, Failure):
+        return told
+    if not beside.success:
+        return ended
+    if beside.better_law or beside.verdict == "not_testable":
         return told
     nothing = beside.verdict == "nothing_missing"
     return replace(
