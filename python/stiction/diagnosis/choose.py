@@ -14,8 +14,6 @@ from .chance import TOO_NEAR, by_chance, unrepeated
 from .decide import OUT_OF_RANGE, Trial
 from .gains import paired_z
 
-_Contribution = np.ndarray[Any, np.dtype[np.floating]]
-
 __all__ = ["ALIKE", "DECIDED_Z", "Choice", "choose", "covers", "parallel", "strangers"]
 
 NEAR: Final = 0.15
@@ -34,11 +32,12 @@ UNEVEN_IN_FAMILY: Final = 0.12
 with more it stands for the family alone."""
 
 BIAS: Final = "torque_bias"
-AT_STICK: Final = "direction_asymmetry"
+TWO_LEVELS: Final = "direction_asymmetry"
 """With true stick a level for each direction is one level and a constant effort, to the last digit,
 as long as that does not outweigh it: what a constant effort explains so may be either. The reverse
 is told as all else is: viscous friction that differs as well is no constant."""
 
+_Contribution = np.ndarray[Any, np.dtype[np.floating]]
 Encompasses = Callable[[Trial, Trial], bool]
 
 
@@ -211,7 +210,7 @@ def _kin(winner: Trial, other: Trial) -> bool:
 
 def _same_at_stick(winner: Trial, other: Trial) -> bool:
     """Whether a constant effort may be a level of its own in either direction."""
-    if (winner.name, other.name) != (BIAS, AT_STICK):
+    if (winner.name, other.name) != (BIAS, TWO_LEVELS):
         return False
     friction = winner.model.plant.friction
     level = friction.parameters.get("coulomb")

@@ -187,10 +187,10 @@ def judge(
     confirmed = cache(
         lambda: strength >= SURE and is_confirmed(base, model, contributed, whole=gain_known)
     )
-    reason = emptied(base, model)
-    empty = bool(reason)
-    if empty:
-        pass
+    reason = ""
+    empties = emptied(base, model)
+    if empties:
+        reason = empties
     elif explained <= 0.0:
         reason = "fits no better than without it"
     elif explained <= score.threshold:
@@ -270,6 +270,6 @@ def judge(
         freed=freed,
         partly=bool(partly),
         of_reading=beyond.endswith(BELOW_A_KERNEL),
-        empty=empty,
+        empty=bool(empties),
         doubtless=doubtless,
     )

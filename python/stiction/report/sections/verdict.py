@@ -112,8 +112,8 @@ def _errors(diagnosis: Diagnosis) -> dict[str, Any] | None:
         "error": by.error[0].upper() + by.error[1:] if by.loop else "Effort not explained",
         "whole": by.whole,
         "floor": scale.text(floor),
+        "closed": None if diagnosis.gap_closed is None else percent(diagnosis.gap_closed, 0),
         # Noise is that of the rows fitted: recordings held out may be quieter, and nothing that
         # was called unexplained lies within it.
-        "closed": None if diagnosis.gap_closed is None else percent(diagnosis.gap_closed, 0),
         "within": diagnosis.verdict != "unexplained" and after.train_rms <= floor,
     }
