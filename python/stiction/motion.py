@@ -20,6 +20,7 @@ __all__ = [
     "noise_of",
     "rested",
     "smooth",
+    "stirs",
 ]
 
 WIDEST: Final = 1e6
@@ -30,6 +31,8 @@ FEWEST_SAMPLES: Final = 8
 """Fewer samples than this do not average anything."""
 ALIKE: Final = 1e-3
 """Share of a step within which stamps of a timer are even, but for the digits of a number."""
+NOT_CHANCE: Final = 5.0
+"""Standard errors by which readings of a machine at rest do not differ from white noise."""
 STILL: Final = 20
 """Samples for which a reading that has noise does not stay the same to the last digit."""
 
@@ -144,6 +147,18 @@ def noise_of(position: FloatArray, count: float | None = None) -> float:
         return 0.0
     third = np.diff(position, 3)
     return float(np.sqrt(np.mean(third**2) / 20.0)) if len(third) else 0.0
+
+
+def stirs(readings: FloatArray) -> bool:
+    """Whether readings hold more than white noise: those of a motion hang on the ones before.
+
+    Of white ones the mean square of their steps is twice their variance, within 1/√n of itself (von
+    Neumann, Ann. Math. Stat. 12, 1941, 367-395).
+    """
+    about = readings - np.mean(readings)
+    steps = np.diff(readings)
+    white = 2.0 * float(about @ about)
+    return abs(float(steps @ steps) - white) > NOT_CHANCE / math.sqrt(len(readings)) * white
 
 
 def count_of(position: FloatArray) -> float:

@@ -23,6 +23,7 @@ from .motion import (
     held,
     narrowest,
     noise_of,
+    stirs,
 )
 from .recording.checks.signal import without_spikes
 from .trajectory import FloatArray
@@ -56,7 +57,7 @@ effort: a coarse encoder needs more than 30 ms."""
 ACCELERATION_SHARE: Final = 0.1
 """Where no inertia is stated: share of the acceleration that may be noise."""
 
-_CACHED: Final = ("motion", "lateness", "_answers", "_known", "_otherwise")
+_CACHED: Final = ("motion", "lateness", "_answers", "_known", "_otherwise", "stirs")
 """What is computed once from readings and effort."""
 MOSTLY: Final = 0.9
 """Share of the kernel through which a machine with a rigid contact moves in rows that tell of
@@ -301,6 +302,11 @@ class WeakForm:
         """
         reached: np.ndarray[Any, np.dtype[np.bool_]] = self._mean(self._answers) > MOSTLY
         return reached
+
+    @cached_property
+    def stirs(self) -> bool:
+        """Whether the readings hold more than white noise."""
+        return stirs(self.readings)
 
     @cached_property
     def _answers(self) -> FloatArray:

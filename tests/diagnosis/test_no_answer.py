@@ -239,20 +239,32 @@ def lone(current: np.ndarray, position: np.ndarray) -> st.Recording:
 
 @pytest.mark.parametrize("law", ["coulomb", "dahl"])
 def test_readings_that_are_noise_alone_are_no_machine(law: str) -> None:
-    """A contact that rests in all of them holds every effort: such a plant left nothing at all."""
+    """A contact that rests in all rows holds every effort, and one that yields is led by noise."""
     source = np.random.default_rng(3)
     noise = lone(source.standard_normal(20_000), source.standard_normal(20_000))
     drive = {"input": "current_a", "gain": 0.5}
     machine = st.Plant.from_dict({"drive": drive, "friction": {"law": law}})
     found = st.diagnose(machine, noise, surrogates=4)
-    if law == "coulomb":
-        assert found.verdict == "not_testable"
-        assert "nothing moves beyond the noise" in found.sentence
-        with pytest.raises(NotEnoughData, match="nothing moves beyond the noise"):
-            st.fit(machine, noise)
-    else:
-        # It yields, and no length in which it does is too long to be told.
-        assert not found.effects
+    assert found.verdict == "not_testable"
+    assert "nothing moves beyond the noise" in found.sentence
+    with pytest.raises(NotEnoughData, match="nothing moves beyond the noise"):
+        st.fit(machine, noise)
+
+
+def test_a_contact_that_rests_in_all_rows_is_no_better_law() -> None:
+    """It holds every effort, so that it would leave nothing of what another law has to explain."""
+    time = np.arange(20_000) * 1e-3
+    source = np.random.default_rng(5)
+    current = np.sin(2.0 * np.pi * 0.7 * time)
+    # Within one count of the encoder: a spring, and nothing that a contact with true stick shows.
+    noise = 0.3 * source.standard_normal(len(time))
+    readings = np.round(0.3 * np.sin(2.0 * np.pi * 0.05 * time) + noise)
+    drive = {"input": "current_a", "gain": 0.5}
+    machine = st.Plant.from_dict({"drive": drive, "friction": {"law": "dahl"}})
+    found = st.diagnose(machine, lone(current, 1e-3 * readings), laws=["coulomb"], surrogates=4)
+    row = next(row for row in found.laws if row.law == "coulomb")
+    assert "nothing moves beyond the noise" in row.reason
+    assert found.better_law == ""
 
 
 def test_a_machine_that_nothing_drives_cannot_be_used() -> None:

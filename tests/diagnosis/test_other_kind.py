@@ -47,11 +47,17 @@ def test_a_law_that_yields_is_told_of_a_dry_contact_and_the_diagnosis_goes_on(
 
 
 @pytest.mark.parametrize(
-    ("fault", "success"), [(NotEnoughData("too short"), True), (KeyboardInterrupt(), False)]
+    ("fault", "success", "broken"),
+    [
+        (NotEnoughData("too short"), True, False),
+        (ArithmeticError("a fault of ours"), True, True),
+        (KeyboardInterrupt(), False, False),
+    ],
 )
 def test_what_was_told_stays_where_the_diagnosis_with_the_better_law_comes_to_nothing(
     fault: BaseException,
     success: bool,
+    broken: bool,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     left_out: list[str],
@@ -68,7 +74,7 @@ def test_what_was_told_stays_where_the_diagnosis_with_the_better_law_comes_to_no
     found = st.diagnose(None, session(tmp_path, Spec(11, law="dahl", contact="dry", **SHORT)))
     assert len(begun) == 2
     assert found.success is success
-    assert len(left_out) == success
+    assert len(left_out) == broken
     assert found.better_law == "coulomb"
     assert found.plant.friction.law == "dahl"
     assert "The friction law itself lacks something: coulomb" in found.sentence

@@ -151,7 +151,7 @@ class Evidence:
         self.watch = watch or Watch(plant, self.forms, self.recordings, shown_parts)
         self.pushes = self.watch.look(shown_parts)
         self.train = self._rows(plant, self.split.train)
-        require_motion(self.train)
+        require_motion(self.train, plant)
         self._select = self._masks(self.split.select)
         self._sealed = True
         # What may be looked at before the last decision: train and select, one under the other.

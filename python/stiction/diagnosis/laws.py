@@ -18,6 +18,7 @@ from ..errors import InputError
 from ..fitting.first_pass import launched
 from ..fitting.forms import followable, horizon_of
 from ..fitting.minimise import MOST_EVALUATIONS
+from ..fitting.rows import require_motion
 from ..fitting.starts import with_turns
 from ..parameter import Parameter
 from ..progress import phase, steps
@@ -360,6 +361,7 @@ def _left_alone(law: str) -> dict[str, Parameter]:
 def _launched(base: Model, friction: Friction, hopeless: float) -> Model | None:
     evidence = base.evidence
     bare = replace(base.plant, friction=friction)
+    require_motion(evidence.train, bare)
     _, found = launched(
         bare,
         evidence.train,

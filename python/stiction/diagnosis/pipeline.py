@@ -280,15 +280,20 @@ def _testable(
     if restated or not told.better_law or not told.success:
         return told
 
-    def of(plant: Plant) -> Diagnosis:
+    def of(plant: Plant) -> Diagnosis | None:
         began = replace(whole, plant=plant)
-        return _testable(began, session, asked._replace(laws=()), checks, restated=True)
+        try:
+            return _testable(began, session, asked._replace(laws=()), checks, restated=True)
+        except InputError as error:
+            # Nothing is broken: these data do not suffice for a diagnosis with that law.
+            _logger.info("with %s: %s", plant.friction.law, error)
+            return None
 
     return _restated(told, conclusion, of)
 
 
 def _restated(
-    told: Diagnosis, conclusion: Conclusion, again: Callable[[Plant], Diagnosis]
+    told: Diagnosis, conclusion: Conclusion, again: Callable[[Plant], Diagnosis | None]
 ) -> Diagnosis:
     """The diagnosis of the plant with the law that is the better one, where that can be told.
 
@@ -304,7 +309,7 @@ def _restated(
         beside = attempt(f"the diagnosis with {law}", partial(again, plant))
     except KeyboardInterrupt:
         return ended
-    if isinstance(beside, Failure):
+    if beside is None or isinstance(beside, Failure):
         return told
     if not beside.success:
         return ended

@@ -163,16 +163,19 @@ class Push:
         return f"{self.start:.1f} s to {self.end:.1f} s"
 
 
-def require_motion(rows: Sequence[Rows]) -> None:
-    """Refuse rows that tell nothing of any machine.
+def require_motion(rows: Sequence[Rows], plant: Plant) -> None:
+    """Refuse rows that tell nothing of a machine.
 
     A contact without a spring that rests in all of them holds whatever acts on it, so that every
-    plant leaves nothing: of readings that are noise alone it would be a perfect one.
+    plant leaves nothing: of readings that are noise alone it would be a perfect one. One that
+    yields would be led by that noise.
 
     Parameters
     ----------
     rows : sequence of Rows
         That are to be fitted.
+    plant : Plant
+        To which they are to be compared.
 
     Raises
     ------
@@ -180,7 +183,8 @@ def require_motion(rows: Sequence[Rows]) -> None:
     """
     if not rows:
         raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
-    if not any(np.any(each.form.reached[each.mask]) for each in rows):
+    seen = [(each.form.seen_by(plant), each.mask) for each in rows]
+    if not any(np.any(form.reached[mask]) and form.stirs for form, mask in seen):
         raise NotEnoughData(
             "nothing moves beyond the noise of its position in the rows to fit; record a motion, "
             "or check which column is position"

@@ -109,7 +109,7 @@ class _Seen:
                 mask = rows_of(form, recording, index, own, self.pushes)
                 if mask.any():
                     chosen.append(Rows(plant, form, index, mask))
-        require_motion(self.train)
+        require_motion(self.train, plant)
 
 
 @on_one_thread
