@@ -171,8 +171,7 @@ impl Adaptive {
                 work.count(machine, swing.run);
             }
             left = lesser(left, passed, span);
-            // From what is no number nothing leads back.
-            if !(swing.run.position + swing.run.velocity).is_finite() {
+            if swing.run.is_lost() {
                 break;
             }
         }

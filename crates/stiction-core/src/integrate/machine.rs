@@ -461,6 +461,12 @@ impl<S: Scalar> Run<S> {
         motion.iter().chain(&rest).chain(&second).all(|x| x.re().is_finite())
     }
 
+    /// Whether the motion is no number any more: from there nothing leads back, and steps cost most.
+    #[inline(always)]
+    pub fn is_lost(&self) -> bool {
+        !(self.position + self.velocity).re().is_finite()
+    }
+
     /// The same state over another number type, with no parameter dependence.
     pub fn lift<T: Scalar>(&self) -> Run<T> {
         let lift = |x: S| T::constant(x.re());

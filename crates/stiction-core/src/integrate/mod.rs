@@ -213,6 +213,9 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
             let rough = machine.roughness(law.greatest_stiffness(), span.re());
             let mut work = Work::begin(machine, stepper.run, (input, load), rough);
             for _ in 0..parts {
+                if stepper.run.is_lost() {
+                    break;
+                }
                 through_events(&mut stepper, law, state, span);
                 if !BARE && machine.counts_work() {
                     work.count(machine, stepper.run);

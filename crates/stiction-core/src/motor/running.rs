@@ -308,6 +308,12 @@ impl<S: Scalar> Running<S> {
                         continue;
                     }
                 }
+                if self.run.is_lost() {
+                    let seen = &*state;
+                    rows.see(index, &self.run, &self.machine, |column| seen.output(column));
+                    index += 1;
+                    continue;
+                }
                 let left = divided - passed;
                 if room < left {
                     // Once a chunk where samples are not divided, never inside a step.
