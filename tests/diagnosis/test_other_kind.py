@@ -12,9 +12,9 @@ from tests.ordinary.files import write
 
 import stiction as st
 from stiction.diagnosis import left_open, pipeline
-from stiction.diagnosis.choose import Trial, choose
 from stiction.diagnosis.decide import emptied
 from stiction.diagnosis.result import Cause
+from stiction.diagnosis.verdict import relatives
 from stiction.diagnosis.words import THE_LAW
 from stiction.errors import NotEnoughData
 
@@ -98,48 +98,47 @@ def test_two_levels_of_a_dry_contact_are_one_level_and_a_bias(hidden: str, tmp_p
     assert not cause.decided
 
 
-def trial(name: str, worth: float, law: str, *gains: float) -> Trial:
-    friction = SimpleNamespace(
-        sticks=law == "coulomb", parameters={"coulomb": SimpleNamespace(value=1.0)}
-    )
-    model: Any = SimpleNamespace(
-        plant=SimpleNamespace(friction=friction, effects=()),
-        gains=lambda _: gains,
-        blocks=((), ()),
-    )
-    record = SimpleNamespace(family="offset", shapes=(), second=(), gains=())
-    candidate = SimpleNamespace(name=name, record=record, parameters=len(gains), shape={})
-    # Contributions that have nothing in common: only what is known of the contact makes them one.
-    signature = [1.0, 0.0] if name == "torque_bias" else [0.0, 1.0]
-    score: Any = SimpleNamespace(candidate=candidate, signature=signature)
-    return Trial(score, model, 0.5, 5.0, worth, 50.0, 0.1, "")
-
-
 @pytest.mark.parametrize(
-    ("law", "bias", "rivals"),
-    [("coulomb", 0.3, ("direction_asymmetry",)), ("coulomb", 1.2, ()), ("dahl", 0.3, ())],
+    ("law", "bias", "asked", "others"),
+    [
+        ("coulomb", 0.3, True, ["direction_asymmetry"]),
+        ("coulomb", 1.2, True, []),
+        ("dahl", 0.3, True, []),
+        ("coulomb", 0.3, False, []),
+    ],
 )
 def test_a_bias_that_outweighs_the_level_or_bends_a_spring_is_told(
-    law: str, bias: float, rivals: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+    law: str, bias: float, asked: bool, others: list[str]
 ) -> None:
-    monkeypatch.setattr(
-        "stiction.diagnosis.choose.parallel", lambda one, other: float(one == other)
+    record = SimpleNamespace(name="torque_bias", family="offset")
+    winner = SimpleNamespace(candidate=SimpleNamespace(record=record))
+    plant = st.Plant.from_dict(
+        {
+            "drive": {"input": "torque_nm"},
+            "friction": {"law": law, "coulomb": 1.0},
+            "effects": [{"name": "torque_bias", "bias": bias}],
+        }
     )
-    found = choose(
-        [trial("torque_bias", 2.0, law, bias), trial("direction_asymmetry", 1.0, law, 0.2, 0.1)]
+    selection: Any = SimpleNamespace(
+        choices=[SimpleNamespace(winner=winner, rivals=())],
+        models=[SimpleNamespace(plant=plant)],
+        rows={"direction_asymmetry": None} if asked else {},
     )
-    assert found is not None
-    assert found.winner.name == "torque_bias"
-    assert tuple(each.name for each in found.rivals) == rivals
+    assert relatives(selection, 0) == others
 
 
 def test_a_fit_that_lost_its_inertia_or_its_input_is_no_cause() -> None:
     def model(inertia: float, given: float) -> Any:
-        return SimpleNamespace(plant=SimpleNamespace(inertia=inertia), given=given)
+        plant = SimpleNamespace(inertia=inertia)
+        return SimpleNamespace(plant=plant, given=given, evidence=evidence)
 
+    evidence = SimpleNamespace(simulated=False)
     base = model(1.0, 1.0)
     assert emptied(base, model(0.9, 1.0)) == ""
     assert "the inertia" in emptied(base, model(0.1, 1.0))
+    # What is simulated without it misses the motion, which counts against it as it is.
+    evidence.simulated = True
+    assert emptied(base, model(0.1, 1.0)) == ""
     assert "the effort itself" in emptied(base, model(1.0, 0.005))
 
 

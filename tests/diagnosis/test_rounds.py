@@ -51,6 +51,7 @@ class Bench:
     """What the rounds ask of a screening: answers by the name of the model."""
 
     evidence = SimpleNamespace(loop=False, simulated=False)
+    earlier = ()
 
     def __init__(self, after: dict[str, list[Trial]]) -> None:
         self.after = after
@@ -60,6 +61,9 @@ class Bench:
 
     def trial(self, model: Any, score: Any, others: Any = ()) -> Trial:
         return next(t for t in self.after[model.name] if t.name == score.candidate.name)
+
+    def from_where(self, model: Any, score: Any, lead: Any) -> None:
+        return None
 
     def contributed(self, score: Any, model: Any) -> Any:
         return score.signature
@@ -366,7 +370,7 @@ def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: 
     train = np.where(block % 2 == 0, 1.0, 0.0)
     held = 1.0 - train
     cells = SimpleNamespace(block=block, recording=block % 4, kind=block % 2, kinds=("a", "b"))
-    evidence = SimpleNamespace(cells=cells, loop=False, fitted=train > 0.0)
+    evidence = SimpleNamespace(cells=cells, loop=False, simulated=False, fitted=train > 0.0)
     plant = SimpleNamespace(inertia=1.0, effects=(SimpleNamespace(name="cogging", parameters={}),))
     base: Any = SimpleNamespace(evidence=evidence, power=100.0, plant=plant, blocks=(train, held))
     # Every block gains, one a little more than another.

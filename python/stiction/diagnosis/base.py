@@ -18,7 +18,7 @@ from ..recording import Recording
 from .evidence import Evidence
 from .model import Model, fitted
 
-__all__ = ["based", "based_joined", "based_simulated", "based_wider"]
+__all__ = ["based", "based_joined", "based_over_windows", "based_simulated", "based_wider"]
 
 LOST: Final = 1e-3
 """An inertia that shrinks to this share of what the plant states, or of what the motion told at
@@ -33,7 +33,7 @@ def based(
     *,
     wide: bool = False,
     joined: bool = False,
-    windows: bool = False,
+    windows: bool | None = None,
 ) -> tuple[Evidence, Model]:
     """A session and the base that is fitted to its rows of train.
 
@@ -118,11 +118,13 @@ def based_simulated(
     recordings: Sequence[Recording],
     evidence: Evidence,
     final: Model,
-) -> tuple[Evidence, Model] | None:
+    tried: Sequence[Model] = (),
+) -> tuple[Evidence, Model, list[Model]] | None:
     """The base simulated over windows, where a rigid contact was led astray; None elsewhere.
 
     What a cause leaves out hides what the readings do to friction that is led along them. Beside
-    all causes that were found it is asked again.
+    all causes that were found it is asked again, and beside each that was tried: along readings
+    that lead astray another one may explain more.
 
     Parameters
     ----------
@@ -133,31 +135,66 @@ def based_simulated(
         Of the weak form.
     final : Model
         With all causes that were found.
+    tried : sequence of Model
+        The base with one cause each, whether it was accepted or not.
 
     Returns
     -------
-    (Evidence, Model) or None
-        After Ctrl-C whatever is there, and its solution is interrupted.
+    (Evidence, Model, list of Model) or None
+        The last are the models above as a simulation has them, what leaves least first. After
+        Ctrl-C whatever is there, and the solution of the base is interrupted.
     """
-    horizon = windows_of(final.plant, evidence.forms, evidence.train)
-    if horizon is None or not final.plant.effects or final.plant.effects == plant.effects:
+    begun = [
+        model
+        for model in (final, *tried)
+        if model.plant.effects != plant.effects
+        and windows_of(model.plant, evidence.forms, evidence.train) is not None
+    ]
+    if not begun:
         return None
-    through = Through(horizon=horizon)
+    through = Through(horizon=windows_of(begun[0].plant, evidence.forms, evidence.train))
     try:
-        windows = Evidence(final.plant, recordings, through=through, watch=evidence.watch)
-        own = fitted(windows, final.plant, final.nuisances)
-        if not own.solution.interrupted and not astray(
-            final.plant,
-            final.nuisances,
+        windows = Evidence(begun[0].plant, recordings, through=through, watch=evidence.watch)
+        own = [(fitted(windows, each.plant, each.nuisances), each) for each in begun]
+        best, led = min(own, key=lambda pair: pair[0].power)
+        if not best.solution.interrupted and not astray(
+            led.plant,
+            led.nuisances,
             evidence.train,
-            (own.plant, own.solution.nuisances),
+            (best.plant, best.solution.nuisances),
             windows.train,
         ):
             return None
-        return based(plant, recordings, windows=True)
+        return *based(plant, recordings, windows=True), sorted(
+            (each for each, _ in own), key=lambda model: model.power
+        )
     except InputError:
         # What was found along the readings stands.
         return None
+
+
+def based_over_windows(
+    plant: Plant, recordings: Sequence[Recording], evidence: Evidence, base: Model
+) -> tuple[Evidence, Model] | None:
+    """The base simulated over windows, whatever that leaves; None where it cannot be.
+
+    Parameters
+    ----------
+    plant : Plant
+        As it is stated.
+    recordings : sequence of Recording
+    evidence : Evidence
+        Of the weak form.
+    base : Model
+        The same fitted along the readings.
+    """
+    if windows_of(base.plant, evidence.forms, evidence.train) is None:
+        return None
+    try:
+        simulated = based(plant, recordings, windows=True)
+    except InputError:
+        return None
+    return simulated if simulated[0].simulated else None
 
 
 def based_joined(
@@ -171,7 +208,7 @@ def based_joined(
     Ctrl-C its solution is interrupted.
     """
     wide = any(form.widened for form in evidence.forms)
-    windows = evidence.simulated
+    windows = evidence.simulated or None
     try:
         return based(plant, recordings, wide=wide, joined=True, windows=windows)
     except InputError:

@@ -15,6 +15,7 @@ from ..errors import InputError
 from ..fitting.start import largest_command
 from ..plant import Plant
 from ..presliding import presliding
+from ..stated import Effect
 from ..wording import did_you_mean, listed
 from .evidence import Evidence
 
@@ -136,6 +137,12 @@ class Candidate:
             return name
         first = (*self.record.gains, *(shape.parameter for shape in self.record.shapes))
         return self.record.second[first.index(name)]
+
+    def has_shape_of(self, effect: Effect) -> bool:
+        """Whether an effect has the shapes that a refit of this holds."""
+        held = [name for name in self.shape if name not in self.free]
+        values = effect.parameters
+        return all(values[self.own(name)].value == self.shape[name] for name in held)
 
     @property
     def varied_last(self) -> tuple[str, ...]:

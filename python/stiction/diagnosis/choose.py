@@ -31,12 +31,6 @@ UNEVEN_IN_FAMILY: Final = 0.12
 """What strengths of their own by kind of recording may add to the gain of a member of a family:
 with more it stands for the family alone."""
 
-BIAS: Final = "torque_bias"
-TWO_LEVELS: Final = "direction_asymmetry"
-"""With true stick a level for each direction is one level and a constant effort, to the last digit,
-as long as that does not outweigh it: what a constant effort explains so may be either. The reverse
-is told as all else is: viscous friction that differs as well is no constant."""
-
 _Contribution = np.ndarray[Any, np.dtype[np.floating]]
 Encompasses = Callable[[Trial, Trial], bool]
 
@@ -90,9 +84,7 @@ def choose(trials: Sequence[Trial], encompasses: Encompasses | None = None) -> C
         and (other.gain > 0.0 or other.by_blocks)
         and (not other.imitates or _outdoes(other, winner))
         and (
-            (_alike(winner, other) and not _told(winner, other, encompasses))
-            or _kin(winner, other)
-            or _same_at_stick(winner, other)
+            (_alike(winner, other) and not _told(winner, other, encompasses)) or _kin(winner, other)
         )
     ]
     head = _head(winner, rivals)
@@ -206,18 +198,6 @@ def _kin(winner: Trial, other: Trial) -> bool:
     """Whether a winner whose strength is not quite even may be another member of its family."""
     same = winner.candidate.record.family == other.candidate.record.family
     return same and winner.uneven > UNEVEN_IN_FAMILY
-
-
-def _same_at_stick(winner: Trial, other: Trial) -> bool:
-    """Whether a constant effort may be a level of its own in either direction."""
-    if (winner.name, other.name) != (BIAS, TWO_LEVELS):
-        return False
-    friction = winner.model.plant.friction
-    level = friction.parameters.get("coulomb")
-    if not friction.sticks or level is None:
-        return False
-    (gain,) = winner.model.gains(winner.candidate)
-    return bool(abs(gain) < level.value)
 
 
 def _alike(one: Trial, other: Trial) -> bool:

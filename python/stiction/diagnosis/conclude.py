@@ -172,8 +172,11 @@ class Conclusion:
     @cached_property
     def lacking(self) -> bool:
         """Whether the plant lacks something, named or not, before the rows that test are asked."""
-        if self.decided.choices:
-            return True
+        return bool(self.decided.choices) or self.unsaid
+
+    @cached_property
+    def unsaid(self) -> bool:
+        """Whether it lacks something that has no name, before the rows that test are asked."""
         final = self.decided.models[-1]
         return bool(lost(self.evidence, final, self.null) or self._unnamed(self.decided))
 

@@ -30,18 +30,19 @@ from ..trajectory import FloatArray
 from ..wording import counted
 from ..workers import with_workers
 from .advice import advise
-from .base import based, based_joined, based_simulated, based_wider
+from .base import based, based_joined, based_over_windows, based_simulated, based_wider
 from .candidates import left_out
 from .conclude import MESSAGE, Conclusion, base_alone, surrogates_of
 from .decide import SMALLEST
 from .evidence import Evidence
 from .laws import THE_LAW, law_names
-from .model import Model
+from .model import Model, fitted
 from .noise import Noise
 from .result import Diagnosis, Unexplained
 from .rounds import search
 from .seconds import acts_for_seconds, asked_before, holds_more, with_rows_of
 from .selection import Search
+from .verdict import all_blind
 
 __all__ = ["SMALLEST", "SURROGATES", "diagnose"]
 
@@ -237,20 +238,26 @@ def _testable(
     if replays is None:
         return base_alone(found, evidence, base)
     phase(_logger, "screening the effects")
-    look = _Searched(found, evidence, base, *replays, asked.search(evidence, base, replays[0]))
+    shots = []
+
+    def led_astray(first: Search) -> bool:
+        last = first.models[-1]
+        shot = based_simulated(found.plant, session.recordings, evidence, last, first.tried)
+        shots.extend([] if shot is None else [shot])
+        return bool(shots)
+
+    # What is added to a first cause along readings that lead astray only follows these.
+    first = asked.search(evidence, base, replays[0], stops=led_astray)
+    look = _Searched(found, evidence, base, *replays, first)
     again = partial(_again, asked=asked)
-    if not look.selection.interrupted:
+    if not look.selection.interrupted and not shots:
         final = look.selection.models[-1]
         wider = based_wider(found.plant, session.recordings, evidence, final)
         if wider is not None:
             phase(_logger, "screening the effects again, through wider kernels")
             look = again(look, wider) or look
     if not look.selection.interrupted:
-        final = look.selection.models[-1]
-        shot = based_simulated(found.plant, session.recordings, look.evidence, final)
-        if shot is not None:
-            phase(_logger, "screening the effects again, with the plant simulated over windows")
-            look = again(look, shot) or look
+        look = _simulated(look, shots[0] if shots else None, session, asked, again)
     if acts_for_seconds(look.evidence, look.selection, look.null):
         phase(_logger, "screening limits again, over the rows that decide as well")
         joined = based_joined(found.plant, session.recordings, look.evidence)
@@ -259,23 +266,26 @@ def _testable(
         second = joined and _again(look, joined, asked=others)
         if second and holds_more(second.selection, before):
             look = second._replace(selection=with_rows_of(second.selection, before))
-    selection = look.selection
+
+    def concluded(look: _Searched) -> Conclusion:
+        return Conclusion(
+            look.found,
+            session,
+            look.evidence,
+            look.base,
+            look.selection,
+            look.null,
+            look.noises,
+            asked.laws,
+            checks,
+            asked.smallest,
+            restated,
+            interrupted=look.selection.interrupted,
+            brief=look.selection.interrupted,
+        )
+
     # Every decision is taken: now, and once, the rows that test.
-    conclusion = Conclusion(
-        look.found,
-        session,
-        look.evidence,
-        look.base,
-        selection,
-        look.null,
-        look.noises,
-        asked.laws,
-        checks,
-        asked.smallest,
-        restated,
-        interrupted=selection.interrupted,
-        brief=selection.interrupted,
-    )
+    conclusion = _seen_otherwise(concluded(look), look, asked, again, concluded)
     told = conclusion.diagnosis()
     if restated or not told.better_law or not told.success:
         return told
@@ -290,6 +300,87 @@ def _testable(
             return None
 
     return _restated(told, conclusion, of)
+
+
+def _simulated(
+    look: _Searched,
+    shot: tuple[Evidence, Model, list[Model]] | None,
+    session: Session,
+    asked: _Asked,
+    again: Callable[..., _Searched | None],
+) -> _Searched:
+    """The search over windows where readings lead astray: as ``shot`` tells, or at its end."""
+    seen, last = look.evidence, look.selection.models[-1]
+    cut_short = shot is not None
+    if shot is None:
+        shot = based_simulated(look.found.plant, session.recordings, seen, last)
+    if shot is None:
+        return look
+    phase(_logger, "screening the effects again, with the plant simulated over windows")
+    windows, base, earlier = shot
+    other = again(look, (windows, base), earlier=earlier)
+    if other is not None and not all_blind(other.selection):
+        return other
+    if not cut_short or other is None:
+        return look
+    # Few windows may show nothing of any effect: that takes no name away.
+    return look._replace(selection=asked.search(seen, look.base, look.null))
+
+
+def _seen_otherwise(
+    first: Conclusion,
+    look: _Searched,
+    asked: _Asked,
+    again: Callable[..., _Searched | None],
+    concluded: Callable[[_Searched], Conclusion],
+) -> Conclusion:
+    """What is concluded, or what the other residual concludes where that leaves nothing.
+
+    Readings that lead a rigid contact astray leave what has no name, at single moments most of all:
+    where the plant, simulated, follows the motion within its noise, nothing else was missing. And
+    where it is simulated from the first, slopes beside a base that has bent itself may show nothing
+    of a cause that readings show.
+    """
+    if first.interrupted or look.evidence.loop or not look.found.plant.friction.sticks:
+        return first
+    try:
+        if not first.unsaid:
+            return first
+        plant, recordings = look.found.plant, look.evidence.recordings
+        seen: tuple[Evidence, Model] | None = (look.evidence, look.base)
+        if look.evidence.simulated:
+            earlier = _tried_along(look, asked)
+            seen = seen if earlier else None
+        else:
+            earlier = look.selection.tried
+            seen = based_over_windows(plant, recordings, look.evidence, look.base)
+        if seen is None:
+            return first
+        phase(_logger, "screening the effects again, with the plant simulated over windows")
+        other = again(look, seen, earlier=earlier)
+        if other is None or all_blind(other.selection):
+            return first
+        second = concluded(other)
+        return first if second.interrupted or second.unsaid else second
+    except KeyboardInterrupt:
+        first.interrupted = first.brief = True
+        return first
+
+
+def _tried_along(look: _Searched, asked: _Asked) -> list[Model]:
+    """Models with a cause each that was tried along the readings, as a simulation has them."""
+    try:
+        evidence, base = based(look.found.plant, look.evidence.recordings, windows=False)
+        _, replays = _replayed(look.found, evidence, base, asked.surrogates)
+        if replays is None:
+            raise KeyboardInterrupt
+        found = asked.search(evidence, base, replays[0], stops=lambda _: True)
+        own = [fitted(look.evidence, each.plant, each.nuisances) for each in found.tried]
+    except InputError:
+        return []
+    if found.interrupted or any(each.solution.interrupted for each in own):
+        raise KeyboardInterrupt
+    return sorted(own, key=lambda model: model.power)
 
 
 def _restated(
@@ -337,9 +428,24 @@ class _Asked(NamedTuple):
     surrogates: int
     smallest: float
 
-    def search(self, evidence: Evidence, base: Model, null: FloatArray) -> Search:
-        """The search for effects beside a base."""
-        return search(evidence, base, null, without=self.without, smallest=self.smallest)
+    def search(
+        self,
+        evidence: Evidence,
+        base: Model,
+        null: FloatArray,
+        earlier: Sequence[Model] = (),
+        stops: Callable[[Search], bool] | None = None,
+    ) -> Search:
+        """The search for effects beside a base, after an earlier one; see ``search``."""
+        return search(
+            evidence,
+            base,
+            null,
+            without=self.without,
+            smallest=self.smallest,
+            earlier=earlier,
+            stops=stops,
+        )
 
 
 class _Searched(NamedTuple):
@@ -358,10 +464,11 @@ def _again(
     seen: tuple[Evidence, Model],
     *,
     asked: _Asked,
+    earlier: Sequence[Model] = (),
 ) -> _Searched | None:
     """The same search with another base; None after Ctrl-C: what was found is the best so far."""
     found, replays = _replayed(look.found, *seen, asked.surrogates)
-    selection = None if replays is None else asked.search(*seen, replays[0])
+    selection = None if replays is None else asked.search(*seen, replays[0], earlier)
     if replays is None or selection is None or selection.interrupted:
         look.selection.interrupted = True
         return None

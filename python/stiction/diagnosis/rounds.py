@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence, Set
+from collections.abc import Callable, Sequence, Set
 from dataclasses import replace
 from typing import Final
 
@@ -29,7 +29,16 @@ from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
 from .signatures import Signatures
 from .together import pass_together, passes_beside
-from .trials import LESSER, SLIGHT, Screening, compared_fit, promises, unstuck, whole_fit
+from .trials import (
+    LESSER,
+    SLIGHT,
+    WORTH_MOVING,
+    Screening,
+    compared_fit,
+    promises,
+    unstuck,
+    whole_fit,
+)
 
 __all__ = ["MOST_EFFECTS", "friction_of", "search"]
 
@@ -40,6 +49,13 @@ REFITTED: Final = 5
 OUTSTANDING: Final = 3.0
 """A candidate that explains this many times what any other does is refitted whatever it does held
 out."""
+AS_MUCH: Final = 0.5
+"""A candidate that promised this share of what the first one did, and came to less, begins again
+where that has led the plant."""
+MOST_AGAIN: Final = 3
+"""So many of them."""
+WAVE: Final = "order"
+"""Scale of shapes that say how often an effect repeats."""
 MOST_RENEWALS: Final = 2
 """Times that the base is replaced by a better fit of itself."""
 WORTH_RENEWING: Final = 0.005
@@ -66,6 +82,8 @@ def search(
     *,
     without: Sequence[str] = (),
     smallest: float = SMALLEST,
+    earlier: Sequence[Model] = (),
+    stops: Callable[[Search], bool] | None = None,
 ) -> Search:
     """Adds effects to a base as long as one passes.
 
@@ -79,6 +97,10 @@ def search(
         Effects that are not tried.
     smallest : float
         Share of the friction that an effect has to contribute to be worth a name.
+    earlier : sequence of Model
+        Fitted to the same rows: whence effects are begun as well, likelier ones first.
+    stops : callable, optional
+        Whether the first cause tells that the search has to be made otherwise.
     """
     found = Search([base])
     tried: list[Candidate] = []
@@ -91,7 +113,9 @@ def search(
             return found
         signatures = Signatures.of(evidence, base.plant, base.nuisances, tried)
         friction = friction_of(evidence, base)
-        screening = Screening(evidence, signatures, centred, bias, friction, smallest)
+        screening = Screening(
+            evidence, signatures, centred, bias, friction, smallest, earlier=earlier
+        )
         evidence.floor = float(np.mean(np.sum(null[evidence.fitted] ** 2, axis=0)))
         dropped: set[str] = set()
         rests: set[str] = set()
@@ -118,6 +142,8 @@ def search(
                 rests.add(choice.winner.name)
                 found.take_back(empties)
                 continue
+            if stops is not None and len(found.choices) == 1 and stops(found):
+                return found
             dropped |= dropped_by_the_latest(evidence, found)
             rests |= join(screening, found)
             rests |= _take_back(screening, found)
@@ -232,6 +258,9 @@ def _refitted(
         # There will be no next round.
         trials += [_trial(screening, found, score) for score in waiting]
     trials += [_trial(screening, found, score) for score in _imitated(scores, trials)]
+    trials[:] = _from_before(screening, base, scores, trials)
+    if first := choose(trials):
+        trials[:] = _from_the_first(screening, base, scores, trials, first.winner)
     tried = {trial.name for trial in trials}
     for score in passing:
         if score.candidate.name not in tried:
@@ -253,8 +282,54 @@ def _refitted(
     for trial in trials:
         if choice is not None or not found.choices:
             found.rows[trial.name] = listing.tried(trial, choice)
+    if not found.choices:
+        found.tried = [t.model for t in trials if t.explained > t.score.threshold and not t.empty]
     freed = sorted((trial for trial in trials if trial.freed), key=lambda t: -t.worth)[:1]
     return choice, freed if choice is None else [*freed, choice.winner]
+
+
+def _from_the_first(
+    screening: Screening,
+    base: Model,
+    scores: Sequence[Score],
+    trials: Sequence[Trial],
+    first: Trial,
+) -> list[Trial]:
+    """Trials, with what promised about as much as the first and came to less begun beside it."""
+    known = {trial.name: trial for trial in trials}
+    enough = AS_MUCH * first.score.score
+
+    def is_behind(score: Score) -> bool:
+        trial = known.get(score.candidate.name)
+        promised = score.testable and score.score >= max(score.threshold, enough)
+        behind = trial is None or (trial.worth < first.worth and not trial.imitates)
+        # A wave of any length bends itself to whatever is left; it needs no such help.
+        wave = any(shape.scale == WAVE for shape in score.candidate.record.shapes)
+        return promised and behind and not wave
+
+    for score in list(filter(is_behind, scores))[:MOST_AGAIN]:
+        _keep_the_better(known, screening.from_where(base, score, first))
+    return list(known.values())
+
+
+def _from_before(
+    screening: Screening, base: Model, scores: Sequence[Score], trials: Sequence[Trial]
+) -> list[Trial]:
+    """Trials, with what was fitted earlier begun from there."""
+    known = {trial.name: trial for trial in trials}
+    for score in scores if screening.earlier else ():
+        if score.testable:
+            _keep_the_better(known, screening.from_before(base, score))
+    return list(known.values())
+
+
+def _keep_the_better(known: dict[str, Trial], again: Trial | None) -> None:
+    """Puts a trial in the place of one of the same effect that leaves more."""
+    if again is None:
+        return
+    own = known.get(again.name)
+    if own is None or again.model.power < (1.0 - WORTH_MOVING) * own.model.power:
+        known[again.name] = again
 
 
 def _is_spread(trial: Trial) -> bool:
@@ -481,10 +556,7 @@ def _as_it_is(screening: Screening, less: Model, score: Score, whole: Model) -> 
     """The trial whose refit is the whole model; None where that has another candidate."""
     candidate = score.candidate
     effect = next((each for each in whole.plant.effects if each.name == candidate.name), None)
-    held = [name for name in candidate.shape if name not in candidate.free]
-    if effect is None or any(
-        effect.parameters[candidate.own(name)].value != candidate.shape[name] for name in held
-    ):
+    if effect is None or not candidate.has_shape_of(effect):
         return None
     return screening.judged(less, score, whole, screening.contributed(score, whole))
 

@@ -49,6 +49,7 @@ class Search:
     unseen: dict[str, float] = field(default_factory=dict)
     spread: bool = False
     partly: frozenset[str] = frozenset()
+    tried: list[Model] = field(default_factory=list)
     interrupted: bool = False
     lesser: list[tuple[Model, str, Model]] = field(default_factory=list)
 

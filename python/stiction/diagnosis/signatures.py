@@ -21,7 +21,7 @@ from .candidates import Candidate
 from .evidence import Evidence
 from .model import with_effect
 
-__all__ = ["Alike", "Block", "Signatures"]
+__all__ = ["Alike", "Block", "Signatures", "gain_at"]
 
 FEW: Final = 32
 """Candidates of which columns of all rows are kept, should they be asked for again."""
@@ -331,7 +331,7 @@ class _Seen:
         if candidates:
             still = finite(self.evidence.residual(self.plant, self.nuisances))
         for column, each in zip(columns, candidates, strict=True):
-            size = _gain_at(each, self.plant.inertia)
+            size = gain_at(each, self.plant.inertia)
             with_it = with_effect(self.plant, each, [size])
             column[:] = (still - finite(self.evidence.residual(with_it, self.nuisances))) / size
         return finite(columns)
@@ -403,7 +403,7 @@ def _columns(slices: Sequence[slice], places: Sequence[int]) -> list[int]:
     return [k for place in places for k in range(slices[place].start, slices[place].stop)]
 
 
-def _gain_at(candidate: Candidate, inertia: float) -> float:
+def gain_at(candidate: Candidate, inertia: float) -> float:
     """The compliance at which a mass behind a shaft swings at the resonance of a candidate."""
     share = candidate.shape["inertia_share"]
     return 1.0 / ((2.0 * math.pi * candidate.resonance) ** 2 * share * (1.0 - share) * inertia)

@@ -16,7 +16,7 @@ from ..plant import Plant
 from ..progress import phase
 from ..trajectory import FloatArray
 from .candidates import Candidate
-from .decide import SMALLEST, Trial, judge
+from .decide import SMALLEST, Trial, emptied, judge
 from .evidence import Evidence
 from .model import (
     REFIT_CONVERGED,
@@ -30,7 +30,7 @@ from .model import (
 )
 from .noisy_motion import told_by_noise
 from .screen import Problem, Score, likelier, screen
-from .signatures import Signatures
+from .signatures import Signatures, gain_at
 
 __all__ = [
     "LESSER",
@@ -65,6 +65,8 @@ MANY_TIMES: Final = 5.0
 ENCOMPASSING: Final = 10.0
 """So many times what noise reaches: where the other form of a cause stood before it, it came to 2,
 4 and 4, and once, where blocks had told them apart as well, to 20."""
+SHARES_TOLD: Final = (0.05, 0.95)
+"""Share of the inertia beyond a shaft at which a fit begins."""
 WORTH_MOVING: Final = 1e-3
 """Share of the power that makes another minimum a better one."""
 LEAST_OF_NOISE: Final = 0.01
@@ -106,6 +108,8 @@ class Screening:
         Weighted rms of what the base needs beside inertia.
     smallest : float
         Share of it that an effect has to contribute to be worth a name.
+    earlier : sequence of Model
+        From which to begin as well: fitted to the same rows, likelier ones first.
     kept : list of (Model, list of Score)
         Of the last few models that were screened: they are asked for again and again.
     """
@@ -116,6 +120,7 @@ class Screening:
     bias: FloatArray
     friction: float
     smallest: float = SMALLEST
+    earlier: Sequence[Model] = ()
     kept: list[tuple[Model, list[Score]]] = field(default_factory=list)
 
     def scores(self, model: Model) -> list[Score]:
@@ -171,6 +176,42 @@ class Screening:
             or told_by_noise(base, model, trial.name, trial.gain)
         )
         return replace(trial, reason=reason)
+
+    def from_where(self, base: Model, score: Score, lead: Trial) -> Trial | None:
+        """A candidate refitted from where another one has led the rest of the plant, and judged.
+
+        A base that has bent itself towards a cause holds a refit in its valley, and does harm to
+        rows held out whatever is added; not every candidate finds the way out of it. None where
+        nothing is left there for it to explain.
+        """
+        evidence, candidate = self.evidence, score.candidate
+        less = without_effect(lead.model.plant, lead.name)
+        nuisances = lead.model.nuisances
+        own = Signatures.of(evidence, less, nuisances, [candidate]).over_fitted(0)
+        left = finite(evidence.residual(less, nuisances))[evidence.fitted]
+        gains = np.linalg.lstsq(own, left, rcond=None)[0]
+        if not np.any(gains):
+            return None
+        start = with_effect(less, candidate, gains.tolist())
+        return self._judged_from(base, score, start, nuisances)
+
+    def from_before(self, base: Model, score: Score) -> Trial | None:
+        """A candidate refitted from where it was fitted earlier, and judged; None if it was not.
+
+        A contact that is simulated breaks away or does not: where the base has bent itself towards
+        a cause, slopes there may show nothing of it.
+        """
+        for model in self.earlier:
+            for effect in model.plant.effects:
+                if effect.name == score.candidate.name and score.candidate.has_shape_of(effect):
+                    start = replace(model.plant, effects=(*base.plant.effects, effect))
+                    return self._judged_from(base, score, start, model.nuisances)
+        return None
+
+    def _judged_from(self, base: Model, score: Score, start: Plant, nuisances: Nuisances) -> Trial:
+        phase(_logger, "refitting with %s, from another start", score.candidate.name)
+        model = compared_fit(self.evidence, start, nuisances)
+        return self.judged(base, score, model, self.contributed(score, model))
 
     def _where_it_came_to(self, base: Model, score: Score, model: Model) -> Score:
         """The score with what the signature explains at the shape that a refit came to.
@@ -269,13 +310,18 @@ def _from_screening(
 
     # A contact breaks away or does not: slopes tell little of what a whole gain does.
     shares = SHARES if evidence.simulated else FEW_SHARES
-    alike = _alike(signatures, index, gains)
+    alike = _alike(signatures, index, gains, base.plant.inertia)
     plants = [begun(share, *like) for like in alike for share in shares]
     start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
     model = compared_fit(evidence, start, base.nuisances)
     record = score.candidate.record
     untold = record.swings or record.slope_misleads(loop=evidence.loop)
-    if model.power < (1.0 - KEPT * score.score) * base.power:
+
+    def rank(model: Model) -> tuple[bool, float]:
+        # What takes away what was to be explained leaves less than any cause does.
+        return bool(emptied(base, model)), model.power
+
+    if rank(model) < (False, (1.0 - KEPT * score.score) * base.power):
         return model
     if score.score < LESSER * best and not untold:
         return model
@@ -290,11 +336,26 @@ def _from_screening(
         tried.append(compared_fit(evidence, alone.plant, alone.nuisances))
         if alone.power < base.power:
             break
-    return unstuck(min(tried, key=lambda each: each.power))
+    return unstuck(min(tried, key=rank))
+
+
+def _of_its_share(
+    candidate: Candidate, gain: float, inertia: float
+) -> tuple[Candidate, FloatArray]:
+    """A mass that swings, with the share of the inertia that the gain of its signature tells.
+
+    Along a measured motion x a mass behind a shaft asks for s·J·(G − 1)·x'' more, where G hangs on
+    its own resonance 1/√(c·s·J) alone: how much of the signature there is tells s, not c.
+    """
+    at = gain_at(candidate, inertia)
+    share = candidate.shape["inertia_share"]
+    told = float(np.clip(share * gain / at, *SHARES_TOLD))
+    shape = {**candidate.shape, "inertia_share": told}
+    return replace(candidate, shape=shape), np.array([at * share / told])
 
 
 def _alike(
-    signatures: Signatures, index: int, gains: FloatArray
+    signatures: Signatures, index: int, gains: FloatArray, inertia: float
 ) -> list[tuple[Candidate, FloatArray]]:
     """A candidate with its gains; where it swings also those of which slopes do not tell it.
 
@@ -303,7 +364,9 @@ def _alike(
     """
     candidate = signatures.candidates[index]
     found = [(candidate, gains)]
-    if not candidate.record.swings or candidate.resonance > 0.0:
+    if candidate.resonance > 0.0:
+        return [*found, _of_its_share(candidate, float(gains[0]), inertia)]
+    if not candidate.record.swings:
         return found
     own = signatures.over_fitted(index)
     for place, other in enumerate(signatures.candidates):

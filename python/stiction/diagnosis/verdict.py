@@ -22,7 +22,7 @@ from .selection import Search
 from .view import LEAST_SIZE
 from .words import ALONE, NO_COORDINATE
 
-__all__ = ["left_beside", "relatives", "unnamed", "verdict_of"]
+__all__ = ["all_blind", "left_beside", "relatives", "unnamed", "verdict_of"]
 
 WORTH_SHARE: Final = 0.25
 """What is left counts against the names where it is worth this share of what they gained."""
@@ -37,6 +37,11 @@ LEAST_EXCESS: Final = -3.0
 the replays have lost the machine, as where a dry contact sticks and slips at random."""
 HALF: Final = 0.5
 """Of what goes with no coordinate, from which on a description stands for it."""
+BIAS: Final = "torque_bias"
+TWO_LEVELS: Final = "direction_asymmetry"
+"""With true stick a level for each direction is one level and a constant effort, to the last digit,
+as long as that does not outweigh it: what a constant effort explains so may be either. The reverse
+is told as all else is: viscous friction that differs as well is no constant."""
 UNTOUCHED: Final = 0.9
 """Of what a coordinate shows, from which on names left it as it was."""
 BESIDE_A_NAME: Final = 0.0015
@@ -139,7 +144,7 @@ def verdict_of(selection: Search, left: Sequence[Unexplained], decided: bool) ->
 
     A recording that stands apart says nothing against names that explain all others.
     """
-    if not selection.choices and _all_blind(selection):
+    if not selection.choices and all_blind(selection):
         return "not_testable"
     of_all = [each for each in left if not each.coordinate.endswith(ALONE)]
     if _outweighs(selection, of_all if selection.choices else left):
@@ -149,7 +154,7 @@ def verdict_of(selection: Search, left: Sequence[Unexplained], decided: bool) ->
     return "missing_effect" if selection.choices else "nothing_missing"
 
 
-def _all_blind(selection: Search) -> bool:
+def all_blind(selection: Search) -> bool:
     """Whether the base hides every effect that was looked for; others were never asked."""
     blind = {record.name for record in selection.blind}
     asked = {name for name, row in selection.rows.items() if row.score is not None} | blind
@@ -157,7 +162,7 @@ def _all_blind(selection: Search) -> bool:
 
 
 def relatives(selection: Search, place: int) -> list[str]:
-    """Other effects of the same family as one that was accepted.
+    """Other effects of the same family as one that was accepted, or the same thing by another name.
 
     Two that look alike, named beside each other, together imitate a third more often than they are
     both there; and so does a name beside one that may be a relative of it: a constant and cogging
@@ -173,7 +178,20 @@ def relatives(selection: Search, place: int) -> list[str]:
         if k != place and rival.name not in taken
     ]
     alike = [each for each in (*records, *instead) if each.family == own.family]
-    return list(dict.fromkeys(each.name for each in alike if each is not own))
+    names = [each.name for each in alike if each is not own]
+    if own.name == BIAS and TWO_LEVELS in selection.rows and _is_level_at_stick(selection):
+        names.append(TWO_LEVELS)
+    return list(dict.fromkeys(names))
+
+
+def _is_level_at_stick(selection: Search) -> bool:
+    """Whether a constant effort may be a level of its own in either direction."""
+    plant = selection.models[-1].plant
+    level = plant.friction.parameters.get("coulomb")
+    bias = next((each for each in plant.effects if each.name == BIAS), None)
+    if not plant.friction.sticks or level is None or bias is None:
+        return False
+    return all(abs(each.value) < level.value for each in bias.parameters.values())
 
 
 def _told(left: Rest, least: float) -> tuple[Unexplained, ...]:

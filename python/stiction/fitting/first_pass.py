@@ -107,7 +107,7 @@ def first_pass(
     *,
     most: int,
     wide: bool = True,
-    windows: bool = False,
+    windows: bool | None = None,
 ) -> FirstPass[S]:
     """Fit a plant to rows of the weak form, and simulated where these do not do.
 
@@ -128,8 +128,8 @@ def first_pass(
         Evaluations of the residual at most, of each start.
     wide : bool
         Whether wider kernels may be tried.
-    windows : bool
-        Whether it is known already that a rigid contact must be simulated over windows.
+    windows : bool, optional
+        Whether a rigid contact is to be simulated over windows, where that is known already.
 
     Raises
     ------
@@ -230,12 +230,12 @@ def _simulated(
     again: Callable[[Plant, Through, Watch], S],
     *,
     most: int,
-    windows: bool,
+    windows: bool | None,
 ) -> FirstPass[S]:
     """What is known, fitted on by what is simulated where the weak form does not do."""
     seen, found, start = known.seen, known.solution, known.start
     servo = plant.servo
-    tried = windows_of(found.plant, seen.forms, seen.train)
+    tried = None if windows is False else windows_of(found.plant, seen.forms, seen.train)
     horizon = tried or horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
     if horizon is not None or servo:
         phase(_logger, "fitting it again, simulated")
