@@ -104,7 +104,7 @@ def build_friction(rig: RigLike, **fixed: float) -> FrictionModel:
     elif isinstance(rig, FrictionModel):
         model = _virgin(rig)
     else:
-        model = illustrative_friction(**_split(_mapping(rig or {}))[1])
+        model = illustrative_friction(**_split(_mapping({} if rig is None else rig))[1])
     keywords: dict[str, float | str] = {**model.parameters, **model.options}
     keywords |= {name: value for name, value in fixed.items() if name in model.parameters}
     return FrictionModel(model.law, **keywords)

@@ -46,8 +46,11 @@ def write(diagnosis: Diagnosis, folder: Path) -> Path:
     Raises
     ------
     InputError
-        The folder cannot be made or written to.
+        The folder cannot be made or written to; no diagnosis.
     """
+    from ..diagnosis import Diagnosis
+
+    given.instance(diagnosis, Diagnosis, "report.write: diagnosis", "what st.diagnose returns")
     folder = made(given.path(folder, "report.write: folder"))
     try:
         write_text(folder / "findings.json", diagnosis.to_json() + "\n")

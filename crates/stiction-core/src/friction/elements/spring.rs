@@ -360,7 +360,7 @@ fn check_nesting(rows: &[[f64; 2]], position: f64, direction: f64) -> Result<()>
         if passed {
             return bad("does not nest: the spring is past the point before the last");
         }
-    } else if position * direction < 0.0 {
+    } else if position * direction < 0.0 || (direction == 0.0 && position != 0.0) {
         return bad("is empty although the spring is not on its virgin curve");
     }
     Ok(())
