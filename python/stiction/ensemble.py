@@ -218,7 +218,7 @@ class Ensemble(_Ensemble):
             Shapes that do not fit, values that are not finite or masked, an unknown output,
             reduction or number of threads, ``every`` or ``target`` where they mean nothing, a
             ``dt`` that is not above 0 and at most 1e6 s or too long for one of the machines, more
-            inner steps than 1000 a sample of a machine in the mean after the first 5 million,
+            inner steps than 1000 a sample of a machine in the mean after the first 10 million,
             more rows than there is memory for.
         """
         if reduce is not None:

@@ -101,7 +101,7 @@ class Motor(_native.Motor):
         InputError
             Wrong shapes, values that are not finite or masked, unknown outputs or one of them
             twice, a ``dt`` that is not above 0 and at most 1e6 s or too long for this machine, more
-            inner steps than 1000 a sample in the mean after the first 5 million, more rows than
+            inner steps than 1000 a sample in the mean after the first 10 million, more rows than
             there is memory for.
         """
         # A call that other work has pushed out of the cache takes as long as what it looks up: no
@@ -158,7 +158,7 @@ class Motor(_native.Motor):
         ------
         InputError
             Wrong shapes, durations or a tolerance that are not positive, times that do not rise or
-            lie outside the run, unknown outputs; more work than 5 million plain steps.
+            lie outside the run, unknown outputs; more work than 10 million plain steps.
 
         Examples
         --------

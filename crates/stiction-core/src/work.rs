@@ -17,9 +17,9 @@ pub const STEP: u64 = 8;
 /// A step with its derivatives, in steps without.
 pub const DERIVATIVES: u64 = 5;
 
-/// Work of any call: under three seconds of the dearest plants, which take 67 ns for one (a servo on
-/// elasto_plastic with an effect, on a busy machine; 28 ns of bouc_wen and leuven alone).
-const FIRST: f64 = 4e7;
+/// Work of any call: two seconds of the dearest laws, which take 28 ns for one (bouc_wen, leuven), four
+/// of the dearest plants (a servo on elasto_plastic with an effect: 45 ns).
+const FIRST: f64 = 8e7;
 /// As much more for each sample: a thousand steps.
 const OF_A_SAMPLE: f64 = 8e3;
 /// The same for each row of segments, which are few and long.

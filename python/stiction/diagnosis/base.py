@@ -144,15 +144,17 @@ def based_simulated(
         The last are the models above as a simulation has them, what leaves least first. After
         Ctrl-C whatever is there, and the solution of the base is interrupted.
     """
+    # Where the last cause makes the contact yield, the others tell nothing against that.
+    horizon = windows_of(final.plant, evidence.forms, evidence.train)
     begun = [
         model
         for model in (final, *tried)
         if model.plant.effects != plant.effects
         and windows_of(model.plant, evidence.forms, evidence.train) is not None
     ]
-    if not begun:
+    if horizon is None or not begun:
         return None
-    through = Through(horizon=windows_of(begun[0].plant, evidence.forms, evidence.train))
+    through = Through(horizon=horizon)
     try:
         windows = Evidence(begun[0].plant, recordings, through=through, watch=evidence.watch)
         own = [(fitted(windows, each.plant, each.nuisances), each) for each in begun]
@@ -174,7 +176,7 @@ def based_simulated(
 
 
 def based_over_windows(
-    plant: Plant, recordings: Sequence[Recording], evidence: Evidence, base: Model
+    plant: Plant, recordings: Sequence[Recording], evidence: Evidence, final: Model
 ) -> tuple[Evidence, Model] | None:
     """The base simulated over windows, whatever that leaves; None where it cannot be.
 
@@ -185,10 +187,10 @@ def based_over_windows(
     recordings : sequence of Recording
     evidence : Evidence
         Of the weak form.
-    base : Model
-        The same fitted along the readings.
+    final : Model
+        The same fitted along the readings, with all causes that were found.
     """
-    if windows_of(base.plant, evidence.forms, evidence.train) is None:
+    if windows_of(final.plant, evidence.forms, evidence.train) is None:
         return None
     try:
         simulated = based(plant, recordings, windows=True)

@@ -353,7 +353,8 @@ def _seen_otherwise(
             seen = seen if earlier else None
         else:
             earlier = look.selection.tried
-            seen = based_over_windows(plant, recordings, look.evidence, look.base)
+            final = first.decided.models[-1]
+            seen = based_over_windows(plant, recordings, look.evidence, final)
         if seen is None:
             return first
         phase(_logger, "screening the effects again, with the plant simulated over windows")

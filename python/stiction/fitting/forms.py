@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -11,6 +11,7 @@ import numpy as np
 from ..finite import finite
 from ..loop_form import LoopForm
 from ..motion import SUPPORTS_S, Kernel, noise_of
+from ..parameter import Parameter
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.session_clock import ages_of, starts_of
@@ -22,7 +23,6 @@ from .rows import Nuisances, Rows
 
 __all__ = [
     "EVERY_S",
-    "FOLLOWED",
     "KERNELS",
     "LEAST_LEFT",
     "Through",
@@ -53,8 +53,6 @@ HORIZONS_S: Final = (0.100, 0.300)
 and let a motion that hangs on a break-away run away."""
 BEYOND_SHOWN: Final = 2.0
 """A contact simulated over windows may become so many times stiffer than samples show."""
-FOLLOWED: Final = frozenset({"initial_stiffness", "damping"})
-"""What of a contact ends where it can be simulated."""
 RINGS: Final = 3.0
 """Periods of its ring on the pre-sliding stiffness that a window holds: a start that is wrong by a
 count sets a machine ringing, and of a ring three times as fast as itself the kernel leaves 1 %."""
@@ -391,15 +389,28 @@ def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
 
 
 def as_stated(plant: Plant, given: Plant) -> Plant:
-    """The plant with the upper bounds of its stiffness and damping that were given.
+    """The plant with the bounds of body and friction that were given.
 
-    Those that ``followable`` set are ends of what can be simulated, and say nothing of the machine.
+    Those that ``followable`` and ``clock.bounded`` set are ends of what can be simulated, and say
+    nothing of the machine.
     """
-    parameters = dict(plant.friction.parameters)
-    for name in FOLLOWED & parameters.keys():
-        stated = given.friction.parameters.get(name)
-        parameters[name] = replace(parameters[name], max=None if stated is None else stated.max)
-    return replace(plant, friction=replace(plant.friction, parameters=parameters))
+
+    def part(
+        fitted: Mapping[str, Parameter], given: Mapping[str, Parameter]
+    ) -> dict[str, Parameter]:
+        none = Parameter(0.0)
+        stated = {name: given.get(name, none) for name in fitted}
+        return {
+            name: replace(own, min=stated[name].min, max=stated[name].max)
+            for name, own in fitted.items()
+        }
+
+    friction = part(plant.friction.parameters, given.friction.parameters)
+    return replace(
+        plant,
+        body=part(plant.body, given.body),
+        friction=replace(plant.friction, parameters=friction),
+    )
 
 
 def shows_its_ring(plant: Plant, forms: Sequence[WeakForm]) -> bool:

@@ -27,6 +27,7 @@ from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
 from ..wording import counted
 from ..workers import with_workers
+from .clock import bounded
 from .first_pass import first_pass, launched, share_left
 from .forms import KERNELS, Through, as_session, as_stated, forms_of
 from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stopped
@@ -62,6 +63,10 @@ SELECT_IS_FITTED: Final = (
     "fits those of train alone, and may end at values a little different."
 )
 """The one thing in which a fit and the base of a diagnosis differ."""
+AS_WELL: Final = 1.1
+"""Times the power of a fit that one may leave which can be simulated; nobody can use another."""
+MOST_BOUNDED: Final = 3
+"""So many numbers are tried for that."""
 MOST_FOLLOWED: Final = {
     "friction.initial_stiffness": "the stiffest contact",
     "friction.damping": "the most damped contact",
@@ -244,7 +249,24 @@ def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
     except KeyboardInterrupt:
         # Before the second pass had anything to keep.
         return stopped(first)
-    return from_elsewhere(second, rows, most=most)
+    return _followed(from_elsewhere(second, rows, most=most), rows, most=most)
+
+
+def _followed(found: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
+    """The solution, or what leaves as little and its own samples can follow (see ``bounded``)."""
+    if found.interrupted:
+        return found
+    others = []
+    for plant in bounded(found.plant, found.variables.paths, rows, found.nuisances)[:MOST_BOUNDED]:
+        try:
+            other = minimise(
+                plant, found.variables.paths, rows, most=most, nuisances=found.nuisances
+            )
+        except KeyboardInterrupt:
+            return stopped(found)
+        others.append(replace(other, begin=found.begin))
+    best = min(others, key=lambda other: other.power, default=found)
+    return best if best.power < AS_WELL * found.power else found
 
 
 def reweighted(rows: Sequence[Rows], plant: Plant, nuisances: Nuisances) -> None:

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::{Scalar, sign};
+use crate::work;
 
 /// Share of g by which it is moved for the slope of a held velocity.
 const NUDGE: f64 = 1e-6;
@@ -104,6 +105,7 @@ impl<S: Scalar> ElastoPlastic<S> {
             left -= room;
             along = self.elastic;
         }
+        work::spend(work::STEP / 2); // an exponential or sines, beside a power in the level
         let way = left / level;
         if along.re() >= level.re() {
             return level + (along - level) * (-way).exp();
