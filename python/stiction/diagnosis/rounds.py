@@ -23,6 +23,7 @@ from .exact_forms import several
 from .fewer import MIMIC, chained, dropped_by_the_latest, join, without
 from .model import Model, without_effect
 from .replay import centre, shared
+from .restarts import from_before, from_the_first
 from .result import CandidateRow
 from .screen import Score
 from .selection import Search
@@ -32,7 +33,6 @@ from .together import pass_together, passes_beside
 from .trials import (
     LESSER,
     SLIGHT,
-    WORTH_MOVING,
     Screening,
     compared_fit,
     promises,
@@ -49,13 +49,6 @@ REFITTED: Final = 5
 OUTSTANDING: Final = 3.0
 """A candidate that explains this many times what any other does is refitted whatever it does held
 out."""
-AS_MUCH: Final = 0.5
-"""A candidate that promised this share of what the first one did, and came to less, begins again
-where that has led the plant."""
-MOST_AGAIN: Final = 3
-"""So many of them."""
-WAVE: Final = "order"
-"""Scale of shapes that say how often an effect repeats."""
 MOST_RENEWALS: Final = 2
 """Times that the base is replaced by a better fit of itself."""
 WORTH_RENEWING: Final = 0.005
@@ -258,9 +251,9 @@ def _refitted(
         # There will be no next round.
         trials += [_trial(screening, found, score) for score in waiting]
     trials += [_trial(screening, found, score) for score in _imitated(scores, trials)]
-    trials[:] = _from_before(screening, base, scores, trials)
+    trials[:] = from_before(screening, base, scores, trials)
     if first := choose(trials):
-        trials[:] = _from_the_first(screening, base, scores, trials, first.winner)
+        trials[:] = from_the_first(screening, base, scores, trials, first.winner)
     tried = {trial.name for trial in trials}
     for score in passing:
         if score.candidate.name not in tried:
@@ -286,50 +279,6 @@ def _refitted(
         found.tried = [t.model for t in trials if t.explained > t.score.threshold and not t.empty]
     freed = sorted((trial for trial in trials if trial.freed), key=lambda t: -t.worth)[:1]
     return choice, freed if choice is None else [*freed, choice.winner]
-
-
-def _from_the_first(
-    screening: Screening,
-    base: Model,
-    scores: Sequence[Score],
-    trials: Sequence[Trial],
-    first: Trial,
-) -> list[Trial]:
-    """Trials, with what promised about as much as the first and came to less begun beside it."""
-    known = {trial.name: trial for trial in trials}
-    enough = AS_MUCH * first.score.score
-
-    def is_behind(score: Score) -> bool:
-        trial = known.get(score.candidate.name)
-        promised = score.testable and score.score >= max(score.threshold, enough)
-        behind = trial is None or (trial.worth < first.worth and not trial.imitates)
-        # A wave of any length bends itself to whatever is left; it needs no such help.
-        wave = any(shape.scale == WAVE for shape in score.candidate.record.shapes)
-        return promised and behind and not wave
-
-    for score in list(filter(is_behind, scores))[:MOST_AGAIN]:
-        _keep_the_better(known, screening.from_where(base, score, first))
-    return list(known.values())
-
-
-def _from_before(
-    screening: Screening, base: Model, scores: Sequence[Score], trials: Sequence[Trial]
-) -> list[Trial]:
-    """Trials, with what was fitted earlier begun from there."""
-    known = {trial.name: trial for trial in trials}
-    for score in scores if screening.earlier else ():
-        if score.testable:
-            _keep_the_better(known, screening.from_before(base, score))
-    return list(known.values())
-
-
-def _keep_the_better(known: dict[str, Trial], again: Trial | None) -> None:
-    """Puts a trial in the place of one of the same effect that leaves more."""
-    if again is None:
-        return
-    own = known.get(again.name)
-    if own is None or again.model.power < (1.0 - WORTH_MOVING) * own.model.power:
-        known[again.name] = again
 
 
 def _is_spread(trial: Trial) -> bool:

@@ -1,0 +1,65 @@
+"""Starts of refits beside those that slopes tell: where another cause or an earlier search led."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from .decide import Trial
+from .model import Model
+from .screen import Score
+from .trials import WORTH_MOVING, Screening
+
+__all__ = ["from_before", "from_the_first"]
+
+AS_MUCH: Final = 0.5
+"""A candidate that promised this share of what the first one did, and came to less, begins again
+where that has led the plant."""
+MOST_AGAIN: Final = 3
+"""So many of them."""
+WAVE: Final = "order"
+"""Scale of shapes that say how often an effect repeats."""
+
+
+def from_the_first(
+    screening: Screening,
+    base: Model,
+    scores: Sequence[Score],
+    trials: Sequence[Trial],
+    first: Trial,
+) -> list[Trial]:
+    """Trials, with what promised about as much as the first and came to less begun beside it."""
+    known = {trial.name: trial for trial in trials}
+    enough = AS_MUCH * first.score.score
+
+    def is_behind(score: Score) -> bool:
+        trial = known.get(score.candidate.name)
+        promised = score.testable and score.score >= max(score.threshold, enough)
+        behind = trial is None or (trial.worth < first.worth and not trial.imitates)
+        # A wave of any length bends itself to whatever is left; it needs no such help.
+        wave = any(shape.scale == WAVE for shape in score.candidate.record.shapes)
+        return promised and behind and not wave
+
+    for score in list(filter(is_behind, scores))[:MOST_AGAIN]:
+        _keep_the_better(known, screening.from_where(base, score, first))
+    return list(known.values())
+
+
+def from_before(
+    screening: Screening, base: Model, scores: Sequence[Score], trials: Sequence[Trial]
+) -> list[Trial]:
+    """Trials, with what was fitted earlier begun from there."""
+    known = {trial.name: trial for trial in trials}
+    for score in scores if screening.earlier else ():
+        if score.testable:
+            _keep_the_better(known, screening.from_before(base, score))
+    return list(known.values())
+
+
+def _keep_the_better(known: dict[str, Trial], again: Trial | None) -> None:
+    """Puts a trial in the place of one of the same effect that leaves more."""
+    if again is None:
+        return
+    own = known.get(again.name)
+    if own is None or again.model.power < (1.0 - WORTH_MOVING) * own.model.power:
+        known[again.name] = again
