@@ -10,6 +10,8 @@ from tests.ordinary.draw import Spec, ordinary
 from tests.ordinary.files import write
 
 import stiction as st
+from stiction.catalogue import effects
+from stiction.diagnosis.candidates import Candidate
 from stiction.diagnosis.signatures import gain_at
 from stiction.diagnosis.trials import _of_its_share
 
@@ -85,9 +87,6 @@ def test_what_readings_leave_without_a_name_is_asked_of_a_simulation(tmp_path: P
 
 
 def test_a_swinging_mass_begins_with_the_share_that_its_signature_tells() -> None:
-    from stiction.catalogue import effects
-    from stiction.diagnosis.candidates import Candidate
-
     record = next(each for each in effects() if each.name == "shaft_compliance")
     shape = {"inertia_share": 0.5, "damping_ratio": 0.08}
     candidate = Candidate(record, shape, (), resonance=24.0)
