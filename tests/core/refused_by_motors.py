@@ -3,11 +3,12 @@
 import numpy as np
 
 import stiction as st
+from stiction import _native
 
 from .refused_by_contacts import DT, INF, NAN, machine, model, read_only, with_state
 from .rigs import INERTIA, motor
 
-ROWS = st._native.RowKernel([0.25, 0.5, 0.25], [0.25, 0.0, -0.5, 0.0, 0.25], 2)
+ROWS = _native.RowKernel([0.25, 0.5, 0.25], [0.25, 0.0, -0.5, 0.0, 0.25], 2)
 
 # (what is wrong, its good twin, words that the sentence must hold)
 MOTORS = {
@@ -321,13 +322,13 @@ MOTORS = {
         ["threads = 0"],
     ),
     "a kernel with an even number of weights": (
-        lambda: st._native.RowKernel([0.5, 0.5], [1.0, -1.0, -1.0, 1.0], 1),
-        lambda: st._native.RowKernel([1.0], [1.0, -2.0, 1.0], 1),
+        lambda: _native.RowKernel([0.5, 0.5], [1.0, -1.0, -1.0, 1.0], 1),
+        lambda: _native.RowKernel([1.0], [1.0, -2.0, 1.0], 1),
         ["odd number"],
     ),
     "a kernel every 0 samples": (
-        lambda: st._native.RowKernel([1.0], [1.0, -2.0, 1.0], 0),
-        lambda: st._native.RowKernel([1.0], [1.0, -2.0, 1.0], 3),
+        lambda: _native.RowKernel([1.0], [1.0, -2.0, 1.0], 0),
+        lambda: _native.RowKernel([1.0], [1.0, -2.0, 1.0], 3),
         ["spacing of 1 or more"],
     ),
 }

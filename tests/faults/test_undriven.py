@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from .undriven import count, drawn, gain
+import numpy as np
+import pytest
+
+import stiction as st
+
+from .undriven import TOLERANCE, count, drawn, gain
+
+FOUND = ((61, 1668), (61, 6545), (61, 8388), (61, 11362), (71, 20200), (71, 22984), (72, 4734))
+"""Seed and number of cases that gained, of some 80 000."""
 
 
 def test_no_motor_that_nobody_drives_gains_energy() -> None:
@@ -14,3 +22,37 @@ def test_no_motor_that_nobody_drives_gains_energy() -> None:
 def test_a_case_is_the_same_again() -> None:
     assert drawn(3, 17) == drawn(3, 17)
     assert gain(drawn(3, 17)) == gain(drawn(3, 17))
+
+
+@pytest.mark.parametrize(("seed", "number"), FOUND)
+def test_what_gained_once_does_not_gain_any_more(seed: int, number: int) -> None:
+    more = gain(drawn(seed, number))
+    assert more is None or more <= TOLERANCE
+
+
+def test_drag_that_grows_within_a_sample_is_followed() -> None:
+    # From rest to its greatest speed within a sample: drag as at its start would be none at all.
+    effort, quadratic, dt = 1e6, 1.3e-3, 1.4e-4
+    for integrator in ("fast", "reference"):
+        motor = st.Motor(
+            7e-3,
+            friction=st.FrictionModel("coulomb"),
+            effects={"viscous_quadratic": {"quadratic": quadratic}},
+            integrator=integrator,
+        )
+        run = motor.simulate(np.full(400, effort), dt)
+        top = np.sqrt(effort / quadratic)
+        assert np.max(run.velocity) <= 1.001 * top
+        assert run.velocity[-1] == pytest.approx(top, rel=1e-3)
+
+
+def test_creep_that_speeds_up_within_a_sample_is_followed() -> None:
+    # λ·h of the reference integrator is far above what its formula bears, though not at the start.
+    law = {"initial_stiffness": 195.0, "hardening_exponent": 10.0, "breakaway": np.inf}
+    runs = []
+    for integrator in ("fast", "reference"):
+        friction = st.FrictionModel("hsieh_pan", **law)
+        motor = st.Motor(0.0132, friction=friction, weight=0.17, integrator=integrator)
+        motor.reset(0.0, -95.6)
+        runs.append(motor.simulate(np.zeros(400), 3.86e-3).position)
+    assert np.max(np.abs(runs[1] - runs[0])) < 1e-3 * np.ptp(runs[0])

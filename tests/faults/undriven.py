@@ -22,6 +22,8 @@ SAMPLES = 400
 TOLERANCE = 0.02
 """Share of energy that steps may seem to give: a ring of a coarse step is off by that."""
 ROUND_OFF = 1e-12
+NOTHING = 1e-30
+"""Energy, in J, that is none: a shaft at rest swings so far in the last bit of its position."""
 MOST_EFFECTS = 3
 WORDS = {"st": st, "inf": math.inf, "nan": math.nan}
 
@@ -135,7 +137,7 @@ def gain(case: Case) -> float | None:
     before = 0.5 * settings["inertia"] * case.velocity**2 + case.potential(settings, travelled)
     share = case.inertia_share()
     after = 0.5 * settings["inertia"] * share * float(np.max(np.abs(run.velocity))) ** 2
-    least = before * ROUND_OFF + sys.float_info.min
+    least = before * ROUND_OFF + NOTHING
     return (after - before - least) / max(before, sys.float_info.min)
 
 

@@ -262,7 +262,8 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
                 bristle.settled(&now, &bent, &slip, velocity, &channels);
             let Outcome { force, damping, .. } = outcome;
             let undamped = force - damping * velocity;
-            let arrived = verlet.arrive(start_velocity, net + effort, damping, undamped);
+            let effort_then = glide.there(effort, displacement, || velocity);
+            let arrived = verlet.arrive(start_velocity, net + effort_then, damping, undamped);
             now = after;
             start_velocity = arrived;
             from = self.level_within(arrived);

@@ -94,10 +94,11 @@ fn effort<S: Scalar>(machine: &Machine<S>, run: &Run<S>, (input, load): (S, S)) 
 }
 
 impl<S: Scalar> Machine<S> {
-    /// Whether the work of the contact is counted: where there are effects beside it.
+    /// Whether the work of the contact is counted: where effects change its levels, or something gives way
+    /// in series with it. At constant levels a law is passive by itself, whatever acts beside it.
     #[inline]
     pub fn counts_work(&self) -> bool {
-        self.effects.any()
+        self.effects.changes_levels() || self.relaxes()
     }
 
     /// How rough steps of this duration are on a contact of this stiffness.

@@ -207,8 +207,18 @@ impl<S: Scalar, T> Seen<S, T> for Places<'_, S> {
 
 /// All effort but friction, sample by sample. A trait, for a closure cannot ask to be part of the loop.
 pub trait Efforts<S> {
+    /// Whether they are the same all through a sample: else what acts where the body is comes to them.
+    const HELD: bool = true;
     /// During this sample.
     fn at(&self, sample: usize) -> S;
+    /// What acts beside them where a run will be after such a displacement, at such a velocity.
+    #[inline(always)]
+    fn beside(&self, run: &Run<S>, _displacement: S, _velocity: S, _span: S) -> S
+    where
+        S: Scalar,
+    {
+        run.ambient
+    }
     /// How many of these samples in a row have no effort above this.
     #[inline(always)]
     fn within(&self, samples: Range<usize>, greatest: f64) -> usize
@@ -245,7 +255,8 @@ where
         let motion = Motion { displacement, duration, start_velocity, velocity };
         let trial = law.advance(&now, &motion, &channels);
         let (outcome, undamped) = (law.outcome(&trial), law.undamped(&trial, velocity));
-        let arrived = verlet.arrive(start_velocity, push + effort, outcome.damping, undamped);
+        let effort_then = glide.there(effort, displacement, || velocity);
+        let arrived = verlet.arrive(start_velocity, push + effort_then, outcome.damping, undamped);
         law.commit(&mut now, &trial);
         start_velocity = arrived;
         let friction = undamped + outcome.damping * arrived;
@@ -271,13 +282,34 @@ pub struct Glide<S, E, V> {
     pub part: u32,
     /// Steps of a sample.
     pub parts: u32,
+    /// What acts beside the efforts at the end of the step that is looked at, where they are not held.
+    pub beside: S,
 }
 
 impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
-    /// All effort but friction during the next step, where there is one.
+    /// All effort but friction at the start of the next step, where there is one.
     #[inline(always)]
     pub fn next(&self) -> Option<S> {
-        (self.samples.start < self.samples.end).then(|| self.efforts.at(self.samples.start))
+        (self.samples.start < self.samples.end).then(|| self.here(self.samples.start))
+    }
+
+    /// All effort but friction where the body is, in a sample.
+    #[inline(always)]
+    fn here(&self, sample: usize) -> S {
+        let effort = self.efforts.at(sample);
+        if E::HELD { effort } else { effort + self.run.ambient }
+    }
+
+    /// All effort but friction at the end of a step that began under `effort`, displaced the body so far and
+    /// is predicted to end at this velocity.
+    #[inline(always)]
+    pub fn there(&mut self, effort: S, displacement: S, predicted: impl FnOnce() -> S) -> S {
+        if E::HELD {
+            return effort;
+        }
+        let span = self.verlet.span;
+        self.beside = self.efforts.beside(&self.run, displacement, predicted(), span);
+        self.efforts.at(self.samples.start) + self.beside
     }
 
     /// Accepts samples at rest while the contact, which looks the same all the time, holds the effort;
@@ -288,14 +320,20 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         V: Seen<S, T>,
     {
         let Range { start, end } = self.samples;
-        let held = self.efforts.within(start..end, greatest);
+        let held = if E::HELD {
+            self.efforts.within(start..end, greatest)
+        } else {
+            (start..end).take_while(|k| self.here(*k).re().abs() <= greatest).count()
+        };
         if held == 0 {
             return None;
         }
         let samples = start..start + held;
         let steps = |samples: usize, part: u32| samples * self.parts as usize - part as usize;
         let (mut time, part) = (self.run.time, self.part);
-        if self.seen.still(samples.clone(), &self.run, |k| self.efforts.at(k)) {
+        let (efforts, ambient) = (&self.efforts, self.run.ambient);
+        let here = |k| if E::HELD { efforts.at(k) } else { efforts.at(k) + ambient };
+        if self.seen.still(samples.clone(), &self.run, here) {
             // Of what a bare body does nothing asks for derivatives of time.
             let passed = after_steps(time.re(), self.verlet.span.re(), steps(held, part));
             time = time.with_value(passed);
@@ -305,12 +343,12 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
                     time += self.verlet.span;
                 }
                 self.run.time = time;
-                self.run.friction = self.efforts.at(k);
+                self.run.friction = here(k);
                 self.seen.see(k, &self.run, contact);
             }
         }
         self.run.time = time;
-        self.run.friction = self.efforts.at(samples.end - 1);
+        self.run.friction = here(samples.end - 1);
         (self.samples.start, self.part) = (samples.end, 0);
         Some(self.run.friction)
     }
@@ -328,6 +366,9 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         run.time.put(run.time.re() + self.verlet.span.re());
         run.velocity = velocity;
         run.friction = friction;
+        if !E::HELD {
+            run.ambient = self.beside;
+        }
         self.part += 1;
         if self.part == self.parts {
             self.part = 0;

@@ -27,6 +27,8 @@ pub struct Machine<S: Scalar> {
     pub(super) shaft: Option<Shaft<S>>,
     /// Friction of slow sliding, which renews the relaxing junctions.
     sliding: S,
+    /// Sum of the stiffnesses that effects add.
+    stiffness: f64,
     /// Inertia on the motor's side of the shaft.
     pub(super) inertia: S,
     /// Its reciprocal.
@@ -111,6 +113,7 @@ impl<S: Scalar> Machine<S> {
         let shaft = masses.filter_map(|m| Shaft::new(m, body.inertia)).next_back();
         let inertia = shaft.map_or(body.inertia, |shaft| body.inertia - shaft.inertia);
         let lightness = S::constant(1.0) / inertia;
+        let stiffness = effects.stiffness(sliding.re());
         Self {
             drive,
             body,
@@ -120,6 +123,7 @@ impl<S: Scalar> Machine<S> {
             steady_creep,
             shaft,
             sliding,
+            stiffness,
             inertia,
             lightness,
         }
@@ -130,6 +134,13 @@ impl<S: Scalar> Machine<S> {
     pub fn is_bare(&self) -> bool {
         let alone = self.shaft.is_none() && !self.relaxes() && self.body.is_level();
         alone && self.effects.nothing() && self.drive.servo.is_none()
+    }
+
+    /// Whether all that is there beside drive, inertia and friction acts on the body by where it is, and
+    /// nothing on input, contact or clock.
+    pub fn is_unchanged(&self) -> bool {
+        let alone = self.shaft.is_none() && !self.relaxes() && self.drive.servo.is_none();
+        alone && self.effects.only_push()
     }
 
     /// A body at this position and velocity.
@@ -162,8 +173,8 @@ impl<S: Scalar> Machine<S> {
 
     /// Bound of ω² of anything that swings, with this stiffness of the friction.
     pub(super) fn fastest_square(&self, friction: f64) -> f64 {
-        let effects = self.effects.stiffness(self.sliding.re());
-        let near = friction + effects + self.body.gravity_amplitude.re().abs() + self.servo().0;
+        let near =
+            friction + self.stiffness + self.body.gravity_amplitude.re().abs() + self.servo().0;
         let shaft = self.shaft.map_or((0.0, 0.0), |shaft| {
             let stiffness = shaft.stiffness.re();
             (stiffness, stiffness / shaft.inertia.re())
@@ -264,13 +275,25 @@ impl<S: Scalar> Machine<S> {
         self.sensor.read(self.effects.sensor(S::constant(position)).re())
     }
 
+    /// Effort of the drive of this unchanged machine under an input, and a load.
+    #[inline(always)]
+    pub fn driven_directly(&self, input: f64, load: S) -> S {
+        self.drive.direct(input) + load
+    }
+
+    /// What else acts on this unchanged machine after a step that displaces the body so far.
+    #[inline(always)]
+    pub fn beside(&self, run: &Run<S>, displacement: S, velocity: S, span: S) -> S {
+        self.surroundings(&run.situation().after(displacement, velocity, span))
+    }
+
     /// All effort but friction on this bare machine under an input and a load.
     #[inline(always)]
     pub fn bare_effort(&self, input: f64, load: S) -> S {
         self.drive.direct(input) + load + self.weight()
     }
 
-    /// A row of plain steps of this bare machine from where a run is; `efforts` says all effort but
+    /// A row of plain steps of this bare or unchanged machine from where a run is; `efforts` says all effort but
     /// friction in a sample, `parts` in how many steps of `span` it is divided.
     pub fn glide<E, V>(
         &self,
@@ -281,7 +304,7 @@ impl<S: Scalar> Machine<S> {
         (span, parts): (S, u32),
     ) -> Glide<S, E, V> {
         let verlet = self.verlet(span);
-        Glide { verlet, run, efforts, seen, samples, part: 0, parts }
+        Glide { verlet, run, efforts, seen, samples, part: 0, parts, beside: run.ambient }
     }
 
     /// Effort of the drive of a bare machine.
@@ -297,6 +320,18 @@ impl<S: Scalar> Machine<S> {
             return S::constant(0.0);
         }
         self.drive.effort(self.effects.input(self.command(input, at), at), at.velocity)
+    }
+
+    /// Speed that a run comes to within a step under this input and load, where effects damp it.
+    pub(super) fn reached(&self, run: &Run<S>, input: S, load: S, span: f64) -> f64 {
+        let speed = run.velocity.re().abs();
+        let effort = (self.driven(input, &run.situation()) + load + run.ambient).re();
+        let gained = effort.abs() * span / self.inertia.re();
+        let free = if effort * run.velocity.re() < 0.0 { gained - speed } else { gained + speed };
+        // Damping that grows with the speed bears the effort before that.
+        let borne = 0.5 * self.effects.damping(free) * free;
+        let within = if borne > effort.abs() { free * (effort.abs() / borne).sqrt() } else { free };
+        within.max(speed)
     }
 
     /// Lets a servo sum up its distance from the goal over a sample.
@@ -397,9 +432,18 @@ impl<S: Scalar> Machine<S> {
     #[inline]
     fn not_beyond(&self, effort: S, crept: S) -> S {
         let gravity = self.body.gravity_amplitude.re().abs();
-        let near = self.effects.stiffness(self.sliding.re()) + gravity;
+        let near = self.stiffness + gravity;
         let way = effort.abs() / near;
         if near > 0.0 && crept.re().abs() > way.re() { way * sign(crept.re()) } else { crept }
+    }
+
+    /// Creep no faster than the effort could have driven a free body over all the way that it has crept
+    /// since its junctions were new: so it has no energy that the effort did not give.
+    #[inline]
+    fn not_faster(&self, effort: S, crept: S, before: S, span: S) -> S {
+        let half = effort.abs() * span * span / self.body.inertia;
+        let most = half + (half * half + half * before * 2.0).sqrt();
+        if crept.re().abs() > most.re() { most * sign(crept.re()) } else { crept }
     }
 
     /// Whether the contact creeps of itself.
@@ -510,7 +554,8 @@ pub(super) fn hold<S: Scalar, L: crate::friction::FrictionLaw<S>>(
     machine.swing(&at, &at, span, run);
     if machine.relaxes() {
         let (hardened, crept) = machine.relax(run.relaxed, effort, span);
-        let crept = machine.not_beyond(effort, crept);
+        let crept =
+            machine.not_faster(effort, machine.not_beyond(effort, crept), run.relaxed, span);
         run.relaxed = hardened;
         run.position += crept;
         run.moved += crept;

@@ -36,7 +36,7 @@ pub use shaft::Beyond;
 
 use std::ops::Range;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::friction::FrictionLaw;
 use crate::scalar::Scalar;
 use crate::work::{self, Meter};
@@ -64,8 +64,10 @@ const LONGEST_RATE: f64 = 0.3;
 /// A sample that needs more parts than this is a mistake in the units, not a stiff machine; and what a
 /// sample may cost is bounded by it.
 pub const MOST_PARTS: f64 = 1e4;
-/// The reference integrator divides no further for internal variables, however fast they are.
+/// The reference integrator divides no further for internal variables, however fast they are,
 const MOST_INNER: f64 = 1e5;
+/// and λ·h above which its steps would run away: its formula is stable up to 2.78.
+const STABLE_RATE: f64 = 2.5;
 
 /// A step of the reference integrator, in steps of the fast one.
 const REFERENCE: u64 = 5;
@@ -128,15 +130,15 @@ pub fn parts<S: Scalar, L: FrictionLaw<S>>(
 const MOST_LEVEL: f64 = 4.0;
 
 /// How many times the parts of a sample that [`parts`] tells are to be, because of what effects make of
-/// the contact where a run is: `dt` is the duration of a part.
+/// the contact where a run is and within such a part, of duration `dt`.
 pub fn finer<S: Scalar, L: FrictionLaw<S>>(
     machine: &Machine<S>,
     law: &L,
     run: &Run<S>,
-    load: S,
+    (input, load): (S, S),
     dt: f64,
 ) -> f64 {
-    if !machine.effects.any() {
+    if !machine.effects.strains() {
         return 1.0;
     }
     let (level, viscous) = if machine.effects.changes_levels() {
@@ -147,7 +149,8 @@ pub fn finer<S: Scalar, L: FrictionLaw<S>>(
     let share = dt / machine.inertia.re() / (MOST_LEVEL * LONGEST_DAMPING);
     let raised = level.re().max(viscous.re());
     let calming = if raised > MOST_LEVEL { law.greatest_damping() * raised } else { 0.0 };
-    let calming = (calming + machine.effects.damping(run.velocity.re())) * share;
+    let damping = machine.effects.damping(machine.reached(run, input, load, dt));
+    let calming = (calming + damping) * share;
     (level.re() / MOST_LEVEL).sqrt().max(calming).ceil().max(1.0)
 }
 
@@ -207,20 +210,33 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
             }
         }
         Integrator::Reference => {
-            let parts = parts.max(integrator.inner(law, state, dt) as u32);
-            let span = S::constant(dt / f64::from(parts));
+            let mut left = parts.max(integrator.inner(law, state, dt) as u32);
+            let mut parts = left;
             let mut stepper = reference::Reference { machine, run, input, load };
-            let rough = machine.roughness(law.greatest_stiffness(), span.re());
-            let mut work = Work::begin(machine, stepper.run, (input, load), rough);
-            for _ in 0..parts {
-                if stepper.run.is_lost() {
-                    break;
+            let mut work = Work::begin(machine, stepper.run, (input, load), 0.0);
+            work.rough = machine.roughness(law.greatest_stiffness(), dt / f64::from(parts));
+            while left > 0 && !stepper.run.is_lost() {
+                let before = (law.decay_rate(state) > 0.0).then(|| (state.clone(), *stepper.run));
+                through_events(&mut stepper, law, state, S::constant(dt / f64::from(parts)));
+                meter.take(cost)?;
+                // What has become faster in it than so long a step can follow is gone through again.
+                let rate = law.decay_rate(state);
+                let followed = dt * rate <= f64::from(parts) * STABLE_RATE;
+                if let Some((state_before, run_before)) = before
+                    && !followed
+                {
+                    if f64::from(parts) >= MOST_INNER {
+                        let longest = MOST_INNER * STABLE_RATE / rate.max(MOST_INNER / dt);
+                        return Err(Error::TooLong { given: dt, longest });
+                    }
+                    (*state, *stepper.run) = (state_before, run_before);
+                    (left, parts) = (2 * left, 2 * parts);
+                    continue;
                 }
-                through_events(&mut stepper, law, state, span);
+                left -= 1;
                 if !BARE && machine.counts_work() {
                     work.count(machine, stepper.run);
                 }
-                meter.take(cost)?;
             }
         }
     }

@@ -204,7 +204,8 @@ fn go<L: FrictionLaw<f64>>(
     let seen = Watch::from(&run, stiffness, damping, &foreseen);
     let efforts = Held { effort, foreseen: &foreseen };
     // Own places and a copy: nobody else can see them, so that they stay in registers.
-    let mut glide = Glide { verlet, run, efforts, seen, samples: 0..steps, part: 0, parts: 1 };
+    let mut glide =
+        Glide { verlet, run, efforts, seen, samples: 0..steps, part: 0, parts: 1, beside: 0.0 };
     law.clone().glide(state, &mut glide);
     let (mut run, steps, seen) = (glide.run, glide.samples.start, glide.seen);
     let slope = (seen.change + 0.5 * seen.bend) / span;

@@ -109,7 +109,13 @@ impl<S: Scalar> Running<S> {
     pub(crate) fn cost_here(&self, load: f64, dt: f64) -> f64 {
         with_law_and_state!(&self.law, &self.state, |law, state| {
             let plainly = parts(&self.machine, law, dt, self.longest_phase);
-            let finer = finer(&self.machine, law, &self.run, S::constant(load), dt / plainly);
+            let finer = finer(
+                &self.machine,
+                law,
+                &self.run,
+                (S::constant(0.0), S::constant(load)),
+                dt / plainly,
+            );
             let whole = (plainly * finer).max(self.integrator.inner(law, state, dt));
             whole * self.of_step() as f64
         })
@@ -141,7 +147,13 @@ impl<S: Scalar> Running<S> {
     ) -> Result<()> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let parts = parts(&self.machine, law, dt, self.longest_phase);
-            let finer = finer(&self.machine, law, &self.run, S::constant(load), dt / parts);
+            let finer = finer(
+                &self.machine,
+                law,
+                &self.run,
+                (S::constant(input), S::constant(load)),
+                dt / parts,
+            );
             let parts = whole_parts(parts * finer, self.most_parts, dt)?;
             state.make_room(parts as usize + CHUNK / 4);
             let before = self.run;
@@ -222,7 +234,7 @@ impl<S: Scalar> Running<S> {
             PerSample::Same(dt) => self.parts(dt) * samples as f64,
             PerSample::Each(values) => self.parts(values.iter().sum()),
         };
-        let plain = self.machine.is_bare() && self.goes_plainly(around);
+        let plain = self.has_rows() && self.goes_plainly(around);
         let cost = with_law!(&self.law, |law| if plain && law.glides() {
             work::in_a_row::<S>() * law.glide_cost()
         } else {
@@ -231,7 +243,12 @@ impl<S: Scalar> Running<S> {
         parts * cost as f64
     }
 
-    /// Whether steps of a bare body may go in rows.
+    /// Whether this motor has plain steps.
+    fn has_rows(&self) -> bool {
+        self.machine.is_bare() || (self.machine.is_unchanged() && self.way.is_none())
+    }
+
+    /// Whether plain steps may go in rows.
     fn goes_plainly(&self, around: &Surroundings<'_>) -> bool {
         self.integrator == Integrator::Fast && around.is_steady()
     }
@@ -245,11 +262,11 @@ impl<S: Scalar> Running<S> {
         mut rows: impl Rows<S>,
         meter: &mut Meter,
     ) -> Result<()> {
-        let plain = BARE && self.goes_plainly(&around);
+        let plain = (BARE || self.has_rows()) && self.goes_plainly(&around);
         let mut way = self.way.as_mut();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let glides = plain && law.glides();
-            let strains = !BARE && self.machine.effects.any();
+            let strains = !BARE && self.machine.effects.strains();
             let mut known = f64::NAN;
             let (mut plainly, mut divided) = (1.0, 1);
             let mut room = 0;
@@ -266,19 +283,37 @@ impl<S: Scalar> Running<S> {
                 self.run.enabled = around.enabled_at(index);
                 if strains {
                     let load = added(index) + around.load.at(index);
-                    let finer = finer(&self.machine, law, &self.run, load, dt_now / plainly);
+                    let finer = finer(
+                        &self.machine,
+                        law,
+                        &self.run,
+                        (S::constant(inputs[index]), load),
+                        dt_now / plainly,
+                    );
                     divided = whole_parts(plainly * finer, self.most_parts, dt_now)?;
                 }
                 let mut passed = 0;
-                if glides && self.machine.glides(&self.run) {
+                if glides && (!BARE || self.machine.glides(&self.run)) {
                     let span = S::constant(dt_now / f64::from(divided));
                     let machine = &self.machine;
                     if !S::CARRIES {
                         ahead.reach(index, inputs, around.load, |k, input, load| {
-                            machine.bare_effort(input, added(k) + load).re()
+                            let load = added(k) + load;
+                            let effort = if BARE {
+                                machine.bare_effort(input, load)
+                            } else {
+                                machine.driven_directly(input, load)
+                            };
+                            effort.re()
                         });
                     }
-                    let efforts = Applied { machine, inputs, around, added: &added, ahead: &ahead };
+                    let efforts = Applied::<_, _, BARE> {
+                        machine,
+                        inputs,
+                        around,
+                        added: &added,
+                        ahead: &ahead,
+                    };
                     // Not to the end, which would be looked for anew after every event.
                     let end =
                         if S::CARRIES { inputs.len().min(index + AHEAD) } else { ahead.end() };
@@ -293,7 +328,7 @@ impl<S: Scalar> Running<S> {
                         let mut glide = machine.glide(self.run, efforts, seen, samples, step);
                         S::run(Plain { law, state, glide: &mut glide });
                         (glide.run, glide.samples.start, glide.part)
-                    } else if let Some(places) = rows.places(samples.clone()) {
+                    } else if BARE && let Some(places) = rows.places(samples.clone()) {
                         let glide = machine.glide(self.run, efforts, places, samples, step);
                         S::run(Plain { law, state, glide })
                     } else {
@@ -346,8 +381,8 @@ impl<S: Scalar> Running<S> {
     }
 }
 
-/// All effort but friction on a bare machine.
-struct Applied<'a, S: Scalar, A> {
+/// All effort but friction on a bare machine; on another that is unchanged, that of the drive and the load.
+struct Applied<'a, S: Scalar, A, const BARE: bool> {
     machine: &'a Machine<S>,
     inputs: &'a [f64],
     around: Surroundings<'a>,
@@ -355,14 +390,25 @@ struct Applied<'a, S: Scalar, A> {
     ahead: &'a Ahead,
 }
 
-impl<S: Scalar, A: Fn(usize) -> S> Efforts<S> for Applied<'_, S, A> {
+impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, S, A, BARE> {
+    const HELD: bool = BARE;
+
+    #[inline(always)]
+    fn beside(&self, run: &Run<S>, displacement: S, velocity: S, span: S) -> S {
+        self.machine.beside(run, displacement, velocity, span)
+    }
+
     #[inline(always)]
     fn at(&self, sample: usize) -> S {
         if !S::CARRIES {
             return S::constant(self.ahead.at(sample));
         }
         let load = (self.added)(sample) + self.around.load.at(sample);
-        self.machine.bare_effort(self.inputs[sample], load)
+        if BARE {
+            self.machine.bare_effort(self.inputs[sample], load)
+        } else {
+            self.machine.driven_directly(self.inputs[sample], load)
+        }
     }
 
     #[inline(always)]

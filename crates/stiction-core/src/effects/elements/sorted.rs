@@ -30,6 +30,7 @@ pub struct Effects<S: Scalar> {
     relaxations: Vec<Relaxation<S>>,
     second_masses: Vec<SecondMass<S>>,
     remembers: bool,
+    damps: bool,
     /// Levels and effort without any effect: 1, 1 and 0, seeded where derivatives by them are wanted.
     unit: (S, S, S),
 }
@@ -52,6 +53,7 @@ impl<S: Scalar> Effects<S> {
             relaxations: Vec::new(),
             second_masses: Vec::new(),
             remembers: false,
+            damps: false,
             unit: (S::constant(1.0), S::constant(1.0), S::constant(0.0)),
         };
         for effect in effects {
@@ -80,6 +82,7 @@ impl<S: Scalar> Effects<S> {
                 }
             }
             sorted.remembers |= effect.remembers();
+            sorted.damps |= with_effect!(&effect, |e| e.damping(1.0)) != 0.0;
             let memory = with_effect!(&effect, |e| e.fresh());
             sorted.kept.push(Kept { effect, memory });
         }
@@ -222,6 +225,14 @@ impl<S: Scalar> Effects<S> {
         self.inputs.is_empty() && !self.adds_efforts() && !self.changes_levels()
     }
 
+    /// Whether effects do nothing but add efforts that go with the position, or misread it.
+    pub fn only_push(&self) -> bool {
+        let kept = self.delay.is_none() && self.slowness.is_none() && self.lag.is_none();
+        let (friction, viscous, effort) = self.unit;
+        let seeded = [friction, viscous, effort].iter().any(|seed| seed.derivative_is_nonzero());
+        kept && self.inputs.is_empty() && !self.remembers && !self.strains() && !seeded
+    }
+
     /// What the input becomes.
     #[inline]
     pub fn input(&self, input: S, at: &Situation<S>) -> S {
@@ -285,6 +296,13 @@ impl<S: Scalar> Effects<S> {
     /// Sum of the stiffnesses that effects add to a contact with this friction of slow sliding.
     pub fn stiffness(&self, sliding: f64) -> f64 {
         self.kept.iter().map(|kept| with_effect!(&kept.effect, |e| e.stiffness(sliding))).sum()
+    }
+
+    /// Whether any effect damps, or changes what friction there is: then steps may have to be finer than
+    /// a contact at level 1 needs them.
+    #[inline]
+    pub fn strains(&self) -> bool {
+        self.damps || self.changes_levels()
     }
 
     /// Sum of the dampings that effects add at this velocity.

@@ -63,7 +63,8 @@ impl<S: Scalar> Coulomb<S> {
             } else {
                 (S::constant(0.0), free, freely, there)
             };
-            let arrived = verlet.unbraked(velocity, net + effort, share) - braking * undamped;
+            let effort_then = glide.there(effort, displacement, || predicted);
+            let arrived = verlet.unbraked(velocity, net + effort_then, share) - braking * undamped;
             if mode * arrived.re() <= 0.0 {
                 break;
             }

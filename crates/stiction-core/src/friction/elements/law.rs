@@ -90,9 +90,14 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn steepest_fall(&self) -> f64 {
         0.0
     }
-    /// Fastest rate of the internal variables at this state (reference integrator).
-    fn fastest_rate(&self, _state: &Self::State) -> f64 {
+    /// Fastest rate at which internal variables decay at this state: an explicit step of the reference
+    /// integrator that is longer runs away.
+    fn decay_rate(&self, _state: &Self::State) -> f64 {
         0.0
+    }
+    /// Fastest rate of the internal variables at this state, events counted (reference integrator).
+    fn fastest_rate(&self, state: &Self::State) -> f64 {
+        self.decay_rate(state)
     }
 
     /// Friction at the present state.

@@ -68,6 +68,12 @@ impl<S: Scalar> HsiehPan<S> {
         (spring, self.plastic.hardening_rate(hardening, spring))
     }
 
+    /// Force at which it breaks away however it is loaded.
+    fn strongest(&self) -> S {
+        let p = &self.parameters;
+        if p.coulomb.re() > p.breakaway.re() { p.coulomb } else { p.breakaway }
+    }
+
     /// Whether the hook goes on whatever the slope of the spring. A force at its break-away level
     /// cannot stick; with the damper on the spring the series cannot stop short: it catches at rest.
     #[inline(always)]
@@ -234,7 +240,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         steepest(excess, p.stribeck_velocity.re(), p.stribeck_exponent.re())
     }
 
-    fn fastest_rate(&self, state: &HsiehPanState<S>) -> f64 {
+    fn decay_rate(&self, state: &HsiehPanState<S>) -> f64 {
         let force = state.series.re().abs();
         if force == 0.0 {
             return self.plastic.rate.re();
@@ -473,7 +479,12 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         }
         let [plastic, hardening, filtered] = *internal;
         let walk = state.spring.walk(&self.curve, motion.displacement - (plastic - state.plastic));
-        let (series, creep) = self.series_force(walk.end.force, hardening, motion.velocity);
+        let (series, mut creep) = self.series_force(walk.end.force, hardening, motion.velocity);
+        // An attempt may go on past break-away, where creep would outrun the displacement and hide it.
+        let most = self.strongest();
+        if !self.damper_on_spring && series.re().abs() > most.re() {
+            creep = self.plastic.hardening_rate(hardening, most);
+        }
         let extra =
             if self.damper_on_spring { zero } else { self.parameters.damping * motion.velocity };
         let lag = (series - filtered) / self.parameters.loading_time;

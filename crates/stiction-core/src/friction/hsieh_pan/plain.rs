@@ -107,7 +107,9 @@ impl<S: Scalar> HsiehPan<S> {
                 displacement,
                 &pacing,
             );
-            let unbraked = verlet.unbraked(velocity, push + effort, share);
+            let predicted = || verlet.predicted(velocity, push - damping * velocity);
+            let effort_then = glide.there(effort, displacement, predicted);
+            let unbraked = verlet.unbraked(velocity, push + effort_then, share);
             let plain = creep.and_then(|creep| Some((creep, here.onward(&branch, creep.left)?)));
             let arrived;
             if let Some((creep, there)) = plain {
@@ -196,7 +198,8 @@ impl<S: Scalar> HsiehPan<S> {
                 let share = verlet.share(damping);
                 (share, verlet.braking(share), force - damping * predicted)
             };
-            let arrived = verlet.unbraked(velocity, net + effort, share) - braking * undamped;
+            let effort_then = glide.there(effort, displacement, || predicted);
+            let arrived = verlet.unbraked(velocity, net + effort_then, share) - braking * undamped;
             // As `margin` says; what it has to solve for is not plain.
             let held = (least - slide.pull).re() > 0.0 || greatest - force.re().abs() <= 0.0;
             if !held || mode * arrived.re() <= 0.0 {

@@ -23,7 +23,9 @@ impl<S: Scalar> MaxwellSlip<S> {
         while let Some(effort) = glide.next() {
             let push = effort - here.force;
             let displacement = verlet.displacement(velocity, push);
-            let unbraked = verlet.unbraked(velocity, push + effort, share);
+            let predicted = || verlet.predicted(velocity, push - damping * velocity);
+            let effort_then = glide.there(effort, displacement, predicted);
+            let unbraked = verlet.unbraked(velocity, push + effort_then, share);
             if let Some(there) = curve.along(&course, &here, displacement) {
                 here = there;
             } else {
