@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from .plant import Plant
     from .recording import Recording
 
-__all__ = ["ShootingForm"]
+__all__ = ["MOST_OVERLAP", "ShootingForm"]
 
-ROWS_PER_HORIZON: Final = 4
-"""Windows that overlap at any moment: the kernel is a cubic spline with knots a quarter of its
+MOST_OVERLAP: Final = 4.0
+"""Windows that overlap at any moment, at most: the kernel is a cubic spline with knots a quarter of its
 support apart, and rows closer than those tell little more."""
 RESPONSE_PARTS: Final = 16
 """Parts of a window whose efforts are told apart for screening: four to a knot of the kernel."""
@@ -64,6 +64,8 @@ class ShootingForm(WeakForm):
         With position and input.
     horizon : float
         Length of a window, which is the support of the kernel, s.
+    overlap : float, optional
+        Windows at any moment.
 
     Attributes
     ----------
@@ -82,9 +84,11 @@ class ShootingForm(WeakForm):
 
     simulated: ClassVar[bool] = True
 
-    def __init__(self, plant: Plant, recording: Recording, *, horizon: float) -> None:
+    def __init__(
+        self, plant: Plant, recording: Recording, *, horizon: float, overlap: float = MOST_OVERLAP
+    ) -> None:
         self._leader: Plant | None = None
-        super().__init__(plant, recording, support=horizon, every=horizon / ROWS_PER_HORIZON)
+        super().__init__(plant, recording, support=horizon, every=horizon / overlap)
         self.go_by(plant)
         self.white = float(np.sqrt(max(self.noise**2 - self.count**2 / 12.0, 0.0)))
         least = MOVES_TIMES * max(self.count, 4.0 * self.white)

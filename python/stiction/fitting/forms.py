@@ -15,7 +15,7 @@ from ..parameter import Parameter
 from ..plant import Plant
 from ..recording import Recording
 from ..recording.session_clock import ages_of, starts_of
-from ..shooting import ShootingForm
+from ..shooting import MOST_OVERLAP, ShootingForm
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .readings import made_by_readings
@@ -56,6 +56,9 @@ BEYOND_SHOWN: Final = 2.0
 RINGS: Final = 3.0
 """Periods of its ring on the pre-sliding stiffness that a window holds: a start that is wrong by a
 count sets a machine ringing, and of a ring three times as fast as itself the kernel leaves 1 %."""
+MOST_WINDOWS: Final = 1_200
+"""Windows of a session up to which they overlap as far as their kernel tells anything: those of a
+minute and a half. Longer sessions tell more than enough, and each window costs a simulation."""
 LEAST_WINDOWS: Final = 4.0
 """Windows that the shortest recording must hold."""
 MUCH_LEFT: Final = 0.1
@@ -123,9 +126,18 @@ def forms_of(
             return LoopForm(plant, recording)
         if through.horizon is None:
             return WeakForm(plant, recording, support=through.support, every=EVERY_S)
-        return ShootingForm(plant, recording, horizon=through.horizon)
+        return ShootingForm(plant, recording, horizon=through.horizon, overlap=overlap)
 
+    overlap = _overlap(recordings, through.horizon)
     return each(form, recordings)
+
+
+def _overlap(recordings: Sequence[Recording], horizon: float | None) -> float:
+    """Windows of a session at any moment: no sample is left out, and few are simulated often."""
+    if horizon is None:
+        return MOST_OVERLAP
+    alone = sum(recording.duration for recording in recordings) / horizon
+    return float(np.clip(MOST_WINDOWS / alone, 1.0, MOST_OVERLAP))
 
 
 def as_session(
