@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from . import given, plant_file
+from . import given, plant_file, steady
 from .atomic_files import write_text
 from .catalogue import effects
 from .drive import check_servo, gain_name, servo_numbers
@@ -22,8 +22,11 @@ from .motor import Motor
 from .parameter import Parameter, number
 from .recording.units import Motion
 from .stated import Effect, Friction, check_parameters
-from .trajectory import Trajectory
+from .trajectory import FloatArray, Trajectory
 from .wording import listed
+
+if TYPE_CHECKING:
+    from .export import Export
 
 __all__ = ["Plant"]
 
@@ -305,7 +308,11 @@ class Plant:
             for name, value in settings.items()
             if name.startswith("payload")
         }
-        servo = {name: value for name, value in settings.items() if name not in payload}
+        servo = {
+            name: number(value, f"{self.source}: [drive] {name}")
+            for name, value in settings.items()
+            if name not in payload
+        }
         if servo and not self.servo:
             raise InputError(
                 f"{self.source}: {listed(servo)} is set for a recording, and only a servo has it; "
@@ -499,6 +506,72 @@ class Plant:
         return motor.simulate(
             input, dt, load=load, temperature=temperature, enabled=enabled, outputs=outputs
         )
+
+    def friction_curve(self, speeds: npt.ArrayLike) -> FloatArray:
+        """Effort that friction takes in steady motion, with the effects that go with the speed.
+
+        Parameters
+        ----------
+        speeds : array_like
+            rad/s or m/s, of either sign.
+
+        Returns
+        -------
+        numpy.ndarray, of the same shape
+            N·m or N, positive where it resists motion along +x; 0 at rest. Of a contact that has
+            slid far enough for its friction to be steady, as it is when the machine was just
+            switched on and nothing is known of its temperature.
+
+        Raises
+        ------
+        InputError
+            Speeds that are no finite numbers.
+        """
+        return steady.friction_curve(self, speeds)
+
+    def position_effort(self, positions: npt.ArrayLike) -> FloatArray:
+        """Effort that the machine needs beside friction to stand at some places.
+
+        Parameters
+        ----------
+        positions : array_like
+            rad or m.
+
+        Returns
+        -------
+        numpy.ndarray, of the same shape
+            N·m or N: what bears gravity and added efforts (cogging, an offset).
+
+        Raises
+        ------
+        InputError
+            Positions that are no finite numbers.
+        """
+        return steady.position_effort(self, positions)
+
+    def export(self, to: str, *, speed: float = 10.0) -> Export:
+        """The plant as another tool takes it.
+
+        Parameters
+        ----------
+        to : str
+            Name of a target: `stiction export --list`.
+        speed : float
+            Greatest speed at which friction matters, rad/s or m/s.
+
+        Returns
+        -------
+        Export
+            Files to ``save``, and what the target cannot hold.
+
+        Raises
+        ------
+        InputError
+            No such target, a speed that is not above 0, a plant that lacks what the target needs.
+        """
+        from .export.registry import export
+
+        return export(self, to, speed=speed)
 
     def _check(self) -> None:
         """Refuse what the catalogue refuses, naming the file."""

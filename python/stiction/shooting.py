@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 __all__ = ["MOST_OVERLAP", "ShootingForm"]
 
 MOST_OVERLAP: Final = 4.0
-"""Windows that overlap at any moment, at most: the kernel is a cubic spline with knots a quarter of its
-support apart, and rows closer than those tell little more."""
+"""Windows that overlap at any moment, at most: the kernel is a cubic spline with knots a quarter of
+its support apart, and rows closer than those tell little more."""
 RESPONSE_PARTS: Final = 16
 """Parts of a window whose efforts are told apart for screening: four to a knot of the kernel."""
 READ_AGAIN: Final = 11

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 
+from stiction.export import targets
 from stiction.recording import ROLES, SETTINGS
 
 from .draw import EFFECTS, LAWS, Draw
@@ -136,6 +137,7 @@ BY_NAME: dict[str, Drawer] = {
     "keep": lambda d: d.text(("every", "last", "rms", "extremes")),
     "integrator": lambda d: d.text(("fast", "reference")),
     "law": lambda d: d.text(sorted(LAWS)),
+    "to": lambda d: d.text(sorted(targets())),
     "laws": lambda d: d.texts(sorted(LAWS), 1),
     "without": lambda d: d.texts(sorted(EFFECTS)),
     "surrogates": lambda d: d.whole(4, 6),

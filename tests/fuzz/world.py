@@ -112,6 +112,8 @@ PRODUCERS: dict[str, Callable[[], Any]] = {
     "Comparison": lambda: stiction.compare.compare(["coulomb"], steps=1000, draws=1),
     "Plan": lambda: stiction.plan.plan(plant(), only=["turns"]),
     "Signal": lambda: stiction.plan.plan(plant(), only=["turns"]).signals[0],
+    "Export": lambda: plant().export("table"),
+    "Target": lambda: stiction.export.targets()["table"],
     "Recorded": lambda: stiction.paper.Recorded(1e-3, wave(300), 1e-3 * wave(300, 1)),
     "Estimate": lambda: stiction.paper.estimate(stiction.paper.experiment_1()),
     "Measured": lambda: stiction.compare.Measured(True, {"a": 1.0}),

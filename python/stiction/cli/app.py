@@ -9,6 +9,7 @@ from .catalogue import effects, laws
 from .compare import compare
 from .demo import demo
 from .diagnose import diagnose
+from .export import export
 from .fit import fit
 from .init import init
 from .paper import paper
@@ -26,6 +27,6 @@ def build() -> cyclopts.App:
         version=f"stiction {__version__}",
         help_format="plaintext",
     )
-    for verb in (init, demo, simulate, fit, diagnose, plan, laws, effects, compare, paper):
+    for verb in (init, demo, simulate, fit, diagnose, plan, export, laws, effects, compare, paper):
         app.command(verb)
     return app

@@ -1,0 +1,86 @@
+"""The two curves of a plant as points, with lines between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from .. import steady
+from ..trajectory import FloatArray
+from .joint import joint_of, speeds_up_to, told
+from .points import few_points, lines_off
+
+if TYPE_CHECKING:
+    from ..plant import Plant
+
+__all__ = ["Curves"]
+
+PLACES: Final = 241
+"""Of a turn, from which points are chosen."""
+LOOKED_AT: Final = 3601
+"""Of a turn, at which lines are compared."""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Effort over speed, and over the position of a turn.
+
+    Attributes
+    ----------
+    speeds, friction : numpy.ndarray, shape (n,)
+    places, efforts : numpy.ndarray, shape (m,)
+        One place alone where the same effort is needed everywhere.
+    held, lost : tuple of str
+    numbers : dict of str to float
+        How far lines are off.
+    """
+
+    speeds: FloatArray
+    friction: FloatArray
+    places: FloatArray
+    efforts: FloatArray
+    held: tuple[str, ...]
+    lost: tuple[str, ...]
+    numbers: dict[str, float]
+
+    @classmethod
+    def of(cls, plant: Plant, speed: float, most: int) -> Curves:
+        """Of a plant up to a greatest speed, in so many points each."""
+        speeds = speeds_up_to(speed)
+        curve = steady.friction_curve(plant, speeds)
+        # Every other one, and both ends of both directions.
+        middle = len(speeds) // 2
+        own = np.unique([*range(0, len(speeds), 2), middle - 1, middle, len(speeds) - 1])
+        chosen, _ = few_points(speeds[own], curve[own], most)
+        x, y = speeds[own][chosen], curve[own][chosen]
+        numbers = {"speed_off": lines_off(x, y, speeds, curve)}
+        held = ["friction over speed"]
+        places, efforts = np.zeros(1), np.zeros(1)
+        if plant.motion == "rotary":
+            turn = np.linspace(0.0, 2.0 * np.pi, PLACES)
+            needed = steady.position_effort(plant, turn)
+            if np.any(needed):
+                at, _ = few_points(turn, needed, most)
+                places, efforts = turn[at], needed[at]
+                dense = np.linspace(0.0, 2.0 * np.pi, LOOKED_AT)
+                whole = steady.position_effort(plant, dense)
+                numbers["position_off"] = lines_off(places, efforts, dense, whole)
+                held.append("effort over the position, a turn of it")
+        else:
+            efforts = steady.position_effort(plant, [0.0])
+        return cls(x, y, places, efforts, tuple(held), cls._lost(plant, speed, numbers), numbers)
+
+    @staticmethod
+    def _lost(plant: Plant, speed: float, numbers: dict[str, float]) -> tuple[str, ...]:
+        every = told(plant, joint_of(plant, speed), position=True)
+        # What tells of the curve over the speed is held here.
+        lost = [each for each in every if not each.startswith(("the curve", "break", "friction"))]
+        what = {"speed_off": "friction over speed", "position_off": "effort over position"}
+        lost += [
+            f"lines between points of {what[name]} are off by {off:.3g} {plant.effort_unit} at most"
+            for name, off in numbers.items()
+            if off > 0.0
+        ]
+        return tuple(lost)

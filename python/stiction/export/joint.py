@@ -1,0 +1,133 @@
+"""A plant as the joint that most simulators have: armature, damping and dry friction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from .. import steady
+from ..json_text import json_of
+from ..trajectory import FloatArray
+
+if TYPE_CHECKING:
+    from ..plant import Plant
+    from ..stated import Effect
+
+__all__ = ["Joint", "joint_of", "sidecar", "speeds_up_to", "told"]
+
+SPEEDS: Final = 200
+PROBED: Final = 10.0
+"""Greatest speed for asking whether an effect changes a joint at all, rad/s or m/s."""
+SLOWEST: Final = 1e-3
+"""Share of the greatest speed from which on a curve is looked at."""
+WORTH_SAYING: Final = 0.01
+"""Share of the dry friction by which something may be off and nobody needs to be told."""
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Dry friction and damping that are nearest to a friction curve.
+
+    Attributes
+    ----------
+    friction : float
+        N·m or N.
+    damping : float
+        N·m·s/rad or N·s/m.
+    off : float
+        Greatest distance from the curve, N·m or N.
+    at : float
+        Speed of that, rad/s or m/s.
+    static : float
+        Friction of the slowest slide, N·m or N.
+    one_sided : float
+        By how much friction differs between the directions, at most, N·m or N.
+    """
+
+    friction: float
+    damping: float
+    off: float
+    at: float
+    static: float
+    one_sided: float
+
+
+def speeds_up_to(speed: float) -> FloatArray:
+    """Speeds of both directions up to a greatest one, rising, without 0."""
+    one_way = speed * np.geomspace(SLOWEST, 1.0, SPEEDS)
+    return np.concatenate([-one_way[::-1], one_way])
+
+
+def joint_of(plant: Plant, speed: float) -> Joint:
+    """Least squares over the curve, all speeds alike, neither number below 0."""
+    one_way = np.linspace(speed * SLOWEST, speed, SPEEDS)
+    forth = steady.friction_curve(plant, one_way)
+    back = -steady.friction_curve(plant, -one_way)
+    mean = 0.5 * (forth + back)
+    columns = np.column_stack([np.ones(SPEEDS), one_way])
+    friction, damping = np.linalg.lstsq(columns, mean, rcond=None)[0]
+    if damping < 0.0:
+        friction, damping = float(np.mean(mean)), 0.0
+    if friction < 0.0:
+        friction, damping = 0.0, max(float(one_way @ mean / (one_way @ one_way)), 0.0)
+    off = np.abs(mean - friction - damping * one_way)
+    worst = int(np.argmax(off))
+    return Joint(
+        float(friction),
+        float(damping),
+        float(off[worst]),
+        float(one_way[worst]),
+        steady.static_level(plant),
+        float(np.max(np.abs(forth - back))),
+    )
+
+
+def told(plant: Plant, joint: Joint, *, position: bool = False) -> tuple[str, ...]:
+    """What a joint of these numbers cannot hold, a sentence each.
+
+    ``position`` says whether the target has efforts over the position beside it.
+    """
+    unit, lost = plant.effort_unit, []
+    per = f"{plant.position_unit}/s"
+    worth = WORTH_SAYING * max(joint.friction, 1e-300)
+    if joint.off > worth:
+        lost.append(
+            f"the curve of friction over speed is off by {joint.off:.3g} {unit} at most, at "
+            f"{joint.at:.3g} {per}"
+        )
+    if joint.static - joint.friction > worth:
+        lost.append(
+            f"break-away: {joint.static:.3g} {unit} at the slowest speed, where it has "
+            f"{joint.friction:.3g} {unit}"
+        )
+    if joint.one_sided > worth:
+        lost.append(f"friction of the two directions differs by {joint.one_sided:.3g} {unit}")
+    if plant.friction.springy:
+        lost.append(f"pre-sliding: a contact of {plant.friction.law} yields before it slides")
+    for effect in plant.effects:
+        if _held(plant, effect, position=position):
+            continue
+        lost.append(f"{effect.name}: {effect.record.summary}")
+    limit = float(plant.drive.get("limit", np.inf))
+    if np.isfinite(limit) and not position:
+        lost.append(f"the limit of the drive: {limit:.6g} of its input")
+    return tuple(lost)
+
+
+def _held(plant: Plant, effect: Effect, *, position: bool) -> bool:
+    """Whether an effect is in the curves of a target, or else in the numbers of its joint."""
+    if position:
+        return steady.in_curve(plant, effect) or steady.in_position(plant, effect)
+    without = replace(plant, effects=tuple(e for e in plant.effects if e.name != effect.name))
+    one, other = (joint_of(each, PROBED) for each in (plant, without))
+    return (one.friction, one.damping) != (other.friction, other.damping)
+
+
+def sidecar(plant: Plant, numbers: dict[str, float], lost: tuple[str, ...]) -> str:
+    """The whole plant beside what the target holds of it, as JSON."""
+    return (
+        json_of({"schema": 1, "plant": plant.to_dict(), "numbers": numbers, "lost": list(lost)})
+        + "\n"
+    )

@@ -1,0 +1,1 @@
+"""One module a target: ``SUMMARY``, and ``write(plant, speed)`` that returns an ``Export``."""

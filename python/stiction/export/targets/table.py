@@ -1,0 +1,49 @@
+"""Tables for drives and controllers: effort over speed, effort over position, kS kV kA."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from ...json_text import json_of
+from ..curves import Curves
+from ..joint import joint_of
+from ..made import Export
+
+if TYPE_CHECKING:
+    from ...plant import Plant
+
+SUMMARY = "effort over speed and over position in at most 20 points (CSV, JSON), and kS kV kA"
+MOST: Final = 20
+"""Points: what drives and controllers have room for."""
+
+
+def write(plant: Plant, speed: float) -> Export:
+    """Points of the curves; lines between them are off by as little as they can be."""
+    curves, joint = Curves.of(plant, speed, MOST), joint_of(plant, speed)
+    gains = {
+        "kS": joint.friction / plant.gain,
+        "kV": joint.damping / plant.gain,
+        "kA": (0.0 if plant.prescribed_motion else plant.inertia) / plant.gain,
+    }
+    table = {
+        "schema": 1,
+        "speed": {"velocity": curves.speeds.tolist(), "effort": curves.friction.tolist()},
+        "position": {"position": curves.places.tolist(), "effort": curves.efforts.tolist()},
+        "gains": gains,
+        # People read this file, and not what was printed.
+        "lost": list(curves.lost),
+    }
+    files = {
+        "speed.csv": _csv(("velocity", "effort"), curves.speeds, curves.friction),
+        "position.csv": _csv(("position", "effort"), curves.places, curves.efforts),
+        "table.json": json_of(table) + "\n",
+    }
+    held = (*curves.held, "kS, kV and kA, in units of the input")
+    return Export("table", files, held, curves.lost, curves.numbers | gains)
+
+
+def _csv(names: tuple[str, str], first: np.ndarray, second: np.ndarray) -> str:
+    rows = (f"{x!r},{y!r}" for x, y in zip(first.tolist(), second.tolist(), strict=True))
+    return "\n".join([",".join(names), *rows]) + "\n"

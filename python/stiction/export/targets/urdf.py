@@ -1,0 +1,37 @@
+"""URDF: the ``<dynamics>`` of a joint, and the whole plant beside it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..joint import joint_of, sidecar, told
+from ..made import Export
+
+if TYPE_CHECKING:
+    from ...plant import Plant
+
+SUMMARY = "<dynamics damping friction> of a joint, and a JSON file with the rest"
+
+
+def write(plant: Plant, speed: float) -> Export:
+    """A robot of one joint; its ``<dynamics>`` goes into the joint that people have."""
+    joint = joint_of(plant, speed)
+    lost = (*told(plant, joint), "inertia of the rotor: a URDF joint has none")
+    kind = "continuous" if plant.motion == "rotary" else "prismatic"
+    limit = (
+        ""
+        if kind == "continuous"
+        else '    <limit lower="-1" upper="1" effort="0" velocity="0"/>\n'
+    )
+    text = (
+        '<?xml version="1.0"?>\n<robot name="plant">\n  <link name="base"/>\n'
+        f'  <link name="moved"/>\n  <joint name="joint" type="{kind}">\n'
+        '    <parent link="base"/>\n    <child link="moved"/>\n    <axis xyz="0 0 1"/>\n'
+        f"{limit}"
+        f'    <dynamics damping="{joint.damping!r}" friction="{joint.friction!r}"/>\n'
+        "  </joint>\n</robot>\n"
+    )
+    numbers = {"damping": joint.damping, "friction": joint.friction}
+    held = ("Coulomb and viscous friction",)
+    files = {"joint.urdf": text, "joint.json": sidecar(plant, numbers, lost)}
+    return Export("urdf", files, held, lost, numbers)

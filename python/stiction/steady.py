@@ -1,0 +1,128 @@
+"""What a plant needs in steady motion: over the speed, and over where it stands."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from . import given
+from ._native import Motion
+from .errors import InputError
+from .motor import Motor
+from .trajectory import FloatArray
+
+if TYPE_CHECKING:
+    from .plant import Plant
+    from .stated import Effect
+
+__all__ = ["friction_curve", "in_curve", "in_position", "position_effort", "static_level"]
+
+AT_CONTACT: Final = frozenset({"friction level", "added effort"})
+"""Hooks of effects that act where friction acts."""
+PASSING: Final = frozenset({"slow", "angle", "cogging", "temperature"})
+"""Families that go with clock, path, place or warmth: a curve over speed has none of them."""
+LENGTHS: Final = 40.0
+"""Way before a slide counts as steady, in lengths of the law."""
+RIGID: Final = 1e-6
+"""Length of a law that has none, rad or m."""
+SAMPLES: Final = 400
+STAYS: Final = 4
+"""Samples at each place: the velocity of a motion is that of the samples around."""
+SLOW: Final = 1e-3
+"""Share of the speed scale of a law at which it slides as slowly as counts."""
+USUAL_SPEED: Final = 0.1
+"""The same scale where a law states none, rad/s or m/s."""
+RESTING_S: Final = 1.0
+"""How long it stands at a place, s."""
+
+
+def friction_curve(plant: Plant, speeds: npt.ArrayLike) -> FloatArray:
+    """Effort that friction takes in steady motion at each of some speeds; see ``Plant``."""
+    wanted = given.numbers(speeds, f"{plant.source}: speeds")
+    if not np.all(np.isfinite(wanted)):
+        raise InputError(f"{plant.source}: speeds: finite numbers are wanted, in rad/s or m/s")
+    still = replace(plant, effects=tuple(e for e in plant.effects if _acts_by_speed(e)))
+    found = [_steady(still, float(speed)) if speed else 0.0 for speed in wanted.ravel()]
+    return np.array(found).reshape(wanted.shape)
+
+
+def position_effort(plant: Plant, positions: npt.ArrayLike) -> FloatArray:
+    """Effort that a plant needs to stand at each of some positions; see ``Plant``."""
+    wanted = given.numbers(positions, f"{plant.source}: positions")
+    flat = wanted.ravel()
+    if not np.all(np.isfinite(flat)):
+        raise InputError(f"{plant.source}: positions: finite numbers are wanted, in rad or m")
+    if flat.size == 0:
+        return np.zeros(wanted.shape)
+    acting = tuple(e for e in plant.effects if _adds(e))
+    motor = _follower(replace(plant, effects=acting))
+    motor.reset(float(flat[0]), 0.0)
+    # It moves to each place in one sample, and has come to rest there two samples later.
+    places = np.append(flat[:1], np.repeat(flat, STAYS))
+    ambient = motor.follow(Motion(places, np.zeros(STAYS * flat.size), RESTING_S))[1]
+    needed: FloatArray = -ambient[2::STAYS].reshape(wanted.shape)
+    return needed
+
+
+def static_level(plant: Plant) -> float:
+    """Effort, beside what its place asks for, that a plant slides under as slowly as it can."""
+    scale = plant.friction.parameters.get("stribeck_velocity")
+    slow = SLOW * (USUAL_SPEED if scale is None else scale.value)
+    return float(np.max(np.abs(friction_curve(plant, [-slow, slow]))))
+
+
+def in_curve(plant: Plant, effect: Effect) -> bool:
+    """Whether a curve over the speed holds an effect of a plant."""
+    if not _acts_by_speed(effect):
+        return False
+    speeds = np.outer([-1.0, 1.0], np.geomspace(1e-3, 1e2, 16)).ravel()
+    without = replace(plant, effects=tuple(e for e in plant.effects if e.name != effect.name))
+    return not np.array_equal(friction_curve(plant, speeds), friction_curve(without, speeds))
+
+
+def in_position(plant: Plant, effect: Effect) -> bool:
+    """Whether an effort over the position holds an effect of a plant."""
+    alone = replace(plant, effects=(effect,), body={})
+    return _adds(effect) and bool(np.any(position_effort(alone, np.linspace(0.0, 6.0, 37))))
+
+
+def _acts_by_speed(effect: Effect) -> bool:
+    hooks, record = frozenset(effect.record.hooks), effect.record
+    return hooks <= AT_CONTACT and record.family not in PASSING
+
+
+def _length(plant: Plant) -> float:
+    """The longest way, rad or m, over which a law changes its friction."""
+    numbers = plant.friction.model().parameters
+    units = {record.name: record.unit for record in plant.friction.record.parameters}
+    own = [value for name, value in numbers.items() if units.get(name) == "rad"]
+    stiffness = numbers.get("initial_stiffness", np.inf)
+    own += [numbers.get(name, 0.0) / stiffness for name in ("coulomb", "breakaway")]
+    return max([RIGID, *(value for value in own if np.isfinite(value))])
+
+
+def _follower(plant: Plant) -> Motor:
+    """A plant that is moved, whatever moves it and however heavy it is."""
+    return replace(plant, drive={"kind": "prescribed_motion"}).follower()
+
+
+def _adds(effect: Effect) -> bool:
+    return tuple(effect.record.hooks) == ("added effort",)
+
+
+def _steady(plant: Plant, speed: float) -> float:
+    """Friction of a steady slide, less what the same place asks for at rest."""
+    travel = LENGTHS * _length(plant)
+    motor = _follower(replace(plant, body={}))
+    # Where it ends is 0: what goes with the position is the same for every speed.
+    places = np.sign(speed) * np.linspace(-travel, 0.0, SAMPLES + 1)
+    motor.reset(float(places[0]), speed)
+    duration = travel / SAMPLES / abs(speed)
+    _, ambient, found, _ = motor.follow(Motion(places, np.zeros(SAMPLES), duration))
+    rest = motor.copy()
+    rest.reset(0.0, 0.0)
+    _, at_rest, _, _ = rest.follow(Motion(np.zeros(2), np.zeros(1), RESTING_S))
+    return float(found[-1] - (ambient[-1] - at_rest[-1]))
