@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from .. import __version__
+from .. import __version__, given
 from ..best_effort import Failure, attempt
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import told as residual_told
@@ -171,10 +171,10 @@ def diagnose(
     return replace(found, seconds=time.perf_counter() - began)
 
 
-def _names(argument: str, given: Sequence[str]) -> Sequence[str]:
-    if isinstance(given, str):
-        raise InputError(f'{argument} = "{given}" is a word; give a sequence: ("{given}",)')
-    return given
+def _names(argument: str, asked: Sequence[str]) -> Sequence[str]:
+    if isinstance(asked, str):
+        raise InputError(f'{argument} = "{asked}" is a word; give a sequence: ("{asked}",)')
+    return given.names(asked, argument)
 
 
 def _session(session: Session | Sequence[Recording] | Recording) -> Session:
