@@ -37,6 +37,8 @@ FAR: Final = 100.0
 
 Act = Callable[[int, float, float], float]
 """Input of the drive, from the number of the sample, the reading and the measured velocity."""
+Ahead = Callable[[FloatArray, float], FloatArray]
+"""Input of each sample, shape (n,), from the reference, shape (n,), and the sample time."""
 
 
 @dataclass(frozen=True)
@@ -242,6 +244,7 @@ def replay(
     *,
     clock: float = 0.0,
     path: float = 0.0,
+    ahead: Ahead | None = None,
 ) -> ClosedLoop:
     """Simulate the loop of controller, drive and machine from the measured start.
 
@@ -260,6 +263,9 @@ def replay(
         never moved.
     clock, path : float, optional
         Session clock in s and path travelled in rad or m at the first row, as for ``free_run``.
+    ahead : callable, optional
+        What is added to the controller's input: of the reference, shape (n,), and the sample time,
+        the input of each sample, shape (n,). A feed-forward is one.
 
     Returns
     -------
@@ -273,6 +279,10 @@ def replay(
     """
     (recording,) = without_failures([recording])
     if plant.servo:
+        if ahead is not None:
+            raise InputError(
+                f"{plant.source}: the drive of a servo takes a goal and nothing beside it"
+            )
         return _servo(free_run(plant, recording, start, clock=clock, path=path), recording)
     source = str(recording.path) if recording.path is not None else "recording"
     controller = Controller.of(plant)
@@ -304,6 +314,8 @@ def replay(
     switched = [True] * len(time) if on is None else (held(time, stamps, on) != 0.0).tolist()
     motor = started(plant, begin["reading"], begin["velocity"], start, clock=clock, path=path)
     act = controller.acting(reference, dt, **begin, total=total)
+    if ahead is not None:
+        act = _beside(act, ahead(reference, dt), controller.limit)
     bounds = _bounds(reference, measured)
     try:
         simulated, inputs = _simulated(
@@ -355,6 +367,16 @@ def _simulated(
         if not low < x < high:
             break
     return positions, inputs
+
+
+def _beside(act: Act, added: FloatArray, limit: float) -> Act:
+    """A controller with an input added to its own, within its limit."""
+    own: list[float] = added.tolist()
+
+    def both(k: int, reading: float, speed: float) -> float:
+        return min(max(act(k, reading, speed) + own[k], -limit), limit)
+
+    return both
 
 
 def _bounds(reference: FloatArray, measured: FloatArray) -> tuple[float, float]:

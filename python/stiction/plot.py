@@ -44,6 +44,7 @@ __all__ = [
     "save",
     "save_or_say",
     "thinned",
+    "tracking",
     "trajectory",
 ]
 
@@ -228,6 +229,32 @@ def overlay(
     Figure
     """
     return _compared(time, measured, simulated, ("measured", "simulated"), unit, title, quantity)
+
+
+def tracking(
+    time: npt.ArrayLike,
+    without: npt.ArrayLike,
+    compensated: npt.ArrayLike,
+    *,
+    unit: str,
+    title: str = "",
+) -> Figure:
+    """Tracking error of a loop over time, without a feed-forward and with it.
+
+    Parameters
+    ----------
+    time, without, compensated : array_like, shape (n,)
+        s, and twice the same unit.
+    unit : str
+        Unit of the two.
+    title : str
+
+    Returns
+    -------
+    Figure
+    """
+    names = ("without feed-forward", "with feed-forward")
+    return _compared(time, without, compensated, names, unit, title, "tracking error")
 
 
 def residual(

@@ -7,6 +7,7 @@ import cyclopts
 from .. import __version__
 from .catalogue import effects, laws
 from .compare import compare
+from .compensate import compensate
 from .demo import demo
 from .diagnose import diagnose
 from .export import export
@@ -27,6 +28,7 @@ def build() -> cyclopts.App:
         version=f"stiction {__version__}",
         help_format="plaintext",
     )
-    for verb in (init, demo, simulate, fit, diagnose, plan, export, laws, effects, compare, paper):
+    verbs = (init, demo, simulate, fit, diagnose, plan, export, compensate)
+    for verb in (*verbs, laws, effects, compare, paper):
         app.command(verb)
     return app

@@ -81,7 +81,7 @@ def simulate(
         stems = [where / stem for stem in stems_of(recordings)]
         with written(where):
             phase(_logger, "simulating")
-            known = [_begin(told, name) for name in names_of(recordings)]
+            known = [begin_for(told, name) for name in names_of(recordings)]
             each_with_its_begin = list(zip(recordings, stems, known, strict=True))
             results = [
                 _named(machine, each, stem, support, begin)
@@ -153,7 +153,7 @@ def _flat(name: PurePath) -> str:
     return name.as_posix().lstrip("/").replace("/", "-").replace(":", "")
 
 
-def _begin(told: Mapping[str, Begin], name: str) -> Begin | None:
+def begin_for(told: Mapping[str, Begin], name: str) -> Begin | None:
     """Where a recording begins: of its name, or of the only one of its file's name."""
     if name in told:
         return told[name]

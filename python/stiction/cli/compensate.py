@@ -1,0 +1,95 @@
+"""``stiction compensate``: what a feed-forward of friction would be worth."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from cyclopts import Parameter
+
+from .. import plot
+from .. import session as sessions
+from ..atomic_files import write_text
+from ..begins import load_begins
+from ..compensation import Compensation
+from ..compensation import compensate as simulated
+from ..errors import InputError
+from ..json_text import json_of
+from ..plant import Plant
+from ..progress import phase
+from ..recording.names import names_of
+from .answer import answer, folder, written
+from .progress import progress
+from .simulate import begin_for, stems_of
+
+__all__ = ["compensate"]
+
+_logger = logging.getLogger(__name__)
+
+
+def compensate(
+    plant: Path,
+    *,
+    session: Path,
+    out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("stiction-compensation"),
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Simulate the machine under its controller with a feed-forward of friction, and without.
+
+    The plant, as a diagnosis extended it, follows the recorded references. A feed-forward adds what
+    friction and place will take along the reference to the input; half of it, the whole and twice
+    as much are simulated. `stiction export --to c` or `--to table` write it for a controller.
+
+    Parameters
+    ----------
+    plant
+        Plant file with a [controller].
+    session
+        Session file; recordings that have a reference are followed.
+    out
+        Folder for compensation.json and figures.
+    json
+        Print JSON.
+    """
+    machine = Plant.load(plant)
+    told = load_begins(plant, machine)
+    with progress():
+        every = list(sessions.load(session, plant=machine))
+        chosen = [each for each in every if "reference" in each.channels]
+        if not chosen:
+            raise InputError(
+                f"{session}: no recording has a reference that the controller could follow; name "
+                "its column under [columns] as reference"
+            )
+        where = folder(out)
+        phase(_logger, "simulating the loop")
+        begins = [begin_for(told, name) for name in names_of(chosen)]
+        with np.errstate(all="ignore"):
+            found = simulated(machine, chosen, begins)
+        with written(where):
+            lines = _saved(found, where, stems_of(chosen))
+    left = len(every) - len(chosen)
+    if left:
+        lines.append(f"{left} of {len(every)} recordings have no reference and were left out")
+    answer("\n".join([found.message, *_table(found), *lines]), found.to_dict(), as_json=json)
+
+
+def _saved(found: Compensation, where: Path, stems: list[str]) -> list[str]:
+    """Writes the numbers before anything is drawn; what could not be drawn, in words."""
+    write_text(where / "compensation.json", json_of(found.to_dict()) + "\n")
+    said = [
+        plot.save_or_say(f"figure of {each.name}", each.plot, where / f"{stem}-tracking.svg")
+        for each, stem in zip(found.recordings, stems, strict=True)
+    ]
+    return [*filter(None, said), f"files: {where}"]
+
+
+def _table(found: Compensation) -> list[str]:
+    unit = found.recordings[0].unit
+    rows = [
+        f"{share:>13g}  {'ran away' if not np.isfinite(error) else f'{error:.4g} {unit}'}"
+        for share, error in zip(found.shares, found.rms, strict=True)
+    ]
+    return ["", "feed-forward × tracking error, rms", *rows, ""]
