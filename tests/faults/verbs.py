@@ -30,6 +30,7 @@ VERBS: dict[str, tuple[str, ...]] = {
     "diagnose": ("diagnose", "session.toml", "--surrogates", "4"),
     "plan": ("plan", "plant.toml", "--only", "turns"),
     "init": ("init", "run.csv"),
+    "export": ("export", "plant.toml", "--to", "table", "--to", "urdf", "--to", "c"),
     "compare": ("compare", "coulomb", "--steps", "1000", "--draws", "0"),
     "laws": ("laws",),
     "effects": ("effects",),
