@@ -251,7 +251,7 @@ class Plant:
         """What the payload adds to inertia (mass) and to the amplitude of the pendulum torque."""
         mass, lever = self._payload
         own = 0.0 if self.motion == "linear" else mass * lever * GRAVITY
-        return mass * lever**2, own
+        return mass * lever * lever, own
 
     @property
     def _payload(self) -> tuple[float, float]:

@@ -30,14 +30,17 @@ def answer(text: str, data: Any, *, as_json: bool) -> None:
 def told_anyway(text: str, data: Any, *, as_json: bool) -> Iterator[None]:
     """Where the files of an answer cannot be written the answer is printed all the same.
 
+    So it is where Ctrl-C was pressed while they were written.
+
     Raises
     ------
     InputError
         A file cannot be written.
+    KeyboardInterrupt
     """
     try:
         yield
-    except InputError:
+    except (InputError, KeyboardInterrupt):
         answer(text, data, as_json=as_json)
         raise
 

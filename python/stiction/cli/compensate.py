@@ -20,7 +20,7 @@ from ..json_text import json_of
 from ..plant import Plant
 from ..progress import phase
 from ..recording.names import names_of
-from .answer import answer, folder, written
+from .answer import answer, folder, told_anyway, written
 from .progress import progress
 from .simulate import begin_for, stems_of
 
@@ -68,12 +68,13 @@ def compensate(
         begins = [begin_for(told, name) for name in names_of(chosen)]
         with np.errstate(all="ignore"):
             found = simulated(machine, chosen, begins)
-        with written(where):
+        text = "\n".join([found.message, *_table(found)])
+        with told_anyway(text, found.to_dict(), as_json=json), written(where):
             lines = _saved(found, where, stems_of(chosen))
     left = len(every) - len(chosen)
     if left:
         lines.append(f"{left} of {len(every)} recordings have no reference and were left out")
-    answer("\n".join([found.message, *_table(found), *lines]), found.to_dict(), as_json=json)
+    answer("\n".join([text, *lines]), found.to_dict(), as_json=json)
 
 
 def _saved(found: Compensation, where: Path, stems: list[str]) -> list[str]:

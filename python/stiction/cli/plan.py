@@ -11,7 +11,7 @@ from ..given import vacant
 from ..plan import plan as run
 from ..plan.result import FILLED_IN
 from ..plant import Plant
-from .answer import answer, folder, written
+from .answer import answer, folder, told_anyway, written
 from .given import Whole
 from .progress import progress
 
@@ -69,7 +69,7 @@ def plan(
             seed=seed,
         )
         where = folder(where)
-        with written(where):
+        text = f"{made!r}\n\nsignals: {where / 'signals'}\nfill in: {where / 'session.toml'}"
+        with told_anyway(text, made.to_dict(), as_json=json), written(where):
             made.save(where)
-    text = f"{made!r}\n\nsignals: {where / 'signals'}\nfill in: {where / 'session.toml'}"
     answer(text, made.to_dict(), as_json=json)

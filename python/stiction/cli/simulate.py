@@ -79,16 +79,26 @@ def simulate(
             recordings = [session.load_recording(recording, machine, mapped, where="--columns")]
         where = folder(out)
         stems = [where / stem for stem in stems_of(recordings)]
-        with written(where):
-            phase(_logger, "simulating")
-            known = [begin_for(told, name) for name in names_of(recordings)]
-            each_with_its_begin = list(zip(recordings, stems, known, strict=True))
-            results = [
-                _named(machine, each, stem, support, begin)
-                for each, stem, begin in steps(each_with_its_begin, "recording")
-            ]
+        phase(_logger, "simulating")
+        known = [begin_for(told, name) for name in names_of(recordings)]
+        each_with_its_begin = list(zip(recordings, stems, known, strict=True))
+        results: list[dict[str, Any]] = []
+        try:
+            for each, stem, begin in steps(each_with_its_begin, "recording"):
+                # Ctrl-C ends after the files of one recording, and what is done by then is told.
+                with written(where):
+                    results.append(_named(machine, each, stem, support, begin))
+        except KeyboardInterrupt:
+            if results:
+                _tell(results, as_json=json)
+            raise
+    _tell(results, as_json=json)
+
+
+def _tell(results: list[dict[str, Any]], *, as_json: bool) -> None:
+    """Prints the answers for some recordings."""
     text = "\n\n".join(result.pop("text") for result in results)
-    answer(text, results[0] if len(results) == 1 else results, as_json=json)
+    answer(text, results[0] if len(results) == 1 else results, as_json=as_json)
 
 
 def read_columns(text: str) -> dict[str, Any]:
