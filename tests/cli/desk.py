@@ -60,6 +60,13 @@ class Desk:
         self.columns = motion()
         self.write_csv()
 
+    def loop(self) -> Path:
+        """A session file beside it whose reference is the motion itself."""
+        path = self.folder / "loop.toml"
+        reference = 'reference = { name = "q", unit = "rad" }\n[[recordings]]'
+        path.write_text(SESSION.replace("[[recordings]]", reference), encoding="utf-8")
+        return path
+
     def write_csv(self) -> None:
         """The columns as they are now, into run.csv."""
         rows = [",".join(map(repr, row)) for row in zip(*map(list, self.floats()), strict=True)]

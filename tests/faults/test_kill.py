@@ -47,6 +47,8 @@ VERBS: dict[str, list[str]] = {
     "fit": ["fit", "SESSION", "-o", "OUT"],
     "diagnose": ["diagnose", "SESSION", "-o", "OUT"],
     "plan": ["plan", "PLANT", "--only", "ramps", "-o", "OUT"],
+    "export": ["export", "PLANT", "--to", "table", "--to", "urdf", "--to", "c", "-o", "OUT"],
+    "compensate": ["compensate", "PLANT", "--session", "LOOP", "-o", "OUT"],
     "laws": ["laws", "-o", "OUT"],
     "effects": ["effects", "-o", "OUT"],
     "compare": ["compare", "coulomb", "--steps", "1000", "--draws", "0", "-o", "OUT"],
@@ -80,6 +82,9 @@ WHOLE: dict[str, Callable[[Path], object]] = {
     ".json": lambda path: json.loads(path.read_bytes()),
     ".toml": lambda path: tomllib.loads(path.read_text("utf-8")),
     ".svg": ElementTree.parse,
+    ".urdf": ElementTree.parse,
+    ".c": ends_in(b"}"),
+    ".h": ends_in(b"#endif"),
     ".png": ends_in(b"IEND\xaeB`\x82"),
     ".html": ends_in(b"</html>"),
     ".csv": parses_csv,
@@ -158,6 +163,7 @@ class Killed:
             "SESSION": str(self._desk.session),
             "PLANT": str(self._desk.plant),
             "CSV": str(self._desk.csv),
+            "LOOP": str(self._desk.loop()),
         }
         words = [paths.get(each, each.replace("OUT", str(out))) for each in VERBS[self.verb]]
         module = [] if words[0] == "-c" else ["-m", "stiction"]

@@ -31,6 +31,7 @@ VERBS: dict[str, tuple[str, ...]] = {
     "plan": ("plan", "plant.toml", "--only", "turns"),
     "init": ("init", "run.csv"),
     "export": ("export", "plant.toml", "--to", "table", "--to", "urdf", "--to", "c"),
+    "compensate": ("compensate", "plant.toml", "--session", "loop.toml"),
     "compare": ("compare", "coulomb", "--steps", "1000", "--draws", "0"),
     "laws": ("laws",),
     "effects": ("effects",),
@@ -163,7 +164,7 @@ def gone() -> None:
 def desk(folder: Path) -> Path:
     """A folder with a good session in it."""
     folder.mkdir(parents=True)
-    Desk(folder)
+    Desk(folder).loop()
     return folder
 
 
