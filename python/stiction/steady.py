@@ -45,7 +45,8 @@ def friction_curve(plant: Plant, speeds: npt.ArrayLike) -> FloatArray:
     if not np.all(np.isfinite(wanted)):
         raise InputError(f"{plant.source}: speeds: finite numbers are wanted, in rad/s or m/s")
     still = replace(plant, effects=tuple(e for e in plant.effects if _acts_by_speed(e)))
-    found = [_steady(still, float(speed)) if speed else 0.0 for speed in wanted.ravel()]
+    slide = _Slide(still)
+    found = [slide.friction(float(speed)) if speed else 0.0 for speed in wanted.ravel()]
     return np.array(found).reshape(wanted.shape)
 
 
@@ -113,16 +114,22 @@ def _adds(effect: Effect) -> bool:
     return tuple(effect.record.hooks) == ("added effort",)
 
 
-def _steady(plant: Plant, speed: float) -> float:
-    """Friction of a steady slide, less what the same place asks for at rest."""
-    travel = LENGTHS * _length(plant)
-    motor = _follower(replace(plant, body={}))
-    # Where it ends is 0: what goes with the position is the same for every speed.
-    places = np.sign(speed) * np.linspace(-travel, 0.0, SAMPLES + 1)
-    motor.reset(float(places[0]), speed)
-    duration = travel / SAMPLES / abs(speed)
-    _, ambient, found, _ = motor.follow(Motion(places, np.zeros(SAMPLES), duration))
-    rest = motor.copy()
-    rest.reset(0.0, 0.0)
-    _, at_rest, _, _ = rest.follow(Motion(np.zeros(2), np.zeros(1), RESTING_S))
-    return float(found[-1] - (ambient[-1] - at_rest[-1]))
+class _Slide:
+    """Steady slides of a plant, which end where it stands at 0."""
+
+    def __init__(self, plant: Plant) -> None:
+        self._motor = _follower(replace(plant, body={}))
+        # What goes with the position is the same for every speed.
+        self._places = np.linspace(-LENGTHS * _length(plant), 0.0, SAMPLES + 1)
+        self._still = np.zeros(SAMPLES)
+        self._motor.reset(0.0, 0.0)
+        rest = Motion(np.zeros(2), np.zeros(1), RESTING_S)
+        self._at_rest = float(self._motor.follow(rest)[1][-1])
+
+    def friction(self, speed: float) -> float:
+        """Friction at a speed, less what the same place asks for at rest."""
+        places = np.sign(speed) * self._places
+        self._motor.reset(float(places[0]), speed)
+        duration = float(abs(places[0])) / SAMPLES / abs(speed)
+        _, ambient, found, _ = self._motor.follow(Motion(places, self._still, duration))
+        return float(found[-1] - (ambient[-1] - self._at_rest))
