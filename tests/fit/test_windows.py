@@ -41,6 +41,18 @@ def test_a_rigid_contact_is_not_simulated_stiffer_and_stiffer() -> None:
     assert followable(soft, windows).friction.parameters["initial_stiffness"].value == 100.0
 
 
+def test_a_contact_that_is_made_softer_ends_below_where_it_begins() -> None:
+    windows = [ShootingForm(plant(), recorded(), horizon=0.1)]
+    own = {"law": "hsieh_pan", "initial_stiffness": 1e9, "final_stiffness": 9e8}
+    stiff = plant("hsieh_pan", friction=own, body={"inertia": TRUE["inertia"]})
+    softer = followable(stiff, windows)
+    found = softer.friction.parameters
+    assert found["initial_stiffness"].value < 1e9
+    ratio = found["final_stiffness"].value / found["initial_stiffness"].value
+    assert ratio == pytest.approx(0.9, rel=1e-12)
+    softer.motor()
+
+
 @pytest.mark.parametrize("most", [None, 5e4])
 def test_the_end_of_what_windows_follow_is_no_bound_of_the_plant(most: float | None) -> None:
     windows = [ShootingForm(plant(), recorded(), horizon=0.1)]

@@ -11,7 +11,14 @@ import numpy as np
 
 from ..errors import InputError
 from ..finite import finite
-from ..fitting.forms import HORIZONS_S, Through, can_be_shot, followable, shows_its_ring
+from ..fitting.forms import (
+    HORIZONS_S,
+    Through,
+    can_be_shot,
+    followable,
+    shows_its_ring,
+    softened,
+)
 from ..plant import Plant
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
@@ -115,8 +122,7 @@ def _as_stiff_as_shown(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
     if shows_its_ring(plant, forms):
         return followable(plant, forms)
     most = RIGID_SHOWN * plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
-    stiffness = replace(
-        plant.friction.parameters["initial_stiffness"], value=0.5 * most, min=None, max=most
-    )
-    parameters = {**plant.friction.parameters, "initial_stiffness": stiffness}
+    own = plant.friction.parameters
+    parameters = softened(own, 0.5 * most / own["initial_stiffness"].value)
+    parameters["initial_stiffness"] = replace(parameters["initial_stiffness"], max=most)
     return replace(plant, friction=replace(plant.friction, parameters=parameters))

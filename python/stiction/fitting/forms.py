@@ -34,6 +34,7 @@ __all__ = [
     "forms_of",
     "horizon_of",
     "shows_its_ring",
+    "softened",
     "stiffen",
     "told",
     "wider_of",
@@ -397,7 +398,27 @@ def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
         if not own.fixed:
             most = max(min(own.max or ends[name], ends[name]), own.min or 0.0)
             parameters[name] = replace(own, value=min(own.value, start * most), max=most)
+    begun = plant.friction.parameters["initial_stiffness"].value
+    softer = parameters["initial_stiffness"].value / begun if begun > 0.0 else 1.0
+    if softer < 1.0:
+        parameters = {
+            **softened(parameters, softer),
+            "initial_stiffness": parameters["initial_stiffness"],
+        }
     return replace(plant, friction=replace(plant.friction, parameters=parameters))
+
+
+def softened(parameters: Mapping[str, Parameter], softer: float) -> dict[str, Parameter]:
+    """Parameters of a law with all stiffnesses that many times as large, without their bounds.
+
+    A law that ends at a stiffness of its own ends below the one that it begins with.
+    """
+    return {
+        name: replace(each, value=softer * each.value, min=None, max=None)
+        if name.endswith("_stiffness")
+        else each
+        for name, each in parameters.items()
+    }
 
 
 def as_stated(plant: Plant, given: Plant) -> Plant:
