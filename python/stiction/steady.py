@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from .plant import Plant
     from .stated import Effect
 
-__all__ = ["friction_curve", "in_curve", "in_position", "position_effort", "static_level"]
+__all__ = ["SEEN", "friction_curve", "in_curve", "in_position", "position_effort", "static_level"]
 
 AT_CONTACT: Final = frozenset({"friction level", "added effort"})
 """Hooks of effects that act where friction acts."""
 PASSING: Final = frozenset({"slow", "angle", "cogging", "temperature"})
 """Families that go with clock, path, place or warmth: a curve over speed has none of them."""
 LENGTHS: Final = 40.0
-"""Way before a slide counts as steady, in lengths of the law."""
+"""Before a slide counts as steady: in lengths of law and effects, and in times of effects."""
 RIGID: Final = 1e-6
 """Length of a law that has none, rad or m."""
 SAMPLES: Final = 400
@@ -35,6 +35,9 @@ SLOW: Final = 1e-3
 """Share of the speed scale of a law at which it slides as slowly as counts."""
 USUAL_SPEED: Final = 0.1
 """The same scale where a law states none, rad/s or m/s."""
+SEEN: Final = 1e-3
+"""Share of its greatest friction by which an effect must change a curve to be in it: one that
+passes in a slide leaves a little at the end of any."""
 RESTING_S: Final = 1.0
 """How long it stands at a place, s."""
 
@@ -81,7 +84,8 @@ def in_curve(plant: Plant, effect: Effect) -> bool:
         return False
     speeds = np.outer([-1.0, 1.0], np.geomspace(1e-3, 1e2, 16)).ravel()
     without = replace(plant, effects=tuple(e for e in plant.effects if e.name != effect.name))
-    return not np.array_equal(friction_curve(plant, speeds), friction_curve(without, speeds))
+    with_it, other = friction_curve(plant, speeds), friction_curve(without, speeds)
+    return bool(np.max(np.abs(with_it - other)) > SEEN * np.max(np.abs(other)))
 
 
 def in_position(plant: Plant, effect: Effect) -> bool:
@@ -105,6 +109,18 @@ def _length(plant: Plant) -> float:
     return max([RIGID, *(value for value in own if np.isfinite(value))])
 
 
+def _sizes(plant: Plant, unit: str) -> list[float]:
+    """Lengths, or times, over which effects of a plant pass; 0 among them."""
+    sizes = [0.0]
+    for effect in plant.effects:
+        for record in effect.record.parameters:
+            stated = effect.parameters.get(record.name)
+            value = record.default if stated is None else stated.value
+            if record.unit == unit and value is not None and np.isfinite(value):
+                sizes.append(float(value))
+    return sizes
+
+
 def _follower(plant: Plant) -> Motor:
     """A plant that is moved, whatever moves it and however heavy it is."""
     return replace(plant, drive={"kind": "prescribed_motion"}).follower()
@@ -120,7 +136,9 @@ class _Slide:
     def __init__(self, plant: Plant) -> None:
         self._motor = _follower(replace(plant, body={}))
         # What goes with the position is the same for every speed.
-        self._places = np.linspace(-LENGTHS * _length(plant), 0.0, SAMPLES + 1)
+        self._places = np.linspace(-1.0, 0.0, SAMPLES + 1)
+        self._way = LENGTHS * max(_length(plant), *_sizes(plant, "rad"))
+        self._time = LENGTHS * max(_sizes(plant, "s"))
         self._still = np.zeros(SAMPLES)
         self._motor.reset(0.0, 0.0)
         rest = Motion(np.zeros(2), np.zeros(1), RESTING_S)
@@ -128,7 +146,8 @@ class _Slide:
 
     def friction(self, speed: float) -> float:
         """Friction at a speed, less what the same place asks for at rest."""
-        places = np.sign(speed) * self._places
+        travel = max(self._way, self._time * abs(speed))
+        places = np.copysign(travel, speed) * self._places
         self._motor.reset(float(places[0]), speed)
         duration = float(abs(places[0])) / SAMPLES / abs(speed)
         _, ambient, found, _ = self._motor.follow(Motion(places, self._still, duration))

@@ -142,6 +142,35 @@ def test_a_table_is_off_by_what_it_says():
     assert gains["kA"] == 0.01
 
 
+@pytest.mark.parametrize("name", ["table", "c"])
+def test_what_a_curve_cannot_hold_is_told_whatever_its_name(name):
+    # The name of an effect may begin as a sentence about the curve does.
+    lagging = {"name": "frictional_lag", "excess": 0.2, "velocity": 0.1, "time": 0.01}
+    own = plant(DRY, lagging, drive={"input": "torque_nm", "gain": 1.0, "limit": 3.0})
+    told = own.export(name).lost
+    assert any(each.startswith("the limit of the drive") for each in told)
+    assert any(each.startswith("frictional_lag:") for each in told)
+
+
+def test_places_of_a_slide_hold_what_is_the_same_everywhere():
+    bias = {"name": "torque_bias", "bias": 0.1}
+    table = {
+        "motion": {"kind": "linear"},
+        "drive": {"input": "force_n", "gain": 1.0},
+        "body": {"inertia": 1.0},
+        "friction": {"law": "coulomb"},
+        "effects": [bias, COGGING],
+    }
+    told = st.Plant.from_dict(table).export("c").lost
+    assert any(each.startswith("cogging:") for each in told)
+    assert not any(each.startswith("torque_bias:") for each in told)
+
+
+def test_a_wave_of_no_whole_order_is_off_beyond_its_turn():
+    made = plant(DRY, {"name": "cogging", "cosine": 0.04, "order": 6.5}).export("c")
+    assert made.numbers["position_off"] > 0.05
+
+
 def test_lines_through_few_points_are_as_near_as_they_can_be():
     x = np.linspace(0.0, 1.0, 41)
     places, off = few_points(x, np.abs(x - 0.5), 20)

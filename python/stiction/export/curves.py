@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from .. import steady
 from ..trajectory import FloatArray
-from .joint import joint_of, speeds_up_to, told
+from .joint import beside, speeds_up_to
 from .points import few_points, lines_off
 
 if TYPE_CHECKING:
     from ..plant import Plant
+    from ..stated import Effect
 
 __all__ = ["Curves"]
 
 PLACES: Final = 241
 """Of a turn, from which points are chosen."""
-LOOKED_AT: Final = 3601
-"""Of a turn, at which lines are compared."""
+LOOKED_AT: Final = 5401
+"""Of three turns, at which lines are compared."""
+PROBED: Final = np.linspace(0.0, 6.0, 37)
+"""Places of a slide, rad or m, at which an effect is asked whether it differs."""
 
 
 @dataclass(frozen=True)
@@ -64,23 +67,34 @@ class Curves:
             if np.any(needed):
                 at, _ = few_points(turn, needed, most)
                 places, efforts = turn[at], needed[at]
-                dense = np.linspace(0.0, 2.0 * np.pi, LOOKED_AT)
+                # Beyond the turn as well: a wave of no whole order does not come back.
+                dense = np.linspace(-2.0 * np.pi, 4.0 * np.pi, LOOKED_AT)
                 whole = steady.position_effort(plant, dense)
-                numbers["position_off"] = lines_off(places, efforts, dense, whole)
+                lines = np.interp(np.mod(dense, 2.0 * np.pi), places, efforts)
+                numbers["position_off"] = float(np.max(np.abs(lines - whole)))
                 held.append("effort over the position, a turn of it")
         else:
             efforts = steady.position_effort(plant, [0.0])
-        return cls(x, y, places, efforts, tuple(held), cls._lost(plant, speed, numbers), numbers)
+        return cls(x, y, places, efforts, tuple(held), cls._lost(plant, numbers), numbers)
 
     @staticmethod
-    def _lost(plant: Plant, speed: float, numbers: dict[str, float]) -> tuple[str, ...]:
-        every = told(plant, joint_of(plant, speed), position=True)
-        # What tells of the curve over the speed is held here.
-        lost = [each for each in every if not each.startswith(("the curve", "break", "friction"))]
+    def _lost(plant: Plant, numbers: dict[str, float]) -> tuple[str, ...]:
         what = {"speed_off": "friction over speed", "position_off": "effort over position"}
-        lost += [
+        lines = [
             f"lines between points of {what[name]} are off by {off:.3g} {plant.effort_unit} at most"
             for name, off in numbers.items()
             if off > 0.0
         ]
-        return tuple(lost)
+
+        def held(effect: Effect) -> bool:
+            return steady.in_curve(plant, effect) or _at_every_place(plant, effect)
+
+        return (*beside(plant, held, limited=False), *lines)
+
+
+def _at_every_place(plant: Plant, effect: Effect) -> bool:
+    """Whether the efforts of places hold an effect: of a slide, the same one everywhere."""
+    if not steady.in_position(plant, effect):
+        return False
+    alone = replace(plant, effects=(effect,), body={})
+    return plant.motion == "rotary" or not np.ptp(steady.position_effort(alone, PROBED))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from ..plant import Plant
     from ..stated import Effect
 
-__all__ = ["Joint", "joint_of", "sidecar", "speeds_up_to", "told"]
+__all__ = ["Joint", "beside", "joint_of", "sidecar", "speeds_up_to", "told"]
 
 SPEEDS: Final = 200
 PROBED: Final = 10.0
@@ -84,10 +85,10 @@ def joint_of(plant: Plant, speed: float) -> Joint:
     )
 
 
-def told(plant: Plant, joint: Joint, *, position: bool = False) -> tuple[str, ...]:
+def told(plant: Plant, joint: Joint, *, limited: bool = False) -> tuple[str, ...]:
     """What a joint of these numbers cannot hold, a sentence each.
 
-    ``position`` says whether the target has efforts over the position beside it.
+    ``limited`` says whether the target has the limit of the drive.
     """
     unit, lost = plant.effort_unit, []
     per = f"{plant.position_unit}/s"
@@ -104,25 +105,30 @@ def told(plant: Plant, joint: Joint, *, position: bool = False) -> tuple[str, ..
         )
     if joint.one_sided > worth:
         lost.append(f"friction of the two directions differs by {joint.one_sided:.3g} {unit}")
+    return (*lost, *beside(plant, lambda effect: _changes(plant, effect), limited=limited))
+
+
+def beside(plant: Plant, held: Callable[[Effect], bool], *, limited: bool) -> tuple[str, ...]:
+    """What a target cannot hold beside friction over the speed, a sentence each.
+
+    ``held`` says whether it has an effect, ``limited`` whether it has the limit of the drive.
+    """
+    lost = []
     if plant.friction.springy:
         lost.append(f"pre-sliding: a contact of {plant.friction.law} yields before it slides")
-    for effect in plant.effects:
-        if _held(plant, effect, position=position):
-            continue
-        lost.append(f"{effect.name}: {effect.record.summary}")
+    lost += [f"{each.name}: {each.record.summary}" for each in plant.effects if not held(each)]
     limit = float(plant.drive.get("limit", np.inf))
-    if np.isfinite(limit) and not position:
+    if np.isfinite(limit) and not limited:
         lost.append(f"the limit of the drive: {limit:.6g} of its input")
     return tuple(lost)
 
 
-def _held(plant: Plant, effect: Effect, *, position: bool) -> bool:
-    """Whether an effect is in the curves of a target, or else in the numbers of its joint."""
-    if position:
-        return steady.in_curve(plant, effect) or steady.in_position(plant, effect)
+def _changes(plant: Plant, effect: Effect) -> bool:
+    """Whether an effect changes the numbers of a joint."""
     without = replace(plant, effects=tuple(e for e in plant.effects if e.name != effect.name))
     one, other = (joint_of(each, PROBED) for each in (plant, without))
-    return (one.friction, one.damping) != (other.friction, other.damping)
+    changed = abs(one.friction - other.friction) + PROBED * abs(one.damping - other.damping)
+    return changed > steady.SEEN * (other.friction + PROBED * other.damping)
 
 
 def sidecar(plant: Plant, numbers: dict[str, float], lost: tuple[str, ...]) -> str:

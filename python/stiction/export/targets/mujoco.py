@@ -21,13 +21,12 @@ CREEPS = (
 def write(plant: Plant, speed: float) -> Export:
     """A model of one joint that turns or slides freely."""
     joint, inertia = joint_of(plant, speed), float(plant.inertia)
-    lost = [*told(plant, joint), CREEPS]
+    lost = [*told(plant, joint, limited=True), CREEPS]
     held = ["inertia as armature", "Coulomb and viscous friction"]
     limit = float(plant.drive.get("limit", np.inf))
     limited = ""
     if np.isfinite(limit):
         limited = f' ctrllimited="true" ctrlrange="{-limit!r} {limit!r}"'
-        lost = [sentence for sentence in lost if not sentence.startswith("the limit of the drive")]
         held.append("the limit of the drive")
     if plant.servo:
         lost.append("the controller of the servo: its motor is driven by current here")
