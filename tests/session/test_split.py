@@ -241,3 +241,12 @@ def replaced(recording: Recording, role: str) -> Recording:
     return Recording(
         recording.time, recording.input, recording.position, role=role, kind=recording.kind
     )
+
+
+def test_of_two_short_recordings_of_each_kind_both_kinds_train() -> None:
+    # Split off from train, the only one that shows an inertia would be gone.
+    kinds = ("ramp", "ramp", "step", "step")
+    split = session(*({"kind": kind} for kind in kinds), seconds=3.0).split()
+    assert (of(split.train), of(split.select), of(split.test)) == ([0, 2], [1], [3])
+    assert "the last in select, is split off" in split.describe()
+    assert_apart(split)

@@ -137,7 +137,8 @@ def split(
 
     Roles that are stated stay.  Where others have a role, a recording without one trains.
     Without a ``test`` the last recording of the commonest kind is split off from train, or every
-    third block where every kind occurs once.  Without a ``select`` the recordings of train are
+    third block where every kind occurs once; where that is too short to be cut, a recording that
+    was dealt to select.  Without a ``select`` the recordings of train are
     left out in turn; of a kind that occurs once, interleaved blocks are.  Without any role the
     recordings of each kind are dealt train, select, test in turn, and a single recording is cut
     into blocks that are dealt so.
@@ -179,6 +180,7 @@ class _Dealer:
         self.edge_s = edge_s
         self.names = tuple(names_of(recordings))
         self.roles: list[str | None] = [recording.role for recording in recordings]
+        self.dealt = not any(self.roles)
         self.parts: dict[str, list[Part]] = {role: [] for role in SPLIT_ROLES}
         self.folds: list[Fold] = []
         self.rules: list[str] = []
@@ -289,6 +291,16 @@ class _Dealer:
             )
             return
         if not all(self._can_be_cut(part.recording) for part in self.parts["train"]):
+            if self.dealt and len(self.parts["select"]) > 1:
+                # What a kind alone shows, as an inertia, would be fitted to nothing.
+                chosen = [self.parts["select"].pop()]
+                self.parts["test"] += chosen
+                self.rules.append(
+                    "No recording has the role test, every kind occurs once in train, and some are "
+                    f"too short to be cut: {self.names[chosen[0].recording]}, the last in select, "
+                    "is split off before anything is fitted."
+                )
+                return
             if number == 0 or len(self.parts["train"]) < 2:
                 self._blocks(self.parts["train"][-1].recording)  # says how long it had to be
             chosen = [self.parts["train"].pop()]
