@@ -10,6 +10,9 @@ import pytest
 
 import stiction as st
 from stiction.fitting.clock import bounded, follows
+from stiction.fitting.rows import rows_of
+from stiction.recording import Part
+from stiction.weak_form import WeakForm
 
 DT = 1e-3
 
@@ -74,3 +77,27 @@ def test_what_leaves_no_numbers_is_none() -> None:
     stiff = plant(1e-12, 3000.0)
     rows: Any = [Told(lambda plant: 1.0 if plant == stiff else np.nan)]
     assert bounded(stiff, PATHS, rows, NONE) == []
+
+
+def test_rows_that_see_a_long_gap_are_left_out() -> None:
+    time = np.arange(3000) * 1e-3
+    stamps = time + 0.2 * (time > 1.5)
+    position = np.sin(2.0 * np.pi * time)
+    plant = st.Plant.from_dict(
+        {"drive": {"input": "torque_nm", "gain": 1.0}, "friction": {"law": "coulomb"}}
+    )
+
+    def kept(stamps: np.ndarray) -> tuple[np.ndarray, float]:
+        recording = st.Recording(stamps, np.cos(time), position)
+        form = WeakForm(plant, recording)
+        mask = rows_of(form, recording, 0, [Part(0, 0, len(stamps))])
+        return form.time[mask], form.kernel.support
+
+    even, _ = kept(time)
+    broken, support = kept(stamps)
+    assert np.max(np.diff(even)) < 2e-3
+    inside = (broken > 1.5 - 0.49 * support) & (broken < 1.7 + 0.49 * support)
+    assert not np.any(inside)
+    # And no more than a kernel on either side.
+    assert np.any((broken > 1.5 - support) & (broken < 1.5))
+    assert np.any((broken > 1.7) & (broken < 1.7 + support))

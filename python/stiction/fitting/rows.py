@@ -13,6 +13,7 @@ from ..catalogue import ParameterRecord, effects
 from ..errors import NotEnoughData
 from ..plant import Plant
 from ..recording import Part, Recording
+from ..recording.checks.clock import usual_steps
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .statistics import CORRELATED_S
@@ -41,6 +42,11 @@ TURNS: Final = ("turned", "turned_again")
 them beside a contact that never did; see `turned` of the starts."""
 TOLD: Final = 0.01
 """A start quantity is fitted where it changes any row by this share of the residual."""
+LOST: Final = 1.8
+"""Times the usual step that a gap is at least: one lost sample doubles it."""
+GAP_SHARE: Final = 0.25
+"""Share of the kernel from which on a gap between two stamps counts: over the distance of its knots
+the motion in between is anybody's guess, shorter ones it averages."""
 
 Mask = np.ndarray[Any, np.dtype[np.bool_]]
 Start = dict[str, float]
@@ -198,7 +204,7 @@ def rows_of(
     parts: Sequence[Part],
     pushes: Sequence[Push] = (),
 ) -> Mask:
-    """Rows of a form that lie in these parts, the warm-up and pushes left out."""
+    """Rows of a form that lie in these parts, the warm-up, pushes and gaps left out."""
     chosen = np.zeros(len(form), dtype=bool)
     for part in parts:
         if part.recording == index:
@@ -208,7 +214,21 @@ def rows_of(
         if push.recording == index:
             time = form.time - recording.time[0]
             chosen &= (time < push.start) | (time > push.end)
+    for start, end in _gaps(recording.time, form.kernel.support):
+        chosen &= (form.time < start) | (form.time > end)
     return chosen & warm(form, recording)
+
+
+def _gaps(time: FloatArray, support: float) -> list[tuple[float, float]]:
+    """Between which centres a kernel would see a gap of the stamps, s.
+
+    Or a window would start at its end, at a speed that is none of the machine's.
+    """
+    steps = np.diff(time)
+    # Where a logger changes its rate, rows that are further apart are none.
+    long = np.flatnonzero(steps > np.maximum(GAP_SHARE * support, LOST * usual_steps(steps)))
+    before, after = 0.5 * support, (0.5 + GAP_SHARE) * support
+    return [(float(time[k]) - before, float(time[k + 1]) + after) for k in long]
 
 
 def numbers(plant: Plant) -> dict[str, ParameterRecord]:

@@ -34,7 +34,7 @@ def jitter(
         As for `gaps`.
     """
     steps = np.diff(recording.time)
-    ratio = steps / _usual(steps)
+    ratio = steps / usual_steps(steps)
     ratio = ratio[ratio < lost]
     spread = float(np.std(ratio))
     worst = float(np.max(np.abs(ratio - 1.0)))
@@ -66,7 +66,7 @@ def gaps(recording: Recording, *, lost: float = 1.8, share: float = 0.05) -> Che
         More than this share of the time missing is a fault, as for missing cells.
     """
     steps = np.diff(recording.time)
-    usual = _usual(steps)
+    usual = usual_steps(steps)
     wide = steps > lost * usual
     number = int(wide.sum())
     if not number:
@@ -89,8 +89,9 @@ def gaps(recording: Recording, *, lost: float = 1.8, share: float = 0.05) -> Che
         "gaps",
         "note",
         what,
-        "the motion across a gap is a straight line that never was",
-        "leave the rows around long gaps out by splitting the file there",
+        "the motion across a gap is a straight line that never was; rows that see a long one are "
+        "not fitted",
+        "record again with a logger that keeps up where it matters what happened there",
     )
 
 
@@ -103,7 +104,7 @@ def rate(recording: Recording, *, times: float = 1.5) -> Check:
     times : float
         The longest usual step over the shortest that is noted; less than that is jitter.
     """
-    usual = _usual(np.diff(recording.time), 101)
+    usual = usual_steps(np.diff(recording.time), 101)
     low, high = float(usual.min()), float(usual.max())
     if high <= times * low:
         return Check("sampling rate", "fine", f"one row every {recording.dt:.4g} s throughout")
@@ -144,8 +145,8 @@ def sampling(recording: Recording, *, kernel_s: float = 0.050, fewest: int = 8) 
     )
 
 
-def _usual(steps: FloatArray, width: int = 21) -> FloatArray:
-    """Running median of the time steps."""
+def usual_steps(steps: FloatArray, width: int = 21) -> FloatArray:
+    """Running median of the time steps; shape (n,) as these."""
     middle = float(np.median(steps))
     if float(np.ptp(steps)) <= EVEN * middle:
         # An even clock has one median, and most clocks are even.
