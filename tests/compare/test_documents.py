@@ -25,10 +25,12 @@ def block(page, name):
     return re.search(rf"<!-- {name} -->\n\n(.*)\n\n<!-- end of {name} -->", text, re.S)[1]
 
 
+@pytest.mark.slow
 def test_the_documented_table_is_what_the_command_prints(table):
     assert block("compare.md", "properties") == property_block(table), REFRESH
 
 
+@pytest.mark.slow
 def test_laws_by_symptom_follow_from_the_table(table):
     assert block("which-law.md", "symptoms") == symptom_block(table), REFRESH
 
@@ -52,6 +54,7 @@ def test_figures_are_the_same_each_time(tmp_path):
         assert a.read_bytes() == b.read_bytes()
 
 
+@pytest.mark.slow
 def test_refreshing_twice_changes_nothing_but_the_cost(table, tmp_path):
     (tmp_path / "theory").mkdir()
     (tmp_path / "figures").mkdir()

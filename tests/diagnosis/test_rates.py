@@ -132,6 +132,7 @@ def test_a_hidden_effect_is_named_or_listed_as_a_look_alike(name: str) -> None:
     assert name in (first.name, *first.look_alikes)
 
 
+@pytest.mark.slow
 def test_noise_in_place_of_the_rows_that_test_changes_gains_only() -> None:
     hidden = made()["cogging"]
     session, rng = as_session(hidden), np.random.default_rng(0)

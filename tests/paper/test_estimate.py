@@ -162,6 +162,7 @@ def of_experiment_2(reading):
     return estimate(Recorded(dt, torque, reading), start=known, fixed=list(known))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_little_noise_does_not_slow_the_creep(seed):
     # An eighth of a count: least squares find 0.88 of the rate.

@@ -260,7 +260,7 @@ fn gradients_equal_central_differences_on_the_same_branches() {
 fn compare_gradients(law: &'static LawRecord) -> usize {
     let mut compared = 0;
     let mut stream = Stream::of(law, 11);
-    for _ in 0..6 {
+    for _ in 0..3 {
         let spec = MotorSpec {
             effects: EFFECTS
                 .iter()
