@@ -81,3 +81,16 @@ def test_a_further_name_of_which_no_number_is_known_is_not_decided() -> None:
     selection: Any = SimpleNamespace(models=[model], choices=choices)
     found = left_open.known_by_themselves(selection, causes)
     assert [each.decided for each in found] == [True, True, False, True, True]
+
+
+def test_a_known_speed_says_nothing_of_the_strength() -> None:
+    def lag(excess: tuple[float, float]) -> Cause:
+        numbers: Any = {
+            "effects.frictional_lag.excess": SimpleNamespace(ci95=excess),
+            "effects.frictional_lag.velocity": SimpleNamespace(ci95=(1.0, 1.1)),
+            "effects.frictional_lag.time": SimpleNamespace(ci95=(0.6, 1.2)),
+        }
+        return Cause("frictional_lag", "family", True, (), numbers, None, "", "", "", "")
+
+    assert lag((-3.9, 12.5)).doubtful
+    assert not lag((3.9, 12.5)).doubtful

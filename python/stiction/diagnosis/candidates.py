@@ -25,7 +25,7 @@ FEWEST_SPEEDS: Final = (0.02, 0.90)
 """Quantiles of the moving speeds that bound the grid of a speed."""
 STILL: Final = 1e-3
 """Share of the greatest speed below which a machine counts as still."""
-MOST_ORDERS: Final = 80
+MOST_ORDERS: Final = 100
 """Orders tried at most."""
 WIDER: Final = 1.5
 """A refit may leave the grid of a speed by this factor."""

@@ -117,7 +117,7 @@ class Evidence:
     plans : list of Plan
     cells : Cells
     floor : float
-        Weighted power that noise alone leaves in the fitted rows; 0 until replays have told.
+        Weighted power that readings alone leave in the fitted rows; 0 until replays have told.
 
     Raises
     ------

@@ -18,6 +18,7 @@ from ..fitting.forms import (
     followable,
     shows_its_ring,
     softened,
+    stiffen,
 )
 from ..plant import Plant
 from ..trajectory import FloatArray
@@ -44,8 +45,9 @@ def borne_out_in_motion(selection: Search, evidence: Evidence) -> Search:
 
     What explains the effort along a measured motion may freeze the machine, or shake it, once it
     moves by itself, and to be simulated is what a plant is for. Both plants are simulated over
-    windows of .3 s from the same states, on the rows that decide. With the cause the motion has to
-    come nearer than without it, and nearer than one that goes on as it set out: below break-away a
+    windows of .3 s from the states that each of them makes of the readings, on the rows that
+    decide. With the cause the motion has to
+    come nearer than with fewer, and nearer than one that goes on as it set out: below break-away a
     contact that was fitted to the effort breaks away, and nearly anything is better than that.
     Where rows are simulated anyway the held-out gain says the same; where nothing can be simulated
     nothing is asked.
@@ -63,9 +65,9 @@ def borne_out_in_motion(selection: Search, evidence: Evidence) -> Search:
     powers = _powers(models, evidence)
     while powers is not None and selection.choices:
         last = len(selection.choices)
-        gain = min(
-            _gain(each, powers.left[last]) for each in (powers.left[last - 1], powers.steady)
-        )
+        # One that repairs what an earlier one broke is no better than neither.
+        others = (*powers.left[:last], powers.steady)
+        gain = min(_gain(each, powers.left[last]) for each in others)
         _logger.info("in motion %s gains %.3f", selection.choices[-1].winner.name, gain)
         if gain > 0.0:
             break
@@ -107,11 +109,16 @@ def _powers(models: list[Model], evidence: Evidence) -> _Powers | None:
     def power(left: FloatArray) -> FloatArray:
         return np.bincount(block[held], left[held] ** 2, number).astype(np.float64)
 
+    inertia = models[0].plant.inertia
+    steady = power(windows.stack(inertial_of))
     found = []
     for model in models:
         plant = _as_stiff_as_shown(model.plant, windows.forms)
-        found.append(power(finite(windows.residual(plant, model.nuisances))))
-    return _Powers(found, power(windows.stack(inertial_of)))
+        # What another plant lacks would be in the states from which this one sets out.
+        stiffen(windows.forms, plant)
+        left = finite(windows.residual(plant, model.nuisances))
+        found.append(power(left * (inertia / plant.inertia)))
+    return _Powers(found, steady)
 
 
 def _as_stiff_as_shown(plant: Plant, forms: Sequence[WeakForm]) -> Plant:

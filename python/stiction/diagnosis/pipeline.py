@@ -352,7 +352,8 @@ def _seen_otherwise(
             earlier = _tried_along(look, asked)
             seen = seen if earlier else None
         else:
-            earlier = look.selection.tried
+            # What was found last stands where all others have led the plant.
+            earlier = [*look.selection.models[:0:-1], *look.selection.tried]
             final = first.decided.models[-1]
             seen = based_over_windows(plant, recordings, look.evidence, final)
         if seen is None:

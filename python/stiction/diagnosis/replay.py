@@ -26,6 +26,7 @@ __all__ = [
     "centre",
     "hangs_on_load",
     "noise_of",
+    "read_alone",
     "reread",
     "shared",
     "surrogate_residuals",
@@ -109,6 +110,21 @@ def _of_one_sensor(found: Sequence[tuple[_Replay, Noise]]) -> list[tuple[_Replay
     return usual
 
 
+def read_alone(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
+    """Weighted power that readings alone leave a right plant in the rows that were fitted.
+
+    Nothing that a plant may lack is in it: beside one that lacks something fast, what that makes
+    passes for noise of the effort.
+    """
+
+    def power(rows: Rows) -> float:
+        replay = _Replay.of(rows, plant, nuisances)
+        left = [rows.weight * each[rows.mask] for each in replay.alone()]
+        return float(np.mean([each @ each for each in left]))
+
+    return sum(evidence.each(power, evidence.train))
+
+
 def noise_of(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
     """Noise of one recording beside a plant that describes it."""
     return _Replay.of(rows, plant, nuisances).noise()
@@ -150,10 +166,13 @@ class _Replay:
             start = self.nuisances.start(self.rows.index)
             alone = [form.from_readings_alone(self.plant, start)]
             return self._as_seen(measure_noise(self.rows, self.plant, self.nuisances, alone), alone)
+        return measure_noise(self.rows, self.plant, self.nuisances, self.alone())
+
+    def alone(self) -> list[FloatArray]:
+        """Residuals of some readings of the motion without noise of the effort; shape (rows,)."""
         source = np.random.default_rng(self.rows.index)
-        white, still = position_noise(form), np.zeros(len(self.motion))
-        alone = [self.residual(self.read(white, source), still) for _ in range(TRIED)]
-        return measure_noise(self.rows, self.plant, self.nuisances, alone)
+        white, still = position_noise(self.rows.form), np.zeros(len(self.motion))
+        return [self.residual(self.read(white, source), still) for _ in range(TRIED)]
 
     def _as_seen(self, noise: Noise, alone: Sequence[FloatArray]) -> Noise:
         """Noise of which as much is seen in replays as in the recording.

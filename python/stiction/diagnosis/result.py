@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from .. import given
+from ..catalogue import effects
 from ..fitting.result import FitParameter
 from ..frozen import ByPath, Frozen, freeze
 from ..plant import Plant
@@ -111,8 +112,16 @@ class Cause(_Gained):
 
     @property
     def doubtful(self) -> bool:
-        """Whether the interval of every one of its numbers reaches 0."""
-        intervals = [parameter.ci95 for parameter in self.parameters.values()]
+        """Whether the interval of every number reaches 0 that says how strong it is.
+
+        A speed, a time or an order is none: of nothing any may be known.
+        """
+        shapes = _shapes_of(self.name)
+        intervals = [
+            parameter.ci95
+            for path, parameter in self.parameters.items()
+            if path.rsplit(".", 1)[-1] not in shapes
+        ]
         return bool(intervals) and all(low <= 0.0 <= high for low, high in intervals)
 
     def to_dict(self) -> dict[str, Any]:
@@ -134,6 +143,19 @@ class Cause(_Gained):
             "heldout_gain": self.heldout_gain,
             "heldout_gain_ci95": None if self.gain is None else list(self.gain.ci95),
         }
+
+
+def _shapes_of(name: str) -> set[str]:
+    """Numbers of an effect that say how it goes, and not how strong it is."""
+    return {
+        own
+        for record in effects()
+        if record.name == name
+        for own in (
+            *(shape.parameter for shape in record.shapes),
+            *record.second[len(record.gains) :],
+        )
+    }
 
 
 @dataclass(frozen=True)

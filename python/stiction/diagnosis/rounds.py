@@ -22,7 +22,7 @@ from .evidence import Evidence
 from .exact_forms import several
 from .fewer import MIMIC, chained, dropped_by_the_latest, join, without
 from .model import Model, without_effect
-from .replay import centre, shared
+from .replay import centre, read_alone, shared
 from .restarts import from_before, from_the_first
 from .result import CandidateRow
 from .screen import Score
@@ -109,7 +109,8 @@ def search(
         screening = Screening(
             evidence, signatures, centred, bias, friction, smallest, earlier=earlier
         )
-        evidence.floor = float(np.mean(np.sum(null[evidence.fitted] ** 2, axis=0)))
+        if not evidence.simulated:
+            evidence.floor = read_alone(evidence, base.plant, base.nuisances)
         dropped: set[str] = set()
         rests: set[str] = set()
         renewed = 0

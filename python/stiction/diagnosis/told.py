@@ -76,7 +76,7 @@ def causes_of(
                 look_alikes=(*rivals_left, *others),
                 parameters=fitted_values,
                 gain=None if test is None else gain_of(test, k, k + 1, seed),
-                what=what(record, result.parameters, effect),
+                what=what(record, result.parameters, effect, waves),
                 means=means,
                 try_=remedy,
                 coordinate=record.coordinate,

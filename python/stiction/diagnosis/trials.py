@@ -70,8 +70,8 @@ SHARES_TOLD: Final = (0.05, 0.95)
 WORTH_MOVING: Final = 1e-3
 """Share of the power that makes another minimum a better one."""
 LEAST_OF_NOISE: Final = 0.01
-"""What leaves a smaller share of the power that noise alone leaves explains nothing: it makes what
-was measured vanish."""
+"""What leaves a smaller share of the power that readings alone leave explains nothing: it makes
+what was measured vanish."""
 
 _logger = logging.getLogger(__name__)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence, Set
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
@@ -12,6 +13,7 @@ from ..compared import EFFORT, Compared, compared_by
 from ..fitting.pushes import left_out
 from ..fitting.result import FitParameter
 from ..fitting.rows import Push
+from ..fitting.waves import amplitude_of, parts_of, phase_of
 from ..report.scale import loop_scale_of
 from ..stated import Effect
 from ..wording import counted
@@ -61,7 +63,8 @@ INTERRUPTED = "Interrupted: this is the best so far"
 MORE_MAY_BE = ", and more may be missing"
 """And goes on where something was named by then."""
 DOUBTFUL = (
-    "the interval of every one of its numbers reaches 0, though together they help on rows held out"
+    "the interval of every number reaches 0 that says how strong it is, though it helps on rows "
+    "held out"
 )
 """Of a cause whose name is told, and whose numbers are not."""
 OUTWEIGHED = "what is left without a name is worth more than half of what it took"
@@ -72,7 +75,7 @@ UNREPEATED = "less than one period was travelled, and a spring may look the same
 """Why what should repeat with position may be something else."""
 LEAVES_NOTHING = "what is left goes with {}, and of that it leaves nothing where it is the cause"
 """Why a name may be a relative of the cause that no catalogue has."""
-MAY_BE_NOTHING = "every one of its numbers may be 0"
+MAY_BE_NOTHING = "every number that says how strong it is may be 0"
 """Why a name beside another one may be what the form of that leaves."""
 THE_LAW = "the friction law"
 """What is left depends on, where another law leaves less of it."""
@@ -119,16 +122,27 @@ def gain_words(gain: Gain | None) -> str:
     )
 
 
-def what(record: EffectRecord, parameters: Mapping[str, FitParameter], effect: Effect) -> str:
+def what(
+    record: EffectRecord,
+    parameters: Mapping[str, FitParameter],
+    effect: Effect,
+    waves: Mapping[str, FitParameter] = MappingProxyType({}),
+) -> str:
     """What was found of an effect, with its fitted values, and those chosen of a grid.
 
-    ``parameters`` are those of the whole model.
+    ``parameters`` are those of the whole model, ``waves`` amplitudes and phases of its waves, which
+    are told in the place of the cosine and the sine that were fitted.
     """
-    values = [
-        order_words(path, p) or value_words(path.rsplit(".", 1)[-1], p)
-        for path, p in parameters.items()
-        if path.startswith(f"effects.{record.name}.")
-    ]
+    values = []
+    for path, p in parameters.items():
+        if not path.startswith(f"effects.{record.name}."):
+            continue
+        parts = parts_of(path)
+        if parts is None or amplitude_of(parts) not in waves:
+            values.append(order_words(path, p) or value_words(path.rsplit(".", 1)[-1], p))
+        elif path == parts[0]:
+            told = (amplitude_of(parts), phase_of(parts))
+            values += [value_words(wave.rsplit(".", 1)[-1], waves[wave]) for wave in told]
     chosen = [
         shape.parameter
         for shape in record.shapes
