@@ -23,6 +23,8 @@ from stiction.errors import InputError
 from stiction.paper import ARC_SECOND, Recorded, estimate
 from stiction.paper.readings import count_of, evidence, noise_of
 
+pytestmark = pytest.mark.slow
+
 graphical = importlib.import_module("stiction.paper.graphical")
 
 # What is asked of the estimate, as shares; the branch curve over 2 to 40 arc-seconds.
@@ -133,7 +135,6 @@ def test_a_ring_alone_gives_inertia_and_damper_and_warns_of_the_rest(recordings)
     assert width[1] > 10.0 * width[0]
 
 
-@pytest.mark.slow
 def test_slow_recordings_leave_inertia_and_damper_open(recordings):
     found = estimate(*recordings(3, ("holds",)))
     open_ = {name for name, each in found.parameters.items() if not each.determined}
@@ -162,7 +163,6 @@ def of_experiment_2(reading):
     return estimate(Recorded(dt, torque, reading), start=known, fixed=list(known))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_little_noise_does_not_slow_the_creep(seed):
     # An eighth of a count: least squares find 0.88 of the rate.
@@ -174,7 +174,6 @@ def test_little_noise_does_not_slow_the_creep(seed):
     assert rate.ci95[0] < TRUTH["creep_rate"] < rate.ci95[1]
 
 
-@pytest.mark.slow
 def test_readings_without_noise_are_warned_of():
     dt, torque = torques()["experiment 2"]
     run = paper.illustrative_motor().simulate(torque, dt, outputs=("position",))
