@@ -188,6 +188,8 @@ OF_TARGET: dict[str, Drawer] = {
     "Plant.friction": lambda d: f"Friction({d.text(['coulomb'])})",
     "Plant.effects": lambda d: f"(Effect({d.text(sorted(EFFECTS))}),)" if d.odd() else "()",
     "Plant.load.path": lambda d: d.file("plant.toml"),
+    "Plant.from_bam.path": lambda d: d.file("params.json"),
+    "bam.read_bam.path": lambda d: d.file("params.json"),
     "load.path": lambda d: d.file("session.toml"),
     "Recording.load.path": lambda d: d.file(".csv"),
     "recording.read_table.path": lambda d: d.file(d.pick(kinds())),
