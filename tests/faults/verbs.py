@@ -31,6 +31,7 @@ VERBS: dict[str, tuple[str, ...]] = {
     "plan": ("plan", "plant.toml", "--only", "turns"),
     "init": ("init", "run.csv"),
     "import": ("import", "params.json"),
+    "library": ("library", "emps"),
     "export": ("export", "plant.toml", "--to", "table", "--to", "urdf", "--to", "c"),
     "compensate": ("compensate", "plant.toml", "--session", "loop.toml"),
     "compare": ("compare", "coulomb", "--steps", "1000", "--draws", "0"),

@@ -6,6 +6,8 @@ import importlib
 from collections.abc import Callable
 from functools import cache
 
+from stiction.library import entries
+
 from .draw import EFFECTS, LAWS, Draw
 from .files import kinds
 from .meanings import arguments, mapped, moved
@@ -165,6 +167,7 @@ def command_lines(draw: Draw, verb: str) -> Program:
         "plan": [draw.file("plant.toml"), "'--only'", "'turns'"],
         "init": [draw.file(draw.pick(kinds()[:5]))],
         "import": [draw.file("params.json")],
+        "library": [repr(draw.pick([each.name for each in entries()]))],
         "compare": ["'coulomb'", "'--steps'", "'1000'"],
         "paper": ["'nested_loops'"],
         "demo": ["'--quick'"],

@@ -100,6 +100,14 @@ def session(*seeds: int, law: str = "coulomb") -> st.Session:
     return st.Session([recording(ROWS, seed, law) for seed in seeds or (0, 1)])
 
 
+def plain_entry() -> Any:
+    """A plain plant as an entry of the library."""
+    source = {"text": "here", "url": "nowhere", "license": "ours"}
+    own = plant("coulomb", friction={"law": "coulomb", "coulomb": 0.35})
+    numbers = {"friction.coulomb": stiction.library.Number(0.35, (0.3, 0.4), "N·m")}
+    return stiction.library.Entry("plain", "a motor", "published", own, numbers, source)
+
+
 PRODUCERS: dict[str, Callable[[], Any]] = {
     "Trajectory": lambda: motor().simulate(wave(50), 1e-3),
     "EnsembleRun": lambda: st.simulate_ensemble(motor(), np.ones((2, 5)), 1e-3),
@@ -114,6 +122,7 @@ PRODUCERS: dict[str, Callable[[], Any]] = {
     "Signal": lambda: stiction.plan.plan(plant(), only=["turns"]).signals[0],
     "Export": lambda: plant().export("table"),
     "Target": lambda: stiction.export.targets()["table"],
+    "Entry": lambda: plain_entry(),
     "Recorded": lambda: stiction.paper.Recorded(1e-3, wave(300), 1e-3 * wave(300, 1)),
     "Estimate": lambda: stiction.paper.estimate(stiction.paper.experiment_1()),
     "Measured": lambda: stiction.compare.Measured(True, {"a": 1.0}),

@@ -14,6 +14,7 @@ from .export import export
 from .fit import fit
 from .import_ import import_
 from .init import init
+from .library import library
 from .paper import paper
 from .plan import plan
 from .simulate import simulate
@@ -33,6 +34,6 @@ def build() -> cyclopts.App:
         app.command(verb)
     # A word that Python keeps for itself.
     app.command(import_, name="import")
-    for other in (compensate, laws, effects, compare, paper):
+    for other in (compensate, library, laws, effects, compare, paper):
         app.command(other)
     return app
