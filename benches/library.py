@@ -26,10 +26,13 @@ from tests.blind import real
 import stiction as st
 from stiction.bam import read_bam
 from stiction.fitting import FitResult
+from stiction.library.comparison import with_drive_held
 from stiction.plant_file import render
 
 ENTRIES = Path(__file__).parents[1] / "python" / "stiction" / "library" / "entries"
 SEED = 0
+SHORTEST_S = 10.0
+"""Of a session."""
 BAM_COMMIT = "1b5a1cee2e6dcd2ab8c12b013f1e05482b16cb96"
 NO_FLOOR = (
     "No floor is stated: what noise alone would leave is estimated at {value:.4g} {unit}, and the "
@@ -59,6 +62,9 @@ class Recipe:
     notes : tuple of str
     shared : tuple of str
         Of units: numbers that are those of the drive, and not of what it carries.
+    session_of : callable or None
+        Of a recording what it has in common with others of one session of a minute or less; each
+        session is fitted by itself from where the entry ends. None where there is one.
     """
 
     machine: str
@@ -70,6 +76,12 @@ class Recipe:
     floor: Callable[[st.Session], dict[str, Any]] | None = None
     notes: tuple[str, ...] = ()
     shared: tuple[str, ...] = ()
+    session_of: Callable[[st.Recording], Any] | None = None
+
+
+def alone(recording: st.Recording) -> Any:
+    """Each recording is a session, but for those of a few seconds."""
+    return recording.path if recording.duration > SHORTEST_S else None
 
 
 def repeats(session: st.Session) -> dict[str, Any]:
@@ -129,6 +141,7 @@ RECIPES: dict[str, Recipe] = {
             "effects": [{"name": "torque_constant_saturation"}],
         },
         diagnosed=False,
+        session_of=lambda recording: recording.kind,
         notes=("Gain of the firmware: 0.0028774 duty per rad and unit of its P gain.",),
     ),
     "sts3215": Recipe(
@@ -149,6 +162,8 @@ RECIPES: dict[str, Recipe] = {
         diagnosed=False,
         left_out=("183154",),
         floor=repeats,
+        # Every other log of one mass: all trajectories under both gains.
+        session_of=lambda recording: (recording.settings["payload_kg"], repeat_of(recording)),
         notes=(
             "Gain of the firmware: 0.166 duty per rad and unit of its P gain, a guess; resistance "
             "3.7 Ω is assumed, and the torque constant goes with it.",
@@ -166,6 +181,7 @@ RECIPES: dict[str, Recipe] = {
         },
         ("dfki",),
         left_out=("pd_system_identification", "torque_limited_swingup"),
+        session_of=alone,
         notes=(
             "Torque is an estimate of the drive's, from its current.",
             "The three runs of 0.5 kg. Of the two left out, one carries less, and the other rests "
@@ -183,6 +199,7 @@ RECIPES: dict[str, Recipe] = {
         },
         ("mr_damper",),
         {"friction": {"law": "dahl"}, "effects": [{"name": "torque_bias"}]},
+        session_of=alone,
         notes=("The bias is that of the force sensor, which drifts.",),
     ),
     "basalt_fault": Recipe(
@@ -294,7 +311,8 @@ def entry_of(name: str, recipe: Recipe) -> str:
     }
     if floors:
         table["floor"] = {key: floors[-1][key] for key in ("value", "unit", "text")}
-    numbers = {path: number_of(result, path, units) for path in shown(result, recipe)}
+    single = sessions_of(recipe, session, result)
+    numbers = {path: number_of(result, path, units, single) for path in shown(result, recipe)}
     return written(table, numbers, result.plant)
 
 
@@ -316,6 +334,23 @@ def session_of(machine: str, recipe: Recipe) -> st.Session:
         if not (recording.path and any(end in recording.path.name for end in recipe.left_out))
     ]
     return st.Session(kept, plant)
+
+
+def repeat_of(recording: st.Recording) -> int:
+    """Which of two repeats a log of the second servo is: they follow each other in time."""
+    assert recording.path is not None
+    same = sorted(
+        path.name for path in recording.path.parent.glob("*.json") if _like(path, recording)
+    )
+    return same.index(recording.path.name) % 2
+
+
+def _like(path: Path, recording: st.Recording) -> bool:
+    header = json.loads(path.read_bytes())
+    mass, gain = header["mass"] + real.ARM_KG, header["kp"] * real.DUTY["sts3215"]
+    settings = recording.settings
+    own = (settings["payload_kg"], settings["proportional"], recording.kind)
+    return bool((mass, gain, header["trajectory"]) == own)
 
 
 def every_servo_log(source: Path, where: Path) -> Path:
@@ -359,14 +394,33 @@ def shown(result: FitResult, recipe: Recipe) -> list[str]:
     return [path for path in result.parameters if not recipe.shared or path in recipe.shared]
 
 
-def number_of(result: FitResult, path: str, units: dict[str, list[float]]) -> dict[str, Any]:
-    """A number with its interval, and the values of units."""
+def sessions_of(recipe: Recipe, session: st.Session, result: FitResult) -> list[FitResult]:
+    """Fits of single sessions of a unit, from where the fit of all of them ends."""
+    if recipe.session_of is None:
+        return []
+    groups: dict[Any, list[st.Recording]] = {}
+    for recording in session:
+        groups.setdefault(recipe.session_of(recording), []).append(recording)
+    groups.pop(None, None)
+    plant, _ = with_drive_held(result.plant)
+    return [st.fit(plant, group) for group in groups.values()]
+
+
+def number_of(
+    result: FitResult, path: str, units: dict[str, list[float]], single: list[FitResult]
+) -> dict[str, Any]:
+    """A number with its interval, and the values of units and of single sessions."""
     found = result[path]
     low, high = found.ci95
     table: dict[str, Any] = {"unit": found.unit}
     if np.isfinite(low) and np.isfinite(high):
         table = {"ci95": [float(low), float(high)], **table}
-    return table | ({"units": units[path]} if path in units else {})
+    if path in units:
+        table["units"] = units[path]
+    values = [fit[path].value for fit in single if path in fit.parameters]
+    if len(values) > 1:
+        table["sessions"] = values
+    return table
 
 
 # --- of published files

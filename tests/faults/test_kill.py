@@ -45,7 +45,7 @@ VERBS: dict[str, list[str]] = {
     "init": ["init", "CSV", "-o", "OUT"],
     "simulate": ["simulate", "PLANT", "SESSION", "-o", "OUT"],
     "import": ["import", "BAM", "-o", "OUT"],
-    "library": ["library", "emps", "-o", "OUT"],
+    "library": ["library", "ur10e_wrist", "--session", "SESSION", "-o", "OUT"],
     "fit": ["fit", "SESSION", "-o", "OUT"],
     "diagnose": ["diagnose", "SESSION", "-o", "OUT"],
     "plan": ["plan", "PLANT", "--only", "ramps", "-o", "OUT"],

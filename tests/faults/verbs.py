@@ -31,7 +31,7 @@ VERBS: dict[str, tuple[str, ...]] = {
     "plan": ("plan", "plant.toml", "--only", "turns"),
     "init": ("init", "run.csv"),
     "import": ("import", "params.json"),
-    "library": ("library", "emps"),
+    "library": ("library", "ur10e_wrist", "--session", "session.toml"),
     "export": ("export", "plant.toml", "--to", "table", "--to", "urdf", "--to", "c"),
     "compensate": ("compensate", "plant.toml", "--session", "loop.toml"),
     "compare": ("compare", "coulomb", "--steps", "1000", "--draws", "0"),

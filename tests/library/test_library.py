@@ -30,6 +30,7 @@ license = "none"
 ci95 = [0.2, 0.4]
 unit = "N·m"
 units = [0.25, 0.3, 0.35]
+sessions = [0.28, 0.29]
 [plant.drive]
 input = "torque_nm"
 gain = 1.0
@@ -112,7 +113,13 @@ def test_a_new_file_is_an_entry(tmp_path, monkeypatch):
     library.entries.cache_clear()
     try:
         assert [each.name for each in library.entries()] == ["mine"]
-        assert library.entry("mine").numbers["friction.coulomb"].value == 0.3
+        number = library.entry("mine").numbers["friction.coulomb"]
+        assert (number.value, number.units, number.sessions) == (
+            0.3,
+            (0.25, 0.3, 0.35),
+            (0.28, 0.29),
+        )
+        assert number.expected.endswith("(3 units)")
     finally:
         monkeypatch.undo()
         library.entries.cache_clear()
@@ -175,6 +182,8 @@ def found_at(value, half, at_bound=""):
         (found_at(0.9, 0.015), Number(0.3, (0.29, 0.31), "", (0.25, 0.3, 0.35)), "differs"),
         (found_at(0.3, 0.01), Number(0.3, None, ""), "alike"),
         (found_at(0.35, 0.01), Number(0.3, None, ""), "beyond the interval"),
+        (found_at(0.35, 0.01), Number(0.3, None, "", (), (0.27, 0.3, 0.36)), "alike"),
+        (found_at(0.95, 0.01), Number(0.3, None, "", (), (0.27, 0.3, 0.36)), "beyond the interval"),
         (found_at(0.3, np.inf), Number(0.3, (0.29, 0.31), ""), "not determined"),
         (found_at(0.9, 0.01, "upper"), Number(0.3, (0.29, 0.31), ""), "not determined"),
     ],
@@ -200,8 +209,26 @@ def test_a_unit_that_is_alike_and_one_that_differs():
     assert other.result["coulomb"].value == pytest.approx(0.9, rel=0.02)
     text = str(other)
     assert "more than from unit to unit" in text
+    assert other.kept > 5.0 * other.fitted
+    assert same.kept < 1.1 * same.fitted
     assert "of the unit that is known" in text
     json.dumps(other.to_dict())
+
+
+def test_numbers_that_explain_hardly_more_are_doubted():
+    entry = entry_of(units=())
+    # Two per cent more friction than the interval allows, and noise that hides it.
+    worn = entry.plant.with_values({"friction.coulomb": 0.33})
+    time, given, position = recorded(worn)
+    shaken = given + 1.0 * np.random.default_rng(1).standard_normal(len(given))
+    found = library.compare(entry, st.Recording(time, shaken, position))
+    assert found.hardly_more
+    clear = library.compare(entry, st.Recording(time, given, position))
+    assert not clear.hardly_more
+    assert "friction.coulomb" in clear.differing
+    assert "hardly more" not in clear.message
+    doubted = replace(clear, kept=1.1 * clear.fitted)
+    assert "the entry as it is leaves hardly more" in doubted.message
 
 
 def test_what_it_carries_is_told_apart():

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from textwrap import wrap
+from typing import Annotated, Final
 
 from cyclopts import Parameter
 
@@ -19,6 +20,9 @@ from .progress import progress
 from .sessions import mended, spoken_of
 
 __all__ = ["library"]
+
+WIDTH: Final = 100
+"""Of a terminal, in characters."""
 
 
 def library(
@@ -65,18 +69,7 @@ def library(
 
 def _listed(out: Path | None, *, as_json: bool) -> None:
     every = entries()
-    rows = [("name", "machine", "law and effects", "source")]
-    rows += [
-        (
-            each.name,
-            each.machine,
-            " + ".join((each.plant.friction.law, *each.effects)),
-            f"{each.kind}: {each.source['text']}",
-        )
-        for each in every
-    ]
-    widths = [max(len(row[k]) for row in rows) for k in range(3)]
-    text = "\n".join("  ".join([*(f"{r[k]:<{widths[k]}}" for k in range(3)), r[3]]) for r in rows)
+    text = "\n".join(line for each in every for line in _lines(each))
     data = [each.to_dict() for each in every]
     if out is not None:
         from ..json_text import json_of
@@ -85,6 +78,19 @@ def _listed(out: Path | None, *, as_json: bool) -> None:
         with written(where):
             write_text(where / "library.json", json_of(data) + "\n")
     answer(text, data, as_json=as_json)
+
+
+def _lines(each: Entry) -> list[str]:
+    """An entry in lines that fit a terminal: name and machine, law and effects, source."""
+    law = " + ".join((each.plant.friction.law, *each.effects))
+    indent = 18 * " "
+    source = wrap(
+        f"{each.kind}: {each.source['text']}",
+        WIDTH,
+        initial_indent=indent,
+        subsequent_indent=indent,
+    )
+    return [f"{each.name:<16}  {each.machine}", f"{indent}{law}", *source]
 
 
 def _compared(found: Entry, path: Path, out: Path | None, *, as_json: bool) -> None:

@@ -28,9 +28,9 @@ _KINDS: Final = ("recordings", "published")
 _SOURCE: Final = ("text", "url", "license")
 _MADE: Final = ("version", "command", "seed", "units", "recordings", "seconds")
 _FLOOR: Final = ("value", "unit", "text")
-_NUMBER: Final = ("ci95", "unit", "units")
+_NUMBER: Final = ("ci95", "unit", "units", "sessions")
 COVERED: Final = 0.95
-"""Share of units that a band is to hold."""
+"""Share of units, or of sessions, that a band is to hold."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,9 @@ class Number:
     unit : str
     units : tuple of float
         Values of single units, each recorded and fitted by itself; empty where there was one unit.
+    sessions : tuple of float
+        Values of single sessions of the same unit, of a minute or less each: what they differ by is
+        what a plant lacks, of which an interval knows little. Empty where there was one.
     least : float
         Below which the number has no meaning, such as 0 for friction.
     """
@@ -54,22 +57,37 @@ class Number:
     ci95: tuple[float, float] | None
     unit: str
     units: tuple[float, ...] = ()
+    sessions: tuple[float, ...] = ()
     least: float = -math.inf
 
     @property
     def band(self) -> tuple[float, float] | None:
-        """Where 95 % of further units are expected; None where one unit was recorded.
+        """Where 95 % of further units are expected; None where one unit was recorded."""
+        return self._expected(self.units)
 
-        mean ± t·s·√(1 + 1/n), t of Student with n − 1 degrees: wide where n is small, as it has to
-        be.
-        """
-        n = len(self.units)
+    @property
+    def within(self) -> tuple[float, float] | None:
+        """Where 95 % of further sessions of the same unit are expected; None of one session."""
+        return self._expected(self.sessions)
+
+    @property
+    def expected(self) -> str:
+        """The band that is known, of units before sessions, in words."""
+        if self.band is not None:
+            return f"{span(self.band)} ({len(self.units)} units)"
+        if self.within is not None:
+            return f"{span(self.within)} ({len(self.sessions)} sessions)"
+        return "not known"
+
+    def _expected(self, values: tuple[float, ...]) -> tuple[float, float] | None:
+        """mean ± t·s·√(1 + 1/n), t of Student with n − 1 degrees: wide where n is small."""
+        n = len(values)
         if n < 2:
             return None
         from scipy.stats import t
 
-        width = float(t.ppf(0.5 + 0.5 * COVERED, n - 1)) * float(np.std(self.units, ddof=1))
-        middle, width = float(np.mean(self.units)), width * math.sqrt(1.0 + 1.0 / n)
+        width = float(t.ppf(0.5 + 0.5 * COVERED, n - 1)) * float(np.std(values, ddof=1))
+        middle, width = float(np.mean(values)), width * math.sqrt(1.0 + 1.0 / n)
         return max(middle - width, self.least), middle + width
 
     def to_dict(self) -> dict[str, Any]:
@@ -80,6 +98,8 @@ class Number:
             "unit": self.unit,
             "units": list(self.units),
             "band": None if self.band is None else list(self.band),
+            "sessions": list(self.sessions),
+            "within": None if self.within is None else list(self.within),
         }
 
 
@@ -171,20 +191,18 @@ class Entry:
         return "\n".join([*lines, "", *self._table(), *(f"  {each}" for each in self.notes)])
 
     def _table(self) -> list[str]:
-        rows = [("number", "value", "95 % interval", "unit", "95 % of units")]
+        rows = [("number", "value", "95 % interval", "unit", "95 % are expected in")]
         for path, each in self.numbers.items():
-            band = "one unit" if self.units == 1 else "not known"
-            if each.band is not None:
-                band = f"{_span(each.band)} (of {len(each.units)})"
-            interval = "none stated" if each.ci95 is None else _span(each.ci95)
-            rows.append((path, f"{each.value:.5g}", interval, each.unit, band))
+            interval = "none stated" if each.ci95 is None else span(each.ci95)
+            rows.append((path, f"{each.value:.5g}", interval, each.unit, each.expected))
         widths = [max(len(row[k]) for row in rows) for k in range(4)]
         return [
             "  ".join([*(f"{r[k]:<{widths[k]}}" for k in range(4)), r[4]]).rstrip() for r in rows
         ]
 
 
-def _span(ends: tuple[float, float]) -> str:
+def span(ends: tuple[float, float]) -> str:
+    """An interval in words."""
     return f"{ends[0]:.4g} to {ends[1]:.4g}"
 
 
@@ -274,8 +292,9 @@ def _number(plant: Plant, path: str, table: Any, source: str) -> Number:
         value = plant.gain
     else:
         raise InputError(f"{where}: the plant states no such number; state it under [plant]")
-    ends, units = table.get("ci95"), table.get("units", [])
-    for name, each in (("ci95", ends or []), ("units", units)):
+    ends = table.get("ci95")
+    lists = {name: table.get(name, []) for name in ("ci95", "units", "sessions")}
+    for name, each in lists.items():
         if not isinstance(each, list):
             raise InputError(f"{where} {name} = {each!r} is not a list; write numbers in brackets")
     interval = None
@@ -286,9 +305,12 @@ def _number(plant: Plant, path: str, table: Any, source: str) -> Number:
         if not low <= value <= high:
             raise InputError(f"{where}: {value:g} is not in its interval {low:g} to {high:g}")
         interval = (low, high)
-    single = tuple(number(each, f"{where} units") for each in units)
+    units, sessions = (
+        tuple(number(each, f"{where} {name}") for each in lists[name])
+        for name in ("units", "sessions")
+    )
     unit = given.word(table.get("unit", ""), f"{where} unit")
-    return Number(value, interval, unit, single, _least(plant, path))
+    return Number(value, interval, unit, units, sessions, _least(plant, path))
 
 
 def _least(plant: Plant, path: str) -> float:
