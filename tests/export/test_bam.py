@@ -318,6 +318,9 @@ def test_every_actuator_is_read(name, tmp_path):
         ('{"model": "m1", "actuator": "mx64", "kt": 1e999}', "kt = inf"),
         ('{"model": "m1", "actuator": "mx64", "R": 0}', "R = 0 is not above 0"),
         ('{"model": "m1", "actuator": "mx64", "friction_base": -1}', "coulomb"),
+        ('{"model": "m1", "actuator": "mx64", "kp": 0}', "proportional"),
+        ('{"model": "m1", "actuator": "erob80_50", "kp": 90, "vin": 0}', "vin = 0 is not above 0"),
+        ('{"model": "m1", "actuator": "sts3215", "max_velocity": 0}', "max_velocity = 0"),
     ],
 )
 def test_what_is_no_file_of_parameters_is_refused(text, words, tmp_path):

@@ -12,7 +12,7 @@ import stiction as st
 from stiction import library
 from stiction.cli import run
 from stiction.fitting import FitParameter
-from stiction.library import Entry, Number
+from stiction.library import Entry, EntryNumber
 from stiction.library.comparison import plant_like, said
 from stiction.library.entry_file import read_entry
 from stiction.parameter import Parameter
@@ -66,8 +66,8 @@ def entry_of(units=(0.25, 0.3, 0.35)):
         }
     )
     numbers = {
-        "friction.coulomb": Number(0.3, (0.29, 0.31), "N·m", tuple(units)),
-        "friction.viscous": Number(0.02, (0.018, 0.022), "N·m·s/rad"),
+        "friction.coulomb": EntryNumber(0.3, (0.29, 0.31), "N·m", tuple(units)),
+        "friction.viscous": EntryNumber(0.02, (0.018, 0.022), "N·m·s/rad"),
     }
     source = {"text": "here", "url": "none", "license": "ours"}
     return Entry("motor", "a motor", "published", plant, numbers, source)
@@ -159,11 +159,11 @@ def test_a_band_holds_as_many_units_as_it_says():
     inside = []
     for _ in range(2000):
         units = rng.normal(2.0, 0.3, 5)
-        low, high = Number(float(units[0]), None, "", tuple(units[:4])).band
+        low, high = EntryNumber(float(units[0]), None, "", tuple(units[:4])).band
         inside.append(low <= units[4] <= high)
     assert np.mean(inside) == pytest.approx(0.95, abs=0.015)
-    assert Number(1.0, None, "", (1.0,)).band is None
-    assert Number(1.0, None, "", (0.5, 2.0), least=0.0).band[0] == 0.0
+    assert EntryNumber(1.0, None, "", (1.0,)).band is None
+    assert EntryNumber(1.0, None, "", (0.5, 2.0), least=0.0).band[0] == 0.0
 
 
 # --- a unit of one's own
@@ -176,16 +176,20 @@ def found_at(value, half, at_bound=""):
 @pytest.mark.parametrize(
     ("own", "library_number", "word"),
     [
-        (found_at(0.3, 0.01), Number(0.3, (0.29, 0.31), ""), "alike"),
-        (found_at(0.33, 0.015), Number(0.3, (0.29, 0.31), ""), "beyond the interval"),
-        (found_at(0.33, 0.015), Number(0.3, (0.29, 0.31), "", (0.25, 0.3, 0.35)), "alike"),
-        (found_at(0.9, 0.015), Number(0.3, (0.29, 0.31), "", (0.25, 0.3, 0.35)), "differs"),
-        (found_at(0.3, 0.01), Number(0.3, None, ""), "alike"),
-        (found_at(0.35, 0.01), Number(0.3, None, ""), "beyond the interval"),
-        (found_at(0.35, 0.01), Number(0.3, None, "", (), (0.27, 0.3, 0.36)), "alike"),
-        (found_at(0.95, 0.01), Number(0.3, None, "", (), (0.27, 0.3, 0.36)), "beyond the interval"),
-        (found_at(0.3, np.inf), Number(0.3, (0.29, 0.31), ""), "not determined"),
-        (found_at(0.9, 0.01, "upper"), Number(0.3, (0.29, 0.31), ""), "not determined"),
+        (found_at(0.3, 0.01), EntryNumber(0.3, (0.29, 0.31), ""), "alike"),
+        (found_at(0.33, 0.015), EntryNumber(0.3, (0.29, 0.31), ""), "beyond the interval"),
+        (found_at(0.33, 0.015), EntryNumber(0.3, (0.29, 0.31), "", (0.25, 0.3, 0.35)), "alike"),
+        (found_at(0.9, 0.015), EntryNumber(0.3, (0.29, 0.31), "", (0.25, 0.3, 0.35)), "differs"),
+        (found_at(0.3, 0.01), EntryNumber(0.3, None, ""), "alike"),
+        (found_at(0.35, 0.01), EntryNumber(0.3, None, ""), "beyond the interval"),
+        (found_at(0.35, 0.01), EntryNumber(0.3, None, "", (), (0.27, 0.3, 0.36)), "alike"),
+        (
+            found_at(0.95, 0.01),
+            EntryNumber(0.3, None, "", (), (0.27, 0.3, 0.36)),
+            "beyond the interval",
+        ),
+        (found_at(0.3, np.inf), EntryNumber(0.3, (0.29, 0.31), ""), "not determined"),
+        (found_at(0.9, 0.01, "upper"), EntryNumber(0.3, (0.29, 0.31), ""), "not determined"),
     ],
 )
 def test_two_numbers_differ_where_neither_interval_nor_spread_explains_it(
@@ -199,7 +203,7 @@ def test_a_unit_that_is_alike_and_one_that_differs():
     same = library.compare(entry, st.Session([st.Recording(*recorded(entry.plant))]))
     assert same.seconds < 60.0
     assert same.differing == ()
-    assert same.message == "as motor in 2 numbers"
+    assert same.message == "agrees with motor in 2 numbers"
     worn = entry.plant.with_values({"friction.coulomb": 0.9, "friction.viscous": 0.03})
     other = library.compare(entry, st.Session([st.Recording(*recorded(worn))]))
     assert {e.path: e.said for e in other.numbers} == {
@@ -233,12 +237,12 @@ def test_numbers_that_explain_hardly_more_are_doubted():
 
 def test_what_it_carries_is_told_apart():
     entry = entry_of()
-    numbers = {**entry.numbers, "body.inertia": Number(0.01, (0.0099, 0.0101), "kg·m²")}
+    numbers = {**entry.numbers, "body.inertia": EntryNumber(0.01, (0.0099, 0.0101), "kg·m²")}
     entry = replace(entry, numbers=numbers)
     heavy = entry.plant.with_values({"body.inertia": 0.03})
     found = library.compare(entry, st.Recording(*recorded(heavy)))
     assert found.differing == ("body.inertia",)
-    assert found.message == "as motor in 2 numbers; what it carries differs: body.inertia"
+    assert found.message == "agrees with motor in 2 numbers; what it carries differs: body.inertia"
 
 
 def test_a_drive_that_may_give_nothing_is_held():

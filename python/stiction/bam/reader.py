@@ -278,6 +278,10 @@ class _Drive:
                 raise InputError(
                     f"{source}: {key} = {numbers[key]:g} is not above 0; give what the motor has"
                 )
+        if stated.get("vin", 1.0) <= 0.0:
+            raise InputError(
+                f"{source}: vin = {stated['vin']:g} is not above 0; give the supply in V"
+            )
         known = ACTUATORS.get(name)
         if input is not None:
             self._open(choice(input, ("voltage_v", "current_a", "torque_nm"), f"{source}: input"))

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from .. import session as sessions
 from ..atomic_files import write_text
 from ..errors import InputError
-from ..library import Comparison, Entry, compare, entries, entry
+from ..library import Entry, UnitComparison, compare, entries, entry
 from ..plant_file import read_toml
 from ..session import Session
 from .answer import answer, folder, told_anyway, written
@@ -108,7 +108,7 @@ def _compared(found: Entry, path: Path, out: Path | None, *, as_json: bool) -> N
         raise KeyboardInterrupt
 
 
-def _told(recordings: Session, found: Comparison, where: Path, *, as_json: bool) -> None:
+def _told(recordings: Session, found: UnitComparison, where: Path, *, as_json: bool) -> None:
     files = [where / "plant.toml", where / "comparison.json"]
     with told_anyway(str(found), found.to_dict(), as_json=as_json), written(where):
         found.result.plant.save(files[0])

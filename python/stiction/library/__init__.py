@@ -5,7 +5,7 @@ Each file in ``entries`` is one, found by itself. An entry holds numbers and no 
 
 from __future__ import annotations
 
-from .comparison import Compared, Comparison, compare
-from .entry_file import Entry, Number, entries, entry
+from .comparison import UnitComparison, UnitNumber, compare
+from .entry_file import Entry, EntryNumber, entries, entry
 
-__all__ = ["Compared", "Comparison", "Entry", "Number", "compare", "entries", "entry"]
+__all__ = ["Entry", "EntryNumber", "UnitComparison", "UnitNumber", "compare", "entries", "entry"]

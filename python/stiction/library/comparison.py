@@ -26,9 +26,9 @@ from ..residual import EffortResidual, effort_residual, free_run
 from ..session import Session
 from ..trajectory import FloatArray
 from ..wording import counted, listed
-from .entry_file import Entry, Number, span
+from .entry_file import Entry, EntryNumber, span
 
-__all__ = ["Compared", "Comparison", "compare", "plant_like"]
+__all__ = ["UnitComparison", "UnitNumber", "compare", "plant_like"]
 
 OWN: Final = ("motion", "drive", "body", "sensor", "controller")
 """Tables of a plant file that say how one's own machine is driven and read, and what it carries."""
@@ -43,7 +43,7 @@ Said = Literal["alike", "differs", "beyond the interval", "not determined"]
 
 
 @dataclass(frozen=True)
-class Compared:
+class UnitNumber:
     """One number of a unit beside that of the library.
 
     Attributes
@@ -51,7 +51,7 @@ class Compared:
     path : str
     own : FitParameter
         With its interval.
-    library : Number
+    library : EntryNumber
     said : str
         "alike" where the interval of the unit meets that of the library, or the band in which units
         are expected, or sessions of the one unit that is known; "differs" where it meets none of
@@ -61,7 +61,7 @@ class Compared:
 
     path: str
     own: FitParameter
-    library: Number
+    library: EntryNumber
     said: Said
 
     @property
@@ -83,7 +83,7 @@ class Compared:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class UnitComparison:
     """A unit beside an entry.
 
     Attributes
@@ -91,7 +91,7 @@ class Comparison:
     entry : Entry
     result : FitResult
         Of the plant of the entry, fitted to the recordings.
-    numbers : tuple of Compared
+    numbers : tuple of UnitNumber
     seconds : float
         That were recorded.
     held : tuple of str
@@ -103,7 +103,7 @@ class Comparison:
 
     entry: Entry
     result: FitResult
-    numbers: tuple[Compared, ...]
+    numbers: tuple[UnitNumber, ...]
     seconds: float
     held: tuple[str, ...] = ()
     kept: float = math.nan
@@ -130,7 +130,9 @@ class Comparison:
         )
         parts = [f"{listed(e.path for e in group)}: {word}" for word, group in groups if group]
         name, many = self.entry.name, counted(len(own), "number")
-        first = f"differs from {name}: {'; '.join(parts)}" if parts else f"as {name} in {many}"
+        first = (
+            f"differs from {name}: {'; '.join(parts)}" if parts else f"agrees with {name} in {many}"
+        )
         load = [each.path for each in told if each.carried and each.said != "alike"]
         told_all = f"{first}; what it carries differs: {listed(load)}" if load else first
         if parts and self.hardly_more:
@@ -239,7 +241,7 @@ def plant_like(entry: Entry, plant: Plant | None) -> Plant:
     return Plant.from_dict(table, source=plant.source)
 
 
-def compare(entry: Entry, session: Session | Recording | Sequence[Recording]) -> Comparison:
+def compare(entry: Entry, session: Session | Recording | Sequence[Recording]) -> UnitComparison:
     """Fit recordings of a unit from where an entry stands, and put both side by side.
 
     Parameters
@@ -251,7 +253,7 @@ def compare(entry: Entry, session: Session | Recording | Sequence[Recording]) ->
 
     Returns
     -------
-    Comparison
+    UnitComparison
 
     Raises
     ------
@@ -265,7 +267,9 @@ def compare(entry: Entry, session: Session | Recording | Sequence[Recording]) ->
     inertia = result.parameters.get("body.inertia")
     lost = inertia is not None and inertia.at_bound == "lower"
     numbers = tuple(
-        Compared(path, each, entry.numbers[path], LOST if lost else said(each, entry.numbers[path]))
+        UnitNumber(
+            path, each, entry.numbers[path], LOST if lost else said(each, entry.numbers[path])
+        )
         for path, each in result.parameters.items()
         if path in entry.numbers
     )
@@ -274,7 +278,7 @@ def compare(entry: Entry, session: Session | Recording | Sequence[Recording]) ->
     own = _Left(recordings, result)
     kept = min(own.share(replace(plant, body=b)) for b in _bodies(plant, result, session))
     fitted = own.share(result.plant)
-    return Comparison(entry, result, numbers, seconds, held, kept, fitted)
+    return UnitComparison(entry, result, numbers, seconds, held, kept, fitted)
 
 
 def with_drive_held(plant: Plant) -> tuple[Plant, tuple[str, ...]]:
@@ -357,7 +361,7 @@ def _fixed(parameters: Mapping[str, Parameter]) -> dict[str, Parameter]:
     return {name: replace(each, fixed=True) for name, each in parameters.items()}
 
 
-def said(own: FitParameter, library: Number) -> Said:
+def said(own: FitParameter, library: EntryNumber) -> Said:
     """What is to be said of two numbers."""
     low, high = own.ci95
     if not (math.isfinite(low) and math.isfinite(high)) or own.at_bound:

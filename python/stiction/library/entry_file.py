@@ -20,7 +20,7 @@ from ..plant import Plant
 from ..plant_file import read_toml, section
 from ..wording import counted, did_you_mean, listed
 
-__all__ = ["Entry", "Number", "entries", "entry", "read_entry"]
+__all__ = ["Entry", "EntryNumber", "entries", "entry", "read_entry"]
 
 _FOLDER: Final = Path(__file__).parent / "entries"
 _TABLES: Final = ("machine", "kind", "source", "made", "floor", "numbers", "notes", "plant")
@@ -34,7 +34,7 @@ COVERED: Final = 0.95
 
 
 @dataclass(frozen=True)
-class Number:
+class EntryNumber:
     """A number of an entry.
 
     Attributes
@@ -117,7 +117,7 @@ class Entry:
         Whether its numbers were fitted to recordings, or stand in a publication.
     plant : Plant
         Ready to simulate, as far as the source states what that needs.
-    numbers : mapping of str to Number
+    numbers : mapping of str to EntryNumber
         By path.
     source : mapping of str to str
         ``text`` (who measured, where it stands), ``url``, ``license`` of the data.
@@ -135,7 +135,7 @@ class Entry:
     machine: str
     kind: str
     plant: Plant
-    numbers: Mapping[str, Number]
+    numbers: Mapping[str, EntryNumber]
     source: Mapping[str, str]
     made: Mapping[str, Any] = field(default_factory=dict)
     floor: Mapping[str, Any] = field(default_factory=dict)
@@ -280,7 +280,7 @@ def read_entry(path: Path) -> Entry:
     )
 
 
-def _number(plant: Plant, path: str, table: Any, source: str) -> Number:
+def _number(plant: Plant, path: str, table: Any, source: str) -> EntryNumber:
     where = f"{source}: [numbers.'{path}']"
     if not isinstance(table, Mapping):
         raise InputError(f"{where} is not a table; write ci95 and unit")
@@ -310,7 +310,7 @@ def _number(plant: Plant, path: str, table: Any, source: str) -> Number:
         for name in ("units", "sessions")
     )
     unit = given.word(table.get("unit", ""), f"{where} unit")
-    return Number(value, interval, unit, units, sessions, _least(plant, path))
+    return EntryNumber(value, interval, unit, units, sessions, _least(plant, path))
 
 
 def _least(plant: Plant, path: str) -> float:
