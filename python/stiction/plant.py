@@ -145,6 +145,32 @@ class Plant:
         plant._check()
         return plant
 
+    @classmethod
+    def from_bam(
+        cls, path: str | Path, *, kp: float | None = None, vin: float | None = None
+    ) -> Plant:
+        """A plant from a file of parameters of `better-actuator-models`.
+
+        Parameters
+        ----------
+        path : str or Path
+            JSON, as `bam.fit` writes it.
+        kp, vin : float, optional
+            Gain of the firmware in BAM's unit, and supply in V, where the file's do not hold.
+
+        Returns
+        -------
+        Plant
+
+        Raises
+        ------
+        InputError
+            As for ``stiction.bam.read_bam``, which tells as well what the file leaves open.
+        """
+        from .bam import read_bam
+
+        return read_bam(path, kp=kp, vin=vin).plant
+
     def save(self, path: str | Path) -> Path:
         """Write a plant file.
 

@@ -67,6 +67,14 @@ class Desk:
         path.write_text(SESSION.replace("[[recordings]]", reference), encoding="utf-8")
         return path
 
+    def parameters(self) -> Path:
+        """A file of parameters of better-actuator-models beside it."""
+        path = self.folder / "params.json"
+        numbers = {"kt": 1.6, "R": 3.0, "armature": 0.01, "friction_base": 0.1}
+        table = {"model": "m1", "actuator": "mx64", "friction_viscous": 0.02, **numbers}
+        path.write_text(json.dumps(table), encoding="utf-8")
+        return path
+
     def write_csv(self) -> None:
         """The columns as they are now, into run.csv."""
         rows = [",".join(map(repr, row)) for row in zip(*map(list, self.floats()), strict=True)]

@@ -44,6 +44,8 @@ REPORT = (
 VERBS: dict[str, list[str]] = {
     "init": ["init", "CSV", "-o", "OUT"],
     "simulate": ["simulate", "PLANT", "SESSION", "-o", "OUT"],
+    "import": ["import", "BAM", "-o", "OUT"],
+    "library": ["library", "ur10e_wrist", "--session", "SESSION", "-o", "OUT"],
     "fit": ["fit", "SESSION", "-o", "OUT"],
     "diagnose": ["diagnose", "SESSION", "-o", "OUT"],
     "plan": ["plan", "PLANT", "--only", "ramps", "-o", "OUT"],
@@ -58,7 +60,7 @@ VERBS: dict[str, list[str]] = {
     "stream": ["-c", STREAM, "OUT/state.npz"],
 }
 """Arguments of the command line, or of Python where they begin with -c."""
-FRESH = {"init", "plan", "demo", "stream"}
+FRESH = {"init", "import", "plan", "demo", "stream"}
 """What refuses to write over a file, or goes on from it."""
 SLOW = {"paper", "diagnose"}
 """Left to the long run: most of what they do is no writing."""
@@ -164,6 +166,7 @@ class Killed:
             "PLANT": str(self._desk.plant),
             "CSV": str(self._desk.csv),
             "LOOP": str(self._desk.loop()),
+            "BAM": str(self._desk.parameters()),
         }
         words = [paths.get(each, each.replace("OUT", str(out))) for each in VERBS[self.verb]]
         module = [] if words[0] == "-c" else ["-m", "stiction"]

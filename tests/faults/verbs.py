@@ -30,6 +30,8 @@ VERBS: dict[str, tuple[str, ...]] = {
     "diagnose": ("diagnose", "session.toml", "--surrogates", "4"),
     "plan": ("plan", "plant.toml", "--only", "turns"),
     "init": ("init", "run.csv"),
+    "import": ("import", "params.json"),
+    "library": ("library", "ur10e_wrist", "--session", "session.toml"),
     "export": ("export", "plant.toml", "--to", "table", "--to", "urdf", "--to", "c"),
     "compensate": ("compensate", "plant.toml", "--session", "loop.toml"),
     "compare": ("compare", "coulomb", "--steps", "1000", "--draws", "0"),
@@ -41,7 +43,7 @@ VERBS: dict[str, tuple[str, ...]] = {
 """How each verb is run in a folder that holds the session; --out follows."""
 QUICK = tuple(verb for verb in VERBS if verb not in ("paper", "demo"))
 """Those that are done in seconds."""
-KEEPERS = ("plan", "init")
+KEEPERS = ("plan", "init", "import")
 """Verbs that refuse a folder which holds their files already."""
 PATIENCE_S = 240.0
 """Far more than any of it takes, on a machine that has much else to do."""
@@ -165,6 +167,7 @@ def desk(folder: Path) -> Path:
     """A folder with a good session in it."""
     folder.mkdir(parents=True)
     Desk(folder).loop()
+    Desk(folder).parameters()
     return folder
 
 

@@ -6,6 +6,8 @@ import importlib
 from collections.abc import Callable
 from functools import cache
 
+from stiction.library import entries
+
 from .draw import EFFECTS, LAWS, Draw
 from .files import kinds
 from .meanings import arguments, mapped, moved
@@ -139,6 +141,8 @@ def file_lines(draw: Draw, kind: str) -> Program:
     path = draw.file(kind, damaged=draw.chance(0.7))
     if kind == "plant.toml":
         return [f"p = {path}", "x = st.Plant.load(p)", "x.motor()", f"x.save({path})"]
+    if kind == "params.json":
+        return [f"p = {path}", "x = st.Plant.from_bam(p)", "look(x)"]
     if kind == "session.toml":
         return [f"p = {path}", "x = st.load(p)", "look(x)"]
     if kind == "checkpoint":
@@ -162,6 +166,8 @@ def command_lines(draw: Draw, verb: str) -> Program:
         "simulate": [draw.file("plant.toml"), draw.file(draw.pick(kinds()[:5]))],
         "plan": [draw.file("plant.toml"), "'--only'", "'turns'"],
         "init": [draw.file(draw.pick(kinds()[:5]))],
+        "import": [draw.file("params.json")],
+        "library": [repr(draw.pick([each.name for each in entries()]))],
         "compare": ["'coulomb'", "'--steps'", "'1000'"],
         "paper": ["'nested_loops'"],
         "demo": ["'--quick'"],

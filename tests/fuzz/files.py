@@ -53,6 +53,22 @@ payload_m = 0.1
 law = "coulomb"
 coulomb = 0.1
 """
+BAM = {
+    "model": "m5",
+    "actuator": "xl330",
+    "kt": 0.36,
+    "R": 2.8,
+    "armature": 0.0018,
+    "friction_base": 0.004,
+    "friction_stribeck": 0.005,
+    "load_friction_motor": 0.27,
+    "load_friction_external": 0.01,
+    "load_friction_motor_stribeck": 0.02,
+    "load_friction_external_stribeck": 0.08,
+    "dtheta_stribeck": 2.8,
+    "alpha": 1.7,
+    "friction_viscous": 0.005,
+}
 SESSION = """\
 plant = "plant.toml"
 [columns]
@@ -181,6 +197,12 @@ def write_session(path: Path, seed: int) -> None:
     path.write_text(SESSION, encoding="utf-8")
 
 
+def write_parameters(path: Path, seed: int) -> None:
+    models = ("m1", "m2", "m3", "m4", "m5", "m6")
+    own = {"model": models[seed % 6], "actuator": ("xl330", "erob80_50", "mine")[seed % 3]}
+    path.write_text(json.dumps({**BAM, **own}), encoding="utf-8")
+
+
 WRITERS: dict[str, Writer] = {
     ".csv": write_delimited,
     ".mat": write_mat,
@@ -190,6 +212,7 @@ WRITERS: dict[str, Writer] = {
     "checkpoint": write_checkpoint,
     "plant.toml": write_plant,
     "session.toml": write_session,
+    "params.json": write_parameters,
 }
 
 

@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Callable
 
 from stiction.export import targets
+from stiction.library import entries
 from stiction.recording import ROLES, SETTINGS
 
 from .draw import EFFECTS, LAWS, Draw
@@ -188,6 +189,10 @@ OF_TARGET: dict[str, Drawer] = {
     "Plant.friction": lambda d: f"Friction({d.text(['coulomb'])})",
     "Plant.effects": lambda d: f"(Effect({d.text(sorted(EFFECTS))}),)" if d.odd() else "()",
     "Plant.load.path": lambda d: d.file("plant.toml"),
+    "Plant.from_bam.path": lambda d: d.file("params.json"),
+    "bam.read_bam.path": lambda d: d.file("params.json"),
+    "library.entry.name": lambda d: d.text([each.name for each in entries()]),
+    "library.compare.entry": lambda d: "made('Entry')",
     "load.path": lambda d: d.file("session.toml"),
     "Recording.load.path": lambda d: d.file(".csv"),
     "recording.read_table.path": lambda d: d.file(d.pick(kinds())),

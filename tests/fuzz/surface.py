@@ -32,6 +32,7 @@ EXCLUDED = {
 PARTS = {
     "Cell": "part of a comparison or a table",
     "Property": "part of a comparison",
+    "UnitNumber": "part of a comparison",
     "Row": "part of a comparison",
     "FitParameter": "part of a fit",
     "Estimated": "part of an estimate",

@@ -9,6 +9,7 @@ import io
 import json
 import math
 import pickle
+import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -19,7 +20,7 @@ import numpy as np
 import stiction
 import stiction as st
 
-from .files import Shelf
+from .files import Shelf, write_parameters
 from .surface import modules, named
 
 ROWS = 260
@@ -100,6 +101,22 @@ def session(*seeds: int, law: str = "coulomb") -> st.Session:
     return st.Session([recording(ROWS, seed, law) for seed in seeds or (0, 1)])
 
 
+def plain_entry() -> Any:
+    """A plain plant as an entry of the library."""
+    source = {"text": "here", "url": "nowhere", "license": "ours"}
+    own = plant("coulomb", friction={"law": "coulomb", "coulomb": 0.35})
+    numbers = {"friction.coulomb": stiction.library.EntryNumber(0.35, (0.3, 0.4), "N·m")}
+    return stiction.library.Entry("plain", "a motor", "published", own, numbers, source)
+
+
+def bam_reading() -> Any:
+    """A plant from a file of parameters, and what is to be told of it."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "params.json"
+        write_parameters(path, 4)
+        return stiction.bam.read_bam(path)
+
+
 PRODUCERS: dict[str, Callable[[], Any]] = {
     "Trajectory": lambda: motor().simulate(wave(50), 1e-3),
     "EnsembleRun": lambda: st.simulate_ensemble(motor(), np.ones((2, 5)), 1e-3),
@@ -114,6 +131,10 @@ PRODUCERS: dict[str, Callable[[], Any]] = {
     "Signal": lambda: stiction.plan.plan(plant(), only=["turns"]).signals[0],
     "Export": lambda: plant().export("table"),
     "Target": lambda: stiction.export.targets()["table"],
+    "BamReading": bam_reading,
+    "Entry": plain_entry,
+    "EntryNumber": lambda: plain_entry().numbers["friction.coulomb"],
+    "UnitComparison": lambda: stiction.library.compare(plain_entry(), session(0)),
     "Recorded": lambda: stiction.paper.Recorded(1e-3, wave(300), 1e-3 * wave(300, 1)),
     "Estimate": lambda: stiction.paper.estimate(stiction.paper.experiment_1()),
     "Measured": lambda: stiction.compare.Measured(True, {"a": 1.0}),

@@ -12,7 +12,9 @@ from .demo import demo
 from .diagnose import diagnose
 from .export import export
 from .fit import fit
+from .import_ import import_
 from .init import init
+from .library import library
 from .paper import paper
 from .plan import plan
 from .simulate import simulate
@@ -28,7 +30,10 @@ def build() -> cyclopts.App:
         version=f"stiction {__version__}",
         help_format="plaintext",
     )
-    verbs = (init, demo, simulate, fit, diagnose, plan, export, compensate)
-    for verb in (*verbs, laws, effects, compare, paper):
+    for verb in (init, demo, simulate, fit, diagnose, plan, export):
         app.command(verb)
+    # A word that Python keeps for itself.
+    app.command(import_, name="import")
+    for other in (compensate, library, laws, effects, compare, paper):
+        app.command(other)
     return app
