@@ -36,6 +36,8 @@ class Curves:
     places, efforts : numpy.ndarray, shape (m,)
         One place alone where the same effort is needed everywhere.
     held, lost : tuple of str
+    lines : tuple of str
+        Of what is lost, how far lines are off.
     numbers : dict of str to float
         How far lines are off.
     """
@@ -46,6 +48,7 @@ class Curves:
     efforts: FloatArray
     held: tuple[str, ...]
     lost: tuple[str, ...]
+    lines: tuple[str, ...]
     numbers: dict[str, float]
 
     @classmethod
@@ -75,21 +78,23 @@ class Curves:
                 held.append("effort over the position, a turn of it")
         else:
             efforts = steady.position_effort(plant, [0.0])
-        return cls(x, y, places, efforts, tuple(held), cls._lost(plant, numbers), numbers)
+        lines = cls._off(plant, numbers)
+        lost = (*beside(plant, lambda effect: cls.hold(plant, effect), limited=False), *lines)
+        return cls(x, y, places, efforts, tuple(held), lost, lines, numbers)
 
     @staticmethod
-    def _lost(plant: Plant, numbers: dict[str, float]) -> tuple[str, ...]:
+    def hold(plant: Plant, effect: Effect) -> bool:
+        """Whether the curves of a plant hold one of its effects."""
+        return steady.in_curve(plant, effect) or _at_every_place(plant, effect)
+
+    @staticmethod
+    def _off(plant: Plant, numbers: dict[str, float]) -> tuple[str, ...]:
         what = {"speed_off": "friction over speed", "position_off": "effort over position"}
-        lines = [
+        return tuple(
             f"lines between points of {what[name]} are off by {off:.3g} {plant.effort_unit} at most"
             for name, off in numbers.items()
             if off > 0.0
-        ]
-
-        def held(effect: Effect) -> bool:
-            return steady.in_curve(plant, effect) or _at_every_place(plant, effect)
-
-        return (*beside(plant, held, limited=False), *lines)
+        )
 
 
 def _at_every_place(plant: Plant, effect: Effect) -> bool:
