@@ -50,12 +50,17 @@ void begin(void)
 """
 
 
+def friction_of(law: str) -> dict[str, str | float]:
+    """The table of a law: by default, the paper's model with its hook."""
+    return {"law": law} | ({"breakaway": 0.5} if law == "hsieh_pan" else {})
+
+
 def program(law: str, folder: Path, samples: int, *, steps: bool = True) -> Path:
     """A program that takes so many steps of a law, or none in as many turns."""
     table = {
         "drive": {"input": "torque_nm", "gain": 1.0},
         "body": {"inertia": 0.01},
-        "friction": {"law": law} | ({"breakaway": 0.5} if law == "hsieh_pan" else {}),
+        "friction": friction_of(law),
     }
     st.Plant.from_dict(table).export("c").save(folder)
     step = "stiction_step(a, b, c, d, e, f)" if steps else "((a)->friction + (b))"

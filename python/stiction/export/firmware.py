@@ -90,6 +90,9 @@ def _step(plant: Plant, effects: tuple[Effect, ...], fragments: Fragments) -> tu
     there = {
         "SUMS": sums,
         "LEVELS": levels,
+        "USES_WAY": "WAY(" in contact,
+        "USES_SPEED": "SPEED *" in contact,
+        "CREEPS_BESIDE": "creep" in fragments.hooks,
         "EFFORTS": "effort" in fragments.hooks,
         "TEMPERATURE": "m->temperature" in contact,
         "DRAGS": drags,
@@ -117,7 +120,7 @@ def _hooks(contact: str, effects: tuple[Effect, ...]) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     names = {effect.name for effect in effects}
     for match in re.finditer(r"^static \w+ (\w+)\(", contact, re.M):
-        for hook in ("init", "remember", "viscous_level", "level", "effort"):
+        for hook in ("init", "remember", "viscous_level", "level", "effort", "creep"):
             name = match[1].removesuffix(f"_{hook}")
             if match[1].endswith(f"_{hook}") and name in names:
                 found.setdefault(hook, []).append(name)

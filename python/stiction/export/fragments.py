@@ -70,7 +70,8 @@ class Fragments:
         Numbers, lists of numbers and words by the names that fragments call them.
     flags : set of str
     hooks : mapping of str to tuple of str
-        Effects by what they do: "level", "viscous_level", "effort", "remember", "init".
+        Effects by what they do: "level", "viscous_level", "effort", "remember", "creep",
+        "init".
     """
 
     numbers: dict[str, Any]

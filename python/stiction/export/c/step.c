@@ -77,6 +77,9 @@ STICTION_REAL stiction_step(stiction_state *s, STICTION_REAL velocity, STICTION_
 #end
     it.effort += added;
 #endif
+#each creep
+    it.displacement -= EFFECT_creep(s, m);
+#end
     friction = law_step(s, m);
 #ifdef DRAGS
     friction += VISCOUS * VISCOUS_LEVEL * velocity;

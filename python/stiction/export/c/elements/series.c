@@ -38,7 +38,7 @@ static real lagging(real hardening, real from, real to, real z)
  * by Newton within a bracket, the limit of hardening being linear over the step. */
 static void creep_in_series(const stiction_law *law, const motion *m, real span, tried *end)
 {
-    const real way = m->velocity * span, z = CREEP_RATE * span, start = law->hardening;
+    const real way = WAY(span), z = CREEP_RATE * span, start = law->hardening;
     const real from = limit(instant(law->spring.force, start, m->velocity));
     const real uncrept = walk(&law->spring, way).force + DAMPING * m->velocity;
     const real side = uncrept > R(0) ? R(1) : uncrept < R(0) ? R(-1) : R(0);

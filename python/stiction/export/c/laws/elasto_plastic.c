@@ -50,15 +50,16 @@ static real followed(real along, real path, real level)
 
 static real law_step(stiction_state *s, const motion *m)
 {
-    const real side = m->velocity > R(0) ? R(1) : R(-1);
+    const real side = m->displacement > R(0) ? R(1) : R(-1);
     const real level = sliding_level(m->velocity);
-    real along = side * s->law.force;
+    real along;
     if (m->displacement != R(0)) {
-        along = followed(along, INITIAL_STIFFNESS * r_fabs(m->displacement), level);
-        s->law.force = side * along;
+        const real path = INITIAL_STIFFNESS * r_fabs(m->displacement);
+        s->law.force = side * followed(side * s->law.force, path, level);
     }
     if (m->velocity == R(0)) {
         return s->law.force * LEVEL;
     }
+    along = m->velocity > R(0) ? s->law.force : -s->law.force;
     return (s->law.force + bristle_damping(m->velocity, slipping(along, level))) * LEVEL;
 }

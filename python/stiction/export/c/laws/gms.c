@@ -18,7 +18,7 @@ static real law_step(stiction_state *s, const motion *m)
     const real level = sliding_level(m->velocity);
     const real reach = ONE_STIFFNESS * r_fabs(m->displacement);
     /* How far below its level an element gains as fast as its spring. */
-    const real shortfall = ONE_STIFFNESS * r_fabs(m->velocity) * level / ATTRACTION;
+    const real shortfall = SPEED * ONE_STIFFNESS * level / ATTRACTION;
     const real way = ATTRACTION * m->dt / level;
     const real whole = r_exp(-way);
     real sum = R(0);

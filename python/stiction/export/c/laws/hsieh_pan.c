@@ -164,7 +164,7 @@ static void loaded(const stiction_law *law, real span, tried *end)
  * gains where the hook stands still. */
 static void slip(const stiction_law *law, const motion *m, real span, tried *end)
 {
-    const real distance = r_fabs(m->velocity * span), share = r_fabs(m->velocity / STRIBECK_VELOCITY);
+    const real distance = r_fabs(WAY(span)), share = r_fabs(m->velocity / STRIBECK_VELOCITY);
 #if RATED
     const real top = law->latched;
 #else
@@ -202,7 +202,7 @@ static void stick(const stiction_law *law, const motion *m, real span, tried *en
 #if ON_SPRING and CREEPS
     creep_in_series(law, m, span, end);
 #else
-    real displacement = m->velocity * span;
+    real displacement = WAY(span);
 #if CREEPS
     const real grown = hardened(law, displacement, span);
     end->hardening = law->hardening + grown;

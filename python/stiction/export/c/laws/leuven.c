@@ -128,16 +128,15 @@ static void bend(stiction_spring *spring, int side, real path, real level)
 
 static real law_step(stiction_state *s, const motion *m)
 {
-    const int side = m->velocity > R(0) ? 1 : -1;
     const real level = sliding_level(m->velocity);
     real a, size;
     if (m->displacement != R(0)) {
-        bend(&s->law, side, r_fabs(m->displacement), level);
+        bend(&s->law, m->displacement > R(0) ? 1 : -1, r_fabs(m->displacement), level);
     }
     if (m->velocity == R(0)) {
         return s->law.force * LEVEL;
     }
-    a = s->law.force * side / level;
+    a = (m->velocity > R(0) ? s->law.force : -s->law.force) / level;
     size = r_pow(r_fabs(a), EXPONENT);
     return (s->law.force + bristle_damping(m->velocity, a < R(0) ? -size : size)) * LEVEL;
 }

@@ -9,9 +9,11 @@ typedef struct {
 
 static real law_step(stiction_state *s, const motion *m)
 {
-    const real side = m->velocity > R(0) ? R(1) : R(-1);
     const real level = sliding_level(m->velocity);
     const real way = INITIAL_STIFFNESS * r_fabs(m->displacement) / level;
-    s->law.force += (side * level - s->law.force) * -r_expm1(-way);
-    return (s->law.force + bristle_damping(m->velocity, side * s->law.force / level)) * LEVEL;
+    const real goal = m->displacement > R(0) ? level : -level;
+    real along;
+    s->law.force += (goal - s->law.force) * -r_expm1(-way);
+    along = m->velocity > R(0) ? s->law.force : -s->law.force;
+    return (s->law.force + bristle_damping(m->velocity, along / level)) * LEVEL;
 }
