@@ -12,7 +12,8 @@ import pytest
 
 import stiction as st
 
-FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O2")
+WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror")
+FLAGS = ("-std=c99", "-O2", *WARNINGS)
 KINDS = {"double": (ctypes.c_double, np.float64), "float": (ctypes.c_float, np.float32)}
 DRIVER = """
 #include "stiction_feedforward.h"

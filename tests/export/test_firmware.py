@@ -3,11 +3,13 @@
 import ctypes
 import re
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import stiction as st
+from stiction.export import fragments
 from stiction.export.fragments import known
 
 from .compiled import FLAGS, Compiled
@@ -130,11 +132,14 @@ def test_each_law_steps_in_floats(name, tmp_path):
     )
     core = along(law, velocity, dt, effort, load)
     off = np.max(np.abs(compiled.step(velocity, dt, effort, load) - core))
-    assert off / level_of(law, core) < FLOATS.get(name, NEAR_FLOAT), off / level_of(law, core)
+    assert off / level_of(law, core) < NEAR_FLOAT, off / level_of(law, core)
 
 
-FLOATS = {}
-"""Laws that keep positions or differences of nearly equal numbers, and how near floats come."""
+def test_fragments_are_plain_text():
+    folder = Path(fragments.__file__).parent / "c"
+    for file in sorted(folder.rglob("*.c")):
+        lines = file.read_text("ascii").splitlines()
+        assert max(map(len, lines)) <= 100, file
 
 
 def test_a_stuck_contact_bears_what_it_can(tmp_path):

@@ -1,7 +1,7 @@
 #if HANGS
 
-/* Effort of gravity, positive along +x: what rests has to bear it, so that it is part of `effort` and
- * of `load` of stiction_step, and it is known beside the input of stiction_observe. */
+/* Effort of gravity, positive along +x: what rests has to bear it, so that it is part of `effort`
+ * and of `load` of stiction_step, and it is known beside the input of stiction_observe. */
 STICTION_REAL stiction_gravity(STICTION_REAL position)
 {
 #if GRAVITY != 0

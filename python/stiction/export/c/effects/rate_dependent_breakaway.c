@@ -1,4 +1,5 @@
-/* Break-away that falls the faster the contact is loaded: Johannes, Green, Brockley, Wear 24 (1973). */
+/* Break-away that falls the faster the contact is loaded: Johannes, Green, Brockley, Wear 24
+ * (1973). */
 #include "contact_age.c"
 typedef struct {
     STICTION_REAL offset, filtered, strength;

@@ -7,8 +7,8 @@ typedef struct {
 static real law_step(stiction_state *s, const motion *m)
 {
     stiction_law *bond = &s->law;
-    if (bond->mode * m->velocity < R(0) || (bond->mode != 0 && m->velocity == R(0))) {
-        bond->stretch = LIMIT * bond->mode;
+    if ((real)bond->mode * m->velocity < R(0) || (bond->mode != 0 && m->velocity == R(0))) {
+        bond->stretch = LIMIT * (real)bond->mode;
         bond->mode = 0;
     }
     if (bond->mode == 0) {
@@ -22,7 +22,7 @@ static real law_step(stiction_state *s, const motion *m)
 #endif
         }
         bond->mode = stretch > R(0) ? 1 : -1;
-        bond->stretch = LIMIT * bond->mode;
+        bond->stretch = LIMIT * (real)bond->mode;
     }
-    return DRAGGED * bond->mode * LEVEL;
+    return DRAGGED * (real)bond->mode * LEVEL;
 }

@@ -35,10 +35,10 @@ static walked walk(const stiction_spring *spring, real displacement)
         }
     }
     if (end.kept + end.turned == 0) {
-        end.force = end.direction * virgin(spring, end.way);
+        end.force = (real)end.direction * virgin(spring, end.way);
     } else {
         const real from = end.turned ? spring->force : spring->forces[end.kept - 1];
-        end.force = from + end.direction * branch(spring, end.direction, end.way);
+        end.force = from + (real)end.direction * branch(spring, end.direction, end.way);
     }
     return end;
 }

@@ -39,7 +39,7 @@ static real small_way(real u)
     int k;
     for (k = 1; k <= 10; ++k) {
         term *= ratio;
-        sum += term / (EXPONENT * k + R(1));
+        sum += term / (EXPONENT * (real)k + R(1));
     }
     return u * sum;
 }

@@ -43,12 +43,12 @@ static real law_step(stiction_state *s, const motion *m)
         if (r_fabs(stretch) > R(1)) {
             /* To the first site in reach: one of two, for they lie near even spacing. */
             const int side = stretch > R(0) ? 1 : -1;
-            const real way = side * (stretch + SCATTER * law->off[i]) - R(1);
+            const real way = (real)side * (stretch + SCATTER * law->off[i]) - R(1);
             int32_t on = (int32_t)r_ceil(way - R(0.5) * SCATTER);
             real off;
             on = on > 1 ? on : 1;
             off = scattered(i, law->site[i] + side * on);
-            if (way - side * SCATTER * off > (real)on) {
+            if (way - (real)side * SCATTER * off > (real)on) {
                 on += 1;
                 off = scattered(i, law->site[i] + side * on);
             }

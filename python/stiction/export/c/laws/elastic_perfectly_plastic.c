@@ -1,4 +1,5 @@
-/* A linear spring behind a slider: Fredriksson (1976), Curnier, Int. J. Solids Struct. 20 (1984). */
+/* A linear spring behind a slider: Fredriksson, Comput. Struct. 6 (1976); Curnier, Int. J. Solids
+ * Struct. 20 (1984). */
 #include "slip_hardening.c"
 #let SLIDING = COULOMB
 typedef struct {

@@ -25,7 +25,7 @@ static real law_step(stiction_state *s, const motion *m)
     int i;
     for (i = 0; i < 8; ++i) {
         if (m->displacement != R(0)) {
-            const real along = side * s->law.force[i], most = along + reach;
+            const real along = (real)side * s->law.force[i], most = along + reach;
             const real target = SHARE[i] * level;
             const int slipped = s->law.slips[i] == side;
             const real leaves = slipped ? target - shortfall : target;
@@ -41,7 +41,7 @@ static real law_step(stiction_state *s, const motion *m)
                 end = drawn > most ? most : drawn;
                 s->law.slips[i] = (signed char)side;
             }
-            s->law.force[i] = side * end;
+            s->law.force[i] = (real)side * end;
         }
         sum += s->law.force[i];
     }

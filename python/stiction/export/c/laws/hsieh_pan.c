@@ -175,7 +175,7 @@ static void slip(const stiction_law *law, const motion *m, real span, tried *end
 #else
     const real left = r_exp(-r_pow(share, STRIBECK_EXPONENT));
 #endif
-    const real from = law->mode * law->SERIES;
+    const real from = (real)law->mode * law->SERIES;
     real level = COULOMB + (top - COULOMB) * left, now;
 #if VISCOUS != 0
     if (LEVEL != R(0)) {
@@ -189,7 +189,7 @@ static void slip(const stiction_law *law, const motion *m, real span, tried *end
         const real most = x < R(0) ? -virgin(0, -x) : virgin(0, x);
         now = now < most ? now : most;
     }
-    end->series = law->mode * now;
+    end->series = (real)law->mode * now;
     end->friction = end->series * LEVEL;
     end->pull = level - now;
     loaded(law, span, end);
@@ -300,7 +300,7 @@ static real law_step(stiction_state *s, const motion *m)
     for (events = 0;; ++events) {
         const int sticks = law->mode == 0;
         real at;
-        if (events < 16 && !sticks && law->mode * m->velocity <= R(0)) {
+        if (events < 16 && !sticks && (real)law->mode * m->velocity <= R(0)) {
             stop(law);
             continue;
         }

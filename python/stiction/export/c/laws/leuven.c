@@ -64,18 +64,18 @@ static real way_to(real r, real target, const real *of)
 /* Leads the deflection along a path of the body at this g. */
 static void bend(stiction_spring *spring, int side, real path, real level)
 {
-    const int rising = spring->force * side <= level;
+    const int rising = spring->force * (real)side <= level;
     const int direction = rising ? side : -side;
     const real goal = rising ? level : -level;
     const int turned = spring->direction == -direction;
     walked end;
-    real force = spring->force * direction, along;
+    real force = spring->force * (real)direction, along;
     end.kept = spring->points;
     end.turned = turned;
     end.direction = direction;
     for (;;) {
         const int points = end.kept + end.turned;
-        const real from = points == 0 ? R(0) : direction
+        const real from = points == 0 ? R(0) : (real)direction
             * (end.turned ? spring->force : spring->forces[points - 1]);
         const real span = points ? R(2) * TOP : TOP;
         const real r = (goal - force) / level;
@@ -85,7 +85,7 @@ static void bend(stiction_spring *spring, int side, real path, real level)
         of[1] = span / INITIAL_STIFFNESS;
         of[2] = rising ? R(1) : R(-1);
         if (points >= 2) {
-            closing = direction * spring->forces[points - 2];
+            closing = (real)direction * spring->forces[points - 2];
         } else if (points == 1) {
             closing = -from;
         } else {
@@ -120,7 +120,7 @@ static void bend(stiction_spring *spring, int side, real path, real level)
         along = along > R(0) ? along : R(0);
         along = along < R(1) - EPSILON ? along : R(1) - EPSILON;
         end.way = of[1] * along * logarithmic_mean(along);
-        end.force = direction * force;
+        end.force = (real)direction * force;
         accept(spring, &end);
         return;
     }

@@ -17,7 +17,7 @@ static real risen(real middle, real h)
 #define BOUNDED
 #define virgin(spring, way) (R(0.5) * risen(R(0), (way) / HALF))
 #define branch(spring, direction, way) \
-    risen(((spring)->position * (direction) - R(0.5) * (way)) / HALF, R(0.5) * (way) / HALF)
+    risen(((spring)->position * (real)(direction) - R(0.5) * (way)) / HALF, R(0.5) * (way) / HALF)
 #include "walk.c"
 typedef stiction_spring stiction_law;
 

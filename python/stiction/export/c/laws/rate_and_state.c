@@ -1,5 +1,6 @@
 /* F = a*arsinh(v/(2*v_0)*exp((F_0 + b*p)/a)), p the logarithm of the age of the contact: Dieterich
- * (1979), Ruina (1983), regularised as in Rice, Lapusta, Ranjith, J. Mech. Phys. Solids 49 (2001). */
+ * (1979), Ruina (1983), regularised as in Rice, Lapusta, Ranjith, J. Mech. Phys. Solids 49
+ * (2001). */
 #let DIRECT = COULOMB * DIRECT_EFFECT
 #let YIELDS = COMPLIANCE > 1e-30
 #let YIELDING = DIRECT * COMPLIANCE
