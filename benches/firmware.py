@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
 import stiction as st
@@ -43,7 +44,7 @@ void begin(void)
     for (k = 0; k < SAMPLES; ++k) {
         friction = STEP(&state, v, 1e-3f, 0.1f, 0.0f, 25.0f);
         push = k % 100 == 25 || k % 100 == 75 ? -push : push;
-        v += push;
+        v = SLIDES ? (k % 2 ? 0.5f : -0.5f) : v + push;
     }
     __asm__ volatile("mov r7, #1\\n mov r0, #0\\n svc 0"); /* exit of the emulator */
 }
@@ -55,8 +56,11 @@ def friction_of(law: str) -> dict[str, str | float]:
     return {"law": law} | ({"breakaway": 0.5} if law == "hsieh_pan" else {})
 
 
-def program(law: str, folder: Path, samples: int, *, steps: bool = True) -> Path:
-    """A program that takes so many steps of a law, or none in as many turns."""
+def program(law: str, folder: Path, *, steps: bool = True, slides: bool = False) -> Path:
+    """A program that takes steps of a law, or none in as many turns.
+
+    It creeps to and fro, or ``slides``: each step turns a fast slide round.
+    """
     table = {
         "drive": {"input": "torque_nm", "gain": 1.0},
         "body": {"inertia": 0.01},
@@ -64,7 +68,8 @@ def program(law: str, folder: Path, samples: int, *, steps: bool = True) -> Path
     }
     st.Plant.from_dict(table).export("c").save(folder)
     step = "stiction_step(a, b, c, d, e, f)" if steps else "((a)->friction + (b))"
-    text = f"#define STEP(a, b, c, d, e, f) {step}\n#define SAMPLES {samples}\n{PROGRAM}"
+    defined = {"STEP(a, b, c, d, e, f)": step, "SAMPLES": SAMPLES, "SLIDES": int(slides)}
+    text = "".join(f"#define {name} {value}\n" for name, value in defined.items()) + PROGRAM
     if not steps:
         text = text.replace("stiction_init(&state);", "")
     (folder / "main.c").write_text(text)
@@ -92,15 +97,29 @@ def instructions(built: Path) -> int:
     return count
 
 
-def measured(law: str) -> tuple[float, int, int]:
-    """Instructions a step, bytes of flash with the functions of math.h, bytes of a state."""
+@dataclass(frozen=True)
+class Cost:
+    """Of a step: instructions in slow motion and where a slide turns, bytes of flash and state.
+
+    Functions of math.h count.
+    """
+
+    slow: float
+    turning: float
+    flash: int
+    state: int
+
+
+def measured(law: str) -> Cost:
+    """What a step of a law takes."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        bare = program(law, folder, SAMPLES, steps=False)
-        turns, without = instructions(bare), flash(bare)
-        whole = program(law, folder, SAMPLES)
-        count = (instructions(whole) - turns) / SAMPLES
-        return count, flash(whole) - without, state_size(folder)
+        bare = program(law, folder, steps=False)
+        nothing, without = instructions(bare), flash(bare)
+        slow = (instructions(program(law, folder)) - nothing) / SAMPLES
+        whole = program(law, folder, slides=True)
+        turning = (instructions(whole) - nothing) / SAMPLES
+        return Cost(slow, turning, flash(whole) - without, state_size(folder))
 
 
 def state_size(folder: Path) -> int:
@@ -121,13 +140,13 @@ def missing() -> list[str]:
 
 
 def main() -> None:
-    """Print a row for each law."""
+    """Print a row for each law of the command line, or of the table in docs/export.md."""
     if missing():
         sys.exit(f"not run: {', '.join(missing())} missing; see the head of this file")
-    print("law            instructions  flash  state")
-    for law in LAWS:
-        count, size, state = measured(law)
-        print(f"{law:14} {count:12.0f} {size:6} {state:6}")
+    print("law                  slow  turning  flash  state")
+    for law in sys.argv[1:] or LAWS:
+        cost = measured(law)
+        print(f"{law:17} {cost.slow:7.0f} {cost.turning:8.0f} {cost.flash:6} {cost.state:6}")
 
 
 if __name__ == "__main__":

@@ -135,6 +135,15 @@ def test_each_law_steps_in_floats(name, tmp_path):
     assert off / level_of(law, core) < NEAR_FLOAT, off / level_of(law, core)
 
 
+@pytest.mark.parametrize("name", LAWS)
+def test_a_step_ends_whatever_it_is_given(name, tmp_path):
+    compiled = Compiled(plant({"law": name}), tmp_path)
+    for velocity in (np.nan, 1e6, -1e-300):
+        compiled.step([1e-3, velocity, -1e-3, 0.0], 1e-3)
+    found = compiled.step([1e-3, 1e6, -1e6, 1e-300, 0.0], 1e-3)
+    assert np.all(np.isfinite(found))
+
+
 def test_fragments_are_plain_text():
     folder = Path(fragments.__file__).parent / "c"
     for file in sorted(folder.rglob("*.c")):

@@ -69,10 +69,11 @@ def test_a_law_steps_on_a_microcontroller(name, tmp_path):
 
 @needs_tools
 def test_what_a_step_takes_is_counted():
-    count, flash, state = firmware.measured("coulomb")
-    assert 5 < count < 100
-    assert 50 < flash < 1000
-    assert state == 4
+    cost = firmware.measured("coulomb")
+    assert 5 < cost.slow < 100
+    assert 5 < cost.turning < 100
+    assert 50 < cost.flash < 1000
+    assert cost.state == 4
 
 
 def test_a_header_is_read_by_c_plus_plus(tmp_path):

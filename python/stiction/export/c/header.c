@@ -20,7 +20,8 @@ void stiction_set_position(stiction_state *s, STICTION_REAL position);
 /* Once a sample of dt: friction at its end, positive when it resists positive motion, less what
  * effects push. The velocity is held over dt. effort is all other effort on the body, gravity with
  * it, positive along +x: at velocity 0 a contact with true stick returns it, up to what it holds.
- * load is the part of it that loads the contact from outside. */
+ * load is the part of it that loads the contact from outside. What is no number stays in the state
+ * until stiction_init. */
 STICTION_REAL stiction_step(stiction_state *s, STICTION_REAL velocity, STICTION_REAL dt,
                             STICTION_REAL effort, STICTION_REAL load, STICTION_REAL temperature);
 

@@ -4,7 +4,8 @@ static real approach(real r, real way, const real *of)
 {
     for (;;) {
         real k1, k2, k3, k4, reach, h;
-        if (way <= R(0)) {
+        /* Also where it is no number: a step is to end. */
+        if (!(way > R(0))) {
             return r;
         }
         if (r < R(1e-17)) {
