@@ -341,6 +341,25 @@ def compare_moved(own, folder):
 
 
 SPEEDS = (0.0, 1e-4, -0.01, 0.3)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.skipif(
+    not hasattr(st.FrictionModel, "effects"), reason="friction models have no effects in this build"
+)
+def test_a_contact_with_all_effects_steps_as_the_core_does(law, tmp_path):
+    effects = {
+        each.name: {p.name: p.typical for p in each.parameters}
+        for each in st.effects()
+        if each.name in known("effects")
+    }
+    own = plant({"law": law}, *({"name": name, **values} for name, values in effects.items()))
+    model = st.FrictionModel(law, effects=effects)
+    columns = motion(np.random.default_rng(11), model, 1500)
+    core, found = along(model, *columns), Compiled(own, tmp_path).step(*columns)
+    assert np.max(np.abs(found - core)) / level_of(model, core) < NEAR
+
+
 AT = 0.2
 
 
