@@ -38,6 +38,8 @@ class Curves:
     held, lost : tuple of str
     lines : tuple of str
         Of what is lost, how far lines are off.
+    effects : frozenset of str
+        Of the plant, that the curves hold.
     numbers : dict of str to float
         How far lines are off.
     """
@@ -49,6 +51,7 @@ class Curves:
     held: tuple[str, ...]
     lost: tuple[str, ...]
     lines: tuple[str, ...]
+    effects: frozenset[str]
     numbers: dict[str, float]
 
     @classmethod
@@ -79,13 +82,13 @@ class Curves:
         else:
             efforts = steady.position_effort(plant, [0.0])
         lines = cls._off(plant, numbers)
-        lost = (*beside(plant, lambda effect: cls.hold(plant, effect), limited=False), *lines)
-        return cls(x, y, places, efforts, tuple(held), lost, lines, numbers)
-
-    @staticmethod
-    def hold(plant: Plant, effect: Effect) -> bool:
-        """Whether the curves of a plant hold one of its effects."""
-        return steady.in_curve(plant, effect) or _at_every_place(plant, effect)
+        effects = frozenset(
+            effect.name
+            for effect in plant.effects
+            if steady.in_curve(plant, effect) or _at_every_place(plant, effect)
+        )
+        lost = (*beside(plant, lambda each: each.name in effects, limited=False), *lines)
+        return cls(x, y, places, efforts, tuple(held), lost, lines, effects, numbers)
 
     @staticmethod
     def _off(plant: Plant, numbers: dict[str, float]) -> tuple[str, ...]:

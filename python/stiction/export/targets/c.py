@@ -74,12 +74,12 @@ def _lost(plant: Plant, curves: Curves, made: Firmware) -> tuple[str, ...]:
         return (f"friction step by step: {law} has no C, its feed-forward alone", *curves.lost)
 
     def held(effect: Effect) -> bool:
-        return effect.name in made.held or curves.hold(plant, effect)
+        return effect.name in made.held or effect.name in curves.effects
 
     ahead = tuple(
-        f"{effect.name}: in stiction_step, not in the feed-forward"
-        for effect in plant.effects
-        if effect.name in made.held and not curves.hold(plant, effect)
+        f"{name}: in stiction_step, not in the feed-forward"
+        for name in made.held
+        if name not in curves.effects
     )
     return (*beside(plant, held, limited=False, yielding=True), *ahead, *curves.lines)
 
