@@ -36,6 +36,10 @@ class Curves:
     places, efforts : numpy.ndarray, shape (m,)
         One place alone where the same effort is needed everywhere.
     held, lost : tuple of str
+    lines : tuple of str
+        Of what is lost, how far lines are off.
+    effects : frozenset of str
+        Of the plant, that the curves hold.
     numbers : dict of str to float
         How far lines are off.
     """
@@ -46,6 +50,8 @@ class Curves:
     efforts: FloatArray
     held: tuple[str, ...]
     lost: tuple[str, ...]
+    lines: tuple[str, ...]
+    effects: frozenset[str]
     numbers: dict[str, float]
 
     @classmethod
@@ -75,21 +81,23 @@ class Curves:
                 held.append("effort over the position, a turn of it")
         else:
             efforts = steady.position_effort(plant, [0.0])
-        return cls(x, y, places, efforts, tuple(held), cls._lost(plant, numbers), numbers)
+        lines = cls._off(plant, numbers)
+        effects = frozenset(
+            effect.name
+            for effect in plant.effects
+            if steady.in_curve(plant, effect) or _at_every_place(plant, effect)
+        )
+        lost = (*beside(plant, lambda each: each.name in effects, limited=False), *lines)
+        return cls(x, y, places, efforts, tuple(held), lost, lines, effects, numbers)
 
     @staticmethod
-    def _lost(plant: Plant, numbers: dict[str, float]) -> tuple[str, ...]:
+    def _off(plant: Plant, numbers: dict[str, float]) -> tuple[str, ...]:
         what = {"speed_off": "friction over speed", "position_off": "effort over position"}
-        lines = [
+        return tuple(
             f"lines between points of {what[name]} are off by {off:.3g} {plant.effort_unit} at most"
             for name, off in numbers.items()
             if off > 0.0
-        ]
-
-        def held(effect: Effect) -> bool:
-            return steady.in_curve(plant, effect) or _at_every_place(plant, effect)
-
-        return (*beside(plant, held, limited=False), *lines)
+        )
 
 
 def _at_every_place(plant: Plant, effect: Effect) -> bool:

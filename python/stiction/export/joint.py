@@ -108,13 +108,16 @@ def told(plant: Plant, joint: Joint, *, limited: bool = False) -> tuple[str, ...
     return (*lost, *beside(plant, lambda effect: _changes(plant, effect), limited=limited))
 
 
-def beside(plant: Plant, held: Callable[[Effect], bool], *, limited: bool) -> tuple[str, ...]:
+def beside(
+    plant: Plant, held: Callable[[Effect], bool], *, limited: bool, yielding: bool = False
+) -> tuple[str, ...]:
     """What a target cannot hold beside friction over the speed, a sentence each.
 
-    ``held`` says whether it has an effect, ``limited`` whether it has the limit of the drive.
+    ``held`` says whether it has an effect, ``limited`` whether it has the limit of the drive,
+    ``yielding`` whether it has contacts that yield.
     """
     lost = []
-    if plant.friction.springy:
+    if plant.friction.springy and not yielding:
         lost.append(f"pre-sliding: a contact of {plant.friction.law} yields before it slides")
     lost += [f"{each.name}: {each.record.summary}" for each in plant.effects if not held(each)]
     limit = float(plant.drive.get("limit", np.inf))

@@ -1,138 +1,91 @@
-"""C99: the feed-forward of a plant in one file, without heap and without a library."""
+"""C99: a step of a plant's contact, its feed-forward and an observer, in one file without heap."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from ...trajectory import FloatArray
 from ..curves import Curves
+from ..firmware import Firmware
+from ..joint import beside
 from ..made import Export
 
 if TYPE_CHECKING:
     from ...plant import Plant
+    from ...stated import Effect
 
-SUMMARY = "feed-forward of friction, position and inertia in one C99 file, for firmware"
+SUMMARY = (
+    "friction step by step, feed-forward and disturbance observer in one C99 file, for firmware"
+)
 MOST: Final = 48
 
 HEAD: Final = """\
-/* Feed-forward of {what}. Made from a plant file by stiction; made again, not edited.
+/* {what}. Made from a plant file by stiction; made again, not edited.
  *
- * velocity in {unit}/s, acceleration in {unit}/s2, position in {unit}; the result in {effort}.
- * C99, no heap, no library. Define STICTION_REAL as float where that is faster.
+ * velocity in {unit}/s, acceleration in {unit}/s2, position in {unit}, time in s, temperature in
+ * degrees Celsius; efforts in {effort}. C99, no heap, no library but that of math.h.
+ * Define STICTION_REAL as float where that is faster, here and where the header is read.
+ * What it holds:
+{held}
  * What it cannot hold:
 {lost}
  */
-#ifndef STICTION_REAL
-#define STICTION_REAL double
-#endif
-#define R(x) ((STICTION_REAL)(x))
-
-enum {{ SPEEDS = {speeds}, PLACES = {places} }};
-static const STICTION_REAL speed_at[SPEEDS] = {{{speed_at}}};
-static const STICTION_REAL friction_at[SPEEDS] = {{{friction_at}}};
-static const STICTION_REAL place_at[PLACES] = {{{place_at}}};
-static const STICTION_REAL effort_at[PLACES] = {{{effort_at}}};
-static const STICTION_REAL inertia = R({inertia});
-static const STICTION_REAL gain = R({gain});
-"""
-BODY: Final = """
-static STICTION_REAL between(const STICTION_REAL *x, const STICTION_REAL *y, int n,
-                             STICTION_REAL at)
-{
-    int low = 0, high = n - 1;
-    if (at <= x[0]) {
-        return y[0];
-    }
-    if (at >= x[high]) {
-        return y[high];
-    }
-    while (high - low > 1) {
-        const int middle = (low + high) / 2;
-        if (x[middle] <= at) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return y[low] + (y[high] - y[low]) * (at - x[low]) / (x[high] - x[low]);
-}
-
-/* Effort that friction takes at a speed; between the slowest speeds of both directions a line. */
-STICTION_REAL stiction_friction(STICTION_REAL velocity)
-{
-    return between(speed_at, friction_at, SPEEDS, velocity);
-}
-
-/* Effort that the machine needs to stand at a place. */
-STICTION_REAL stiction_place(STICTION_REAL position)
-{
-    const STICTION_REAL turn = place_at[PLACES - 1];
-    if (turn > R(0)) {
-        const STICTION_REAL turns = position / turn;
-        long whole = (long)turns;
-        if ((STICTION_REAL)whole > turns) {
-            whole -= 1;
-        }
-        position -= turn * (STICTION_REAL)whole;
-    }
-    return between(place_at, effort_at, PLACES, position);
-}
-
-/* Effort for a reference. */
-STICTION_REAL stiction_feedforward(STICTION_REAL velocity, STICTION_REAL acceleration,
-                                   STICTION_REAL position)
-{
-    return inertia * acceleration + stiction_friction(velocity) + stiction_place(position);
-}
-
-/* The input of the drive for that effort. */
-STICTION_REAL stiction_input(STICTION_REAL effort)
-{
-    return effort / gain;
-}
-"""
-HEADER: Final = """\
-/* See stiction_feedforward.c. */
-#ifndef STICTION_FEEDFORWARD_H
-#define STICTION_FEEDFORWARD_H
-#ifndef STICTION_REAL
-#define STICTION_REAL double
-#endif
-STICTION_REAL stiction_friction(STICTION_REAL velocity);
-STICTION_REAL stiction_place(STICTION_REAL position);
-STICTION_REAL stiction_feedforward(STICTION_REAL velocity, STICTION_REAL acceleration,
-                                   STICTION_REAL position);
-STICTION_REAL stiction_input(STICTION_REAL effort);
-#endif
+#include "stiction_feedforward.h"
 """
 
 
 def write(plant: Plant, speed: float) -> Export:
-    """Curves as points with lines between them, each off by as little as so many points can be."""
+    """Law and effects as C, curves as points with lines between them, an observer."""
     curves = Curves.of(plant, speed, MOST)
-    text = HEAD.format(
+    made = Firmware.of(
+        plant,
+        {
+            "SPEEDS": str(len(curves.speeds)),
+            "PLACES": str(len(curves.places)),
+            "SPEED_AT": curves.speeds.tolist(),
+            "FRICTION_AT": curves.friction.tolist(),
+            "PLACE_AT": curves.places.tolist(),
+            "EFFORT_AT": curves.efforts.tolist(),
+            "INERTIA": 0.0 if plant.prescribed_motion else plant.inertia,
+            "GAIN": plant.gain,
+        },
+    )
+    held, lost = _held(plant, curves, made), _lost(plant, curves, made)
+    head = HEAD.format(
         what=plant.friction.law + "".join(f" + {effect.name}" for effect in plant.effects),
         unit=plant.position_unit,
-        effort=plant.effort_unit.replace("·", "*"),
-        lost="\n".join(f" * - {_plain(sentence)}" for sentence in curves.lost) or " * nothing",
-        speeds=len(curves.speeds),
-        places=len(curves.places),
-        speed_at=_array(curves.speeds),
-        friction_at=_array(curves.friction),
-        place_at=_array(curves.places),
-        effort_at=_array(curves.efforts),
-        inertia=repr(0.0 if plant.prescribed_motion else plant.inertia),
-        gain=repr(plant.gain),
+        effort=_plain(plant.effort_unit),
+        held=_listed(held),
+        lost=_listed(lost) or " * nothing",
     )
-    files = {"stiction_feedforward.c": text + BODY, "stiction_feedforward.h": HEADER}
-    held = curves.held if plant.prescribed_motion else (*curves.held, "inertia")
-    return Export("c", files, held, curves.lost, curves.numbers)
+    files = {"stiction_feedforward.c": head + made.source, "stiction_feedforward.h": made.header}
+    return Export("c", files, held, lost, curves.numbers)
 
 
-def _array(values: FloatArray) -> str:
-    numbers = [f"R({value!r})" for value in values.tolist()]
-    rows = [", ".join(numbers[k : k + 4]) for k in range(0, len(numbers), 4)]
-    return "\n    " + ",\n    ".join(rows) + "\n"
+def _held(plant: Plant, curves: Curves, made: Firmware) -> tuple[str, ...]:
+    step = "friction step by step: " + " + ".join((plant.friction.law, *made.held))
+    inertia = () if plant.prescribed_motion else ("inertia",)
+    steps = (step,) if made.steps else ()
+    return (*steps, *curves.held, *inertia, "a disturbance observer")
+
+
+def _lost(plant: Plant, curves: Curves, made: Firmware) -> tuple[str, ...]:
+    if not made.steps:
+        law = plant.friction.law
+        return (f"friction step by step: {law} has no C, its feed-forward alone", *curves.lost)
+
+    def held(effect: Effect) -> bool:
+        return effect.name in made.held or effect.name in curves.effects
+
+    ahead = tuple(
+        f"{name}: in stiction_step, not in the feed-forward"
+        for name in made.held
+        if name not in curves.effects
+    )
+    return (*beside(plant, held, limited=False, yielding=True), *ahead, *curves.lines)
+
+
+def _listed(sentences: tuple[str, ...]) -> str:
+    return "\n".join(f" * - {_plain(sentence)}" for sentence in sentences)
 
 
 def _plain(sentence: str) -> str:

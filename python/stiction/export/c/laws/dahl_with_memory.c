@@ -1,0 +1,8 @@
+/* Dahl's loop as the branch of a spring that remembers its reverse points. */
+#let TOP = COULOMB
+#let STEEPEST = INITIAL_STIFFNESS * 2**EXPONENT
+#let SHAPE = 1 - EXPONENT
+#let WEIGHT = [1.0] * 6
+#let SLIDING = COULOMB
+#include "yield_curve.c"
+#include "iwan_spring.c"

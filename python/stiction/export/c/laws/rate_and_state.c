@@ -1,0 +1,120 @@
+/* F = a*arsinh(v/(2*v_0)*exp((F_0 + b*p)/a)), p the logarithm of the age of the contact: Dieterich
+ * (1979), Ruina (1983), regularised as in Rice, Lapusta, Ranjith, J. Mech. Phys. Solids 49
+ * (2001). */
+#let DIRECT = COULOMB * DIRECT_EFFECT
+#let YIELDS = COMPLIANCE > 1e-30
+#let YIELDING = DIRECT * COMPLIANCE
+#if not YIELDS
+#include "held.c"
+#endif
+#let SLIDING = COULOMB
+typedef struct {
+    STICTION_REAL log_age;
+#if YIELDS
+    STICTION_REAL force;
+#endif
+} stiction_law;
+
+/* arsinh(e^x); e^x itself may be far out of range. */
+static real arcsinh_of_exp(real x)
+{
+    return x > R(20) ? x + LN_2 : r_asinh(r_exp(x));
+}
+
+/* p after a way in a time, the speed held. */
+static real aged(real log_age, real way, real duration)
+{
+    const real worn = way / SLIP_DISTANCE;
+#if EVOLUTION == 'ageing'
+    const real share = worn < R(1e-3)
+        ? R(1) - worn * (R(0.5) - worn * (R(1) / R(6) - worn * (R(1) / R(24) - worn / R(120))))
+        : -r_expm1(-worn) / worn;
+    if (duration <= R(0)) {
+        return log_age;
+    }
+    return r_log(r_exp(log_age - worn) + duration * (REFERENCE_VELOCITY / SLIP_DISTANCE) * share);
+#else
+    if (duration <= R(0) || way <= R(0)) {
+        return log_age;
+    }
+    return log_age * r_exp(-worn)
+        + r_log(way / (duration * REFERENCE_VELOCITY)) * r_expm1(-worn);
+#endif
+}
+
+static real exponent(real log_age)
+{
+    return (R(1) + EVOLUTION_EFFECT * log_age) / DIRECT_EFFECT;
+}
+#if YIELDS
+
+/* ln(1 + e^x). */
+static real raised(real x)
+{
+    return (x > R(0) ? x : R(0)) + r_log1p(r_exp(-r_fabs(x)));
+}
+
+/* Force in units of a of a spring in series with such friction, after a way and a creep in units
+ * of their yielding: Riccati's equation, solved in logarithms. `late` is the share of a change of
+ * age over the step that counts. */
+static real stretched(real z, real way, real creep, real exponent_, real *late)
+{
+    const real slow = r_exp(-exponent_) * creep, whole = r_hypot(way, R(2) * slow);
+    real goal = R(0), log_gone, below, grown, over, under;
+    if (way > R(0)) {
+        goal = arcsinh_of_exp(r_log(way / (creep * R(2))) + exponent_);
+    }
+    *late = R(1);
+    if (r_log(creep) - exponent_ > R(100) || r_log(way) > R(100)) {
+        return goal;
+    }
+    *late = whole < R(1e-2) ? R(0.5) + whole / R(12)
+        : -R(1) / r_expm1(-whole) - R(1) / whole;
+    if (creep <= R(0)) {
+        return z + way;
+    }
+    /* In logarithms, for a creep at rest is less than a float can be. */
+    if (whole > R(1e-3)) {
+        log_gone = r_log(-r_expm1(-whole));
+    } else {
+        log_gone = whole * (whole / R(24) - R(0.5))
+            + (way > R(0) ? r_log(whole) : LN_2 + r_log(creep) - exponent_);
+    }
+    below = z - goal;
+    grown = r_log1p(r_exp(-whole - R(2) * goal));
+    over = grown + raised(-R(2) * goal + log_gone - below - grown);
+    under = raised(-R(2) * goal + whole) - whole;
+    under += raised(below + log_gone - under);
+    return z + over - under;
+}
+#endif
+
+static real law_step(stiction_state *s, const motion *m)
+{
+#if YIELDS
+    const real z = s->law.force / DIRECT, side = m->displacement < R(0) ? R(-1) : R(1);
+    const real way = m->displacement * side / YIELDING;
+    const real creep = m->dt * REFERENCE_VELOCITY / YIELDING;
+    real counted = s->law.log_age, log_age = counted, end = z, late;
+    int k;
+    /* The age changes on the way: predicted, then taken from where it counts. */
+    for (k = 0; k < 2; ++k) {
+        end = side * stretched(z * side, way, creep, exponent(counted), &late);
+        log_age = aged(s->law.log_age, r_fabs(m->displacement - YIELDING * (end - z)), m->dt);
+        counted = s->law.log_age + (log_age - s->law.log_age) * late;
+    }
+    s->law.log_age = log_age;
+    s->law.force = DIRECT * end;
+    return s->law.force * LEVEL;
+#else
+    const real still = m->velocity == R(0) ? REFERENCE_VELOCITY : r_fabs(m->velocity);
+    real size;
+    s->law.log_age = aged(s->law.log_age, r_fabs(m->displacement), m->dt);
+    size = DIRECT * arcsinh_of_exp(r_log(still / (R(2) * REFERENCE_VELOCITY))
+                                   + exponent(s->law.log_age)) * LEVEL;
+    if (m->velocity == R(0)) {
+        return held(m->effort, size);
+    }
+    return m->velocity > R(0) ? size : -size;
+#endif
+}
