@@ -436,6 +436,8 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
                 let at = self.curve.virgin_inverse(trial.series);
                 self.parameters.slip_distance * self.curve.virgin(at).slope - pull
             }
+            // A force that its level fell below stays where it is until motion loads it further.
+            _ if self.rated => trial.breakaway - trial.series * sign(motion.velocity.re()),
             _ => trial.breakaway - trial.series.abs(),
         }
     }

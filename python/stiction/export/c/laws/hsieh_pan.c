@@ -266,7 +266,12 @@ static real until_breakaway(const stiction_law *law, const motion *m, real span)
 {
     tried end;
     stick(law, m, span, &end);
+#if RATED
+    /* A force that its level fell below stays where it is until motion loads it further. */
+    return end.breakaway - (m->velocity > R(0) ? end.series : -end.series);
+#else
     return end.breakaway - r_fabs(end.series);
+#endif
 }
 
 /* By how much the spring at the force of a slide is stiffer than the hook needs to go on. */
