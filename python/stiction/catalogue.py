@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import cache
-from typing import Any
+from typing import Any, Final
 
 from . import _native
 
@@ -18,6 +18,10 @@ __all__ = [
     "effects",
     "laws",
 ]
+
+
+_AT_CONTACT: Final = frozenset({"friction level", "added effort", "state relaxation"})
+"""Hooks of effects that a contact alone can have."""
 
 
 @dataclass(frozen=True)
@@ -123,6 +127,11 @@ class EffectRecord:
     rotary_only: bool
     hooks: tuple[str, ...]
     parameters: tuple[ParameterRecord, ...]
+
+    @property
+    def at_contact(self) -> bool:
+        """Whether it acts at the contact or adds an effort: a ``FrictionModel`` can have it."""
+        return frozenset(self.hooks) <= _AT_CONTACT
 
     @property
     def before_drive(self) -> bool:

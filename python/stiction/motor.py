@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from typing import Any, Final, Self
 
@@ -10,9 +11,12 @@ import numpy.typing as npt
 
 from . import _native, given
 from ._native import FrictionModel
+from .errors import InputError
 from .trajectory import FloatArray, Trajectory
 
 __all__ = ["Motor"]
+
+_logger = logging.getLogger(__name__)
 
 TENTH_OF_AN_ARC_SECOND: Final = 0.1 * np.pi / 648000
 """rad."""
@@ -33,7 +37,8 @@ class Motor(_native.Motor):
         Effort per unit of input (current, voltage, effort), N·m/A and so on; with a servo per
         ampere.
     friction : FrictionModel
-        Copied with its state; the motor owns the copy.
+        Copied with its state; the motor owns the copy. Effects of the model become effects of the
+        motor, which goes on from what they remember, at rest where the contact is.
     effects : dict of str to dict of str to float, optional
         Effects by name with their parameters, see ``stiction.effects()``.
     gravity_amplitude, gravity_zero : float
@@ -57,7 +62,7 @@ class Motor(_native.Motor):
     ------
     InputError
         A value out of bounds, an unknown effect or integrator, an unknown parameter of an effect or
-        of the servo, a missing friction.
+        of the servo, an effect that is stated twice, a missing friction.
     """
 
     def simulate(
@@ -180,10 +185,45 @@ class Motor(_native.Motor):
 
     @property
     def friction(self) -> FrictionModel:
-        """A copy of the friction law in its present state."""
+        """A copy of the friction law in its present state, without any effect.
+
+        ``friction_model()`` is the friction with the effects that act at the contact.
+        """
         law, keywords = self.friction_settings()
         model = FrictionModel(law, **keywords)
         model.state = self.friction_state()
+        return model
+
+    def friction_model(self, *, strict: bool = False) -> FrictionModel:
+        """The friction with the effects that act at the contact, in its present state.
+
+        Law, effects on the friction level, added efforts and creep, with the position, the clock,
+        the path and what effects remember. Effects of the drive and of the sensor, and second
+        masses, are no part of it: they are left out, and a warning of this module's logger names
+        them. Weight and gravity of the motor are no friction.
+
+        Parameters
+        ----------
+        strict : bool
+            Whether effects that no friction model can have are refused, not left out.
+
+        Returns
+        -------
+        FrictionModel
+            An independent one. Its ``effects`` say what it has.
+
+        Raises
+        ------
+        InputError
+            With ``strict``: this motor has effects that no friction model can have.
+        """
+        model, left_out = self.contact()
+        if left_out:
+            names = ", ".join(left_out)
+            said = f"effects of the machine and not of its contact: {names}"
+            if strict:
+                raise InputError(f"{said}; leave them out of the motor, or give strict=False")
+            _logger.warning("left out of the friction model are %s", said)
         return model
 
     def copy(self) -> Self:

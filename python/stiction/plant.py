@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import given, plant_file, steady
+from ._native import FrictionModel
 from .atomic_files import write_text
 from .catalogue import effects
 from .drive import check_servo, gain_name, servo_numbers
@@ -468,6 +469,33 @@ class Plant:
             As for ``motor``, but that a plant of prescribed motion needs no inertia.
         """
         return self._motor(self.inertia or 1.0, "fast")
+
+    def friction_model(self, *, strict: bool = False) -> FrictionModel:
+        """The friction of the plant, with the effects that act at the contact, never moved.
+
+        What a diagnosis has found of the contact is in it: it steps at held velocities, gives
+        friction and slope to implicit hosts, and goes into a ``Motor``. ``friction`` is the law
+        as the plant states it, without any effect.
+
+        Parameters
+        ----------
+        strict : bool
+            Whether effects that no friction model can have (of drive and sensor, second masses)
+            are refused. Otherwise they are left out, and a warning of the logger
+            ``stiction.motor`` names them.
+
+        Returns
+        -------
+        FrictionModel
+            Its ``effects`` say what it has.
+
+        Raises
+        ------
+        InputError
+            As for ``follower``; with ``strict``: the plant has effects that no friction model can
+            have.
+        """
+        return self.follower().friction_model(strict=strict)
 
     def _motor(self, inertia: float, integrator: str) -> Motor:
         return Motor(inertia, integrator=integrator, **self._settings)

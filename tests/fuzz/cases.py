@@ -36,7 +36,7 @@ def receiver(draw: Draw, cls: type) -> str:
     if name == "Motor":
         return draw.motor()
     if name == "FrictionModel":
-        return draw.law()
+        return draw.law(effects=True)
     if name == "Ensemble":
         return f"st.Ensemble({draw.motor()}, 3)"
     if name == "Plant":

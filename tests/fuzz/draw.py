@@ -173,8 +173,8 @@ class Draw:
 
     # The package's own
 
-    def law(self, name: str = "", share: float = 0.5) -> str:
-        """A friction model of any law."""
+    def law(self, name: str = "", share: float = 0.5, *, effects: bool = False) -> str:
+        """A friction model of any law, now and then with effects at the contact."""
         name = name or self.pick(sorted(LAWS))
         record = LAWS[name]
         given = [self.text([name])]
@@ -185,6 +185,9 @@ class Draw:
             for option in record.options
             if self.chance(0.5)
         ]
+        if effects and self.chance(0.4):
+            known = [name for name in sorted(EFFECTS) if EFFECTS[name].at_contact or self.odd()]
+            given.append(f"effects={self.effects(known)}")
         if self.odd():
             given.append(f"nonsense={self.size()}")
         return f"st.FrictionModel({', '.join(given)})"

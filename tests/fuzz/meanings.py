@@ -198,14 +198,20 @@ OF_TARGET: dict[str, Drawer] = {
     "recording.read_table.path": lambda d: d.file(d.pick(kinds())),
     "FrictionModel.step.velocity": _level,
     "FrictionModel.trial.velocity": _level,
+    "FrictionModel.derivatives.velocity": _level,
     "FrictionModel.step.load": _level,
     "FrictionModel.trial.load": _level,
+    "FrictionModel.derivatives.load": _level,
     "FrictionModel.step.effort": _level,
     "FrictionModel.trial.effort": _level,
+    "FrictionModel.derivatives.effort": _level,
     "Nothing.step.velocity": _level,
     "Motor.step.current": _level,
     "Motor.step.load": _level,
     "Motor.step.enabled": lambda d: d.pick(("True", "False")),
+    "FrictionModel.reset.position": _level,
+    "FrictionModel.reset.time": lambda d: d.size(),
+    "FrictionModel.reset.path": lambda d: d.size(),
     "Motor.reset.position": _level,
     "Motor.reset.velocity": _level,
     "Motor.reset.time": lambda d: d.size(),
@@ -217,6 +223,7 @@ OF_TARGET: dict[str, Drawer] = {
     "Motor.adopt.other": lambda d: "x" if not d.odd() else d.motor(),
     "FrictionModel.step.temperature": lambda d: d.signed(0.0, 2.0),
     "FrictionModel.trial.temperature": lambda d: d.signed(0.0, 2.0),
+    "FrictionModel.derivatives.temperature": lambda d: d.signed(0.0, 2.0),
     "Ensemble.parameters": _members,
     "simulate_ensemble.parameters": _members,
     "Ensemble.step_many.current": lambda d: d.array(n=3),
@@ -282,7 +289,8 @@ def arguments(draw: Draw, target: Target) -> str:
         texts.append(f"{name}={text}" if keyword and parameter.kind is not
                      parameter.VAR_POSITIONAL else text)  # fmt: skip
     if target.name in ("FrictionModel", "paper.illustrative_friction"):
-        return draw.law().partition("(")[2][:-1] if target.kind == "class" else ""
+        law = draw.law(effects=True)
+        return law.partition("(")[2][:-1] if target.kind == "class" else ""
     if target.name == "Motor":
         return draw.motor().partition("(")[2][:-1]
     return ", ".join(texts)

@@ -17,7 +17,7 @@ typedef enum stiction_status {
   STICTION_STATUS_INTERNAL = 3,
 } stiction_status;
 
-// A friction law with its parameters and state.
+// A friction law with its parameters and state, and with the effects that act at the contact.
 typedef struct stiction_friction stiction_friction;
 
 // A body with inertia, driven by an input and resisted by friction.
@@ -49,9 +49,30 @@ enum stiction_status stiction_friction_new(const char *law,
                                            size_t choices,
                                            struct stiction_friction **friction);
 
+// Adds an effect at the contact, by its name, with `names` and `values` of `count` parameters; what is
+// not stated takes its default. The contact is then one that was never moved. Effects of a drive, of a
+// sensor and second masses are refused: no contact has them.
+//
+// # Safety
+// `friction` is a live handle of this library that no other thread uses; all words end in a zero byte,
+// all arrays are as long as stated (NULL where that is 0).
+enum stiction_status stiction_friction_add_effect(struct stiction_friction *friction,
+                                                  const char *effect,
+                                                  const char *const *names,
+                                                  const double *values,
+                                                  size_t count);
+
+// Sets the temperature in °C of the next steps; NaN where it is not known, as at first.
+//
+// # Safety
+// `friction` is a live handle of this library that no other thread uses.
+enum stiction_status stiction_friction_set_temperature(struct stiction_friction *friction,
+                                                       double temperature);
+
 // One sample at a held velocity; `force` is friction at its end, positive when it resists positive
-// motion. `effort` is all other effort on the body, which a contact with true stick holds at rest;
-// `load` is the external part of it. Allocates nothing but where numbers are so large that the force
+// motion. With effects it is all that resists motion at the contact: what they add is in it with its
+// sign turned round. `effort` is all other effort on the body, which a contact with true stick holds at
+// rest; `load` is the external part of it. Allocates nothing but where numbers are so large that the force
 // may be none; then it is refused, and nothing has changed.
 //
 // # Safety
@@ -64,7 +85,7 @@ enum stiction_status stiction_friction_step(struct stiction_friction *friction,
                                             double *force);
 
 // As `stiction_friction_step`, leaving the state as it is; `slope` is the derivative of the force by
-// the velocity at fixed dt. Allocates where the contact mode changes within the sample.
+// the velocity at fixed dt. Allocates where the contact mode changes within the sample, and with effects.
 //
 // # Safety
 // `friction` is a live handle of this library that no other thread uses; `force` and `slope` may be
@@ -89,6 +110,16 @@ enum stiction_status stiction_friction_commit(struct stiction_friction *friction
 // `friction` is a live handle of this library that no other thread uses.
 enum stiction_status stiction_friction_reset(struct stiction_friction *friction);
 
+// The same at this position, with this time on the session clock and this path behind it: what effects
+// go by.
+//
+// # Safety
+// `friction` is a live handle of this library that no other thread uses.
+enum stiction_status stiction_friction_reset_at(struct stiction_friction *friction,
+                                                double position,
+                                                double time,
+                                                double path);
+
 // How many doubles the state takes at present.
 //
 // # Safety
@@ -104,7 +135,7 @@ enum stiction_status stiction_friction_get_state(struct stiction_friction *frict
                                                  double *values,
                                                  size_t room);
 
-// Goes on from a state that `stiction_friction_get_state` copied, of the same law and parameters.
+// Goes on from a state that `stiction_friction_get_state` copied, of the same law, effects and parameters.
 //
 // # Safety
 // `friction` is a live handle of this library that no other thread uses; `values` holds `count` doubles.
@@ -127,8 +158,8 @@ enum stiction_status stiction_friction_get_number(struct stiction_friction *fric
 // `friction` is NULL or a live handle of this library, which nobody uses from now on.
 void stiction_friction_free(struct stiction_friction *friction);
 
-// Makes a motor at rest at 0: J·x'' = gain·input + load − F. It takes a copy of the friction model,
-// state included.
+// Makes a motor at rest: J·x'' = gain·input + load − F. It takes a copy of the friction model, effects
+// and state included, and stands where that contact is: at 0 where it has no effects.
 //
 // # Safety
 // `friction` is a live handle of this library that no other thread uses; `motor` may be written.
@@ -149,6 +180,13 @@ enum stiction_status stiction_motor_step(struct stiction_motor *motor,
                                          double dt,
                                          double *position,
                                          double *velocity);
+
+// Sets the temperature in °C of the next steps; NaN where it is not known, as at first.
+//
+// # Safety
+// `motor` is a live handle of this library that no other thread uses.
+enum stiction_status stiction_motor_set_temperature(struct stiction_motor *motor,
+                                                    double temperature);
 
 // Back to this position and velocity, with friction never moved.
 //

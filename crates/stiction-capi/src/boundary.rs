@@ -118,6 +118,32 @@ pub(crate) unsafe fn word<'a>(text: *const c_char, name: &'static str) -> Result
     text.to_str().map_err(|_| Problem::Refused(format!("{name} is not UTF-8; give plain words")))
 }
 
+/// Names and values of parameters.
+///
+/// # Safety
+/// Both arrays are NULL or hold `count` initialised values that nobody changes meanwhile, and each name
+/// is NULL or ends in a zero byte.
+pub(crate) unsafe fn numbers(
+    names: *const *const c_char,
+    values: *const f64,
+    count: usize,
+) -> Result<Vec<(String, f64)>, Problem> {
+    // SAFETY: by the contract above.
+    let (names, values) =
+        unsafe { (slice(names, count, "names")?, slice(values, count, "values")?) };
+    let mut stated = Vec::with_capacity(count);
+    for (name, value) in names.iter().zip(values) {
+        // SAFETY: by the contract above.
+        stated.push((unsafe { word(*name, "name") }?.to_owned(), *value));
+    }
+    Ok(stated)
+}
+
+/// A number that is NaN where nobody knows it.
+pub(crate) fn known(name: &str, given: f64) -> Result<Option<f64>, Problem> {
+    if given.is_nan() { Ok(None) } else { bounded(name, given, f64::MAX).map(Some) }
+}
+
 /// Refuses what is not a finite number within ± `most`.
 pub(crate) fn bounded(name: &str, given: f64, most: f64) -> Result<f64, Problem> {
     if !given.is_finite() {

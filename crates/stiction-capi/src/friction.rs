@@ -2,14 +2,21 @@
 
 use std::ffi::c_char;
 
+use stiction_core::effects::EffectSpec;
 use stiction_core::friction::Channels;
 use stiction_core::model::{FrictionModel, LawSpec};
 
-use crate::boundary::{Problem, Status, bounded, duration, guarded, held, put, slice, word};
+use crate::boundary::{
+    Problem, Status, bounded, duration, guarded, held, known, numbers, put, slice, word,
+};
 use crate::state;
 
-/// A friction law with its parameters and state.
-pub struct Friction(pub(crate) FrictionModel);
+/// A friction law with its parameters and state, and with the effects that act at the contact.
+pub struct Friction {
+    pub(crate) model: FrictionModel,
+    /// Temperature of the next steps in °C, where it is known.
+    temperature: Option<f64>,
+}
 
 /// Greatest speed that a contact is moved at.
 const FASTEST: f64 = 1e6;
@@ -35,13 +42,7 @@ pub unsafe extern "C" fn stiction_friction_new(
         // SAFETY: as promised by the caller.
         let law = unsafe { word(law, "law") }?;
         // SAFETY: as promised by the caller.
-        let (names, values) =
-            unsafe { (slice(names, count, "names")?, slice(values, count, "values")?) };
-        let mut stated = Vec::with_capacity(count);
-        for (name, value) in names.iter().zip(values) {
-            // SAFETY: as promised by the caller.
-            stated.push((unsafe { word(*name, "name") }?.to_owned(), *value));
-        }
+        let stated = unsafe { numbers(names, values, count) }?;
         // SAFETY: as promised by the caller.
         let (options, words) =
             unsafe { (slice(options, choices, "options")?, slice(words, choices, "words")?) };
@@ -55,19 +56,67 @@ pub unsafe extern "C" fn stiction_friction_new(
             return Err(Problem::Null("friction"));
         }
         let model = FrictionModel::new(LawSpec::new(law, &stated, &chosen)?);
+        let made = Friction { model, temperature: None };
         // SAFETY: as promised by the caller.
-        unsafe { put(friction, Box::into_raw(Box::new(Friction(model))), "friction") }
+        unsafe { put(friction, Box::into_raw(Box::new(made)), "friction") }
     })
 }
 
-fn channels(effort: f64, load: f64) -> Result<Channels<f64>, Problem> {
-    let effort = bounded("effort", effort, f64::MAX)?;
-    Ok(Channels { effort, load: bounded("load", load, f64::MAX)?, ..Channels::default() })
+/// Adds an effect at the contact, by its name, with `names` and `values` of `count` parameters; what is
+/// not stated takes its default. The contact is then one that was never moved. Effects of a drive, of a
+/// sensor and second masses are refused: no contact has them.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses; all words end in a zero byte,
+/// all arrays are as long as stated (NULL where that is 0).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_add_effect(
+    friction: *mut Friction,
+    effect: *const c_char,
+    names: *const *const c_char,
+    values: *const f64,
+    count: usize,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let (friction, effect) = unsafe { (held(friction, "friction")?, word(effect, "effect")?) };
+        // SAFETY: as promised by the caller.
+        let stated = unsafe { numbers(names, values, count) }?;
+        let mut effects = friction.model.effects().to_vec();
+        effects.push(EffectSpec::new(effect, &stated)?);
+        friction.model = FrictionModel::with_effects(friction.model.spec().clone(), effects)?;
+        Ok(())
+    })
+}
+
+/// Sets the temperature in °C of the next steps; NaN where it is not known, as at first.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_set_temperature(
+    friction: *mut Friction,
+    temperature: f64,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        unsafe { held(friction, "friction") }?.temperature = known("temperature", temperature)?;
+        Ok(())
+    })
+}
+
+impl Friction {
+    fn channels(&self, effort: f64, load: f64) -> Result<Channels<f64>, Problem> {
+        let effort = bounded("effort", effort, f64::MAX)?;
+        let load = bounded("load", load, f64::MAX)?;
+        Ok(Channels { effort, load, temperature: self.temperature, ..Channels::default() })
+    }
 }
 
 /// One sample at a held velocity; `force` is friction at its end, positive when it resists positive
-/// motion. `effort` is all other effort on the body, which a contact with true stick holds at rest;
-/// `load` is the external part of it. Allocates nothing but where numbers are so large that the force
+/// motion. With effects it is all that resists motion at the contact: what they add is in it with its
+/// sign turned round. `effort` is all other effort on the body, which a contact with true stick holds at
+/// rest; `load` is the external part of it. Allocates nothing but where numbers are so large that the force
 /// may be none; then it is refused, and nothing has changed.
 ///
 /// # Safety
@@ -83,19 +132,20 @@ pub unsafe extern "C" fn stiction_friction_step(
 ) -> Status {
     guarded(|| {
         // SAFETY: as promised by the caller.
-        let model = unsafe { held(friction, "friction") }?;
+        let friction = unsafe { held(friction, "friction") }?;
         if force.is_null() {
             return Err(Problem::Null("force"));
         }
         let (velocity, dt) = (bounded("velocity", velocity, FASTEST)?, duration(dt)?);
-        let result = model.0.step(velocity, dt, &channels(effort, load)?)?;
+        let channels = friction.channels(effort, load)?;
+        let result = friction.model.step(velocity, dt, &channels)?;
         // SAFETY: as promised by the caller.
         unsafe { put(force, result, "force") }
     })
 }
 
 /// As `stiction_friction_step`, leaving the state as it is; `slope` is the derivative of the force by
-/// the velocity at fixed dt. Allocates where the contact mode changes within the sample.
+/// the velocity at fixed dt. Allocates where the contact mode changes within the sample, and with effects.
 ///
 /// # Safety
 /// `friction` is a live handle of this library that no other thread uses; `force` and `slope` may be
@@ -112,12 +162,13 @@ pub unsafe extern "C" fn stiction_friction_trial(
 ) -> Status {
     guarded(|| {
         // SAFETY: as promised by the caller.
-        let model = unsafe { held(friction, "friction") }?;
+        let friction = unsafe { held(friction, "friction") }?;
         if force.is_null() || slope.is_null() {
             return Err(Problem::Null("force or slope"));
         }
         let (velocity, dt) = (bounded("velocity", velocity, FASTEST)?, duration(dt)?);
-        let (result, steepness) = model.0.trial(velocity, dt, &channels(effort, load)?)?;
+        let channels = friction.channels(effort, load)?;
+        let (result, steepness) = friction.model.trial(velocity, dt, &channels)?;
         // SAFETY: as promised by the caller.
         unsafe { put(force, result, "force").and_then(|()| put(slope, steepness, "slope")) }
     })
@@ -131,8 +182,8 @@ pub unsafe extern "C" fn stiction_friction_trial(
 pub unsafe extern "C" fn stiction_friction_commit(friction: *mut Friction) -> Status {
     guarded(|| {
         // SAFETY: as promised by the caller.
-        let model = unsafe { held(friction, "friction") }?;
-        if model.0.commit() {
+        let friction = unsafe { held(friction, "friction") }?;
+        if friction.model.commit() {
             return Ok(());
         }
         Err(Problem::Refused("there is no trial to commit; call trial first".to_owned()))
@@ -147,7 +198,29 @@ pub unsafe extern "C" fn stiction_friction_commit(friction: *mut Friction) -> St
 pub unsafe extern "C" fn stiction_friction_reset(friction: *mut Friction) -> Status {
     guarded(|| {
         // SAFETY: as promised by the caller.
-        unsafe { held(friction, "friction") }?.0.reset();
+        unsafe { held(friction, "friction") }?.model.reset();
+        Ok(())
+    })
+}
+
+/// The same at this position, with this time on the session clock and this path behind it: what effects
+/// go by.
+///
+/// # Safety
+/// `friction` is a live handle of this library that no other thread uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_friction_reset_at(
+    friction: *mut Friction,
+    position: f64,
+    time: f64,
+    path: f64,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let friction = unsafe { held(friction, "friction") }?;
+        let position = bounded("position", position, f64::MAX)?;
+        let (time, path) = (bounded("time", time, f64::MAX)?, bounded("path", path, f64::MAX)?);
+        friction.model.reset_at(position, time, path);
         Ok(())
     })
 }
@@ -165,7 +238,7 @@ pub unsafe extern "C" fn stiction_friction_state_length(
         // SAFETY: as promised by the caller.
         let friction = unsafe { held(friction, "friction") }?;
         // SAFETY: as promised by the caller.
-        unsafe { put(length, state::length(&friction.0.entries()), "length") }
+        unsafe { put(length, state::length(&friction.model.entries()), "length") }
     })
 }
 
@@ -183,11 +256,11 @@ pub unsafe extern "C" fn stiction_friction_get_state(
         // SAFETY: as promised by the caller.
         let friction = unsafe { held(friction, "friction") }?;
         // SAFETY: as promised by the caller.
-        unsafe { state::copy(&friction.0.entries(), values, room) }
+        unsafe { state::copy(&friction.model.entries(), values, room) }
     })
 }
 
-/// Goes on from a state that `stiction_friction_get_state` copied, of the same law and parameters.
+/// Goes on from a state that `stiction_friction_get_state` copied, of the same law, effects and parameters.
 ///
 /// # Safety
 /// `friction` is a live handle of this library that no other thread uses; `values` holds `count` doubles.
@@ -201,8 +274,8 @@ pub unsafe extern "C" fn stiction_friction_set_state(
         // SAFETY: as promised by the caller.
         let (friction, values) =
             unsafe { (held(friction, "friction")?, slice(values, count, "values")?) };
-        let entries = state::read(&friction.0.entries(), values)?;
-        Ok(friction.0.restore(&entries)?)
+        let entries = state::read(&friction.model.entries(), values)?;
+        Ok(friction.model.restore(&entries)?)
     })
 }
 
@@ -220,7 +293,7 @@ pub unsafe extern "C" fn stiction_friction_get_number(
     guarded(|| {
         // SAFETY: as promised by the caller.
         let (friction, name) = unsafe { (held(friction, "friction")?, word(name, "name")?) };
-        let number = state::number(&friction.0.entries(), name)?;
+        let number = state::number(&friction.model.entries(), name)?;
         // SAFETY: as promised by the caller.
         unsafe { put(value, number, "value") }
     })

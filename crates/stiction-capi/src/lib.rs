@@ -39,6 +39,10 @@ mod tests {
     use std::ffi::CString;
     use std::ptr::{null, null_mut};
 
+    use stiction_core::effects::{EFFECTS, EffectRecord, EffectSpec};
+    use stiction_core::friction::Channels;
+    use stiction_core::model::{FrictionModel, LawSpec};
+
     use super::friction::*;
     use super::machine::*;
     use super::*;
@@ -161,6 +165,107 @@ mod tests {
                     stiction_friction_free(handle);
                 }
             }
+        }
+    }
+
+    /// Adds an effect with all of its parameters at their typical values.
+    fn add(friction: *mut Friction, record: &EffectRecord) -> Status {
+        let words = record.parameters.iter().map(|p| CString::new(p.name).unwrap());
+        let words: Vec<CString> = words.collect();
+        let names: Vec<*const c_char> = words.iter().map(|word| word.as_ptr()).collect();
+        let values: Vec<f64> = record.parameters.iter().map(|p| p.typical).collect();
+        let effect = CString::new(record.name).unwrap();
+        // SAFETY: the handle is live, all words end in a zero byte, the arrays have one length.
+        unsafe {
+            stiction_friction_add_effect(
+                friction,
+                effect.as_ptr(),
+                names.as_ptr(),
+                values.as_ptr(),
+                values.len(),
+            )
+        }
+    }
+
+    #[test]
+    fn every_effect_at_a_contact_steps_as_in_the_core_and_goes_on_to_the_bit() {
+        for law in stiction_core::friction::LAWS {
+            let (friction, fresh) = (any_contact(law.name), any_contact(law.name));
+            let mut specs = Vec::new();
+            for record in EFFECTS {
+                let given = add(friction, record);
+                if record.at_contact() {
+                    assert_eq!((given, add(fresh, record)), (Status::Ok, Status::Ok));
+                    let typical = record.parameters.iter().map(|p| (p.name.to_owned(), p.typical));
+                    let typical: Vec<(String, f64)> = typical.collect();
+                    specs.push(EffectSpec::new(record.name, &typical).unwrap());
+                    assert_eq!(add(friction, record), Status::Refused);
+                    assert!(said().contains("stated twice"), "{}", said());
+                } else {
+                    assert_eq!(given, Status::Refused, "{}", record.name);
+                    assert!(said().contains(record.name), "{}", said());
+                }
+            }
+            let spec = LawSpec::new(law.name, &[], &[]).unwrap();
+            let mut core = FrictionModel::with_effects(spec, specs).unwrap();
+            core.reset_at(0.3, 2.0, 5.0);
+            let (mut force, mut other, mut slope, mut length) = (0.0, 0.0, 0.0, 0);
+            // SAFETY: handles are live until they are freed, all targets are locals of this test.
+            unsafe {
+                stiction_friction_set_temperature(friction, 40.0);
+                stiction_friction_set_temperature(fresh, 40.0);
+                stiction_friction_reset_at(friction, 0.3, 2.0, 5.0);
+                for k in 0..300 {
+                    let (v, dt) = (0.2 * (f64::from(k) * 0.05).sin(), 1e-3);
+                    let (f, s) = (&raw mut force, &raw mut slope);
+                    stiction_friction_trial(friction, v, dt, 0.1, 0.05, f, s);
+                    stiction_friction_step(friction, v, dt, 0.1, 0.05, &raw mut other);
+                    let temperature = Some(40.0);
+                    let around =
+                        Channels { effort: 0.1, load: 0.05, temperature, ..Channels::default() };
+                    let (_, steepness) = core.trial(v, dt, &around).unwrap();
+                    let wanted = core.step(v, dt, &around).unwrap();
+                    assert_eq!((force, other, slope), (wanted, wanted, steepness), "{}", law.name);
+                }
+                stiction_friction_state_length(friction, &raw mut length);
+                let mut state = vec![0.0; length];
+                stiction_friction_get_state(friction, state.as_mut_ptr(), length);
+                let set = stiction_friction_set_state(fresh, state.as_ptr(), length);
+                assert_eq!(set, Status::Ok, "{}: {}", law.name, said());
+                stiction_friction_step(friction, -0.1, 1e-3, 0.0, 0.0, &raw mut force);
+                stiction_friction_step(fresh, -0.1, 1e-3, 0.0, 0.0, &raw mut other);
+                assert_eq!(force, other, "{}", law.name);
+                let (mut motor, mut x, mut y, mut v) = (null_mut(), 0.0, 0.0, 0.0);
+                assert_eq!(stiction_motor_new(0.01, 1.0, friction, &raw mut motor), Status::Ok);
+                stiction_friction_get_number(friction, c"position".as_ptr(), &raw mut x);
+                stiction_motor_get_number(motor, c"position".as_ptr(), &raw mut y);
+                assert!(x == y && x != 0.0, "{}", law.name);
+                stiction_motor_set_temperature(motor, 40.0);
+                let went = stiction_motor_step(motor, 0.3, 0.0, 1e-4, &raw mut x, &raw mut v);
+                assert_eq!(went, Status::Ok, "{}", said());
+                stiction_motor_free(motor);
+                for handle in [friction, fresh] {
+                    stiction_friction_free(handle);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_effect_or_no_temperature_is_refused() {
+        let friction = any_contact("coulomb");
+        // SAFETY: the handle is live until it is freed; NULL is checked for.
+        unsafe {
+            let add = |effect| stiction_friction_add_effect(friction, effect, null(), null(), 0);
+            assert_eq!(add(c"coging".as_ptr()), Status::Refused);
+            assert!(said().contains("did you mean 'cogging'"), "{}", said());
+            assert_eq!(add(null()), Status::Null);
+            assert_eq!(stiction_friction_set_temperature(friction, f64::INFINITY), Status::Refused);
+            assert_eq!(stiction_friction_set_temperature(friction, f64::NAN), Status::Ok);
+            let at = |x| stiction_friction_reset_at(friction, x, 0.0, 0.0);
+            assert_eq!((at(f64::NAN), at(0.5)), (Status::Refused, Status::Ok));
+            assert_eq!(stiction_friction_reset_at(null_mut(), 0.0, 0.0, 0.0), Status::Null);
+            stiction_friction_free(friction);
         }
     }
 

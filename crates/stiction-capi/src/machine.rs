@@ -4,15 +4,15 @@ use std::ffi::c_char;
 
 use stiction_core::motor::{Motor, MotorSpec};
 
-use crate::boundary::{Problem, Status, bounded, duration, guarded, held, put, slice, word};
+use crate::boundary::{Problem, Status, bounded, duration, guarded, held, known, put, slice, word};
 use crate::friction::Friction;
 use crate::state;
 
 /// A body with inertia, driven by an input and resisted by friction.
 pub struct Machine(pub(crate) Motor);
 
-/// Makes a motor at rest at 0: J·x'' = gain·input + load − F. It takes a copy of the friction model,
-/// state included.
+/// Makes a motor at rest: J·x'' = gain·input + load − F. It takes a copy of the friction model, effects
+/// and state included, and stands where that contact is: at 0 where it has no effects.
 ///
 /// # Safety
 /// `friction` is a live handle of this library that no other thread uses; `motor` may be written.
@@ -25,12 +25,12 @@ pub unsafe extern "C" fn stiction_motor_new(
 ) -> Status {
     guarded(|| {
         // SAFETY: as promised by the caller.
-        let model = &unsafe { held(friction, "friction") }?.0;
+        let model = &unsafe { held(friction, "friction") }?.model;
         if motor.is_null() {
             return Err(Problem::Null("motor"));
         }
-        let mut machine = Motor::new(MotorSpec::new(inertia, gain, model.spec().clone()))?;
-        machine.set_friction_state(model.state().clone());
+        let spec = MotorSpec::new(inertia, gain, model.spec().clone());
+        let machine = Motor::with_contact(spec, model)?;
         // SAFETY: as promised by the caller.
         unsafe { put(motor, Box::into_raw(Box::new(Machine(machine))), "motor") }
     })
@@ -61,6 +61,23 @@ pub unsafe extern "C" fn stiction_motor_step(
         let (x, v) = machine.0.step(input, load, duration(dt)?)?;
         // SAFETY: as promised by the caller.
         unsafe { put(position, x, "position").and_then(|()| put(velocity, v, "velocity")) }
+    })
+}
+
+/// Sets the temperature in °C of the next steps; NaN where it is not known, as at first.
+///
+/// # Safety
+/// `motor` is a live handle of this library that no other thread uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_motor_set_temperature(
+    motor: *mut Machine,
+    temperature: f64,
+) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let machine = unsafe { held(motor, "motor") }?;
+        machine.0.set_temperature(known("temperature", temperature)?);
+        Ok(())
     })
 }
 

@@ -201,6 +201,23 @@ pub enum Error {
         /// Its parameters that are no gains.
         shapes: String,
     },
+    /// An effect of a machine where a contact alone is asked for.
+    #[error(
+        "effect {effect} enters at the {place} of a machine, which a friction model alone has not; leave \
+         it out here, or give it to a motor"
+    )]
+    NotAtContact {
+        /// The effect.
+        effect: &'static str,
+        /// Where it enters.
+        place: &'static str,
+    },
+    /// An effect stated twice.
+    #[error("effect {effect} is stated twice; state it once, with the parameters of both")]
+    Twice {
+        /// The effect.
+        effect: &'static str,
+    },
     /// A derivative by a start value where the start is not given.
     #[error("parameter path '{path}' needs a start; give start, for instance {{'force': 0.0}}")]
     NoStart {

@@ -24,6 +24,7 @@ pub mod lanes;
 mod logarithm;
 pub mod model;
 pub mod motor;
+mod naming;
 pub mod parameter;
 mod range;
 pub mod scalar;

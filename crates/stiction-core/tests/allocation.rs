@@ -7,6 +7,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use common::{law, motor};
+use stiction_core::effects::EFFECTS;
 use stiction_core::friction::{Channels, LAWS};
 use stiction_core::model::{FrictionModel, LawSpec};
 use stiction_core::motor::{EffectSpec, Motor, MotorSpec};
@@ -57,6 +58,24 @@ fn no_step_allocates() {
         let statistics = body.statistics();
         assert!(!hooked || statistics.breakaways > 0, "{}: {statistics:?}", record.name);
         assert_eq!(after - before, 0, "{} allocates", record.name);
+    }
+    let contact: Vec<EffectSpec> = EFFECTS
+        .iter()
+        .filter(|record| record.at_contact())
+        .map(|record| {
+            let typical = record.parameters.iter().map(|p| (p.name.to_owned(), p.typical));
+            EffectSpec::new(record.name, &typical.collect::<Vec<_>>()).unwrap()
+        })
+        .collect();
+    for record in LAWS {
+        let law = law(record.name, &[], &[]);
+        let mut model = FrictionModel::with_effects(law, contact.clone()).unwrap();
+        let before = allocations();
+        for k in 0..5_000 {
+            let velocity = 0.05 * (7e-3 * f64::from(k)).sin();
+            model.step(velocity, 1e-4, &Channels::default()).unwrap();
+        }
+        assert_eq!(allocations() - before, 0, "{} allocates with effects", record.name);
     }
     let delay = EffectSpec::new("input_delay", &[("delay".to_owned(), 0.0123)]).unwrap();
     let law = law("coulomb", &[("coulomb", 0.5)], &[]);

@@ -360,7 +360,7 @@ proptest! {
             let mut model = FrictionModel::new(spec.clone());
             run(&mut model, &velocity[..300], 1e-4);
             let entries: Vec<(String, Entry)> =
-                model.entries().into_iter().map(|(n, e)| (n.to_owned(), e)).collect();
+                model.entries().into_iter().map(|(n, e)| (n.into_owned(), e)).collect();
             let mut other = FrictionModel::new(spec);
             other.restore(&entries).unwrap();
             let lifted: AnyState<f64> = model.state().lift();

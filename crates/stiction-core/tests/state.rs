@@ -119,7 +119,7 @@ fn names_of_laws_leave_the_dot_to_motors() {
     for record in LAWS {
         let model = FrictionModel::new(drawn(record, &mut Stream::of(record, 11)));
         let states = model.entries().into_iter().map(|(name, _)| name);
-        for name in states.chain(record.outputs.iter().copied()) {
+        for name in states.chain(record.outputs.iter().map(|name| (*name).into())) {
             assert!(!name.contains('.') && !name.is_empty(), "{}: {name}", record.name);
         }
     }

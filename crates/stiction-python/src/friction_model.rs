@@ -1,5 +1,6 @@
 //! `FrictionModel`: a law, its parameters and its state.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::sync::MutexGuard;
 
@@ -7,22 +8,28 @@ use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::pyclass::CompareOp;
 use pyo3::types::{PyBool, PyDict, PyTuple};
+use stiction_core::effects::EffectSpec;
 use stiction_core::friction::{Channels, Entry};
 use stiction_core::model::{FrictionModel as Core, LawSpec};
 
-use crate::arguments::Text;
+use crate::arguments::{Text, effects_of};
 use crate::arrays::{Each, samples};
 use crate::error::{FASTEST, IntoPython, duration, finite, input_error, velocity};
 use crate::real::{real, real_or_none};
 use crate::shared::Shared;
 use crate::state::{from_dict, keywords, to_dict};
 
-/// A friction law with its parameters and its state.
+/// A friction law with its parameters and its state, and the effects that act at the contact.
 ///
 /// Parameters
 /// ----------
 /// law : str
 ///     A name of the catalogue, see ``stiction.laws()``.
+/// effects : dict of str to dict of str to float, optional
+///     Effects by name with their parameters, as ``Motor`` takes them: those that act on the friction
+///     level, add an effort or let the contact relax (``EffectRecord.at_contact`` of
+///     ``stiction.effects()``). What they go by is kept beside the state of the law: the position that
+///     the velocities add up to, the path, the clock, and what they remember.
 /// **keywords : float or str
 ///     Parameters (numbers, SI) and options (words) of the law; what is not given takes its
 ///     documented default.
@@ -30,7 +37,14 @@ use crate::state::{from_dict, keywords, to_dict};
 /// Raises
 /// ------
 /// InputError
-///     Unknown law, parameter or option; value out of bounds or not a number.
+///     Unknown law, parameter, option or effect; value out of bounds or not a number; an effect of the
+///     drive, the sensor or a second mass, which no contact has.
+///
+/// Notes
+/// -----
+/// With effects the friction is all that resists motion at the contact: F with
+/// J·x'' = u + load − F, so that an effort which effects add (cogging, an offset) is in it with its sign
+/// turned round. ``effort`` of a step is all effort beside that.
 #[pyclass(frozen, module = "stiction._native")]
 pub struct FrictionModel {
     core: Shared<Core>,
@@ -43,11 +57,54 @@ impl FrictionModel {
         self.core.lock(py)
     }
 
-    /// Law, parameters, options and state: all that two equal models share.
-    fn definition(&self, py: Python<'_>) -> PyResult<(LawSpec, Vec<(&'static str, Entry)>)> {
-        let core = self.core(py)?;
-        Ok((core.spec().clone(), core.entries()))
+    /// A binding of this model.
+    pub fn of(core: Core) -> Self {
+        Self { core: Shared::new(core) }
     }
+
+    /// Law, effects, parameters, options and state: all that two equal models share.
+    fn definition(&self, py: Python<'_>) -> PyResult<Definition> {
+        let core = self.core(py)?;
+        Ok((core.spec().clone(), core.effects().to_vec(), core.entries()))
+    }
+
+    /// Keywords that rebuild the model, but for its law.
+    fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        let core = self.core(py)?;
+        let spec = core.spec();
+        for (parameter, value) in spec.record.parameters.iter().zip(&spec.values) {
+            dict.set_item(parameter.name, value)?;
+        }
+        for (name, word) in spec.options() {
+            dict.set_item(name, word)?;
+        }
+        if !core.effects().is_empty() {
+            dict.set_item("effects", effects_dict(py, core.effects())?)?;
+        }
+        Ok(dict)
+    }
+}
+
+/// All that two equal models share.
+type Definition = (LawSpec, Vec<EffectSpec>, Vec<(Cow<'static, str>, Entry)>);
+
+/// Effects by name with their parameters, as they are given.
+pub fn effects_dict<'py>(py: Python<'py>, effects: &[EffectSpec]) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for effect in effects {
+        let values = PyDict::new(py);
+        for (parameter, value) in effect.record.parameters.iter().zip(&effect.values) {
+            values.set_item(parameter.name, value)?;
+        }
+        dict.set_item(effect.record.name, values)?;
+    }
+    Ok(dict)
+}
+
+/// A number as Python reads it.
+fn literal(value: f64) -> String {
+    if value.is_finite() { format!("{value:?}") } else { format!("float('{value}')") }
 }
 
 #[inline]
@@ -71,12 +128,18 @@ fn channels(
 #[pymethods]
 impl FrictionModel {
     #[new]
-    #[pyo3(signature = (law, /, **keywords))]
-    fn new(py: Python<'_>, law: Text, keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+    #[pyo3(signature = (law, /, *, effects=None, **keywords))]
+    fn new(
+        py: Python<'_>,
+        law: Text,
+        effects: Option<&Bound<'_, PyAny>>,
+        keywords: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
         let Text(law) = law;
         let (numbers, words) = self::keywords(&law, keywords)?;
         let spec = LawSpec::new(&law, &numbers, &words).or_input_error(py)?;
-        Ok(Self { core: Shared::new(Core::new(spec)) })
+        let effects = effects.map(effects_of).transpose()?.unwrap_or_default();
+        Ok(Self::of(Core::with_effects(spec, effects).or_input_error(py)?))
     }
 
     /// One sample at a held velocity.
@@ -94,7 +157,8 @@ impl FrictionModel {
     /// Returns
     /// -------
     /// float
-    ///     Friction at the end, N·m or N, positive when it resists positive motion.
+    ///     Friction at the end, N·m or N, positive when it resists positive motion. A contact with true
+    ///     stick that rests returns the effort, up to the level that it holds.
     ///
     /// Raises
     /// ------
@@ -227,6 +291,53 @@ impl FrictionModel {
         self.core(py)?.trial(velocity, dt, &channels).or_input_error(py)
     }
 
+    /// Friction of a step and its derivatives, changing nothing.
+    ///
+    /// Parameters
+    /// ----------
+    /// velocity, dt, load, effort, temperature
+    ///     As for ``step``.
+    ///
+    /// Returns
+    /// -------
+    /// friction : float
+    ///     At the end, N·m or N.
+    /// inputs : dict of str to float
+    ///     Derivatives by ``velocity`` at fixed ``dt``, as ``trial`` tells it, by ``effort`` and by
+    ///     ``load`` at that effort.
+    /// parameters : dict of str to float
+    ///     Derivatives by all parameters, called as in ``parameters``, exact for a state that depends on
+    ///     none of them; by one that is infinite 0.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``step``.
+    #[pyo3(signature = (velocity, dt, *, load=0.0, effort=0.0, temperature=None))]
+    fn derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = real)] velocity: f64,
+        #[pyo3(from_py_with = real)] dt: f64,
+        #[pyo3(from_py_with = real)] load: f64,
+        #[pyo3(from_py_with = real)] effort: f64,
+        #[pyo3(from_py_with = real_or_none)] temperature: Option<f64>,
+    ) -> PyResult<(f64, Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+        let velocity = self::velocity(py, velocity)?;
+        let dt = duration(py, "dt", dt)?;
+        let channels = channels(py, load, effort, temperature)?;
+        let core = self.core(py)?;
+        let found = core.derivatives(velocity, dt, &channels).or_input_error(py)?;
+        let (inputs, parameters) = (PyDict::new(py), PyDict::new(py));
+        for (name, derivative) in ["velocity", "effort", "load"].iter().zip(found.inputs) {
+            inputs.set_item(name, derivative)?;
+        }
+        for ((name, _), derivative) in core.parameters().into_iter().zip(found.parameters) {
+            parameters.set_item(name, derivative)?;
+        }
+        Ok((found.friction, inputs, parameters))
+    }
+
     /// Accepts the last trial.
     ///
     /// Raises
@@ -242,14 +353,34 @@ impl FrictionModel {
     }
 
     /// Back to a contact that was never moved.
-    fn reset(&self, py: Python<'_>) -> PyResult<()> {
-        self.core(py)?.reset();
+    ///
+    /// Parameters
+    /// ----------
+    /// position, time, path : float
+    ///     What effects go by: where the contact is, rad or m, time on the session clock, s, and path
+    ///     travelled so far, rad or m. A law alone goes by none of them.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     Numbers that are not finite.
+    #[pyo3(signature = (position=0.0, *, time=0.0, path=0.0))]
+    fn reset(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = real)] position: f64,
+        #[pyo3(from_py_with = real)] time: f64,
+        #[pyo3(from_py_with = real)] path: f64,
+    ) -> PyResult<()> {
+        let position = finite(py, "position", position)?;
+        let (time, path) = (finite(py, "time", time)?, finite(py, "path", path)?);
+        self.core(py)?.reset_at(position, time, path);
         Ok(())
     }
 
     /// An independent copy, state included.
     fn copy(&self, py: Python<'_>) -> PyResult<Self> {
-        Ok(Self { core: Shared::new(self.core(py)?.clone()) })
+        Ok(Self::of(self.core(py)?.clone()))
     }
 
     fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
@@ -266,16 +397,22 @@ impl FrictionModel {
         Ok(self.core(py)?.spec().record.name)
     }
 
-    /// Every parameter by name, as a new dict.
+    /// Every parameter as a new dict: those of the law by name, those of effects by path, as
+    /// ``effects.cogging.cosine``.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        let core = self.core(py)?;
-        let spec = core.spec();
-        for (parameter, value) in spec.record.parameters.iter().zip(&spec.values) {
-            dict.set_item(parameter.name, value)?;
+        for (path, value) in self.core(py)?.parameters() {
+            dict.set_item(path, value)?;
         }
         Ok(dict)
+    }
+
+    /// Effects by name with their parameters, as they are given, as a new dict.
+    #[getter]
+    fn effects<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let effects = self.core(py)?.effects().to_vec();
+        effects_dict(py, &effects)
     }
 
     /// Every option by name, as a new dict.
@@ -288,18 +425,23 @@ impl FrictionModel {
         Ok(dict)
     }
 
-    /// Whether the contact never gives back more work than it took; some laws do under a condition.
+    /// Whether the contact never gives back more work than it took; some laws do under a condition. With
+    /// effects nothing promises that.
     #[getter]
     fn passive(&self, py: Python<'_>) -> PyResult<bool> {
-        Ok(self.core(py)?.spec().passive())
+        let core = self.core(py)?;
+        Ok(core.effects().is_empty() && core.spec().passive())
     }
 
     /// The state as a dict of floats and arrays; assign one to continue from it.
     ///
+    /// With effects it holds what they go by as well, called as a motor calls it: ``position``,
+    /// ``time``, ``path``, ``friction`` of the law, ``relaxed`` and ``effect_memory``.
+    ///
     /// Raises
     /// ------
     /// InputError
-    ///     A state that this law did not return.
+    ///     A state that this law, with these effects, did not return.
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let entries = self.core(py)?.entries();
@@ -317,14 +459,20 @@ impl FrictionModel {
         let spec = core.spec();
         let mut text = format!("FrictionModel('{}'", spec.record.name);
         for (parameter, value) in spec.record.parameters.iter().zip(&spec.values) {
-            let _ = if value.is_finite() {
-                write!(text, ", {}={value:?}", parameter.name)
-            } else {
-                write!(text, ", {}=float('{value}')", parameter.name)
-            };
+            let _ = write!(text, ", {}={}", parameter.name, literal(*value));
         }
         for (name, word) in spec.options() {
             let _ = write!(text, ", {name}='{word}'");
+        }
+        let shown = |effect: &EffectSpec| {
+            let values = effect.record.parameters.iter().zip(&effect.values);
+            let values = values.map(|(spec, v)| format!("'{}': {}", spec.name, literal(*v)));
+            let values: Vec<String> = values.collect();
+            format!("'{}': {{{}}}", effect.record.name, values.join(", "))
+        };
+        if !core.effects().is_empty() {
+            let effects: Vec<String> = core.effects().iter().map(shown).collect();
+            let _ = write!(text, ", effects={{{}}}", effects.join(", "));
         }
         text.push(')');
         Ok(text)
@@ -344,8 +492,7 @@ impl FrictionModel {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let py = slf.py();
         let me = slf.get();
-        let keywords = me.parameters(py)?;
-        keywords.update(me.options(py)?.as_mapping())?;
+        let keywords = me.settings(py)?;
         let rebuild = py.import("stiction._rebuild")?.getattr("friction_model")?;
         PyTuple::new(
             py,

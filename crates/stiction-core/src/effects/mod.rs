@@ -7,6 +7,7 @@ use elements::facts;
 use elements::situation;
 
 pub use elements::sorted::Effects;
+pub use elements::spec::EffectSpec;
 pub use facts::{EffectFacts, Hook, Scale, Shape};
 pub use situation::{
     Coupling, LevelChange, MEMORY, Memory, Passage, Reading, Relaxation, SecondMass, Situation,
@@ -104,6 +105,13 @@ pub struct EffectRecord {
     pub hooks: &'static [Hook],
     /// What diagnosis needs to know.
     pub facts: EffectFacts,
+}
+
+impl EffectRecord {
+    /// Whether a contact alone can have it.
+    pub fn at_contact(&self) -> bool {
+        self.hooks.iter().all(|hook| hook.at_contact())
+    }
 }
 
 macro_rules! effects {

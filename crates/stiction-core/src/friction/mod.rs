@@ -174,10 +174,10 @@ macro_rules! laws {
 
         impl<S: Scalar> Law<S> {
             /// A step at a held velocity, where no contact mode changes in it.
-            pub fn quiet_step(
+            pub fn quiet_step<const CREEPS: bool>(
                 &self,
                 state: &AnyState<S>,
-                held: &$crate::integrate::Held<S>,
+                held: &$crate::integrate::Held<S, CREEPS>,
                 span: S,
             ) -> Option<(AnyTrial<S>, Outcome<S>)> {
                 match (self, state) {

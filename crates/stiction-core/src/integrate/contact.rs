@@ -4,11 +4,14 @@ use super::events::{Stepper, pass_events};
 use crate::friction::{Channels, FrictionLaw, Motion, Outcome};
 use crate::scalar::Scalar;
 
-/// A contact that is moved at a held velocity: what `FrictionModel.step` does.
+/// A contact that is moved at a held velocity: what `FrictionModel.step` does. `CREEPS` where something
+/// gives way in series with it.
 #[derive(Debug, Clone, Copy)]
-pub struct Held<S> {
+pub struct Held<S, const CREEPS: bool = false> {
     /// Velocity.
     pub velocity: S,
+    /// Velocity of what gives way, which the law is not moved by.
+    pub creep: S,
     /// What else reaches the contact.
     pub channels: Channels<S>,
     /// Friction at the end.
@@ -18,17 +21,28 @@ pub struct Held<S> {
 impl<S: Scalar> Held<S> {
     /// A held velocity.
     pub fn new(velocity: S, channels: Channels<S>) -> Self {
-        let zero = S::constant(0.0);
-        Self { velocity, channels, outcome: Outcome { force: zero, slope: zero, damping: zero } }
+        Self::giving(velocity, S::constant(0.0), channels)
     }
 }
 
-impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Held<S> {
+impl<S: Scalar, const CREEPS: bool> Held<S, CREEPS> {
+    /// A held velocity, of which something in series takes its share.
+    pub fn giving(velocity: S, creep: S, channels: Channels<S>) -> Self {
+        let zero = S::constant(0.0);
+        let outcome = Outcome { force: zero, slope: zero, damping: zero };
+        Self { velocity, creep, channels, outcome }
+    }
+}
+
+impl<S: Scalar, L: FrictionLaw<S>, const CREEPS: bool> Stepper<S, L> for Held<S, CREEPS> {
     type Attempt = (L::Trial, Motion<S>);
 
     #[inline]
     fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt {
-        let motion = Motion::held(self.velocity, span);
+        let mut motion = Motion::held(self.velocity, span);
+        if CREEPS {
+            motion.displacement -= self.creep * span;
+        }
         (law.advance(state, &motion, &self.channels), motion)
     }
 

@@ -122,8 +122,8 @@ fn apart<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
 }
 
 /// The step as a whole where no mode changes in it, evaluated and not accepted.
-pub fn quiet<S: Scalar, L: FrictionLaw<S>>(
-    held: &Held<S>,
+pub fn quiet<S: Scalar, L: FrictionLaw<S>, const CREEPS: bool>(
+    held: &Held<S, CREEPS>,
     law: &L,
     state: &L::State,
     span: S,

@@ -225,7 +225,7 @@ impl<S: Scalar> Machine<S> {
 
     /// Gravity and added efforts.
     #[inline]
-    fn surroundings(&self, at: &Situation<S>) -> S {
+    pub(super) fn surroundings(&self, at: &Situation<S>) -> S {
         let gravity = self.body.gravity(at.position);
         if !self.effects.adds_efforts() {
             return gravity + 0.0;

@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use super::state::{COLUMNS, of_the_law, qualified};
 use crate::error::{Error, Result};
 use crate::friction::LawState;
 use crate::integrate::{Machine, Places, Run, Seen};
 use crate::model::LawSpec;
+use crate::naming::{COLUMNS, of_the_law, qualified};
 use crate::scalar::Scalar;
 
 /// What a trajectory can show beside the law's own states.

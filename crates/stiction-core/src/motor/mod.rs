@@ -1,6 +1,7 @@
 //! A motor: machine, friction and the way they run together.
 
 mod column;
+mod contact;
 mod cost;
 mod running;
 mod spec;
@@ -19,11 +20,12 @@ use crate::kernel::RowKernel;
 use crate::sensitivity::MeasuredMotion;
 use crate::shoot::{Pull, Windows};
 
+pub use crate::effects::EffectSpec;
 pub use column::Column;
 use column::Columns;
 pub(crate) use column::Rows;
 pub use running::Running;
-pub use spec::{EffectSpec, MotorSpec};
+pub use spec::MotorSpec;
 pub use surroundings::{PerSample, Surroundings};
 pub use watch::Standing;
 

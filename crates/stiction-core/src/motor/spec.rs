@@ -2,55 +2,14 @@
 
 use crate::body::Body;
 use crate::drive::Drive;
-use crate::effects::{AnyEffect, EffectRecord, Effects, effect_record};
+use crate::effects::{EffectSpec, Effects};
 use crate::error::{Error, Result};
 use crate::friction::Law;
 use crate::integrate::{Integrator, Machine};
 use crate::model::LawSpec;
-use crate::parameter::resolve;
 use crate::scalar::Scalar;
 use crate::sensor::Sensor;
 use crate::servo::Servo;
-
-/// An effect with every parameter decided.
-#[derive(Debug, Clone)]
-pub struct EffectSpec {
-    /// Catalogue entry.
-    pub record: &'static EffectRecord,
-    /// Values in the order of the record's parameters.
-    pub values: Vec<f64>,
-}
-
-impl PartialEq for EffectSpec {
-    fn eq(&self, other: &Self) -> bool {
-        self.record.name == other.record.name && self.values == other.values
-    }
-}
-
-impl EffectSpec {
-    /// The effect called `name`; what is not stated takes its default, gains 0.
-    pub fn new(name: &str, stated: &[(String, f64)]) -> Result<Self> {
-        let record = effect_record(name)?;
-        Ok(Self { record, values: resolve(name, record.parameters, stated)? })
-    }
-
-    /// The effect called `name` at its neutral point, in the shape stated.
-    pub fn candidate(name: &str, shape: &[(String, f64)]) -> Result<Self> {
-        let effect = Self::new(name, shape)?;
-        let gains = effect.record.facts.gains;
-        if let Some((gain, value)) = shape.iter().find(|(word, _)| gains.contains(&word.as_str())) {
-            let shapes = effect.record.parameters.iter().map(|p| p.name);
-            let shapes: Vec<&str> = shapes.filter(|word| !gains.contains(word)).collect();
-            return Err(Error::Gain {
-                effect: name.to_owned(),
-                gain: gain.clone(),
-                given: *value,
-                shapes: if shapes.is_empty() { "nothing".to_owned() } else { shapes.join(", ") },
-            });
-        }
-        Ok(effect)
-    }
-}
 
 /// Everything that defines a motor, in plain numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -158,7 +117,7 @@ impl MotorSpec {
         let effects = self.effects.iter().map(|effect| {
             let own;
             (own, rest) = rest.split_at(effect.values.len());
-            AnyEffect::build(effect.record.name, own).expect("the record's own name is in the list")
+            effect.built(own)
         });
         let effects = Effects::new(effects);
         let law = self.friction.law(friction);

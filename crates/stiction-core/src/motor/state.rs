@@ -1,66 +1,13 @@
 //! The state of a motor as named entries.
-//!
-//! A law names its states as it likes, and so may a body: where both have one of a name, that of the law
-//! is called `friction.name` in a motor. No name of either has a dot of its own, so that no two entries
-//! of a motor can ever be called alike.
 
 use std::borrow::Cow;
 
 use super::Running;
 use crate::drive::Way;
-use crate::effects::Effects;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::friction::{Entry, EntryReader, LawState};
-use crate::integrate::{Budget, Run};
-
-/// Before the name of a law's state that is also one of a motor's own.
-const QUALIFIED: &str = "friction.";
-
-/// Names of the columns of a trajectory that are no states of a law.
-pub(super) const COLUMNS: [&str; 4] = ["position", "velocity", "friction", "measured"];
-
-/// A number that a body carries from sample to sample.
-type Place = fn(&mut Run<f64>) -> &mut f64;
-
-/// All of them, by name.
-const BODY: [(&str, Place); 10] = [
-    ("position", |run| &mut run.position),
-    ("velocity", |run| &mut run.velocity),
-    ("time", |run| &mut run.time),
-    ("path", |run| &mut run.path),
-    ("friction", |run| &mut run.friction),
-    ("second_position", |run| &mut run.second_position),
-    ("second_velocity", |run| &mut run.second_velocity),
-    ("relaxed", |run| &mut run.relaxed),
-    ("wound", |run| &mut run.wound),
-    // As it was, not recomputed: it belongs to the end of the last step, to the bit.
-    ("ambient", Run::ambient_mut),
-];
-
-/// What a contact beside effects has taken in, and the greatest kinetic energy so far.
-const BUDGET: [&str; 2] = ["contact_work", "kinetic_peak"];
-
-/// Whether a motor of any law, with any effects, calls something of its own so.
-fn is_own(name: &str) -> bool {
-    COLUMNS.contains(&name)
-        || BODY.iter().any(|(own, _)| *own == name)
-        || BUDGET.contains(&name)
-        || Way::<f64>::NAMES.contains(&name)
-        || name == Effects::<f64>::ENTRY
-}
-
-/// What a motor calls a state of its law.
-pub(super) fn qualified(name: &'static str) -> Cow<'static, str> {
-    if is_own(name) { Cow::Owned(format!("{QUALIFIED}{name}")) } else { Cow::Borrowed(name) }
-}
-
-/// What the law calls what a motor calls so; none where that is the motor's own.
-pub(super) fn of_the_law(name: &str) -> Option<&str> {
-    match name.strip_prefix(QUALIFIED) {
-        Some(bare) if is_own(bare) => Some(bare),
-        _ => (!is_own(name)).then_some(name),
-    }
-}
+use crate::integrate::Budget;
+use crate::naming::{BODY, BUDGET, blamed, parted, qualified};
 
 impl Running<f64> {
     /// State of body, drive, effects and friction as named entries.
@@ -85,13 +32,7 @@ impl Running<f64> {
 
     /// Sets the state from named entries; where one of them is wrong, nothing changes.
     pub fn restore(&mut self, entries: &[(String, Entry)]) -> Result<()> {
-        let (mut own, mut law) = (Vec::new(), Vec::new());
-        for (name, entry) in entries {
-            match of_the_law(name) {
-                None => own.push((name.clone(), entry.clone())),
-                Some(bare) => law.push((bare.to_owned(), entry.clone())),
-            }
-        }
+        let [own, law] = parted(entries);
         let mut run = self.run;
         let mut way = self.way.clone();
         let mut effects = self.machine.effects.clone();
@@ -114,12 +55,7 @@ impl Running<f64> {
             }
         }
         read.finish()?;
-        let state = self.law.restore(&law).map_err(|error| match error {
-            Error::State { name, problem } if is_own(&name) => {
-                Error::State { name: format!("{QUALIFIED}{name}"), problem }
-            }
-            other => other,
-        })?;
+        let state = self.law.restore(&law).map_err(blamed)?;
         (self.state, self.run, self.way) = (state, run, way);
         self.machine.effects = effects;
         self.range.forget();

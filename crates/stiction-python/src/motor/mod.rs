@@ -180,10 +180,7 @@ impl Motor {
         let friction = friction.cast::<FrictionModel>().map_err(|_| {
             input_error(py, format!("friction is {friction}, no FrictionModel; {wanted}"))
         })?;
-        let (law, state) = {
-            let core = friction.get().core(py)?;
-            (core.spec().clone(), core.state().clone())
-        };
+        let model = friction.get().core(py)?.clone();
         let spec = MotorSpec {
             input_limit,
             gravity_amplitude,
@@ -193,10 +190,9 @@ impl Motor {
             servo: servo.map(servo_of).transpose()?,
             effects: effects.map(effects_of).transpose()?.unwrap_or_default(),
             integrator: integrator_of(py, &integrator)?,
-            ..MotorSpec::new(inertia, torque_constant, law)
+            ..MotorSpec::new(inertia, torque_constant, model.spec().clone())
         };
-        let mut core = Core::new(spec).or_input_error(py)?;
-        core.set_friction_state(state);
+        let core = Core::with_contact(spec, &model).or_input_error(py)?;
         Ok(Self { core: Shared::new(core) })
     }
 

@@ -10,6 +10,7 @@ use stiction_core::servo::Servo;
 
 use super::Motor;
 use crate::error::{IntoPython, finite};
+use crate::friction_model::{FrictionModel, effects_dict};
 use crate::real::real;
 use crate::state::{from_dict, to_dict};
 
@@ -36,14 +37,7 @@ impl Motor {
     /// Keywords that rebuild the motor, but for friction.
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let spec = self.core(py)?.spec().clone();
-        let effects = PyDict::new(py);
-        for effect in &spec.effects {
-            let values = PyDict::new(py);
-            for (parameter, value) in effect.record.parameters.iter().zip(&effect.values) {
-                values.set_item(parameter.name, value)?;
-            }
-            effects.set_item(effect.record.name, values)?;
-        }
+        let effects = effects_dict(py, &spec.effects)?;
         let dict = PyDict::new(py);
         dict.set_item("inertia", spec.inertia)?;
         dict.set_item("torque_constant", spec.gain)?;
@@ -153,6 +147,19 @@ impl Motor {
     fn friction_state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let entries = self.core(py)?.friction_entries();
         to_dict(py, entries)
+    }
+
+    /// What resists at the contact, with its effects: what ``friction_model`` stands on.
+    ///
+    /// Returns
+    /// -------
+    /// model : FrictionModel
+    ///     In the present state.
+    /// left_out : list of str
+    ///     Effects of this motor that no contact alone has.
+    fn contact(&self, py: Python<'_>) -> PyResult<(FrictionModel, Vec<&'static str>)> {
+        let (model, left_out) = self.core(py)?.friction_model().or_input_error(py)?;
+        Ok((FrictionModel::of(model), left_out))
     }
 
     /// Takes over the state of another motor.

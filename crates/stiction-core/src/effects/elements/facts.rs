@@ -38,6 +38,11 @@ impl Hook {
             Self::SecondMass => "second mass",
         }
     }
+
+    /// Whether it enters at the contact, or as an effort on the body: what a contact alone can have.
+    pub const fn at_contact(self) -> bool {
+        matches!(self, Self::FrictionLevel | Self::AddedEffort | Self::StateRelaxation)
+    }
 }
 
 /// What the values on the grid of a shape parameter are measured in.

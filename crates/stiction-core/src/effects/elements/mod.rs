@@ -3,3 +3,4 @@
 pub mod facts;
 pub mod situation;
 pub mod sorted;
+pub mod spec;

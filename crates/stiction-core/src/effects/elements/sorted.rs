@@ -169,6 +169,14 @@ impl<S: Scalar> Effects<S> {
         }
     }
 
+    /// Takes over what those of another plant remember that stand at these places there, in the order of
+    /// these effects.
+    pub fn take(&mut self, other: &Effects<f64>, places: &[usize]) {
+        for (kept, place) in self.kept.iter_mut().zip(places) {
+            kept.memory = other.kept[*place].memory.map(S::constant);
+        }
+    }
+
     fn remembering(&self) -> impl Iterator<Item = &Kept<S>> {
         self.kept.iter().filter(|kept| kept.effect.remembers())
     }
@@ -186,7 +194,7 @@ impl<S: Scalar> Effects<S> {
         let rows = read.pairs(Self::ENTRY)?;
         let (given, wanted) = (rows.len(), self.remembering().count() * MEMORY / 2);
         if given != wanted {
-            let problem = format!("has {given} rows where the effects of this motor need {wanted}");
+            let problem = format!("has {given} rows where the effects need {wanted}");
             return Err(Error::State { name: Self::ENTRY.to_owned(), problem });
         }
         let mut numbers = rows.as_flattened().iter();
