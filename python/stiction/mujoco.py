@@ -18,7 +18,7 @@ from .trajectory import FloatArray
 if TYPE_CHECKING:
     from .stated import Effect
 
-__all__ = ["Joint", "attach", "step"]
+__all__ = ["Joint", "attach", "simulator", "step"]
 
 HELD: Final = frozenset({"friction level", "added effort", "state relaxation"})
 """Hooks of effects that act at the contact or add an effort."""
@@ -172,7 +172,7 @@ def step(model: Any, data: Any, joints: Sequence[Joint]) -> None:
         As a motor refuses: a time step that is too long for the contact, efforts that are no
         numbers.
     """
-    mujoco, span = _mujoco(), float(model.opt.timestep)
+    mujoco, span = simulator(), float(model.opt.timestep)
     mujoco.mj_step1(model, data)
     mujoco.mj_fwdActuation(model, data)
     mujoco.mj_fwdAcceleration(model, data)
@@ -265,7 +265,7 @@ def _answer(mujoco: Any, model: Any, data: Any, dof: int) -> FloatArray:
 
 def _places(model: Any, name: str) -> tuple[int, int]:
     """Where a joint stands in positions and in velocities."""
-    mujoco = _mujoco()
+    mujoco = simulator()
     kind = mujoco.mjtJoint
     number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
     if number < 0:
@@ -295,7 +295,14 @@ def _sentences(plant: Plant, kept: Sequence[Effect]) -> list[str]:
     return lost
 
 
-def _mujoco() -> Any:
+def simulator() -> Any:
+    """The package itself.
+
+    Raises
+    ------
+    InputError
+        It is missing.
+    """
     try:
         import mujoco
     except ImportError:

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
+from .. import session as sessions
 from ..errors import InputError
-from ..export import targets
+from ..export import Export, targets
 from ..plant import Plant
+from ..progress import phase
 from .answer import answer, folder, written
+from .progress import progress
+from .sessions import spoken_of
 
 __all__ = ["export"]
+
+_logger = logging.getLogger(__name__)
 
 
 def export(
@@ -20,6 +27,7 @@ def export(
     *,
     to: tuple[str, ...] = (),
     speed: float = 10.0,
+    check: Path | None = None,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     list: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
@@ -34,6 +42,9 @@ def export(
         Target; may be given several times.
     speed
         Greatest speed at which friction matters, rad/s or m/s.
+    check
+        Session file: each target is run on the recordings that are held out, and one line says what
+        it keeps of what the effects of the plant are worth.
     out
         Folder for the files, ./<plant>-export/ without it; each target has its own in there.
     list
@@ -53,9 +64,33 @@ def export(
     read = Plant.load(plant)
     made = [read.export(name, speed=speed) for name in to]
     where = folder(Path(f"{plant.stem}-export") if out is None else out)
-    texts = []
     with written(where):
         for each in made:
             each.save(where / each.target)
-            texts.append(f"{each}\n  folder: {where / each.target}")
-    answer("\n".join(texts), [each.to_dict() for each in made], as_json=json)
+    texts = [f"{each}\n  folder: {where / each.target}" for each in made]
+    data = [each.to_dict() for each in made]
+    if check is not None:
+        with progress():
+            found = _checked(read, made, check)
+        texts += [text for text, _ in found]
+        data = [{**own, "check": told} for own, (_, told) in zip(data, found, strict=True)]
+    answer("\n".join(texts), data, as_json=json)
+
+
+def _checked(plant: Plant, made: list[Export], session: Path) -> list[tuple[str, dict[str, Any]]]:
+    """What each target keeps, as text and as data: one that cannot be run says why."""
+    from ..export.fidelity import Bench
+
+    loaded = sessions.load(session, plant=plant)
+    found: list[tuple[str, dict[str, Any]]] = []
+    with spoken_of(session, loaded, plant):
+        bench = Bench(plant, loaded)
+        for each in made:
+            phase(_logger, "running %s", each.target)
+            try:
+                fidelity = bench.fidelity(each)
+            except InputError as error:
+                found.append((f"{each.target}: not checked: {error}", {"error": str(error)}))
+            else:
+                found.append((str(fidelity), fidelity.to_dict()))
+    return found

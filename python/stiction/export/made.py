@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import given
 from ..atomic_files import write_text
+from ..errors import InputError
+
+if TYPE_CHECKING:
+    from ..plant import Plant
+    from .fidelity import Fidelity
 
 __all__ = ["Export"]
 
@@ -29,6 +34,8 @@ class Export:
         What it cannot hold, likewise.
     numbers : mapping of str to float
         What stands in the files, in SI.
+    plant : Plant or None
+        That it was made of.
     """
 
     target: str
@@ -36,6 +43,7 @@ class Export:
     held: tuple[str, ...] = ()
     lost: tuple[str, ...] = ()
     numbers: Mapping[str, float] = field(default_factory=dict)
+    plant: Plant | None = field(default=None, repr=False)
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write the files.
@@ -60,6 +68,38 @@ class Export:
             for name, text in self.files.items():
                 write_text(where / name, text)
         return [where / name for name in self.files]
+
+    def check(self, session: Any) -> Fidelity:
+        """Run the target on the held-out recordings of a session, beside the plant.
+
+        Three errors are compared over the same rows: of the target as it was written, of the whole
+        plant as stiction simulates it, and of the plant without its effects, its law fitted again
+        to the rows that train. A target that moves is started from the measured state and runs for
+        0.3 s at a time; of one that is a curve, the effort along the measured motion is compared,
+        where the machine moves.
+
+        Parameters
+        ----------
+        session : Session, or sequence of Recording, or Recording
+            Roles as for a fit: what tests is held out.
+
+        Returns
+        -------
+        Fidelity
+
+        Raises
+        ------
+        InputError
+            A target that cannot be run, here or on these recordings; nothing that is held out; an
+            export that was put together by hand.
+        """
+        from .fidelity import Bench
+
+        if self.plant is None:
+            raise InputError(
+                f"{self.target}: this export knows no plant; make it with Plant.export to check it"
+            )
+        return Bench(self.plant, session).fidelity(self)
 
     def to_dict(self) -> dict[str, Any]:
         """What it holds and what not, as plain data."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import pkgutil
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ from .targets import __path__ as _path
 
 if TYPE_CHECKING:
     from ..plant import Plant
+    from .runs import EffortRun, MotionRun
 
 __all__ = ["Target", "export", "targets"]
 
@@ -34,23 +35,28 @@ class Target:
         What is written, in a line.
     write : callable
         Of a plant and a greatest speed.
+    runs : callable or None
+        Of what was written and the plant: the ways in which the target is run to check it; None
+        where it cannot be.
     """
 
     name: str
     summary: str
     write: Callable[[Plant, float], Export]
+    runs: Callable[[Export, Plant], Sequence[MotionRun | EffortRun]] | None = None
 
 
 @cache
 def targets() -> dict[str, Target]:
     """All targets by name.
 
-    A module of ``stiction.export.targets`` has ``SUMMARY`` and ``write(plant, speed)``.
+    A module of ``stiction.export.targets`` has ``SUMMARY`` and ``write(plant, speed)``, and may
+    have ``runs(export, plant)``.
     """
     found = {}
     for module in pkgutil.iter_modules(_path):
         own = import_module(f"{_package}.{module.name}")
-        found[module.name] = Target(module.name, own.SUMMARY, own.write)
+        found[module.name] = Target(module.name, own.SUMMARY, own.write, getattr(own, "runs", None))
     return dict(sorted(found.items()))
 
 
@@ -62,4 +68,5 @@ def export(plant: Plant, to: str, *, speed: float) -> Export:
             f"{plant.source}: speed = {at:g} is none; give the greatest speed at which friction "
             "matters, above 0, in rad/s or m/s"
         )
-    return known[choice(to, tuple(known), f"{plant.source}: to")].write(plant, at)
+    made = known[choice(to, tuple(known), f"{plant.source}: to")].write(plant, at)
+    return replace(made, plant=plant)

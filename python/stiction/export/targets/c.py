@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+import ctypes
+import shutil
+import subprocess
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
+from ...errors import InputError
+from ...trajectory import FloatArray
 from ..curves import Curves
 from ..firmware import Firmware
 from ..joint import beside
 from ..made import Export
+from ..runs import EffortRun
 
 if TYPE_CHECKING:
     from ...plant import Plant
@@ -59,6 +69,40 @@ def write(plant: Plant, speed: float) -> Export:
     )
     files = {"stiction_feedforward.c": head + made.source, "stiction_feedforward.h": made.header}
     return Export("c", files, held, lost, curves.numbers)
+
+
+def runs(made: Export, plant: Plant) -> tuple[EffortRun]:
+    """The file that was written, compiled and called."""
+    friction, place = _compiled(made)
+
+    def effort(velocity: FloatArray, position: FloatArray) -> FloatArray:
+        pairs = zip(velocity.tolist(), position.tolist(), strict=True)
+        return np.array([friction(at) + place(where) for at, where in pairs])
+
+    return (EffortRun("", effort),)
+
+
+def _compiled(made: Export) -> tuple[ctypes._NamedFuncPointer, ctypes._NamedFuncPointer]:
+    """Friction over speed and effort over position, as C has them."""
+    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+    if compiler is None:
+        raise InputError("c: there is no C compiler to run it with; install one (cc, gcc or clang)")
+    with TemporaryDirectory() as folder:
+        made.save(folder)
+        built = Path(folder) / "feedforward.so"
+        source = str(Path(folder) / "stiction_feedforward.c")
+        flags = ["-std=c99", "-O2", "-shared", "-fPIC"]
+        done = subprocess.run(
+            [compiler, *flags, source, "-o", str(built), "-lm"], capture_output=True, text=True
+        )
+        if done.returncode != 0:
+            raise InputError(f"c: {compiler} cannot compile it: {done.stderr.strip()}")
+        # What is loaded stays when the file is gone.
+        library = ctypes.CDLL(str(built))
+    found = library.stiction_friction, library.stiction_place
+    for function in found:
+        function.restype, function.argtypes = ctypes.c_double, [ctypes.c_double]
+    return found
 
 
 def _held(plant: Plant, curves: Curves, made: Firmware) -> tuple[str, ...]:

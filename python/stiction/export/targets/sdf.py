@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING
 
 from ..joint import joint_of, sidecar, told
 from ..made import Export
+from ..runs import EffortRun, dry_friction
 
 if TYPE_CHECKING:
     from ...plant import Plant
@@ -31,3 +33,10 @@ def write(plant: Plant, speed: float) -> Export:
     held = ("Coulomb and viscous friction",)
     files = {"joint.sdf": text, "joint.json": sidecar(plant, numbers, lost)}
     return Export("sdf", files, held, lost, numbers)
+
+
+def runs(made: Export, plant: Plant) -> tuple[EffortRun]:
+    """The joint that was written, as a simulator reads it."""
+    dynamics = next(ET.fromstring(made.files["joint.sdf"]).iter("dynamics"))
+    numbers = {each.tag: float(each.text or "0") for each in dynamics}
+    return dry_friction(plant, numbers["friction"], numbers["damping"])

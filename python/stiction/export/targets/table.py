@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from ...json_text import json_of
+from ...trajectory import FloatArray
 from ..curves import Curves
 from ..joint import joint_of
 from ..made import Export
+from ..runs import EffortRun
 
 if TYPE_CHECKING:
     from ...plant import Plant
@@ -42,6 +45,20 @@ def write(plant: Plant, speed: float) -> Export:
     }
     held = (*curves.held, "kS, kV and kA, in units of the input")
     return Export("table", files, held, curves.lost, curves.numbers | gains)
+
+
+def runs(made: Export, plant: Plant) -> tuple[EffortRun]:
+    """Lines between the points that were written."""
+    table = json.loads(made.files["table.json"])
+    speed, place = table["speed"], table["position"]
+
+    def effort(velocity: FloatArray, position: FloatArray) -> FloatArray:
+        at = np.mod(position, place["position"][-1]) if place["position"][-1] else position
+        found: FloatArray = np.interp(velocity, speed["velocity"], speed["effort"])
+        found += np.interp(at, place["position"], place["effort"])
+        return found
+
+    return (EffortRun("", effort),)
 
 
 def _csv(names: tuple[str, str], first: np.ndarray, second: np.ndarray) -> str:

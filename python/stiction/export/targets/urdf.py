@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING
 
 from ..joint import joint_of, sidecar, told
 from ..made import Export
+from ..runs import EffortRun, dry_friction
 
 if TYPE_CHECKING:
     from ...plant import Plant
@@ -35,3 +37,9 @@ def write(plant: Plant, speed: float) -> Export:
     held = ("Coulomb and viscous friction",)
     files = {"joint.urdf": text, "joint.json": sidecar(plant, numbers, lost)}
     return Export("urdf", files, held, lost, numbers)
+
+
+def runs(made: Export, plant: Plant) -> tuple[EffortRun]:
+    """The joint that was written, as a simulator reads it."""
+    dynamics = next(ET.fromstring(made.files["joint.urdf"]).iter("dynamics"))
+    return dry_friction(plant, *(float(dynamics.attrib[name]) for name in ("friction", "damping")))

@@ -1,0 +1,259 @@
+"""Simulations and their exact derivatives, backwards: what frameworks of gradients ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from . import given
+from ._native import FrictionModel, Motion
+from .errors import InputError
+from .frozen import path_of
+from .motor import Motor
+from .parameter import number
+from .plant import Plant
+from .trajectory import FloatArray
+
+__all__ = ["Simulation", "over_batch"]
+
+KEYWORDS: Final = {
+    "drive.gain": "torque_constant",
+    "body.inertia": "inertia",
+    "body.gravity_amplitude": "gravity_amplitude",
+    "body.gravity_zero_rad": "gravity_zero",
+    "body.weight_n": "weight",
+}
+"""What a motor is made with, by the path of its parameter."""
+ALIKE: Final = 1e-9
+"""Share of the range of motion within which a run over a window is the same as the simulation."""
+
+
+class Simulation:
+    """A motor, the parameters by which it is differentiated, and its sample time.
+
+    Every other parameter is the motor's, also where its default would follow one of these, as in an
+    ``Ensemble``; each run starts from the state of the motor.
+
+    Parameters
+    ----------
+    machine : Plant or Motor
+    parameters : sequence of str
+        Paths, or bare last words where they are unique.
+    dt : float
+        s.
+
+    Attributes
+    ----------
+    paths : tuple of str
+
+    Raises
+    ------
+    InputError
+        No machine, an unknown path, one twice, a plant that is no motor.
+    """
+
+    def __init__(self, machine: Plant | Motor, parameters: Sequence[str], dt: float) -> None:
+        given.instance(machine, Plant | Motor, "simulate: machine", "a Plant or a Motor")
+        if isinstance(machine, Plant):
+            machine = machine.motor()
+        self._motor = machine.copy()
+        self._dt = number(dt, "simulate: dt")
+        names = given.names(parameters, "simulate: parameters")
+        known = self._motor.parameters
+        self.paths = tuple(path_of(name, known, "simulate: parameters: ") for name in names)
+        if len(set(self.paths)) < len(self.paths):
+            raise InputError("simulate: parameters: one is named twice; drop one of its names")
+
+    def run(
+        self, values: FloatArray, current: FloatArray, load: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Position and velocity after each sample, as ``Motor.simulate`` has them.
+
+        Parameters
+        ----------
+        values : numpy.ndarray, shape (parameters,)
+            SI.
+        current, load : numpy.ndarray, shape (n,)
+
+        Returns
+        -------
+        (numpy.ndarray, numpy.ndarray), shape (n,) each
+        """
+        found = self._with(values).simulate(
+            current, self._dt, load=load, outputs=["position", "velocity"]
+        )
+        return found.position, found.velocity
+
+    def backwards(
+        self,
+        by_input: bool,
+        values: FloatArray,
+        current: FloatArray,
+        load: FloatArray,
+        position: FloatArray,
+        velocity: FloatArray,
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Derivatives of Σ position·x + velocity·v by parameters, input and load.
+
+        Parameters
+        ----------
+        by_input : bool
+            False where those by input and load are asked for by nobody: they are 0 then.
+        values, current, load, position, velocity
+            As for ``by_parameters``.
+
+        Raises
+        ------
+        InputError
+            As for ``by_effort`` and ``to_effort``; weights of the velocity with ``by_input``.
+        """
+        of_values = self.by_parameters(values, current, load, position, velocity)
+        if not by_input:
+            return of_values, np.zeros_like(current), np.zeros_like(load)
+        if np.any(velocity):
+            raise InputError(
+                "simulate: the velocity has no derivative by input or load; let the loss hang on "
+                "the position, or freeze the input"
+            )
+        of_load = self.by_effort(values, current, load, position)
+        return of_values, of_load * self.to_effort(values, current), of_load
+
+    def by_parameters(
+        self,
+        values: FloatArray,
+        current: FloatArray,
+        load: FloatArray,
+        position: FloatArray,
+        velocity: FloatArray,
+    ) -> FloatArray:
+        """Derivatives of Σ position·x + velocity·v by the parameters.
+
+        Parameters
+        ----------
+        values, current, load
+            As for ``run``.
+        position, velocity : numpy.ndarray, shape (n,)
+            Weights of what came out.
+
+        Returns
+        -------
+        numpy.ndarray, shape (parameters,)
+        """
+        if not self.paths:
+            return np.zeros(0)
+        moved, turned = self._with(values).sensitivity(
+            current, self._dt, list(self.paths), load=load
+        )
+        found: FloatArray = moved @ position + turned @ velocity
+        return found
+
+    def by_effort(
+        self, values: FloatArray, current: FloatArray, load: FloatArray, position: FloatArray
+    ) -> FloatArray:
+        """Derivatives of Σ position·x by an effort that is added to each sample.
+
+        One run over dual numbers for every sixteen samples or so: its cost grows with the square of
+        their number.
+
+        Parameters
+        ----------
+        values, current, load, position
+            As for ``by_parameters``.
+
+        Returns
+        -------
+        numpy.ndarray, shape (n,)
+            Per N·m or N.
+
+        Raises
+        ------
+        InputError
+            A machine whose state at the start no window takes over, or so stiff that a window
+            divides its samples in another way: the derivative would be that of another run.
+        """
+        motor, samples = self._with(values), len(current)
+        state = motor.state
+        begin, speed = float(state["position"]), float(state["velocity"])
+        # The window takes its velocity from the first two positions.
+        positions = begin + speed * self._dt * np.minimum(np.arange(samples + 1.0), 1.0)
+        motion = Motion(positions, current, self._dt, load=load)
+        self._same(motor, motion, current, load)
+        found = motor.shoot_response(motion, position, samples, samples)
+        return found[:, 0]
+
+    def to_effort(self, values: FloatArray, current: FloatArray) -> FloatArray:
+        """Effort per unit of input in each sample: the gain, 0 beyond the limit of the drive."""
+        motor = self._with(values)
+        if motor.settings()["servo"] is not None:
+            raise InputError("simulate: the goals of a servo have no exact derivative; freeze them")
+        held = np.abs(current) <= motor.settings()["input_limit"]
+        return np.where(held, motor.settings()["torque_constant"], 0.0)
+
+    def _same(self, motor: Motor, motion: Motion, current: FloatArray, load: FloatArray) -> None:
+        """Refuses a window that does not run as the simulation does."""
+        run = motor.copy().simulate(current, self._dt, load=load, outputs=["position"]).position
+        last = np.zeros(len(current))
+        last[-1] = 1.0
+        shot = float(motor.shoot(motion, last, len(current))[0])
+        gone = float(run[-1]) - float(motor.state["position"])
+        if not abs(shot - gone) <= ALIKE * max(float(np.ptp(run)), abs(gone), 1e-300):
+            raise InputError(
+                "simulate: this contact is so stiff, or starts in such a state, that a derivative "
+                "by the input would be that of another run; give a shorter dt, or freeze the input"
+            )
+
+    def _with(self, values: FloatArray) -> Motor:
+        """The motor with these values, in its state."""
+        settings = self._motor.settings()
+        law, keywords = self._motor.friction_settings()
+        effects = {name: dict(each) for name, each in settings["effects"].items()}
+        for path, value in zip(
+            self.paths, np.asarray(values, dtype=np.float64).tolist(), strict=True
+        ):
+            part, _, name = path.partition(".")
+            if part == "friction":
+                keywords = {**keywords, name: value}
+            elif part == "effects":
+                effect, _, own = name.partition(".")
+                effects[effect][own] = value
+            else:
+                settings[KEYWORDS[path]] = value
+        friction = FrictionModel(law, **keywords)
+        motor = Motor(friction=friction, **{**settings, "effects": effects})
+        state = self._motor.state
+        if motor.parameters != self._motor.parameters:
+            # What acts where it stands, efforts over the place among it, goes with the parameters.
+            motor.reset(
+                state["position"], state["velocity"], time=state["time"], path=state["path"]
+            )
+            state["ambient"] = motor.state["ambient"]
+        motor.state = state
+        return motor
+
+
+def over_batch(
+    work: Callable[..., tuple[FloatArray, ...]], outputs: int, *arrays: Any
+) -> tuple[FloatArray, ...]:
+    """Work on one row after the other, whatever axes stand before the last.
+
+    Parameters
+    ----------
+    work : callable
+        Of one row of each array.
+    outputs : int
+        How many rows it returns.
+    arrays : array_like, shape (..., n)
+
+    Returns
+    -------
+    tuple of numpy.ndarray, shape (..., m)
+    """
+    rows = [np.asarray(each, dtype=np.float64) for each in arrays]
+    before = np.broadcast_shapes(*(each.shape[:-1] for each in rows))
+    # Counted, for of rows of no length nobody can tell how many there are.
+    number = int(np.prod(before, dtype=np.int64))
+    flat = [np.broadcast_to(r, (*before, r.shape[-1])).reshape(number, r.shape[-1]) for r in rows]
+    found = [work(*(np.ascontiguousarray(each[k]) for each in flat)) for k in range(number)]
+    return tuple(np.stack([each[k] for each in found]).reshape(*before, -1) for k in range(outputs))

@@ -1,0 +1,116 @@
+"""Derivatives through JAX: those of the core, and of differences."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+
+jax = pytest.importorskip("jax")
+jax.config.update("jax_enable_x64", True)
+from stiction.jax import simulate  # noqa: E402
+
+from .gradient_rigs import DT, RIGS, current, machine, values  # noqa: E402
+
+STEP = 1e-6
+NEAR = 1e-5
+"""What a difference over such a step is good for."""
+
+
+def squares(law, own, inputs, load=None, velocity=0.0):
+    """A loss that hangs on all samples of the position, and of the velocity where it counts."""
+    position, speed = simulate(machine(law), own, inputs, DT, load=load)
+    return jax.numpy.sum(position**2) + velocity * jax.numpy.sum(speed**2)
+
+
+@pytest.mark.parametrize("law", RIGS)
+def test_it_is_the_simulation_of_the_motor(law):
+    position, velocity = jax.jit(lambda u: simulate(machine(law), {}, u, DT))(current())
+    run = machine(law).simulate(current(), DT)
+    assert np.asarray(position).tobytes() == run.position.tobytes()
+    assert np.asarray(velocity).tobytes() == run.velocity.tobytes()
+    assert np.ptp(run.velocity) > 0.1
+
+
+@pytest.mark.parametrize("law", RIGS)
+def test_derivatives_by_parameters_are_those_of_differences(law):
+    own = values(law)
+    assert len(own) >= 5
+    exact = jax.jit(jax.grad(lambda v: squares(law, v, current(), velocity=1e-3)))(own)
+    for path, value in own.items():
+        step = STEP * max(abs(value), 1e-3)
+        high, low = (
+            squares(law, {**own, path: value + sign * step}, current(), velocity=1e-3)
+            for sign in (1.0, -1.0)
+        )
+        chord = float(high - low) / (2.0 * step)
+        assert float(exact[path]) == pytest.approx(chord, rel=NEAR), path
+
+
+@pytest.mark.parametrize("law", RIGS)
+def test_derivatives_by_input_and_load_are_those_of_differences(law):
+    inputs, load = current(), np.full(len(current()), 0.02)
+    by_input, by_load = jax.grad(lambda u, p: squares(law, {}, u, p), (0, 1))(inputs, load)
+    source = np.random.default_rng(0)
+    way = source.standard_normal(len(inputs))
+    for exact, at in ((by_input, 0), (by_load, 1)):
+        moved = [
+            squares(law, {}, inputs + (at == 0) * s * STEP * way, load + (at == 1) * s * STEP * way)
+            for s in (1.0, -1.0)
+        ]
+        chord = float(moved[0] - moved[1]) / (2.0 * STEP)
+        assert float(exact @ way) == pytest.approx(chord, rel=1e-4)
+    assert np.asarray(by_input) == pytest.approx(0.5 * np.asarray(by_load))
+
+
+def test_batches_go_over_parameters_and_inputs():
+    levels, inputs = np.array([0.1, 0.2, 0.3]), np.stack([current(), 0.7 * current()])
+
+    def loss(level, u):
+        return squares("coulomb", {"friction.coulomb": level}, u)
+
+    gradient = jax.grad(loss, (0, 1))
+    table = jax.jit(jax.vmap(jax.vmap(gradient, (0, None)), (None, 0)))(levels, inputs)
+    for k, row in enumerate(inputs):
+        for j, level in enumerate(levels):
+            by_level, by_input = gradient(level, row)
+            assert float(table[0][k, j]) == pytest.approx(float(by_level), rel=1e-12)
+            assert np.asarray(table[1][k, j]) == pytest.approx(np.asarray(by_input), rel=1e-12)
+
+
+def test_a_motor_goes_on_from_where_it_is():
+    motor = machine("lugre").motor()
+    motor.simulate(current(), DT)
+    begun = motor.state
+    position, _ = simulate(motor, {}, current(), DT)
+    assert motor.state["position"] == begun["position"]
+    assert np.asarray(position).tolist() == motor.simulate(current(), DT).position.tolist()
+
+
+def test_what_follows_a_parameter_by_default_stays():
+    plant = st.Plant.from_dict(
+        {"drive": {"gain": 1.0}, "body": {"inertia": 0.01}, "friction": {"law": "coulomb"}}
+    )
+    # Break-away is 0.35 N·m, as where the motor was made: 0.3 N·m move nothing.
+    position, _ = simulate(plant, {"coulomb": 0.1}, np.full(20, 0.3), 1e-3)
+    assert not np.any(np.asarray(position))
+
+
+def test_refusals_are_sentences():
+    with pytest.raises(st.InputError, match="nonsense"):
+        simulate(machine("coulomb"), {"nonsense": 1.0}, current(), DT)
+    with pytest.raises(st.InputError, match=r"give \(n,\) each"):
+        simulate(machine("coulomb"), {}, np.zeros((2, 3)), DT)
+    with pytest.raises(Exception, match="velocity has no derivative by input"):
+        jax.grad(lambda u: squares("coulomb", {}, u, velocity=1.0))(current())
+    stiff = {"initial_stiffness": 1e9}
+    plant = machine("lugre")
+    with pytest.raises(Exception, match="so stiff"):
+        jax.grad(lambda u: jax.numpy.sum(simulate(plant.with_values(stiff), {}, u, DT)[0]))(
+            current()
+        )
+    jax.config.update("jax_enable_x64", False)
+    try:
+        with pytest.raises(st.InputError, match="single precision"):
+            simulate(plant, {}, current(), DT)
+    finally:
+        jax.config.update("jax_enable_x64", True)
