@@ -1,7 +1,7 @@
 """What the compiled module holds; checked against the binary by stubtest."""
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, Final, Self, TypeVar, final
+from typing import Any, Final, Self, TypeVar, final, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -42,6 +42,9 @@ class CancelToken:
 
 @final
 class FrictionModel:
+    @overload
+    def __new__(cls, law: str, /, **keywords: float | str) -> FrictionModel: ...
+    @overload
     def __new__(
         cls,
         law: str,

@@ -127,7 +127,8 @@ def _jax() -> Any:
         import jax
     except ImportError:
         raise InputError("stiction.jax: JAX is missing; install it: pip install jax") from None
-    if not jax.config.jax_enable_x64:
+    config: Any = jax.config
+    if not config.jax_enable_x64:
         raise InputError(
             "stiction.jax: JAX counts in single precision, in which a machine that creeps stands "
             'still; call jax.config.update("jax_enable_x64", True) first'
