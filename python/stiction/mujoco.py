@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Joint", "attach", "simulator", "step"]
 
-HELD: Final = frozenset({"friction level", "added effort", "state relaxation"})
-"""Hooks of effects that act at the contact or add an effort."""
 AS_FOUND: Final = 1e-9
 """Share of the change of a velocity by which the simulator may miss it through rounding alone."""
 SAME: Final = 1e-12
@@ -53,7 +51,7 @@ class Joint:
         self.name, self.friction = name, 0.0
         self._model = model
         self._place, self._dof = _places(model, name)
-        kept = tuple(e for e in plant.effects if frozenset(e.record.hooks) <= HELD)
+        kept = tuple(e for e in plant.effects if e.record.at_contact)
         self.lost = tuple(_sentences(plant, kept))
         moved = {"input": "torque_nm" if plant.motion == "rotary" else "force_n", "gain": 1.0}
         self.plant = replace(plant, drive=moved, body={}, effects=kept, sensor={}, controller={})
