@@ -39,6 +39,7 @@ def test_a_fall_that_comes_late_is_one_cause(seed: int, size: float) -> None:
     assert "stribeck" not in found.sentence
 
 
+@pytest.mark.slow
 def test_a_fall_that_is_never_late_is_stribeck() -> None:
     made = make_session(12340000, hidden=(("stribeck", 0.0125),))
     found = st.diagnose(as_plant(made), as_session(made))

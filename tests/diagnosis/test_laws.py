@@ -54,6 +54,7 @@ def test_a_dead_band_that_takes_the_input_away_makes_no_better_law() -> None:
     assert found.better_law == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("true", "stated", "flicker"),
     [("maxwell_slip", "coulomb", 0.3), ("coulomb", "maxwell_slip", 0.0)],
@@ -319,6 +320,7 @@ def moved_over_bristles(seed: int, role: str) -> st.Recording:
     return st.Recording(time, None, position, effort=effort, role=role)
 
 
+@pytest.mark.slow
 def test_a_law_is_compared_with_the_fall_that_it_may_have() -> None:
     """Without it the law that these data were made with would leave much, and say nothing of it."""
     roles = ("train", "train", "select", "test")

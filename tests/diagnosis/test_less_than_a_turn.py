@@ -50,6 +50,7 @@ def geared(
     return st.Plant.from_dict(table), st.Session(slower)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "base", "hidden", "name"),
     [
@@ -99,6 +100,7 @@ def test_blocks_speak_for_what_is_simpler_only_where_it_explains_more() -> None:
     assert odds(0.2, -1.0, near=True) == odds(0.2, -1.0, near=False) < alone
 
 
+@pytest.mark.slow
 def test_a_weight_at_its_top_is_no_sure_constant() -> None:
     """The blocks spoke for the constant, which costs less, though it explains a little less."""
     plant, session = geared(31, "maxwell_slip", span=1.0, top=0.0, cogging=1.0)

@@ -145,6 +145,7 @@ def test_noise_in_place_of_the_rows_that_test_changes_gains_only() -> None:
     assert gain.value != usual.value
 
 
+@pytest.mark.slow
 def test_the_number_of_threads_changes_nothing() -> None:
     one, two = (found("cogging", threads=n).to_dict() for n in (1, 2))
     del one["seconds"], two["seconds"]

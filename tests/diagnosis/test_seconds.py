@@ -49,6 +49,7 @@ def test_a_limit_is_named_where_rows_that_decide_are_fitted_too(
     assert len(set(names)) == len(names) > 20
 
 
+@pytest.mark.slow
 def test_a_limit_that_one_recording_shows_is_not_testable_by_name() -> None:
     """Fitted to one second, which leaves no doubt of it; rows that test are asked nothing."""
     found = diagnosed(12750005, ("voltage_limit", 0.0113))

@@ -42,6 +42,7 @@ def machine(made, *, shaft):
     )
 
 
+@pytest.mark.slow
 def test_a_contact_at_rest_holds_what_rings_behind_it(made):
     ratios = {}
     for recording in as_session(made).recordings:
