@@ -44,11 +44,11 @@ def borne_out_in_motion(selection: Search, evidence: Evidence) -> Search:
     """The selection without the last causes with which the simulated motion comes no nearer.
 
     What explains the effort along a measured motion may freeze the machine, or shake it, once it
-    moves by itself, and to be simulated is what a plant is for. Both plants are simulated over
-    windows of .3 s from the states that each of them makes of the readings, on the rows that
-    decide. With the cause the motion has to
-    come nearer than with fewer, and nearer than one that goes on as it set out: below break-away a
-    contact that was fitted to the effort breaks away, and nearly anything is better than that.
+    moves by itself, and to be simulated is what a plant is for. The plants, with the causes one
+    after the other, are simulated over windows of .3 s on the rows that decide, each from the
+    states that it makes of the readings itself. With all causes the motion has to come nearer than
+    with any fewer, and nearer than one that goes on as it set out: below break-away a contact that
+    was fitted to the effort breaks away, and nearly anything is better than that.
     Where rows are simulated anyway the held-out gain says the same; where nothing can be simulated
     nothing is asked.
 

@@ -13,7 +13,7 @@ from ..catalogue import ParameterRecord, effects
 from ..errors import NotEnoughData
 from ..plant import Plant
 from ..recording import Part, Recording
-from ..recording.checks.clock import usual_steps
+from ..recording.checks.clock import LOST, usual_steps
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .statistics import CORRELATED_S
@@ -42,8 +42,6 @@ TURNS: Final = ("turned", "turned_again")
 them beside a contact that never did; see `turned` of the starts."""
 TOLD: Final = 0.01
 """A start quantity is fitted where it changes any row by this share of the residual."""
-LOST: Final = 1.8
-"""Times the usual step that a gap is at least: one lost sample doubles it."""
 GAP_SHARE: Final = 0.25
 """Share of the kernel from which on a gap between two stamps counts: over the distance of its knots
 the motion in between is anybody's guess, shorter ones it averages."""
@@ -225,7 +223,7 @@ def _gaps(time: FloatArray, support: float) -> list[tuple[float, float]]:
     Or a window would start at its end, at a speed that is none of the machine's.
     """
     steps = np.diff(time)
-    # Where a logger changes its rate, rows that are further apart are none.
+    # Rows of a logger that goes on at a slower rate are far apart, and nothing is lost.
     long = np.flatnonzero(steps > np.maximum(GAP_SHARE * support, LOST * usual_steps(steps)))
     before, after = 0.5 * support, (0.5 + GAP_SHARE) * support
     return [(float(time[k]) - before, float(time[k + 1]) + after) for k in long]

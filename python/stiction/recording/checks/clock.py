@@ -11,6 +11,8 @@ from ..recording import Recording
 from ..units import FloatArray
 from .finding import Check
 
+LOST: Final = 1.8
+"""Times the usual step from which on a step is a gap: one lost sample doubles it."""
 EVEN: Final = 1e-6
 """Steps that differ by less than this share of themselves are equal but for rounding."""
 COUNTED_IN_MS: Final = 0.1
@@ -54,7 +56,7 @@ def jitter(
     )
 
 
-def gaps(recording: Recording, *, lost: float = 1.8, share: float = 0.05) -> Check:
+def gaps(recording: Recording, *, lost: float = LOST, share: float = 0.05) -> Check:
     """Samples that are missing between two rows.
 
     Parameters
