@@ -70,8 +70,9 @@ lint: $(READY)
 	$(BIN)/mypy
 	$(BIN)/stubtest stiction._native --ignore-disjoint-bases
 
+# As compiled for the package, so that nothing is compiled twice; with checks of overflow in `make test-slow`.
 rust-tests: $(READY)
-	cargo test --quiet
+	cargo test --quiet --profile editable
 
 # Files go over the processor's cores, each whole, for its tests share what was made once.
 PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --maxprocesses 8 --dist loadfile
@@ -79,9 +80,10 @@ PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --max
 python-tests: $(READY)
 	$(PYTEST) -m 'not slow'
 
-# What takes long and guards what changes seldom: the simulators that tests use, the longest diagnoses, the table of
-# properties, a wheel, the law of the page; then the gate.
+# What takes long and guards what changes seldom: Rust's tests with checks of overflow, the simulators that tests
+# use, the longest diagnoses, the table of properties, a wheel, the law of the page; then the gate.
 test-slow: $(READY)
+	cargo test --quiet
 	$(PYTEST) -m slow
 	$(MAKE) gate
 

@@ -4,8 +4,9 @@ use crate::error::Result;
 use crate::friction::{Entry, EntryReader, Motion, Statistics};
 use crate::scalar::{Scalar, sign};
 
-/// Share of the velocity at the end of a step below which one at its start is what rounding left of a stop.
-const STILL: f64 = 1e-9;
+/// Share of the velocity at the end of a step below which one at its start is what rounding left of a stop: an event is
+/// enclosed no closer.
+const STILL: f64 = 1e-13;
 
 /// Contact mode, and the force at the end of the last step.
 #[derive(Debug, Clone, Copy)]
