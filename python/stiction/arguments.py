@@ -9,7 +9,7 @@ from inspect import Parameter, signature
 from typing import Any, Final, ParamSpec, TypeVar
 
 from .errors import InputError
-from .given import MOST_WHOLE, numbers, shown, whole, word
+from .given import MOST_WHOLE, numbers, shown, whole, word, yes_or_no
 from .parameter import number
 
 __all__ = ["checked"]
@@ -77,12 +77,6 @@ def _int(given: Any, where: str) -> int:
     return whole(given, where, least=-MOST_WHOLE, most=MOST_WHOLE)
 
 
-def _bool(given: Any, where: str) -> bool:
-    if not isinstance(given, bool) and type(given).__name__ not in ("bool_", "bool"):
-        raise InputError(f"{where} is {shown(given)}; give True or False")
-    return bool(given)
-
-
 def _floats(given: Any, where: str) -> tuple[float, ...]:
     row = numbers(given, where)
     if row.ndim != 1:
@@ -94,6 +88,6 @@ _READ: Final[dict[str, Callable[[Any, str], Any]]] = {
     "float": _float,
     "int": _int,
     "str": word,
-    "bool": _bool,
+    "bool": yes_or_no,
     "Sequence[float]": _floats,
 }

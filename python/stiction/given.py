@@ -34,6 +34,7 @@ __all__ = [
     "whole",
     "word",
     "written",
+    "yes_or_no",
 ]
 
 T = TypeVar("T")
@@ -231,6 +232,25 @@ def share(given: Any, name: str) -> float:
             "0.01"
         )
     return float(number)
+
+
+def yes_or_no(given: object, where: str) -> bool:
+    """Take True or False, of numpy as well.
+
+    Parameters
+    ----------
+    given : object
+    where : str
+        What it is called.
+
+    Raises
+    ------
+    InputError
+        Anything else.
+    """
+    if not isinstance(given, bool) and type(given).__name__ not in ("bool_", "bool"):
+        raise InputError(f"{where} is {shown(given)}; give True or False")
+    return bool(given)
 
 
 def unmasked(given: object, where: str) -> None:

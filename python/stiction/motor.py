@@ -217,6 +217,7 @@ class Motor(_native.Motor):
         InputError
             With ``strict``: this motor has effects that no friction model can have.
         """
+        strict = given.yes_or_no(strict, "friction_model: strict")
         model, left_out = self.contact()
         if left_out:
             names = ", ".join(left_out)

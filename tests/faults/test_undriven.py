@@ -11,9 +11,9 @@ from .undriven import TOLERANCE, count, drawn, gain
 
 FOUND = (
     *((61, 1668), (61, 6545), (61, 8388), (61, 11362)),
-    *((71, 20200), (71, 22984), (72, 4734), (81, 6676)),
+    *((71, 20200), (71, 22984), (72, 4734), (81, 6676), (82, 395), (82, 8590)),
 )
-"""Seed and number of cases that gained, of some 100 000."""
+"""Seed and number of cases that gained, of some 120 000."""
 
 
 def test_no_motor_that_nobody_drives_gains_energy() -> None:

@@ -238,7 +238,8 @@ def _friction(model: str, numbers: Mapping[str, float]) -> tuple[dict[str, Any],
 
 def _other_exponent(alpha: float, taken: float) -> str:
     speeds = np.geomspace(1e-3, 1e3, 4001)
-    off = np.abs(np.exp(-(speeds**alpha)) - np.exp(-(speeds**taken)))
+    with np.errstate(over="ignore"):
+        off = np.abs(np.exp(-(speeds**alpha)) - np.exp(-(speeds**taken)))
     at = speeds[int(np.argmax(off))]
     return (
         f"alpha = {alpha:.4g} is out of bounds of the laws here, {EXPONENTS[0]:g} to "

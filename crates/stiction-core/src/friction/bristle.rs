@@ -69,7 +69,8 @@ struct Bond {
 /// What follows from all bonds together; places in limits.
 #[derive(Debug, Clone, Copy)]
 struct Grip {
-    /// Means of n + o and of u.
+    /// Means of n and of u: that of o is 0, which a sum of its parts would miss by a digit, and at the highest
+    /// levels that is a force.
     site: f64,
     off: f64,
     /// Where the first of them breaks, to either side.
@@ -199,11 +200,12 @@ impl<S: Scalar> Bristle<S> {
             Grip { site: 0.0, off: 0.0, behind: f64::NEG_INFINITY, ahead: f64::INFINITY };
         for (bristle, bond) in bonds.iter().enumerate() {
             let place = self.place(bristle, *bond).re();
-            grip.site += SHARE * (bond.site + offset(bristle));
+            grip.site += bond.site;
             grip.off += SHARE * bond.off;
             grip.behind = grip.behind.max(place - 1.0);
             grip.ahead = grip.ahead.min(place + 1.0);
         }
+        grip.site *= SHARE;
         grip
     }
 
@@ -252,12 +254,12 @@ impl<S: Scalar> Bristle<S> {
             let end = (to - self.place(bristle, next)) * side;
             sum += self.effort(bristle, (*bond, breaks), side, (start, end));
             sites += breaks.min(MOST_SITES);
-            site += SHARE * (next.site + offset(bristle));
+            site += next.site;
             off += SHARE * next.off;
             all += breaks;
         }
         work::spend((sites / SITES_OF_A_STEP) as u64);
-        let force = self.pull(position, site, off);
+        let force = self.pull(position, SHARE * site, off);
         if side == 0.0 {
             return (force, force, all);
         }

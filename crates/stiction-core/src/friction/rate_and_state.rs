@@ -82,6 +82,9 @@ pub struct RateAndStateTrial<S> {
     outcome: Outcome<S>,
 }
 
+/// Impulse of the direct effect over inertia, in rad/s or m/s: below it there is no friction.
+const FAINT: f64 = 1e-150;
+
 impl<S: Scalar> RateAndStateState<S> {
     /// The same state over another number type.
     pub fn map<T: Scalar>(&self, convert: impl Fn(S) -> T) -> RateAndStateState<T> {
@@ -393,7 +396,8 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
             return Arrival { velocity, displacement: span * (before + pace * span * 0.5) };
         }
         let impulse = (push.inertia - drag) * before + span * push.effort;
-        if direct.re() <= 0.0 || span.re() <= 0.0 {
+        // Of a level that hardly is a number the body does not feel anything either.
+        if (span * direct).re() <= FAINT * push.inertia.re() {
             let velocity = impulse / (push.inertia + drag);
             return Arrival { velocity, displacement: (before + velocity) * span * 0.5 };
         }
