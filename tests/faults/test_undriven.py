@@ -11,9 +11,10 @@ from .undriven import TOLERANCE, count, drawn, gain
 
 FOUND = (
     *((61, 1668), (61, 6545), (61, 8388), (61, 11362)),
-    *((71, 20200), (71, 22984), (72, 4734), (81, 6676), (82, 395), (82, 8590)),
+    *((71, 20200), (71, 22984), (72, 4734), (81, 6676)),
+    *((82, 395), (82, 8590), (83, 5681), (83, 22647)),
 )
-"""Seed and number of cases that gained, of some 120 000."""
+"""Seed and number of cases that gained, of some 140 000."""
 
 
 def test_no_motor_that_nobody_drives_gains_energy() -> None:
@@ -71,4 +72,20 @@ def test_a_body_that_stops_at_once_does_not_bounce(law: str, share: float) -> No
     motor.reset(0.0, velocity * min(1.0, 9e8 / level))
     run = motor.simulate(np.zeros(5), dt)
     assert np.max(np.abs(run.position)) <= velocity * share * dt
+    assert not np.any(run.velocity)
+
+
+@pytest.mark.parametrize("integrator", ["fast", "reference"])
+@pytest.mark.parametrize("law", ["coulomb", "load_dependent", "rigid_perfectly_plastic"])
+def test_drag_beyond_a_stop_pushes_nobody(law: str, integrator: str) -> None:
+    # Braked so hard that a step without the stop would end at 10⁷ rad/s: drag there is 10¹² N·m.
+    motor = st.Motor(
+        4.8e-4,
+        friction=st.FrictionModel(law, coulomb=7e8),
+        effects={"viscous_quadratic": {"quadratic": 9e-3}},
+        integrator=integrator,
+    )
+    motor.reset(-2.0, -0.05)
+    run = motor.simulate(np.zeros(5), 3.3e-5)
+    assert np.max(np.abs(run.position + 2.0)) < 1e-9
     assert not np.any(run.velocity)

@@ -137,7 +137,9 @@ def gain(case: Case) -> float | None:
     before = 0.5 * settings["inertia"] * case.velocity**2 + case.potential(settings, travelled)
     share = case.inertia_share()
     after = 0.5 * settings["inertia"] * share * float(np.max(np.abs(run.velocity))) ** 2
-    least = before * ROUND_OFF + NOTHING
+    # What the last bit of a position is of a spring, too.
+    spring = motor.friction.parameters.get("initial_stiffness", 0.0)
+    least = before * ROUND_OFF + NOTHING + 2.0 * spring * math.ulp(case.position) ** 2
     return (after - before - least) / max(before, sys.float_info.min)
 
 

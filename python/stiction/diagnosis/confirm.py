@@ -120,9 +120,9 @@ def _beyond(residual: FloatArray, effort: FloatArray, null: FloatArray) -> float
 def confirmed(selection: Search, test: HeldOut | None, seed: int) -> Search:
     """The selection without the last causes that the rows that test do not bear out.
 
-    Rows that test choose nothing. They may take a name away, though: a plant that simulates worse
-    with an effect than without it must not come with it, and where the interval of the gain
-    includes 0, the strength at least must be known.
+    Rows that test choose nothing. They may take a name away, though: a plant that does worse with an
+    effect than without it where nothing was fitted must not come with it, and where the interval
+    of the gain includes 0, the strength at least must be known.
 
     Parameters
     ----------
@@ -133,10 +133,10 @@ def confirmed(selection: Search, test: HeldOut | None, seed: int) -> Search:
     """
     while test is not None and selection.choices:
         last = len(selection.choices) - 1
-        low, high = gain_of(test, last, last + 1, seed).ci95
-        if high < 0.0:
+        gain = gain_of(test, last, last + 1, seed)
+        if gain.value < 0.0:
             selection = selection.without_last(AGAINST)
-        elif low <= 0.0 and not _is_known(selection):
+        elif gain.ci95[0] <= 0.0 and not _is_known(selection):
             selection = selection.without_last(NOT_KNOWN)
         else:
             break

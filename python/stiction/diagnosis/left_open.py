@@ -13,7 +13,16 @@ from .exact_forms import doubted
 from .passing import MOMENTS
 from .result import Cause, Unexplained
 from .selection import Search
-from .words import ALONE, MAY_BE_NOTHING, OF_ANOTHER_LAW, ONE_CURVE, OUTWEIGHED, PARTLY, UNREPEATED
+from .words import (
+    ALONE,
+    MAY_BE_NOTHING,
+    OF_ANOTHER_LAW,
+    ONE_CURVE,
+    OUTWEIGHED,
+    PARTLY,
+    UNCONFIRMED,
+    UNREPEATED,
+)
 
 __all__ = [
     "OF_A_LAW",
@@ -22,6 +31,7 @@ __all__ = [
     "left_open",
     "of_one_curve",
     "outweighed",
+    "unconfirmed",
     "waves_left_open",
 ]
 
@@ -58,7 +68,8 @@ def left_open(
     """
     found = [doubted(cause, left, rests) for cause in causes]
     found = known_by_themselves(selection, found)
-    doubts = dict.fromkeys(outweighed(selection, left), OUTWEIGHED)
+    doubts = dict.fromkeys(unconfirmed(causes), UNCONFIRMED)
+    doubts |= dict.fromkeys(outweighed(selection, left), OUTWEIGHED)
     doubts |= dict.fromkeys(selection.partly, PARTLY)
     doubts |= dict.fromkeys(of_one_curve(selection), ONE_CURVE)
     return [
@@ -90,6 +101,14 @@ def beside_another_law(causes: Sequence[Cause]) -> list[Cause]:
         replace(cause, decided=False, doubt=OF_ANOTHER_LAW) if cause.family in OF_A_LAW else cause
         for cause in causes
     ]
+
+
+def unconfirmed(causes: Sequence[Cause]) -> Set[str]:
+    """Which names may make the rows that test worse.
+
+    An interval that ends at 0 has draws of blocks in which nothing happens, and these say nothing.
+    """
+    return {each.name for each in causes if each.gain is not None and each.gain.ci95[0] < 0.0}
 
 
 def of_one_curve(selection: Search) -> Set[str]:

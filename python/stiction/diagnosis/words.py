@@ -71,6 +71,8 @@ OUTWEIGHED = "what is left without a name is worth more than half of what it too
 """Why a name may be none."""
 PARTLY = "it acts in a few seconds alone, and takes a part there of what is beyond the limit"
 """Why a limit may be something else that came then."""
+UNCONFIRMED = "it may make the held-out rows worse"
+"""Why a name that the rows that decide bear out may be none."""
 UNREPEATED = "less than one period was travelled, and a spring may look the same"
 """Why what should repeat with position may be something else."""
 LEAVES_NOTHING = "what is left goes with {}, and of that it leaves nothing where it is the cause"
@@ -212,7 +214,7 @@ def sentence(
     for cause in effects:
         if cause.doubt == UNREPEATED:
             left += f" Of {cause.name} {cause.doubt}."
-        elif cause.doubt and cause.doubt != OUTWEIGHED:
+        elif cause.doubt and cause.doubt not in (OUTWEIGHED, UNCONFIRMED):
             left += f" {cause.name} may be something else: {cause.doubt}."
     return f"{lacks} {named}.{gained}{_unconfirmed(effects)}{left}"
 

@@ -1,6 +1,6 @@
 //! Velocity Verlet with trapezoidal damping: one evaluation of friction a step.
 
-use super::events::Stepper;
+use super::events::{Stepper, not_beyond_a_stop};
 use super::glide::Verlet;
 use super::machine::{Machine, Run, hold};
 use super::{Integrator, steep};
@@ -68,7 +68,8 @@ impl<S: Scalar, L: FrictionLaw<S>, const BARE: bool> Stepper<S, L> for Fast<'_, 
         };
         let displacement = verlet.displacement(run.velocity, push);
         let predicted = verlet.predicted(run.velocity, net);
-        let end = start.after(displacement, predicted, span);
+        let shown = not_beyond_a_stop::<S, L>(run.velocity, predicted);
+        let end = start.after(displacement, shown, span);
         let mut next = *run;
         next.position = end.position;
         next.time = end.time;

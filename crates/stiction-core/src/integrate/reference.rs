@@ -1,6 +1,6 @@
 //! Runge-Kutta of fourth order on body and internal variables: the yardstick for the fast one.
 
-use super::events::Stepper;
+use super::events::{Stepper, not_beyond_a_stop};
 use super::fast::Attempt;
 use super::machine::{Machine, Run, hold};
 use super::{Integrator, steep};
@@ -47,7 +47,8 @@ impl<S: Scalar> Reference<'_, S> {
         span: S,
     ) -> [S; SIZE] {
         let machine = self.machine;
-        let at = self.situation(y, span);
+        let shown = not_beyond_a_stop::<S, L>(self.run.velocity, y[1]);
+        let at = self.run.situation().after(y[0], shown, span);
         let effort = self.effort(&at, y);
         let channels = machine.channels(&at, effort, self.load);
         let internal = [y[6], y[7], y[8]];

@@ -30,7 +30,8 @@ impl<S: Scalar> Shaft<S> {
         let reduced = far * -(mass.share - 1.0);
         match mass.coupling {
             Coupling::Shaft { compliance, damping_ratio } => {
-                if compliance.re() == 0.0 {
+                // Of a smaller number than this the stiffness is none.
+                if compliance.re() < f64::MIN_POSITIVE {
                     return None;
                 }
                 let stiffness = S::constant(1.0) / compliance;
