@@ -27,7 +27,7 @@ from .recording.split import BLOCK_S, EDGE_S, Split, split
 from .recording.units import FloatArray, Motion
 from .wording import counted, did_you_mean, listed
 
-__all__ = ["Session", "load", "load_recording"]
+__all__ = ["Session", "load", "load_beside", "load_recording"]
 
 _TABLES = ("plant", "columns", "recordings")
 _RECORDING = ("file", "role", "kind", "start_s", "cold", "replicate_of", "columns", *SETTINGS)
@@ -268,6 +268,28 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         return Session(tuple(recordings), plant, replicates)
     except InputError as error:
         raise InputError(f"{source}: {str(error).removeprefix('session: ')}") from None
+
+
+def load_beside(path: str | Path, files: Sequence[Path], plant: Plant) -> list[Recording]:
+    """Read recordings that a session file does not list, in the columns that it states.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``session.toml``.
+    files : sequence of Path
+        Relative to where the program runs.
+    plant : Plant
+        That the session names.
+
+    Raises
+    ------
+    InputError
+        As for ``Recording.load``.
+    """
+    source = str(path)
+    columns = section(read_toml(Path(path)), "columns", source)
+    return [load_recording(file, plant, dict(columns), where=source) for file in files]
 
 
 def _beside(path: Path, named: str, where: str) -> Path:

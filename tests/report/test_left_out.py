@@ -25,7 +25,7 @@ from stiction.report.axis import Axis
 from stiction.report.chart import Chart, Line, Panel
 from stiction.report.sections import BUILDERS, Section, name_of, rest
 
-FILES = {"report.html", "findings.json", "plant.toml", "begins.toml", "figures"}
+FILES = {"report.html", "findings.json", "plant.toml", "base.toml", "begins.toml", "figures"}
 FAULT = "IndexError: a fault of its own"
 
 

@@ -146,7 +146,7 @@ def test_files_beside_the_report_are_whole(pages: dict[str, Path], verdict: Verd
     found = diagnosis(verdict)
     assert json.loads((folder / "findings.json").read_text("utf-8")) == json.loads(found.to_json())
     assert st.Plant.load(folder / "plant.toml") == found.plant
-    names = {"report.html", "findings.json", "plant.toml", "begins.toml", "figures"}
+    names = {"report.html", "findings.json", "plant.toml", "base.toml", "begins.toml", "figures"}
     assert {path.name for path in folder.iterdir()} == names
     figures = sorted(path.stem for path in (folder / "figures").iterdir())
     drawn = ["before-after", "candidates", "coordinates", "errors"]
@@ -175,7 +175,7 @@ def test_same_diagnosis_gives_the_same_bytes(pages: dict[str, Path], tmp_path: P
     (tmp_path / "report.html").write_text("an earlier report")
     write(diagnosis("missing_effect"), tmp_path)
     files = [path.relative_to(first) for path in first.rglob("*") if path.is_file()]
-    assert len(files) == 9
+    assert len(files) == 10
     for file in files:
         assert (tmp_path / file).read_bytes() == (first / file).read_bytes()
 
@@ -303,7 +303,7 @@ def test_what_stops_a_report_half_way_leaves_whole_files_and_the_numbers_first(
         assert json.loads((tmp_path / "findings.json").read_text("utf-8"))["seed"] == seed
         assert (tmp_path / "report.html").read_bytes() == page
         assert {path.name for path in tmp_path.iterdir()} == {
-            *("report.html", "findings.json", "plant.toml", "begins.toml", "figures")
+            *("report.html", "findings.json", "plant.toml", "base.toml", "begins.toml", "figures")
         }
         monkeypatch.undo()
 

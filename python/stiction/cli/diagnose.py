@@ -9,7 +9,9 @@ from cyclopts import Parameter
 
 from ..diagnosis import SMALLEST, SURROGATES
 from ..diagnosis import diagnose as run
+from ..diagnosis.added import add as added
 from ..diagnosis.result import Diagnosis
+from ..session import load_beside
 from .answer import answer, folder, told_anyway, written
 from .given import Whole
 from .interrupt import ending_soon, finished
@@ -28,6 +30,7 @@ def diagnose(
     smallest: float = SMALLEST,
     seed: Whole = 0,
     threads: Whole | None = None,
+    add: tuple[Path, ...] = (),
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
@@ -52,6 +55,9 @@ def diagnose(
         Of everything random.
     threads
         Recordings looked at side by side; results do not depend on it.
+    add
+        New recording, held against the diagnosis that the folder for the results holds: nothing is
+        fitted, and how sure the causes are is counted anew; may be given several times.
     out
         Folder for the results, ./<session>-diagnosis/ without it.
     json
@@ -61,6 +67,11 @@ def diagnose(
     with progress():
         recordings, plant = loaded(session, keep_faulty=True)
         where = Path(f"{session.stem}-diagnosis") if out is None else out
+        if add:
+            with spoken_of(session, recordings, plant), written(where):
+                found_anew = added(where, recordings, load_beside(session, add, plant))
+            answer(str(found_anew), found_anew.findings, as_json=json)
+            return
         spared(plant, where)
         folder(where)
         with ending_soon(), spoken_of(session, recordings, plant):

@@ -17,6 +17,7 @@ from ..recording import Check
 from ..session import Session
 from ..trajectory import FloatArray
 from .advice import advise
+from .bets import Bets, bets_of
 from .bursts import Burst, burst_of
 from .candidates import scales_of
 from .ceiling import Ceiling, ceiling_of
@@ -152,6 +153,10 @@ class Conclusion:
                 for index, noise in noises.items()
             ],
             "replicates": None if ceiling is None else ceiling.to_dict(),
+            "through": {
+                **asdict(self.evidence.through),
+                "timing_s": [m.nuisances.timing for m in (self.base, final)],
+            },
         }
         found = self._told(replace(self.found, data=data))
         found = with_pushes(found, self.evidence)
@@ -336,8 +341,10 @@ class Conclusion:
         better = self.better[0] if self.better else None
         causes = causes_of(selection, results[id(final)], test, found.seed, sole=better is None)
         gain = None
+        bets = Bets()
         if causes and test is not None:
             gain = gain_of(test, 0, len(causes), found.seed)
+            bets = bets_of(test, len(causes), evidence.names)
         left = lost(evidence, final, null)
         event = burst = None
         stands = 0.0
@@ -433,6 +440,7 @@ class Conclusion:
                 ),
             ),
             better_law="" if better is None else better.law,
+            bets=bets,
             success=not self.interrupted,
             message=MESSAGE if self.interrupted else found.message,
             pictures=Pictures(

@@ -120,8 +120,8 @@ def _beyond(residual: FloatArray, effort: FloatArray, null: FloatArray) -> float
 def confirmed(selection: Search, test: HeldOut | None, seed: int) -> Search:
     """The selection without the last causes that the rows that test do not bear out.
 
-    Rows that test choose nothing. They may take a name away, though: a plant that does worse with an
-    effect than without it where nothing was fitted must not come with it, and where the interval
+    Rows that test choose nothing. They may take a name away, though: a plant that does worse with
+    an effect than without it where nothing was fitted must not come with it, and where the interval
     of the gain includes 0, the strength at least must be known.
 
     Parameters

@@ -94,6 +94,7 @@ class Evidence:
 
     Attributes
     ----------
+    through : Through
     loop, joined : bool
     watch : Watch
     pushes : list of Push
@@ -135,6 +136,7 @@ class Evidence:
         joined: bool = False,
     ) -> None:
         self.plant = plant
+        self.through = through
         self.loop = through.loop
         self.recordings = list(recordings)
         self.names = names_of(self.recordings)

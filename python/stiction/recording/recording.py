@@ -219,6 +219,23 @@ class Recording:
         object.__setattr__(again, "cold", True)
         return again
 
+    def with_role(self, role: str | None) -> Recording:
+        """The same recording in another role of the split.
+
+        Parameters
+        ----------
+        role : str
+            train, select or test; None for whatever the split makes of it.
+
+        Raises
+        ------
+        InputError
+            Another word.
+        """
+        again = copy(self)
+        object.__setattr__(again, "role", _role(role))
+        return again
+
     @property
     def entry(self) -> tuple[int, str] | None:
         """Place and name in the session that it was taken out of, where others were left out."""
@@ -393,6 +410,15 @@ def _flat(name: str, given: npt.ArrayLike) -> FloatArray:
     return flat
 
 
+def _role(role: str | None) -> str | None:
+    if role is not None and not (isinstance(role, str) and role in SPLIT_ROLES):
+        raise InputError(
+            f"Recording: the role is {role!r}{did_you_mean(str(role), SPLIT_ROLES)}; "
+            f"give {', '.join(SPLIT_ROLES)}, or none"
+        )
+    return role
+
+
 def _labels(
     role: str | None,
     kind: str,
@@ -400,11 +426,7 @@ def _labels(
     cold: bool,
     settings: Mapping[str, float] | None,
 ) -> dict[str, Any]:
-    if role is not None and not (isinstance(role, str) and role in SPLIT_ROLES):
-        raise InputError(
-            f"Recording: the role is {role!r}{did_you_mean(str(role), SPLIT_ROLES)}; "
-            f"give {', '.join(SPLIT_ROLES)}, or none"
-        )
+    _role(role)
     if not isinstance(kind, str):
         raise InputError(f"Recording: the kind is {kind!r}; give text")
     start_s = _finite(start_s, "start_s", "a finite number of seconds")

@@ -22,10 +22,12 @@ if TYPE_CHECKING:
 __all__ = ["write"]
 
 REPORT: Final = "report.html"
+BASE: Final = "base.toml"
+"""The plant without what was added."""
 
 
 def write(diagnosis: Diagnosis, folder: Path) -> Path:
-    """Write report.html, findings.json, plant.toml, begins.toml and figures/*.svg.
+    """Write report.html, findings.json, plant.toml, base.toml, begins.toml and figures/*.svg.
 
     The numbers are on the disk before anything is drawn, and no file is ever half there. A figure
     or a section that fails is a sentence in its place. The same diagnosis gives the same bytes,
@@ -55,7 +57,8 @@ def write(diagnosis: Diagnosis, folder: Path) -> Path:
     try:
         write_text(folder / "findings.json", diagnosis.to_json() + "\n")
         diagnosis.plant.save(folder / "plant.toml")
-        extended = diagnosis.extended
+        base, extended = diagnosis.baseline, diagnosis.extended
+        (diagnosis.plant if base is None else base.plant).save(folder / BASE)
         save_begins(folder, {} if extended is None else extended.begins)
         drawn = attempt("the figures", lambda: _drawn(diagnosis))
         drawings = {} if isinstance(drawn, Failure) else drawn
