@@ -78,7 +78,14 @@ class MachineSource:
         sampled = _sampled(plant, fragments)
         if sampled:
             fragments.flags.discard("EXCHANGES")
-        names = ("init", "way", "machine", *(() if sampled else ("exchange",)), *interface)
+        names = (
+            "init",
+            "way",
+            "machine",
+            "running",
+            *(() if sampled else ("exchange",)),
+            *interface,
+        )
         text = contact.source + "\n" + "\n".join(map(fragments.expand, names))
         types = "#define STICTION_REAL double\n" + contact.types
         source = types + prologue(text) + fragments.constants(text) + "\n" + text

@@ -209,3 +209,33 @@ static const char *sample(instance *it, double time, double span)
     it->now.time = it->now.since = time + span;
     return NULL;
 }
+
+/* Beside the standards, for who starts a machine in the midst of a recording: leads the contact
+ * along measured positions, one more than samples, of which it stands at the first, under what
+ * drove the machine. It goes on with this velocity. */
+EXPORTED void stiction_follow(void *given, size_t samples, double dt, const double positions[],
+                              const double inputs[], const double loads[], double velocity)
+{
+    instance *it = given;
+    acting by = it->now.by;
+    size_t k;
+    for (k = 0; k < samples; ++k) {
+        by.input = way_pass(&it->now.way, inputs[k], dt);
+        by.load = loads[k];
+        machine_follow(&it->now.at, &by, positions[k + 1], dt);
+    }
+    it->now.at.velocity = velocity;
+    it->now.y[0] = it->now.at.contact.position.value;
+    it->now.y[1] = velocity;
+#ifdef BENDS
+    it->now.y[2] = it->now.at.contact.law.force;
+#endif
+}
+
+/* Sets the clock and the path of a session, which effects may go by. */
+EXPORTED void stiction_set_clock(void *given, double clock, double path)
+{
+    instance *it = given;
+    it->now.at.contact.time.value = clock;
+    it->now.at.contact.path.value = path;
+}

@@ -71,7 +71,7 @@ static real delayed(stiction_way *way, real input, real dt)
 #endif
 #ifdef SLOWS
 
-/* u - d*T/(2*dt) where it gets there within T = |d|*slowness, else half of the way that it makes. */
+/* u - d*T/(2*dt) where it gets there within T = |d|*slowness, else half of the way it makes. */
 static real slowed(stiction_way *way, real input, real dt)
 {
     const real missing = input - way->reached;
