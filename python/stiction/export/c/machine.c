@@ -208,7 +208,7 @@ static stiction_machine attempt(const stiction_machine *a, const acting *by, rea
     stiction_machine end = *a;
     stiction_state *const s = &end.contact;
     const real v = a->velocity, pace = h / INERTIA;
-    real effort, effort_then, friction, push, displacement, damping, undamped;
+    real effort, effort_then, friction, push, displacement, damping, undamped, shown;
     motion it = {0};
     motion *const m = &it;
 #ifdef USES_VELOCITY
@@ -233,13 +233,24 @@ static stiction_machine attempt(const stiction_machine *a, const acting *by, rea
     s->time.value += h;
     s->path.value += r_fabs(displacement);
     s->moved += displacement;
-    end.ambient = ambient(s, it.velocity);
+    /* A rigid contact stops the body where its velocity would turn round: nothing acts beyond. */
+#ifdef RIGID
+    shown = v * it.velocity < R(0) ? R(0) : it.velocity;
+#else
+    shown = it.velocity;
+#endif
+    end.ambient = ambient(s, shown);
     s->friction = friction;
 #each creep
     it.displacement -= EFFECT_creep(s, m);
 #end
-    effort_then = driven(a, s, by->input, it.velocity) + by->load + end.ambient;
-    reach(s, m, effort_then, by);
+    effort_then = driven(a, s, by->input, shown) + by->load + end.ambient;
+    {
+        const real predicted = it.velocity;
+        it.velocity = shown;
+        reach(s, m, effort_then, by);
+        it.velocity = predicted;
+    }
 #ifdef USES_VELOCITY
     before = *s;
 #endif

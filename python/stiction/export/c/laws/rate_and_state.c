@@ -155,7 +155,7 @@ static void law_arrive(real log_age, real level, real drag, real v, real frictio
     int k;
     *velocity = impulse / (INERTIA + half);
     *displacement = R(0.5) * h * (v + *velocity);
-    if (!(direct > R(0)) || !(h > R(0)) || r_log(heavy * REFERENCE_VELOCITY) - q > R(60)) {
+    if (!(h * direct > R(1e-150) * INERTIA) || r_log(heavy * REFERENCE_VELOCITY) - q > R(60)) {
         return;
     }
     high = r_fabs(wanted) + R(1);
