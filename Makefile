@@ -17,6 +17,7 @@ JOBS ?= 2
 NUMBER ?= 200
 SEED ?= 0
 SECONDS ?= 3600
+PREFIX ?= /usr/local
 EDITION := $(shell sed -n 's/^edition = "\(.*\)"/\1/p' Cargo.toml)
 # cargo fmt follows `mod` lines; those of laws and effects stand in macros, which it does not enter.
 RUST := $(shell find crates benches -name '*.rs')
@@ -28,7 +29,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # Fuzzing takes a fresh seed where none is given.
 GIVEN_SEED = $(if $(filter-out file,$(origin SEED)),--seed $(SEED))
 
-.PHONY: demo test test-slow lint rust-tests python-tests gate blind ordinary fuzz wheel bench format audit clean toolchain
+.PHONY: demo test test-slow lint rust-tests python-tests gate blind ordinary fuzz wheel install-c bench format audit clean toolchain
 
 demo: $(INSTALLED)
 	$(BIN)/stiction demo --out $(OUT)
@@ -108,6 +109,10 @@ fuzz: $(READY)
 
 wheel: $(READY)
 	$(BIN)/maturin build --quiet --release --out dist
+
+# The C and C++ interface: headers, libraries, a CMake package and a pkg-config file.
+install-c:
+	crates/stiction-capi/install.sh $(PREFIX)
 
 # Measures what a wheel has, not the editable build, which is made in less time and is slower.
 bench: $(READY)

@@ -603,15 +603,17 @@ class Plant:
         """
         return steady.position_effort(self, positions)
 
-    def export(self, to: str, *, speed: float = 10.0) -> Export:
+    def export(self, to: str, *, speed: float | None = None) -> Export:
         """The plant as another tool takes it.
 
         Parameters
         ----------
         to : str
             Name of a target: `stiction export --list`.
-        speed : float
-            Greatest speed at which friction matters, rad/s or m/s.
+        speed : float, optional
+            Greatest speed at which friction matters, rad/s or m/s; 10 rad/s or 0.2 m/s without it,
+            and three times the speed over which the friction of the plant is stated to fall where
+            that is more.
 
         Returns
         -------

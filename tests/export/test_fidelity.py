@@ -90,6 +90,14 @@ def test_curves_keep_a_cogging(cogged):
     assert code > max(table, 0.998)
 
 
+def test_an_fmu_keeps_all_of_a_cogging(cogged):
+    if shutil.which("cc") is None:
+        pytest.skip("no C compiler is installed")
+    machine, recorded = cogged
+    (share,) = shares(machine.export("fmu").check(recorded))
+    assert share > 0.999
+
+
 def test_what_is_lost_in_writing_shows(cogged):
     # A file with another number in it is run as it stands.
     machine, recorded = cogged
@@ -126,6 +134,8 @@ def test_a_contact_that_yields_is_led_to_where_its_windows_begin():
     native, callback = shares(machine.export("mujoco").check(session(machine)))
     assert callback > 0.99
     assert native < 0.9
+    (share,) = shares(machine.export("fmu").check(session(machine)))
+    assert share > 0.99
 
 
 def test_gravity_is_given_to_the_bodies_of_a_simulator():

@@ -23,16 +23,24 @@ COGGING = {"name": "cogging", "cosine": 0.04, "sine": 0.02, "order": 6.0}
 UNEVEN = {"name": "direction_asymmetry", "coulomb": 0.1}
 
 
+@pytest.fixture
+def sources_alone(monkeypatch):
+    """Sources say what is held: binaries of all of them would take long."""
+    monkeypatch.setattr("stiction.export.fmu_archive.compiler", lambda: None)
+
+
+@pytest.mark.usefixtures("sources_alone")
 @pytest.mark.parametrize("name", targets())
 @pytest.mark.parametrize("law", [each.name for each in st.laws()])
 def test_every_law_goes_to_every_target(law, name, tmp_path):
     made = plant({"law": law}).export(name)
     assert made.held
     assert [path.name for path in made.save(tmp_path)] == list(made.files)
-    assert all((tmp_path / each).read_text() for each in made.files)
+    assert all((tmp_path / each).read_bytes() for each in made.files)
     json.dumps(made.to_dict(), allow_nan=False)
 
 
+@pytest.mark.usefixtures("sources_alone")
 @pytest.mark.parametrize("name", targets())
 @pytest.mark.parametrize("effect", [each.name for each in st.effects()])
 def test_no_effect_is_dropped_in_silence(effect, name):
@@ -219,6 +227,56 @@ def test_the_command_refuses_in_a_sentence(arguments, words, tmp_path, capsys):
     told = capsys.readouterr().err
     assert len(told.strip().splitlines()) == 1
     assert re.search(words, told)
+
+
+def screw(**friction):
+    return st.Plant.from_dict(
+        {
+            "motion": {"kind": "linear"},
+            "drive": {"input": "force_n", "gain": 1.0},
+            "body": {"inertia": 1.0},
+            "friction": {"law": "coulomb", "coulomb": 20.0, "breakaway": 30.0, **friction},
+        }
+    )
+
+
+def test_without_a_speed_a_machine_that_goes_straight_goes_slowly():
+    def ends(plant, **keywords):
+        table = json.loads(plant.export("table", **keywords).files["table.json"])
+        return table["speed"]["velocity"][-1]
+
+    assert ends(plant(DRY)) == 10.0
+    assert ends(screw()) == 0.2
+    assert ends(screw(stribeck_velocity=0.5)) == 1.5
+    assert ends(screw(), speed=3.0) == 3.0
+
+
+def test_the_command_goes_as_fast_as_the_session(tmp_path, capsys):
+    time = 1e-3 * np.arange(12_000)
+    force = 60.0 * np.sign(np.sin(8.0 * time))
+    run_of = screw().simulate(force, 1e-3)
+    rows = np.column_stack([time[1:], force[1:], run_of.position[:-1]])
+    np.savetxt(
+        tmp_path / "run.csv", rows, delimiter=",", comments="", header="time_s,force_n,position_m"
+    )
+    (tmp_path / "session.toml").write_text('[[recordings]]\nfile = "run.csv"\nrole = "test"\n')
+    file, session = str(screw().save(tmp_path / "plant.toml")), str(tmp_path / "session.toml")
+    out = str(tmp_path / "out")
+    assert run(["export", file, "--to", "table", "--check", session, "-o", out]) == 0
+    capsys.readouterr()
+    ends = json.loads((tmp_path / "out" / "table" / "table.json").read_text())["speed"]["velocity"]
+    assert ends[-1] == pytest.approx(np.percentile(np.abs(run_of.velocity), 99), rel=0.05)
+
+
+def test_a_target_that_cannot_take_the_plant_stops_no_other(tmp_path, capsys):
+    file, out = str(screw().save(tmp_path / "plant.toml")), str(tmp_path / "out")
+    assert run(["export", file, "--to", "bam", "--to", "c", "-o", out]) == 0
+    told = capsys.readouterr().out
+    assert re.search("^bam: not written: .*is linear", told, re.M)
+    assert (tmp_path / "out" / "c" / "stiction_feedforward.c").is_file()
+    assert run(["export", file, "--to", "bam", "--to", "c", "-o", out, "--json"]) == 0
+    assert "is linear" in json.loads(capsys.readouterr().out)[1]["error"]
+    assert run(["export", file, "--to", "bam", "-o", out]) == 2
 
 
 def test_a_plant_that_is_moved_has_friction_but_no_joint():

@@ -188,6 +188,20 @@ enum stiction_status stiction_motor_step(struct stiction_motor *motor,
 enum stiction_status stiction_motor_set_temperature(struct stiction_motor *motor,
                                                     double temperature);
 
+// Switches the drive on, as at first, or off with 0, for the next steps.
+//
+// # Safety
+// `motor` is a live handle of this library that no other thread uses.
+enum stiction_status stiction_motor_set_enabled(struct stiction_motor *motor, int enabled);
+
+// What the position sensor reads where the motor is: its nearest count, or the position where it has no
+// counts.
+//
+// # Safety
+// `motor` is a live handle of this library that no other thread uses; `reading` may be written.
+enum stiction_status stiction_motor_measured(struct stiction_motor *motor,
+                                             double *reading);
+
 // Back to this position and velocity, with friction never moved.
 //
 // # Safety
@@ -232,6 +246,21 @@ enum stiction_status stiction_motor_get_number(struct stiction_motor *motor,
 // # Safety
 // `motor` is NULL or a live handle of this library, which nobody uses from now on.
 void stiction_motor_free(struct stiction_motor *motor);
+
+// Makes a motor of the text of a plant file, at rest at 0 with a contact that was never moved: its drive
+// or servo, body, friction, effects and sensor. What a fit goes by (bounds, what is fixed) is read over,
+// and so is a controller.
+//
+// # Safety
+// `text` ends in a zero byte; `motor` may be written.
+enum stiction_status stiction_motor_from_plant(const char *text,
+                                               struct stiction_motor **motor);
+
+// The same of a plant file by its path.
+//
+// # Safety
+// `path` ends in a zero byte; `motor` may be written.
+enum stiction_status stiction_motor_load_plant(const char *path, struct stiction_motor **motor);
 
 #ifdef __cplusplus
 }  // extern "C"

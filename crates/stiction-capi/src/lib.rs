@@ -7,11 +7,13 @@
 mod boundary;
 mod friction;
 mod machine;
+mod plant;
 mod state;
 
 pub use boundary::Status;
 pub use friction::Friction;
-pub use machine::Machine;
+pub use machine::*;
+pub use plant::*;
 
 use std::ffi::{CStr, c_char};
 

@@ -1,6 +1,6 @@
 //! Motors.
 
-use std::ffi::c_char;
+use std::ffi::{c_char, c_int};
 
 use stiction_core::motor::{Motor, MotorSpec};
 
@@ -78,6 +78,35 @@ pub unsafe extern "C" fn stiction_motor_set_temperature(
         let machine = unsafe { held(motor, "motor") }?;
         machine.0.set_temperature(known("temperature", temperature)?);
         Ok(())
+    })
+}
+
+/// Switches the drive on, as at first, or off with 0, for the next steps.
+///
+/// # Safety
+/// `motor` is a live handle of this library that no other thread uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_motor_set_enabled(motor: *mut Machine, enabled: c_int) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        unsafe { held(motor, "motor") }?.0.set_enabled(enabled != 0);
+        Ok(())
+    })
+}
+
+/// What the position sensor reads where the motor is: its nearest count, or the position where it has no
+/// counts.
+///
+/// # Safety
+/// `motor` is a live handle of this library that no other thread uses; `reading` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stiction_motor_measured(motor: *mut Machine, reading: *mut f64) -> Status {
+    guarded(|| {
+        // SAFETY: as promised by the caller.
+        let running = unsafe { held(motor, "motor") }?.0.running();
+        let read = running.machine.measured(running.run.position);
+        // SAFETY: as promised by the caller.
+        unsafe { put(reading, read, "reading") }
     })
 }
 

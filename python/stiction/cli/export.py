@@ -11,8 +11,10 @@ from cyclopts import Parameter
 from .. import session as sessions
 from ..errors import InputError
 from ..export import Export, targets
+from ..export.speeds import speed_seen
 from ..plant import Plant
 from ..progress import phase
+from ..session import Session
 from .answer import answer, folder, written
 from .progress import progress
 from .sessions import spoken_of
@@ -26,7 +28,7 @@ def export(
     plant: Path | None = None,
     *,
     to: tuple[str, ...] = (),
-    speed: float = 10.0,
+    speed: float | None = None,
     check: Path | None = None,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     list: Annotated[bool, Parameter(negative="")] = False,
@@ -41,7 +43,8 @@ def export(
     to
         Target; may be given several times.
     speed
-        Greatest speed at which friction matters, rad/s or m/s.
+        Greatest speed at which friction matters, rad/s or m/s; without it the greatest one of the
+        session, or what is usual: 10 rad/s or 0.2 m/s.
     check
         Session file: each target is run on the recordings that are held out, and one line says what
         it keeps of what the effects of the plant are worth.
@@ -62,26 +65,49 @@ def export(
     if not to:
         raise InputError(f"stiction export: no target is given; write --to {next(iter(known))}")
     read = Plant.load(plant)
-    made = [read.export(name, speed=speed) for name in to]
+    loaded = None if check is None else sessions.load(check, plant=read)
+    if speed is None and loaded is not None:
+        speed = speed_seen(loaded.recordings)
+    made, refused = _written(read, to, speed)
     where = folder(Path(f"{plant.stem}-export") if out is None else out)
     with written(where):
         for each in made:
             each.save(where / each.target)
     texts = [f"{each}\n  folder: {where / each.target}" for each in made]
     data = [each.to_dict() for each in made]
-    if check is not None:
+    if check is not None and loaded is not None:
         with progress():
-            found = _checked(read, made, check)
+            found = _checked(read, made, check, loaded)
         texts += [text for text, _ in found]
         data = [{**own, "check": told} for own, (_, told) in zip(data, found, strict=True)]
+    texts += [f"{name}: not written: {told}" for name, told in refused.items()]
+    data += [{"target": name, "error": told} for name, told in refused.items()]
     answer("\n".join(texts), data, as_json=json)
 
 
-def _checked(plant: Plant, made: list[Export], session: Path) -> list[tuple[str, dict[str, Any]]]:
+def _written(
+    plant: Plant, to: tuple[str, ...], speed: float | None
+) -> tuple[list[Export], dict[str, str]]:
+    """What could be written, and why the rest could not: refused where that is all of it."""
+    made, refused = [], {}
+    for name in to:
+        try:
+            made.append(plant.export(name, speed=speed))
+        except InputError as error:
+            if len(to) == 1 or name not in targets():
+                raise
+            refused[name] = str(error)
+    if not made:
+        raise InputError("; ".join(refused.values()))
+    return made, refused
+
+
+def _checked(
+    plant: Plant, made: list[Export], session: Path, loaded: Session
+) -> list[tuple[str, dict[str, Any]]]:
     """What each target keeps, as text and as data: one that cannot be run says why."""
     from ..export.fidelity import Bench
 
-    loaded = sessions.load(session, plant=plant)
     found: list[tuple[str, dict[str, Any]]] = []
     with spoken_of(session, loaded, plant):
         bench = Bench(plant, loaded)

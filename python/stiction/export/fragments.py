@@ -15,6 +15,15 @@ A fragment is a C file in ``export/c``. What begins with ``#`` there and is none
     The lines between, for each effect that has the hook, ``EFFECT`` being its name.
 
 Lines that begin with ``# `` are for the compiler.
+
+A law defines ``law_step``, and for a machine that moves what divides a sample: ``STIFFEST``, the
+greatest stiffness, ``CALMS``, the greatest damping, and ``FALLS_BY``, by how much friction falls
+with speed. Its flags: ``RIGID`` holds a body without giving way, ``DRAGGED_ALONG`` has a mode that
+ends where motion turns, ``STEEP`` solves for the velocity itself (``law_arrive``), ``EXCHANGES``
+may be stated over time, ``BENDS`` with its force as a state (``law_rate``), ``OWN_VISCOUS`` has its
+viscous part. Where a machine moves (``MACHINE``) ``m->start`` is the velocity at the start of a
+step, and ``law_breaks`` says where one ran past a kink. How stiff an effect is at most is
+``NAME_STIFFNESS``.
 """
 
 from __future__ import annotations
@@ -38,9 +47,10 @@ def logarithmic_mean(u: float) -> float:
     return 1.0 if u == 0.0 else -math.log1p(-u) / u
 
 
+CALLABLE: Final = (any, all, int, max, min, range, sum, zip, logarithmic_mean)
 CALLED: Final[dict[str, Any]] = {
-    **{name: getattr(math, name) for name in ("exp", "expm1", "log", "inf")},
-    **{each.__name__: each for each in (any, all, int, min, range, sum, zip, logarithmic_mean)},
+    **{name: getattr(math, name) for name in ("exp", "expm1", "hypot", "log", "inf")},
+    **{each.__name__: each for each in CALLABLE},
 }
 """What expressions may call."""
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import given
-from ..atomic_files import write_text
+from ..atomic_files import replacing, write_text
 from ..errors import InputError
 
 if TYPE_CHECKING:
@@ -26,8 +26,8 @@ class Export:
     ----------
     target : str
         Name of the target.
-    files : mapping of str to str
-        Text by the name of its file.
+    files : mapping of str to str or bytes
+        Text, or what an archive holds, by the name of its file.
     held : tuple of str
         What of the plant the target holds, a sentence each.
     lost : tuple of str
@@ -39,7 +39,7 @@ class Export:
     """
 
     target: str
-    files: Mapping[str, str]
+    files: Mapping[str, str | bytes]
     held: tuple[str, ...] = ()
     lost: tuple[str, ...] = ()
     numbers: Mapping[str, float] = field(default_factory=dict)
@@ -65,8 +65,12 @@ class Export:
         where = given.path(folder, "Export.save")
         with given.written(where):
             where.mkdir(parents=True, exist_ok=True)
-            for name, text in self.files.items():
-                write_text(where / name, text)
+            for name, content in self.files.items():
+                if isinstance(content, bytes):
+                    with replacing(where / name) as file:
+                        file.write(content)
+                else:
+                    write_text(where / name, content)
         return [where / name for name in self.files]
 
     def check(self, session: Any) -> Fidelity:

@@ -14,6 +14,7 @@ from ..errors import InputError
 from ..keys import choice
 from ..parameter import number
 from .made import Export
+from .speeds import speed_of
 from .targets import __name__ as _package
 from .targets import __path__ as _path
 
@@ -60,9 +61,10 @@ def targets() -> dict[str, Target]:
     return dict(sorted(found.items()))
 
 
-def export(plant: Plant, to: str, *, speed: float) -> Export:
+def export(plant: Plant, to: str, *, speed: float | None) -> Export:
     """A plant written for a target; see ``Plant.export``."""
-    known, at = targets(), number(speed, f"{plant.source}: speed")
+    known = targets()
+    at = speed_of(plant) if speed is None else number(speed, f"{plant.source}: speed")
     if not (math.isfinite(at) and at > 0.0):
         raise InputError(
             f"{plant.source}: speed = {at:g} is none; give the greatest speed at which friction "

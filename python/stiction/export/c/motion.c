@@ -1,6 +1,9 @@
 /* A velocity that is held over a time, and what else reaches the contact. */
 typedef struct {
     real velocity, dt, displacement, effort, load;
+#ifdef MACHINE
+    real start; /* velocity before */
+#endif
 #ifdef LEVELS
     real level, viscous_level;
 #endif
@@ -16,14 +19,14 @@ typedef struct {
 #define VISCOUS_LEVEL R(1)
 #endif
 #ifdef USES_WAY
-#ifdef CREEPS_BESIDE
+#ifdef APART
 #define WAY(span) (m->dt > R(0) ? m->displacement * ((span) / m->dt) : R(0))
 #else
 #define WAY(span) (m->velocity * (span))
 #endif
 #endif
 #ifdef USES_SPEED
-#ifdef CREEPS_BESIDE
+#ifdef APART
 #define SPEED (m->dt > R(0) ? r_fabs(m->displacement / m->dt) : R(0))
 #else
 #define SPEED r_fabs(m->velocity)

@@ -17,17 +17,6 @@ void stiction_set_position(stiction_state *s, STICTION_REAL position)
 }
 #endif
 
-void stiction_init(stiction_state *s)
-{
-    *s = (stiction_state){0};
-#ifdef LAW_INIT
-    law_init(s);
-#endif
-#each init
-    EFFECT_init(s);
-#end
-}
-
 STICTION_REAL stiction_step(stiction_state *s, STICTION_REAL velocity, STICTION_REAL dt,
                             STICTION_REAL effort, STICTION_REAL load, STICTION_REAL temperature)
 {

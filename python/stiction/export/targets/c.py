@@ -55,8 +55,6 @@ def write(plant: Plant, speed: float) -> Export:
             "FRICTION_AT": curves.friction.tolist(),
             "PLACE_AT": curves.places.tolist(),
             "EFFORT_AT": curves.efforts.tolist(),
-            "INERTIA": 0.0 if plant.prescribed_motion else plant.inertia,
-            "GAIN": plant.gain,
         },
     )
     held, lost = _held(plant, curves, made), _lost(plant, curves, made)

@@ -1,3 +1,5 @@
+#let cogging_STIFFNESS = hypot(cogging_COSINE, cogging_SINE) * cogging_ORDER \
+             + hypot(cogging_COSINE_2, cogging_SINE_2) * cogging_ORDER_2
 /* Effort that repeats with the position. */
 static real cogging_effort(const stiction_state *s, const motion *m)
 {

@@ -1,3 +1,4 @@
+#let gravity_unbalance_STIFFNESS = hypot(gravity_unbalance_COSINE, gravity_unbalance_SINE)
 /* A centre of mass beside the axis. */
 static real gravity_unbalance_effort(const stiction_state *s, const motion *m)
 {

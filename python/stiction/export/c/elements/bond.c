@@ -1,3 +1,4 @@
+#define DRAGGED_ALONG
 typedef struct {
     STICTION_REAL stretch;
     int mode; /* 0 holds, +1 and -1 are dragged in that direction */
@@ -26,3 +27,11 @@ static real law_step(stiction_state *s, const motion *m)
     }
     return DRAGGED * (real)bond->mode * LEVEL;
 }
+#ifdef MACHINE
+
+/* Whether the bond tore. */
+static int law_breaks(const stiction_law *before, const stiction_law *after)
+{
+    return before->mode == 0 && after->mode != 0;
+}
+#endif

@@ -1,4 +1,4 @@
-
+#include "lagging.c"
 /* Rate of creep under the force through the series. */
 static real creeping(real hardening, real force)
 {
@@ -25,13 +25,6 @@ static real instant(real spring, real hardening, real velocity)
         }
     }
     return force;
-}
-
-/* Hardening after a limit went linearly from one value to another in z time constants. */
-static real lagging(real hardening, real from, real to, real z)
-{
-    const real mean = first_mean(z);
-    return from + (to - from) * (R(1) - mean) + (hardening - from) * (R(1) - z * mean);
 }
 
 /* Spring and damper side by side, in series with the plastic module: the force at the end of a step

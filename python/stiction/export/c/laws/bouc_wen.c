@@ -8,6 +8,9 @@
              0.1184634425280945]
 #include "logarithmic_mean.c"
 #let SLIDING = COULOMB
+#define EXCHANGES
+#let STIFFEST = INITIAL_STIFFNESS * (1 + STIFFENING)
+#let CALMS = VISCOUS
 typedef struct {
     STICTION_REAL force;
 } stiction_law;

@@ -3,6 +3,8 @@
 #let LIMIT = COULOMB / (INITIAL_STIFFNESS * (0.5 - SCATTER**2 / 12))
 #let SEEDED = 'UINT64_C(%d)' % (int(SEED + 0.5) * 0x9E3779B97F4A7C15 % 2**64)
 #let SLIDING = COULOMB
+#let STIFFEST = INITIAL_STIFFNESS
+#let CALMS = VISCOUS
 typedef struct {
     STICTION_REAL stretch[20]; /* in limits */
     STICTION_REAL off[20]; /* how far the site of a bond is scattered, in spacings */

@@ -2,6 +2,11 @@
 #include "held.c"
 #include "sliding_level.c"
 #let SLIDING = BREAKAWAY
+#define EXCHANGES
+#define RIGID
+#let STIFFEST = 0
+#let CALMS = VISCOUS
+#let FALLS_BY = EXCESS
 
 static real law_step(stiction_state *s, const motion *m)
 {

@@ -4,6 +4,9 @@
 #include "logarithmic_mean.c"
 #endif
 #let SLIDING = COULOMB
+#define EXCHANGES
+#let STIFFEST = INITIAL_STIFFNESS * 2**EXPONENT
+#let CALMS = VISCOUS
 typedef struct {
     STICTION_REAL force;
 } stiction_law;

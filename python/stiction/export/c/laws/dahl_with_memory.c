@@ -4,5 +4,8 @@
 #let SHAPE = 1 - EXPONENT
 #let WEIGHT = [1.0] * 6
 #let SLIDING = COULOMB
+#define EXCHANGES
+#let STIFFEST = STEEPEST
+#let CALMS = VISCOUS
 #include "yield_curve.c"
 #include "iwan_spring.c"

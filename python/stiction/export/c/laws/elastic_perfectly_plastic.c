@@ -2,6 +2,9 @@
  * Struct. 20 (1984). */
 #include "slip_hardening.c"
 #let SLIDING = COULOMB
+#define EXCHANGES
+#let STIFFEST = INITIAL_STIFFNESS
+#let CALMS = VISCOUS
 typedef struct {
     STICTION_REAL force;
     STICTION_REAL slid;
@@ -45,3 +48,19 @@ static real law_step(stiction_state *s, const motion *m)
     s->law.force = (pull > R(0) ? R(1) : R(-1)) * hardened_level(s->law.slid);
     return s->law.force * LEVEL;
 }
+#ifdef MACHINE
+
+/* Direction in which the slider slides. */
+static int slides(const stiction_law *law)
+{
+    const real level = hardened_level(law->slid);
+    return law->force >= level ? 1 : law->force <= -level ? -1 : 0;
+}
+
+/* Whether the slider began to slide. */
+static int law_breaks(const stiction_law *before, const stiction_law *after)
+{
+    const int was = slides(before), is = slides(after);
+    return is != 0 && is != was;
+}
+#endif

@@ -1,9 +1,14 @@
 /* LuGre's bristles that slip from a share of F_c on alone: Dupont, Hayward, Armstrong, Altpeter,
  * IEEE Trans. Autom. Control 47 (2002). */
 #let ELASTIC = ELASTIC_SHARE * COULOMB
-#include "sliding_level.c"
+#include "mean_level.c"
 #include "bristle_damping.c"
 #let SLIDING = BREAKAWAY
+#define EXCHANGES
+#define BENDS
+#let STIFFEST = INITIAL_STIFFNESS
+#let CALMS = DAMPING + VISCOUS
+#let FALLS_BY = EXCESS
 typedef struct {
     STICTION_REAL force; /* s0*z */
 } stiction_law;
@@ -55,7 +60,7 @@ static real law_step(stiction_state *s, const motion *m)
     real along;
     if (m->displacement != R(0)) {
         const real path = INITIAL_STIFFNESS * r_fabs(m->displacement);
-        s->law.force = side * followed(side * s->law.force, path, level);
+        s->law.force = side * followed(side * s->law.force, path, mean_level(m));
     }
     if (m->velocity == R(0)) {
         return s->law.force * LEVEL;
@@ -63,3 +68,12 @@ static real law_step(stiction_state *s, const motion *m)
     along = m->velocity > R(0) ? s->law.force : -s->law.force;
     return (s->law.force + bristle_damping(m->velocity, slipping(along, level))) * LEVEL;
 }
+#ifdef MACHINE
+
+/* Rate at which the bristles bend, as a force. */
+static real law_rate(real force, real velocity)
+{
+    const real along = velocity < R(0) ? -force : force;
+    return INITIAL_STIFFNESS * velocity * (R(1) - slipping(along, sliding_level(velocity)));
+}
+#endif

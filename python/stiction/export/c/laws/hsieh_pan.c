@@ -7,6 +7,12 @@
 #let CREEPS = HARDENING_COEFFICIENT > 0 and CREEP_RATE > 0
 #let ON_SPRING = DAMPER == 'spring'
 #let SLIDING = BREAKAWAY
+#if not SLIPS and not CREEPS and not ON_SPRING
+#define EXCHANGES
+#endif
+#let STIFFEST = INITIAL_STIFFNESS
+#let CALMS = max(DAMPING, VISCOUS)
+#let FALLS_BY = (BREAKAWAY - COULOMB if SLIPS else 0)
 #define OWN_VISCOUS
 
 /* Force of a branch at a distance from its reverse point. */
@@ -106,6 +112,12 @@ static real hardened(const stiction_law *law, real displacement, real span)
 }
 #endif
 #endif
+#if RATED
+#include "short_ways.c"
+#endif
+#ifdef MACHINE
+#include "lagging.c"
+#endif
 #if SLIPS
 
 /* Where the virgin curve has a force of this size: Halley's iteration. */
@@ -177,12 +189,24 @@ static void slip(const stiction_law *law, const motion *m, real span, tried *end
 #endif
     const real from = (real)law->mode * law->SERIES;
     real level = COULOMB + (top - COULOMB) * left, now;
+#ifdef MACHINE
+    const real share_before = r_fabs(m->start / STRIBECK_VELOCITY);
+    real before = COULOMB + (top - COULOMB)
+        * r_exp(-r_pow(share_before, STRIBECK_EXPONENT));
+#endif
 #if VISCOUS != 0
     if (LEVEL != R(0)) {
         level += VISCOUS * VISCOUS_LEVEL / LEVEL * r_fabs(m->velocity);
+#ifdef MACHINE
+        before += VISCOUS * VISCOUS_LEVEL / LEVEL * r_fabs(m->start);
+#endif
     }
 #endif
+#ifdef MACHINE
+    now = lagging(from, before, level, distance / SLIP_DISTANCE);
+#else
     now = from + (level - from) * -r_expm1(-distance / SLIP_DISTANCE);
+#endif
     if (now > from + FINAL_STIFFNESS * distance) {
         const real at = virgin_inverse(r_fabs(from));
         const real x = (from < R(0) ? -at : at) + distance;
@@ -348,3 +372,18 @@ static real law_step(stiction_state *s, const motion *m)
     take(law, &end);
     return end.friction;
 }
+#ifdef MACHINE
+
+/* Whether the hook broke away or caught. */
+static int law_breaks(const stiction_law *before, const stiction_law *after)
+{
+#if SLIPS
+#define DRAGGED_ALONG
+    return before->mode != after->mode;
+#else
+    (void)before;
+    (void)after;
+    return 0;
+#endif
+}
+#endif

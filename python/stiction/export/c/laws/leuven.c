@@ -2,10 +2,13 @@
  * Trans. Autom. Control 45 (2000), with z' of Lampaert, Swevers, Al-Bender, ibid. 47 (2002). The
  * branches that a path leads along are followed one by one. */
 #let TOP = SATURATION * BREAKAWAY
-#include "sliding_level.c"
+#include "mean_level.c"
 #include "bristle_damping.c"
 #include "logarithmic_mean.c"
 #let SLIDING = BREAKAWAY
+#let STIFFEST = 2 * INITIAL_STIFFNESS
+#let CALMS = DAMPING + VISCOUS
+#let FALLS_BY = EXCESS
 #include "spring.c"
 typedef stiction_spring stiction_law;
 
@@ -131,7 +134,7 @@ static real law_step(stiction_state *s, const motion *m)
     const real level = sliding_level(m->velocity);
     real a, size;
     if (m->displacement != R(0)) {
-        bend(&s->law, m->displacement > R(0) ? 1 : -1, r_fabs(m->displacement), level);
+        bend(&s->law, m->displacement > R(0) ? 1 : -1, r_fabs(m->displacement), mean_level(m));
     }
     if (m->velocity == R(0)) {
         return s->law.force * LEVEL;

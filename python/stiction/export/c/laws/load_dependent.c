@@ -4,6 +4,11 @@
 #let FALLS = any([REST, DRIVE_STRIBECK, BACK_DRIVE_STRIBECK, DRIVE_QUADRATIC, BACK_DRIVE_QUADRATIC])
 #include "held.c"
 #let SLIDING = BREAKAWAY
+#define EXCHANGES
+#define RIGID
+#let STIFFEST = 0
+#let CALMS = VISCOUS
+#let FALLS_BY = REST + (DRIVE_STRIBECK + BACK_DRIVE_STRIBECK) * BREAKAWAY
 
 static real law_step(stiction_state *s, const motion *m)
 {

@@ -5,5 +5,8 @@
 #let SHAPE = YIELD_SHAPE
 #let WEIGHT = [WEIGHT_1, WEIGHT_2, 1.0, WEIGHT_4, WEIGHT_5, WEIGHT_6]
 #let SLIDING = COULOMB
+#define EXCHANGES
+#let STIFFEST = INITIAL_STIFFNESS
+#let CALMS = VISCOUS
 #include "yield_curve.c"
 #include "iwan_spring.c"

@@ -2,6 +2,9 @@
  * (1966); Hodge (1957) on the rules of hardening. */
 #let FIRST = [COULOMB / 4 * (1 + YIELD_SPREAD * (2 * i / 3 - 1)) for i in range(4)]
 #let SLIDING = COULOMB
+#define EXCHANGES
+#let STIFFEST = INITIAL_STIFFNESS
+#let CALMS = VISCOUS
 typedef struct {
     struct {
         STICTION_REAL force, upper, lower; /* by how much its yield points were moved */
@@ -41,3 +44,26 @@ static real law_step(stiction_state *s, const motion *m)
     }
     return force * LEVEL;
 }
+#ifdef MACHINE
+
+/* Direction in which an element yields. */
+static int yields(const stiction_law *law, int i)
+{
+    const real force = law->element[i].force;
+    return force == law->element[i].upper + FIRST[i] ? 1
+        : force == law->element[i].lower - FIRST[i] ? -1 : 0;
+}
+
+/* Whether an element began to yield. */
+static int law_breaks(const stiction_law *before, const stiction_law *after)
+{
+    int i;
+    for (i = 0; i < 4; ++i) {
+        const int is = yields(after, i);
+        if (is != 0 && is != yields(before, i)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+#endif

@@ -8,6 +8,9 @@
 #let WEIGHT = [INITIAL_STIFFNESS * share / sum(DENSITY) for share in DENSITY]
 #include "held.c"
 #let SLIDING = COULOMB
+#define EXCHANGES
+#let STIFFEST = INITIAL_STIFFNESS
+#let CALMS = VISCOUS
 typedef struct {
     STICTION_REAL stretch[10];
 } stiction_law;
@@ -22,3 +25,18 @@ static real law_step(stiction_state *s, const motion *m)
     }
     return force * LEVEL;
 }
+#ifdef MACHINE
+
+/* Whether a stop began to slide. */
+static int law_breaks(const stiction_law *before, const stiction_law *after)
+{
+    int j;
+    for (j = 0; j < 10; ++j) {
+        if (r_fabs(after->stretch[j]) == THRESHOLD[j]
+            && after->stretch[j] != before->stretch[j]) {
+            return 1;
+        }
+    }
+    return 0;
+}
+#endif

@@ -5,6 +5,9 @@
 #let WHOLE = 4 * EVENLY + 4 * AT_EDGE / 3
 #let HALF = WHOLE * COULOMB / INITIAL_STIFFNESS
 #let SLIDING = COULOMB
+#define EXCHANGES
+#let STIFFEST = INITIAL_STIFFNESS
+#let CALMS = VISCOUS
 
 /* Force from a reverse point over the way 2*h, its middle at m, both as shares of HALF. */
 static real risen(real middle, real h)

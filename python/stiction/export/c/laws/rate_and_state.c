@@ -8,6 +8,11 @@
 #include "held.c"
 #endif
 #let SLIDING = COULOMB
+#if not YIELDS
+#define STEEP
+#endif
+#let STIFFEST = (1 / COMPLIANCE if YIELDS else 0) + COULOMB * EVOLUTION_EFFECT / SLIP_DISTANCE
+#let CALMS = VISCOUS
 typedef struct {
     STICTION_REAL log_age;
 #if YIELDS
@@ -118,3 +123,69 @@ static real law_step(stiction_state *s, const motion *m)
     return m->velocity > R(0) ? size : -size;
 #endif
 }
+#if not YIELDS
+#ifdef MACHINE
+
+/* Velocity at which arsinh(v/(2*v_0)*e^q) is z. */
+static real velocity_of(real z, real q)
+{
+    return REFERENCE_VELOCITY * (r_exp(z - q) - r_exp(-z - q));
+}
+
+/* Mean friction over a step that ends at z, in units of a: of a motion that its own inertia carries
+ * the mean of both ends, of one that friction holds what is at its end. */
+static real mean_friction(real z, real old, real heavy, real q)
+{
+    const real momentum = r_fabs(heavy * velocity_of(z, q)), change = z - old;
+    const real weight = R(0.5) * momentum / (momentum + R(1));
+    return z - weight * change / r_sqrt(R(1) + R(0.25) * change * change);
+}
+
+/* Where a step takes the body whose contact ends it at this age: J*(v1 - v0) = h*(E - F), F the
+ * mean friction, solved for the friction at the end, which rises too steeply from rest to be
+ * linearised. */
+static void law_arrive(real log_age, real level, real drag, real v, real friction, real effort,
+                       real h, real *velocity, real *displacement)
+{
+    const real half = R(0.5) * drag * h, direct = DIRECT * level;
+    const real impulse = (INERTIA - half) * v + h * effort, q = exponent(log_age);
+    const real heavy = (INERTIA + half) / (h * direct), wanted = impulse / (h * direct);
+    const real old = (friction - v * drag) / direct;
+    real low, high, z, changed, pace;
+    int k;
+    *velocity = impulse / (INERTIA + half);
+    *displacement = R(0.5) * h * (v + *velocity);
+    if (!(h * direct > R(1e-150) * INERTIA) || r_log(heavy * REFERENCE_VELOCITY) - q > R(60)) {
+        return;
+    }
+    high = r_fabs(wanted) + R(1);
+    z = arcsinh_of_exp(r_log(high / (R(2) * heavy * REFERENCE_VELOCITY)) + q);
+    high = z < high ? z : high;
+    low = R(0);
+    for (k = 0; k < 200 && wanted != R(0) && high - low > R(1e-16) * high; ++k) {
+        const real size = R(0.5) * (low + high);
+        real excess;
+        z = wanted < R(0) ? -size : size;
+        excess = heavy * velocity_of(z, q) + mean_friction(z, old, heavy, q) - wanted;
+        if (wanted < R(0) ? excess < R(0) : excess > R(0)) {
+            high = size;
+        } else {
+            low = size;
+        }
+    }
+    z = wanted < R(0) ? -low : low;
+    *velocity = velocity_of(z, q);
+    if (heavy * r_fabs(*velocity) > R(1)) {
+        *velocity = (wanted - mean_friction(z, old, heavy, q)) / heavy;
+    }
+    *displacement = R(0.5) * h * (v + *velocity);
+    /* What a body brakes on its way to rest is done before the step ends. */
+    changed = *velocity - v;
+    pace = (effort - friction) / INERTIA;
+    if (changed * v < R(0) && changed * pace > R(0) && r_fabs(changed) < r_fabs(pace) * h) {
+        const real square = (z - old) * (z - old);
+        *displacement += R(0.5) * (h - changed / pace) * square / (square + R(1)) * changed;
+    }
+}
+#endif
+#endif

@@ -2,6 +2,10 @@
 #include "held.c"
 #include "slip_hardening.c"
 #let SLIDING = COULOMB
+#define EXCHANGES
+#define RIGID
+#let STIFFEST = 0
+#let CALMS = VISCOUS
 typedef struct {
     STICTION_REAL slid;
 } stiction_law;

@@ -1,0 +1,2 @@
+/* An effort that follows the input gradually. */
+#define LAGS

@@ -1,0 +1,2 @@
+/* A goal that changes no faster than a limit. */
+#define SLOWS

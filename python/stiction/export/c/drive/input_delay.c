@@ -1,0 +1,2 @@
+/* An input that arrives late. */
+#define DELAYS

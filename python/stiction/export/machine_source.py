@@ -1,0 +1,140 @@
+"""C of a whole machine: the contact, the body that rests on it, and the drive."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from ..drive import servo_numbers
+from ..wording import listed
+from .contact_source import ContactSource, plant_numbers, prologue, spaced
+from .fragments import Fragments
+
+if TYPE_CHECKING:
+    from ..plant import Plant
+
+__all__ = ["MachineSource"]
+
+SERVO: Final = {
+    "proportional": 1.0,
+    "integral": 0.0,
+    "derivative": 0.0,
+    "duty_limit": 1.0,
+    "supply": 1.0,
+    "resistance": 1.0,
+    "current_limit": math.inf,
+}
+"""Numbers of a servo, and what they are where they are not stated."""
+
+
+WATCHED: Final = 4.0
+"""Speed from which on down a solver is told to look, in those over which friction falls."""
+
+
+@dataclass(frozen=True)
+class MachineSource:
+    """C of a plant that moves.
+
+    Attributes
+    ----------
+    source : str
+        One file, without the interface that calls it.
+    effects : tuple of str
+        Of the plant, that it has.
+    sampled : str
+        Why not, "" where it can.
+    states : int
+        Of these equations.
+    temperature : bool
+        Whether anything goes by it.
+    watches : bool
+        Whether there is an event where friction begins to fall.
+    """
+
+    source: str
+    effects: tuple[str, ...]
+    sampled: str
+    states: int
+    temperature: bool
+    watches: bool
+
+    @property
+    def exchanges(self) -> bool:
+        """Whether it can be stated as differential equations with events."""
+        return not self.sampled
+
+    @classmethod
+    def of(cls, plant: Plant, interface: tuple[str, ...], numbers: dict[str, Any]) -> MachineSource:
+        """Of a plant that is driven, with the fragments of an interface behind it."""
+        fragments = Fragments({**plant_numbers(plant), **_servo(plant), **numbers})
+        fragments.flags |= {"MACHINE", "POSITION", "TIME", "PATH"}
+        fragments.numbers["QUADRATIC_DRAG"] = 0.0
+        contact = ContactSource.of(plant, fragments, driven=True)
+        fragments.numbers |= _divides(plant, fragments.numbers)
+        straining = "LEVELS" in fragments.flags or fragments.numbers["QUADRATIC_DRAG"] > 0.0
+        if straining:
+            fragments.flags.add("STRAINS")
+        sampled = _sampled(plant, fragments)
+        if sampled:
+            fragments.flags.discard("EXCHANGES")
+        names = (
+            "init",
+            "way",
+            "machine",
+            "running",
+            *(() if sampled else ("exchange",)),
+            *interface,
+        )
+        text = contact.source + "\n" + "\n".join(map(fragments.expand, names))
+        types = "#define STICTION_REAL double\n" + contact.types
+        source = types + prologue(text) + fragments.constants(text) + "\n" + text
+        states = 3 if "BENDS" in fragments.flags else 2
+        temperature = "TEMPERATURE" in fragments.flags
+        watches = fragments.numbers["WATCHED"] > 0.0
+        return cls(spaced(source), contact.effects, sampled, states, temperature, watches)
+
+
+def _servo(plant: Plant) -> dict[str, Any]:
+    stated = servo_numbers(plant.drive)
+    numbers = {} if stated is None else SERVO | stated
+    limit = float(plant.drive.get("limit", math.inf))
+    named = {f"SERVO_{name.upper()}": value for name, value in numbers.items()}
+    return {"SERVO": stated is not None, "INPUT_LIMIT": limit, **named}
+
+
+def _divides(plant: Plant, numbers: dict[str, Any]) -> dict[str, float]:
+    """What a sample is divided by: the swing that is fastest, and what calms and falls."""
+    stiffness = numbers["STIFFEST"] + abs(numbers["GRAVITY"])
+    own = [name for name in numbers if name.removesuffix("_STIFFNESS").islower()]
+    stiffness += sum(numbers[name] for name in own if name.endswith("_STIFFNESS"))
+    damping = numbers["CALMS"]
+    if numbers["SERVO"]:
+        gain = abs(numbers["GAIN"]) * numbers["SERVO_SUPPLY"] / numbers["SERVO_RESISTANCE"]
+        stiffness += gain * abs(numbers["SERVO_PROPORTIONAL"])
+        damping += gain * abs(numbers["SERVO_DERIVATIVE"])
+        damping += numbers["GAIN"] ** 2 / numbers["SERVO_RESISTANCE"]
+    falls, watched = numbers.get("FALLS_BY", 0.0), 0.0
+    if falls:
+        watched = WATCHED * numbers["STRIBECK_VELOCITY"]
+        falls *= max(numbers["STRIBECK_EXPONENT"], 1.0) / numbers["STRIBECK_VELOCITY"]
+    inertia = plant.inertia
+    return {
+        "FASTEST": math.sqrt(stiffness / inertia),
+        "CALMING": damping / inertia,
+        "FALLING": falls / inertia,
+        "WATCHED": watched,
+    }
+
+
+def _sampled(plant: Plant, fragments: Fragments) -> str:
+    """What of a plant is stepped and no equation over time, in words."""
+    if "EXCHANGES" not in fragments.flags:
+        return f"{plant.friction.law} is stepped, and no equation over time"
+    remember = [name for hook in ("remember", "creep") for name in fragments.hooks.get(hook, ())]
+    if remember:
+        return f"{listed(list(dict.fromkeys(remember)))} remembers from sample to sample"
+    if fragments.numbers["SERVO"] and fragments.numbers["SERVO_INTEGRAL"] != 0.0:
+        return "the servo sums up from sample to sample"
+    late = {"DELAYS", "SLOWS", "LAGS"} & fragments.flags
+    return "the input arrives late, sample by sample" if late else ""
