@@ -1,4 +1,4 @@
-"""Files that are whole at every moment: written beside their place, synced, and moved there.
+"""Files and new folders that are whole at every moment: made beside their place, then moved there.
 
 Whatever stops a program (a kill, a full disk, a power cut), the file is the earlier one or the new
 one, and never half of it. All of the package writes through here; a test looks for other ways.
@@ -13,6 +13,7 @@ import errno
 import os
 import re
 import secrets
+import shutil
 import stat
 import time
 from collections.abc import Iterator
@@ -25,7 +26,7 @@ try:
 except ImportError:  # not there on Windows, where a file that is open cannot be removed anyway
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["create_text", "replacing", "subfolder", "write_text"]
+__all__ = ["create_text", "new_folder", "replacing", "subfolder", "write_text"]
 
 _DRAFT: Final = re.compile(r"\.stiction-[0-9a-f]{16}\.part")
 """Names of what is being written; short, for a long name of the file itself must still fit."""
@@ -110,6 +111,75 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
         _moved(draft, file, path)
 
 
+@contextmanager
+def new_folder(path: Path) -> Iterator[Path]:
+    """A folder to fill, which gets its name once all of it is there.
+
+    Parameters
+    ----------
+    path : Path
+        Where nothing is yet, in a folder that is there.
+
+    Yields
+    ------
+    Path
+        Of the folder that is filled; gone with all that is in it where it was not moved.
+
+    Raises
+    ------
+    FileExistsError
+        Something is there already.
+    OSError
+        It cannot be written; names ``path``.
+    """
+    if os.path.lexists(path):
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path))
+    try:
+        _clear(path.parent)
+        with _draft_folder(path.parent) as draft:
+            yield draft
+            _sync_folder(draft)
+            os.replace(draft, path)
+        _sync_folder(path.parent)
+    except OSError as error:
+        # Callers know nothing of the draft.
+        named = None if error.filename is None else Path(os.fsdecode(error.filename))
+        if named is None or not any(_DRAFT.fullmatch(part) for part in named.parts):
+            raise
+        raise OSError(error.errno or errno.EIO, error.strerror or str(error), str(path)) from None
+
+
+@contextmanager
+def _draft_folder(folder: Path) -> Iterator[Path]:
+    """A new folder, locked for as long as it is filled."""
+    while True:
+        draft = folder / f".stiction-{secrets.token_hex(8)}.part"
+        draft.mkdir()
+        with _locked(draft):
+            # Another process may have taken it for a leftover before it was locked.
+            if not draft.is_dir():
+                continue
+            try:
+                yield draft
+            finally:
+                shutil.rmtree(draft, ignore_errors=True)
+            return
+
+
+@contextmanager
+def _locked(folder: Path, *, needed: bool = False) -> Iterator[None]:
+    """Hold the lock of a folder, where the system has one."""
+    if fcntl is None:
+        yield
+        return
+    opened = os.open(folder, os.O_RDONLY)
+    try:
+        _lock(opened, wait=not needed, needed=needed)
+        yield
+    finally:
+        os.close(opened)
+
+
 def subfolder(folder: Path, name: str) -> Path:
     """A folder within one that is written to, made where it is not there.
 
@@ -152,7 +222,7 @@ def _opened(folder: Path) -> tuple[Path, BinaryIO]:
         draft = folder / f".stiction-{secrets.token_hex(8)}.part"
         file = draft.open("xb")
         try:
-            _lock(file, wait=True)
+            _lock(file.fileno(), wait=True)
             # Another process may have taken it for a leftover before it was locked.
             if fcntl is None or os.fstat(file.fileno()).st_nlink:
                 return draft, file
@@ -167,22 +237,26 @@ def _clear(folder: Path) -> None:
     """Remove drafts that a killed program left: nobody holds their lock any more."""
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
-            if not _DRAFT.fullmatch(entry.name) or not entry.is_file(follow_symlinks=False):
+            if not _DRAFT.fullmatch(entry.name) or entry.is_symlink():
                 continue
             with suppress(OSError):
                 if fcntl is None and time.time() - entry.stat().st_mtime < _OLD:
                     continue
+                if entry.is_dir():
+                    with _locked(Path(entry.path), needed=True):
+                        shutil.rmtree(entry.path, ignore_errors=True)
+                    continue
                 with open(entry.path, "rb") as left:
-                    _lock(left, wait=False, needed=True)
+                    _lock(left.fileno(), wait=False, needed=True)
                     os.unlink(entry.path)
 
 
-def _lock(file: BinaryIO, *, wait: bool, needed: bool = False) -> None:
+def _lock(opened: int, *, wait: bool, needed: bool = False) -> None:
     """Lock an open file; not every file system can, which matters where it is ``needed``."""
     if fcntl is None:
         return
     try:
-        fcntl.flock(file.fileno(), fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+        fcntl.flock(opened, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
     except OSError:
         if needed:
             raise

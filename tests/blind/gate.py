@@ -24,13 +24,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from tests.ordinary.draw import MOVED_HIDDEN, Spec, ordinary, size_of
-from tests.ordinary.files import write
-from tests.ordinary.hidden import HIDDEN
 from tests.reference.effect_catalogue import FOREIGN
 from tests.reference.session_reference import make_session
 
 import stiction as st
+from stiction.bench.ordinary.draw import MOVED_HIDDEN, Spec, ordinary, size_of
+from stiction.bench.ordinary.files import write
+from stiction.bench.ordinary.hidden import HIDDEN
 
 from .draw import deck, library
 from .real import data_folder, lay, machines

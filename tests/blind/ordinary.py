@@ -19,11 +19,11 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from tests.ordinary.draw import SECONDS, Spec, null_grid, ordinary, size_of
-from tests.ordinary.files import write
-from tests.ordinary.hidden import HIDDEN
 
 import stiction as st
+from stiction.bench.ordinary.draw import SECONDS, Spec, null_grid, ordinary, size_of
+from stiction.bench.ordinary.files import write
+from stiction.bench.ordinary.hidden import HIDDEN
 
 from .__main__ import pair, read_rows, state_of
 from .draw import deck

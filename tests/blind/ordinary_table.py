@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from stiction.bench.ordinary.draw import OWN_LAWS
+
 from .table import answer, classed, confident, named, of_lost, rate, table, wrong_names
 
 CLEAR = 0.03
 """Hidden effort, share of the dry friction, from which a name is asked for."""
-
-OWN_LAWS = {("dry", "coulomb"), ("bristle", "lugre")}
-"""Contacts of the machine and the laws that have the same form."""
 
 
 def report(rows):
@@ -32,7 +31,7 @@ def report(rows):
 def has_own_law(row):
     """Whether the plant file states the law that the machine has, in every detail."""
     spec = row["spec"]
-    return (spec["contact"], spec["law"]) in OWN_LAWS and spec["kind"] == "driven"
+    return OWN_LAWS[spec["contact"]] == spec["law"] and spec["kind"] == "driven"
 
 
 def _counts(rows):

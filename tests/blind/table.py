@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 import stiction as st
+from stiction.bench.rates import wilson
 
 from .control import shuffled
 
@@ -93,16 +94,6 @@ def shown(row):
 
 
 # --- words
-
-
-def wilson(count, number):
-    """95 % interval of a share."""
-    if not number:
-        return 0.0, 1.0
-    z, p = 1.96, count / number
-    middle = (p + z * z / (2 * number)) / (1 + z * z / number)
-    half = z * math.sqrt(p * (1 - p) / number + z * z / (4 * number**2)) / (1 + z * z / number)
-    return max(middle - half, 0.0), min(middle + half, 1.0)
 
 
 def rate(rows, test):

@@ -7,10 +7,10 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from tests.ordinary.draw import Spec, ordinary
-from tests.ordinary.files import write
 
 import stiction as st
+from stiction.bench.ordinary.draw import Spec, ordinary
+from stiction.bench.ordinary.files import write
 from stiction.diagnosis import left_open, pipeline
 from stiction.diagnosis.decide import emptied
 from stiction.diagnosis.result import Cause

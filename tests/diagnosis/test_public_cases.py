@@ -7,9 +7,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tests.ordinary.machine import Effects, Machine, simulate
 
 import stiction as st
+from stiction.bench.ordinary.machine import Effects, Machine, simulate
 
 COUNTS = 8192
 ORDERS = (42, 84)

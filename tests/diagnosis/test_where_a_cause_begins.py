@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.ordinary.draw import Spec, ordinary
-from tests.ordinary.files import write
 
 import stiction as st
+from stiction.bench.ordinary.draw import Spec, ordinary
+from stiction.bench.ordinary.files import write
 from stiction.catalogue import effects
 from stiction.diagnosis.candidates import Candidate
 from stiction.diagnosis.signatures import gain_at

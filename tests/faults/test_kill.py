@@ -51,6 +51,7 @@ VERBS: dict[str, list[str]] = {
     "plan": ["plan", "PLANT", "--only", "ramps", "-o", "OUT"],
     "export": ["export", "PLANT", "--to", "table", "--to", "urdf", "--to", "c", "-o", "OUT"],
     "compensate": ["compensate", "PLANT", "--session", "LOOP", "-o", "OUT"],
+    "bench": ["bench", "make", "OUT", "--number", "6", "--seconds", "4,6"],
     "laws": ["laws", "-o", "OUT"],
     "effects": ["effects", "-o", "OUT"],
     "compare": ["compare", "coulomb", "--steps", "1000", "--draws", "0", "-o", "OUT"],
@@ -60,7 +61,7 @@ VERBS: dict[str, list[str]] = {
     "stream": ["-c", STREAM, "OUT/state.npz"],
 }
 """Arguments of the command line, or of Python where they begin with -c."""
-FRESH = {"init", "import", "plan", "demo", "stream"}
+FRESH = {"init", "import", "plan", "demo", "stream", "bench"}
 """What refuses to write over a file, or goes on from it."""
 SLOW = {"paper", "diagnose"}
 """Left to the long run: most of what they do is no writing."""
@@ -91,6 +92,7 @@ WHOLE: dict[str, Callable[[Path], object]] = {
     ".html": ends_in(b"</html>"),
     ".csv": parses_csv,
     ".npz": lambda path: dict(np.load(path)),
+    ".mat": read_table,
     ".md": lambda path: path.read_text("utf-8"),
     ".txt": lambda path: path.read_text("utf-8"),
 }
@@ -183,7 +185,7 @@ def _files(out: Path, *, drafts: bool = False) -> list[Path]:
     return [
         path
         for path in sorted(out.rglob("*"))
-        if path.is_file() and (drafts or not path.name.startswith(".stiction-"))
+        if path.is_file() and (drafts or ".stiction-" not in str(path.relative_to(out)))
     ]
 
 

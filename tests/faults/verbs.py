@@ -11,6 +11,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import tomllib
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -35,6 +36,7 @@ VERBS: dict[str, tuple[str, ...]] = {
     "export": ("export", "plant.toml", "--to", "table", "--to", "urdf", "--to", "c"),
     "compensate": ("compensate", "plant.toml", "--session", "loop.toml"),
     "compare": ("compare", "coulomb", "--steps", "1000", "--draws", "0"),
+    "bench": ("bench", "score", "bench", "bench/answers"),
     "laws": ("laws",),
     "effects": ("effects",),
     "paper": ("paper",),
@@ -168,7 +170,22 @@ def desk(folder: Path) -> Path:
     folder.mkdir(parents=True)
     Desk(folder).loop()
     Desk(folder).parameters()
+    lay(answered_bench(), folder / "bench")
     return folder
+
+
+@cache
+def answered_bench() -> dict[str, bytes]:
+    """What is looked at where a bench of a session is scored, and an answer to it."""
+    from stiction.bench import make
+
+    with tempfile.TemporaryDirectory() as name:
+        where = Path(name) / "bench"
+        make(where, number=1, seconds=(4.0, 4.0))
+        answer = json.dumps({"verdict": "nothing_missing", "effects": []})
+        made = contents(where)
+    kept = {name: made[name] for name in made if name.startswith(("truth/", "bench.json"))}
+    return kept | {"answers/session_0001.json": answer.encode()}
 
 
 def lay(files: dict[str, bytes], folder: Path) -> None:

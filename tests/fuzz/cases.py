@@ -159,7 +159,8 @@ def file_lines(draw: Draw, kind: str) -> Program:
 
 def command_lines(draw: Draw, verb: str) -> Program:
     """A verb of the command, on files and with options that are odd now and then."""
-    out = ["'--out'", "folder + '/out'"] if verb not in ("laws", "effects", "init") else []
+    outless = ("laws", "effects", "init", "bench")
+    out = ["'--out'", "folder + '/out'"] if verb not in outless else []
     files = {
         "fit": [draw.file("session.toml")],
         "diagnose": [draw.file("session.toml"), "'--surrogates'", "'4'"],
@@ -171,12 +172,21 @@ def command_lines(draw: Draw, verb: str) -> Program:
         "compare": ["'coulomb'", "'--steps'", "'1000'"],
         "paper": ["'nested_loops'"],
         "demo": ["'--quick'"],
+        "bench": bench_words(draw),
     }
     words = [repr(verb), *files.get(verb, []), *out]
     if draw.odd() or draw.chance(0.2):
         words.append(draw.pick(("'--nosuch'", "'--json'", "'--help'", "''", "'--out'", "'\\ud800'",
                                 "'--seed=nan'", "'x' * 3000", "'-1'")))  # fmt: skip
     return [f"command({', '.join(words)})"]
+
+
+def bench_words(draw: Draw) -> Program:
+    """A bench of one short session, or files in place of one."""
+    if draw.chance(0.5):
+        seed = f"'{draw.random.randrange(10**9)}'"
+        return ["'make'", "folder + '/bench'", "'--number=1'", "'--seconds=4,5'", "'--seed'", seed]
+    return [draw.pick(("'score'", "'run'")), "folder", draw.file("params.json")]
 
 
 SCENES: dict[str, Callable[[Draw], Program]] = {

@@ -16,6 +16,7 @@ import stiction
 
 HIDDEN = {
     "cli": "its verbs are run as commands",
+    "bench": "lays out, diagnoses and counts folders of sessions; its verb is run as a command",
 }
 """Packages that are not looked through, and why."""
 BESIDE = ("_native", "parameter", "stated")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import cyclopts
 
 from .. import __version__
+from .bench import bench
 from .catalogue import effects, laws
 from .compare import compare
 from .compensate import compensate
@@ -36,4 +37,5 @@ def build() -> cyclopts.App:
     app.command(import_, name="import")
     for other in (compensate, library, laws, effects, compare, paper):
         app.command(other)
+    app.command(bench)
     return app

@@ -18,12 +18,14 @@ def refusal(error: cyclopts.CycloptsError, app: cyclopts.App) -> str:
     """The parser's complaint: what was given, what is allowed, where to read on."""
     chain = list(error.command_chain or ())
     command = " ".join(["stiction", *chain])
-    verb = f"{chain[-1]}: " if chain else ""
+    verb = f"{' '.join(chain)}: " if chain else ""
     return f"{verb}{_what(error, app, command)} (see: {command} --help)"
 
 
 def _what(error: cyclopts.CycloptsError, app: cyclopts.App, command: str) -> str:
     if isinstance(error, exceptions.UnknownCommandError):
+        for word in error.command_chain or ():
+            app = app[word]
         return _no_verb(str((error.unused_tokens or [""])[0]), app)
     if isinstance(error, exceptions.UnknownOptionError):
         given = (error.token.keyword or error.token.value).partition("=")[0]

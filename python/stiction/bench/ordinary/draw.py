@@ -11,9 +11,23 @@ import numpy as np
 
 from .hidden import HIDDEN, Plain, with_hidden
 from .machine import Machine, simulate
-from .signals import KINDS, signal
+from .signals import KINDS, FloatArray, signal
 
-FloatArray = np.ndarray
+__all__ = [
+    "FORMATS",
+    "MOVED_HIDDEN",
+    "OWN_LAWS",
+    "RECORDINGS",
+    "SAMPLE_TIMES",
+    "SECONDS",
+    "SIZES",
+    "Log",
+    "Ordinary",
+    "Spec",
+    "null_grid",
+    "ordinary",
+    "size_of",
+]
 
 SAMPLE_TIMES = (1e-3, 2e-3, 2.5e-3, 4e-3, 5e-3, 1e-2)
 COUNTS = tuple(2**bits for bits in range(10, 21))
@@ -27,6 +41,8 @@ FLAWS = ("constant", "holes", "still", "")
 """What may be wrong with the data: a channel that does not change, cells without a number, a drive
 that moves nothing."""
 HOLES = 0.12
+OWN_LAWS = {"dry": "coulomb", "bristle": "lugre"}
+"""Contacts of the machine, and the laws of the catalogue that have the same form."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +83,30 @@ class Spec:
 
 
 @dataclass(frozen=True)
+class Decided:
+    """A spec with everything decided; ``size`` is 0 where nothing is hidden."""
+
+    seed: int
+    law: str
+    hidden: str
+    size: float
+    kind: str
+    flaw: str
+    recordings: int
+    seconds: float
+    dt: float
+    counts: int
+    flicker: float
+    log_noise: float
+    signals: tuple[str, ...]
+    loop: str
+    contact: str
+    drive: str
+    file_format: str
+    linear: bool
+
+
+@dataclass(frozen=True)
 class Log:
     """Columns of one recording, SI, and the effort that was hidden in it."""
 
@@ -83,7 +123,7 @@ class Log:
 class Ordinary:
     """A session and its truth."""
 
-    spec: Spec
+    spec: Decided
     machine: Machine
     drive: dict[str, Any]
     logs: list[Log]
@@ -108,7 +148,10 @@ class Ordinary:
 def ordinary(spec: Spec) -> Ordinary:
     """The session of a spec; the same for the same one, and the same machine whatever is hidden."""
     rng = _stream(spec.seed, "session")
-    spec = _drawn(spec, rng)
+    return _made(_drawn(spec, rng), rng)
+
+
+def _made(spec: Decided, rng: np.random.Generator) -> Ordinary:
     machine = _machine(spec, _stream(spec.seed, "machine"))
     drive, machine = _drive(spec, machine, _stream(spec.seed, "drive"))
     if spec.hidden:
@@ -175,12 +218,12 @@ def _stream(seed: int, *words: str) -> np.random.Generator:
     return np.random.default_rng([seed, *(zlib.crc32(w.encode()) for w in ("ordinary", *words))])
 
 
-def _drawn(spec: Spec, rng: np.random.Generator) -> Spec:
+def _drawn(spec: Spec, rng: np.random.Generator) -> Decided:
     """The spec with everything decided; every draw is made, so that what is given moves none."""
     number = int(rng.choice(RECORDINGS))
     mixed = tuple(str(k) for k in rng.choice(KINDS, number)) if rng.random() < 0.6 else ()
     one = str(rng.choice(KINDS))
-    drawn = {
+    drawn: dict[str, Any] = {
         "recordings": number,
         "seconds": float(rng.uniform(*SECONDS)),
         "dt": float(rng.choice(SAMPLE_TIMES)),
@@ -192,18 +235,19 @@ def _drawn(spec: Spec, rng: np.random.Generator) -> Spec:
         "drive": str(rng.choice(["torque", "current", "voltage"])),
         "file_format": str(rng.choice(FORMATS)),
         "linear": bool(rng.random() < 0.15),
-        "size": size_of(rng) if spec.hidden else None,
+        "size": size_of(rng) if spec.hidden else 0.0,
     }
     drawn |= {name: getattr(spec, name) for name in drawn if getattr(spec, name) is not None}
     if spec.kind != "driven":
         drawn |= {"loop": "open", "linear": False}
-    number = drawn["recordings"]
+    kinds = spec.signals or mixed or (one,)
     if spec.signals is None:
-        drawn["signals"] = tuple((mixed or (one,))[k % len(mixed or (one,))] for k in range(number))
-    return replace(spec, **drawn)
+        kinds = tuple(kinds[k % len(kinds)] for k in range(drawn["recordings"]))
+    own: dict[str, Any] = {"seed": spec.seed, "law": spec.law, "hidden": spec.hidden}
+    return Decided(**own, kind=spec.kind, flaw=spec.flaw, signals=kinds, **drawn)
 
 
-def _machine(spec: Spec, rng: np.random.Generator) -> Machine:
+def _machine(spec: Decided, rng: np.random.Generator) -> Machine:
     inertia = float(np.exp(rng.uniform(np.log(2e-5), np.log(2e-1))))
     coulomb = inertia * float(rng.uniform(50.0, 300.0))
     viscous = coulomb * float(rng.uniform(0.01, 0.1))
@@ -212,7 +256,7 @@ def _machine(spec: Spec, rng: np.random.Generator) -> Machine:
     return Machine(inertia, coulomb, viscous, bristle=bristle)
 
 
-def _drive(spec: Spec, machine: Machine, rng: np.random.Generator) -> tuple[Any, Machine]:
+def _drive(spec: Decided, machine: Machine, rng: np.random.Generator) -> tuple[Any, Machine]:
     if spec.kind == "servo":
         return _servo(machine, rng)
     constant = float(np.exp(rng.uniform(np.log(0.02), np.log(2.0))))
@@ -244,7 +288,7 @@ def _servo(machine: Machine, rng: np.random.Generator) -> tuple[Any, Machine]:
     return told, replace(machine, gain=constant / resistance, counter=constant**2 / resistance)
 
 
-def _controller(spec: Spec, machine: Machine) -> dict[str, Any]:
+def _controller(spec: Decided, machine: Machine) -> dict[str, Any]:
     """Gains of the position loop, per unit of the input."""
     rng = _stream(spec.seed, "loop")
     omega = 2.0 * math.pi * float(rng.uniform(2.0, 5.0))
@@ -256,11 +300,11 @@ def _controller(spec: Spec, machine: Machine) -> dict[str, Any]:
 # --- recording
 
 
-def _samples(spec: Spec) -> int:
+def _samples(spec: Decided) -> int:
     return round(spec.seconds / spec.recordings / spec.dt)
 
 
-def _logs(spec: Spec, machine: Machine, drive: dict[str, Any]) -> list[Log]:
+def _logs(spec: Decided, machine: Machine, drive: dict[str, Any]) -> list[Log]:
     logs, now = [], 0.0
     for k in range(spec.recordings):
         rng = _stream(spec.seed, "recording", str(k))
@@ -274,7 +318,7 @@ def _logs(spec: Spec, machine: Machine, drive: dict[str, Any]) -> list[Log]:
 class _Encoder:
     """Whole counts, with flicker before they are cut."""
 
-    def __init__(self, spec: Spec, rng: np.random.Generator) -> None:
+    def __init__(self, spec: Decided, rng: np.random.Generator) -> None:
         self.step = 2.0 * math.pi / spec.counts
         self.shaken = spec.flicker * rng.standard_normal(_samples(spec) * 10)
         self.read: list[float] = []
@@ -286,7 +330,7 @@ class _Encoder:
 
 
 def _driven(
-    spec: Spec, machine: Machine, drive: dict[str, Any], kind: str, rng: np.random.Generator
+    spec: Decided, machine: Machine, drive: dict[str, Any], kind: str, rng: np.random.Generator
 ) -> Any:
     samples, dt, encoder = _samples(spec), spec.dt, _Encoder(spec, rng)
     wave = signal(kind, samples, dt, rng)
@@ -302,7 +346,8 @@ def _driven(
             before = encoder.read[-2] if k else now
             wanted = (goals[k + 1] - goals[k]) / dt
             error = goals[k + 1] - now
-            return gains["kp"] * error + gains["kd"] * (wanted - (now - before) / dt)
+            asked = gains["kp"] * error + gains["kd"] * (wanted - (now - before) / dt)
+            return float(asked)
 
     elif spec.loop == "velocity":
         wanted = wave * float(rng.uniform(2.0, 12.0))
@@ -337,7 +382,7 @@ def _driven(
 
 
 def _goal(
-    spec: Spec, machine: Machine, drive: dict[str, Any], kind: str, rng: np.random.Generator
+    spec: Decided, machine: Machine, drive: dict[str, Any], kind: str, rng: np.random.Generator
 ) -> Any:
     """A servo that is told where to go; its own loop runs ten times as often as it is logged."""
     samples, dt, encoder = _samples(spec), spec.dt, _Encoder(spec, rng)
@@ -346,7 +391,7 @@ def _goal(
     def control(k: int, x: float) -> float:
         if k % 10 == 0:
             encoder(x)
-        duty = drive["proportional"] * (float(goals[k // 10]) - x)
+        duty = float(drive["proportional"]) * (float(goals[k // 10]) - x)
         return float(drive["supply_v"]) * max(-1.0, min(1.0, duty))
 
     motion = simulate(machine, control, 10 * samples, 0.1 * dt)
@@ -355,7 +400,7 @@ def _goal(
 
 
 def _moved(
-    spec: Spec, machine: Machine, drive: dict[str, Any], kind: str, rng: np.random.Generator
+    spec: Decided, machine: Machine, drive: dict[str, Any], kind: str, rng: np.random.Generator
 ) -> Any:
     """The machine is moved along sines, and the effort that this takes is measured."""
     samples, dt, encoder = _samples(spec), spec.dt, _Encoder(spec, rng)
@@ -376,17 +421,15 @@ def _moved(
     return t, effort, np.array([encoder(float(place)) for place in x]), None, missing
 
 
-def _plain(spec: Spec, machine: Machine, drive: dict[str, Any]) -> Plain:
+def _plain(spec: Decided, machine: Machine, drive: dict[str, Any]) -> Plain:
     """The first recording, short, with nothing hidden."""
-    short = replace(
-        spec, hidden="", size=None, recordings=1, seconds=spec.seconds / spec.recordings
-    )
+    short = replace(spec, hidden="", size=0.0, recordings=1, seconds=spec.seconds / spec.recordings)
     (log,) = _logs(short, machine, drive)
     velocity = np.gradient(log.position, spec.dt)
     return Plain(machine.gain * log.input, velocity, float(np.ptp(log.position)), spec.dt)
 
 
-def _flawed(log: Log, spec: Spec, rng: np.random.Generator) -> Log:
+def _flawed(log: Log, spec: Decided, rng: np.random.Generator) -> Log:
     if spec.flaw == "constant":
         return replace(log, position=np.full_like(log.position, log.position[0]))
     if spec.flaw == "holes":

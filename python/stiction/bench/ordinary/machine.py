@@ -17,6 +17,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+__all__ = ["Controller", "Effects", "Machine", "Motion", "simulate"]
+
 STICKS = 0
 """Neither of the directions +1 and -1."""
 NEAR = 1e-12

@@ -1,7 +1,0 @@
-"""Ordinary sessions: what anybody records, from a machine that shares nothing with the package.
-
-`machine` simulates a body that sticks, slips and swings with classic Runge-Kutta steps whose ends
-are the events themselves (a reversal, a break-away), `effects` are what may be hidden in it,
-`signals` what it is driven by, `draw` decides what a session holds, and `files` writes it as a user
-would have it. Nothing here imports stiction, and nothing is taken from `tests/reference`.
-"""
