@@ -106,9 +106,13 @@ class Kernel:
         mean: FloatArray = windows[..., 1:-1:every, :] @ self.weights[::-1]
         return mean
 
-    def second_derivative(self, values: FloatArray) -> FloatArray:
-        """Second difference of the weighted mean over dt²; aligned with ``mean``."""
-        return np.convolve(values, self._second, "valid")
+    def second_derivative(self, values: FloatArray, *, every: int = 1) -> FloatArray:
+        """Second difference of the weighted mean over dt²; aligned with ``mean``, spaced as that."""
+        if every == 1:
+            return np.convolve(values, self._second, "valid")
+        windows = np.lib.stride_tricks.sliding_window_view(values, len(self._second))
+        bent: FloatArray = windows[::every] @ self._second[::-1]
+        return bent
 
 
 def narrowest(dt: float, quiet: Callable[[Kernel], bool]) -> Kernel:
