@@ -107,7 +107,7 @@ class Kernel:
         return mean
 
     def second_derivative(self, values: FloatArray, *, every: int = 1) -> FloatArray:
-        """Second difference of the weighted mean over dt²; aligned with ``mean``, spaced as that."""
+        """Second difference of the weighted mean over dt²; aligned and spaced as ``mean``."""
         if every == 1:
             return np.convolve(values, self._second, "valid")
         windows = np.lib.stride_tricks.sliding_window_view(values, len(self._second))

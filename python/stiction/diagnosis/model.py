@@ -13,6 +13,7 @@ import numpy as np
 from ..catalogue import effects
 from ..finite import finite
 from ..fitting.levenberg import FIRST_DAMPING
+from ..fitting.likeliest import likeliest
 from ..fitting.minimise import Solution, minimise
 from ..fitting.result import FitResult
 from ..fitting.rows import Nuisances, Rows, timing_bound
@@ -35,7 +36,7 @@ __all__ = [
     "REFIT_CONVERGED",
     "Model",
     "fitted",
-    "power_of",
+    "likeliest_of",
     "stepped",
     "with_effect",
     "with_last_free",
@@ -331,15 +332,14 @@ def fitted(
     return Model(evidence, solution, nuisances or Nuisances())
 
 
-def power_of(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
-    """Weighted power that a plant leaves in the rows of train; infinite where it runs away."""
+def likeliest_of(evidence: Evidence, plants: Sequence[Plant], nuisances: Nuisances) -> Plant:
+    """The plant that leaves the least weighted power in the rows of train."""
 
-    def left(rows: Rows) -> float:
+    def left(plant: Plant, rows: Rows) -> float:
         own = rows.weight * rows.residual(plant, nuisances)[rows.mask]
         return float(own @ own)
 
-    power = sum(evidence.each(left, evidence.train))
-    return power if np.isfinite(power) else float("inf")
+    return likeliest(plants, evidence.train, left)[0]
 
 
 def stepped(model: Model, explained: FloatArray) -> Plant:

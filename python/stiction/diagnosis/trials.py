@@ -22,7 +22,7 @@ from .model import (
     REFIT_CONVERGED,
     Model,
     fitted,
-    power_of,
+    likeliest_of,
     stepped,
     with_effect,
     with_last_free,
@@ -312,7 +312,7 @@ def _from_screening(
     shares = SHARES if evidence.simulated else FEW_SHARES
     alike = _alike(signatures, index, gains, base.plant.inertia)
     plants = [begun(share, *like) for like in alike for share in shares]
-    start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
+    start = likeliest_of(evidence, plants, base.nuisances)
     model = compared_fit(evidence, start, base.nuisances)
     record = score.candidate.record
     untold = record.swings or record.slope_misleads(loop=evidence.loop)
