@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -34,6 +34,7 @@ from .replay import NoReplayError, reread
 __all__ = [
     "LEAST_GIVEN",
     "REFIT_CONVERGED",
+    "Known",
     "Model",
     "fitted",
     "likeliest_of",
@@ -62,6 +63,13 @@ LEAST_GIVEN: Final = 0.01
 """And what leaves less than this share explains nothing at all."""
 INSIDE: Final = 0.98
 """A timing offset beyond this share of its bound is held by the bound."""
+
+
+class Known(NamedTuple):
+    """A plant that was fitted, and what was fitted along, without the rows they were fitted to."""
+
+    plant: Plant
+    nuisances: Nuisances
 
 
 @dataclass(frozen=True)

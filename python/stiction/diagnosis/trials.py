@@ -20,6 +20,7 @@ from .decide import SMALLEST, Trial, emptied, judge
 from .evidence import Evidence
 from .model import (
     REFIT_CONVERGED,
+    Known,
     Model,
     fitted,
     likeliest_of,
@@ -108,7 +109,7 @@ class Screening:
         Weighted rms of what the base needs beside inertia.
     smallest : float
         Share of it that an effect has to contribute to be worth a name.
-    earlier : sequence of Model
+    earlier : sequence of Known or Model
         From which to begin as well: fitted to the same rows, likelier ones first.
     kept : list of (Model, list of Score)
         Of the last few models that were screened: they are asked for again and again.
@@ -120,7 +121,7 @@ class Screening:
     bias: FloatArray
     friction: float
     smallest: float = SMALLEST
-    earlier: Sequence[Model] = ()
+    earlier: Sequence[Known | Model] = ()
     kept: list[tuple[Model, list[Score]]] = field(default_factory=list)
 
     def scores(self, model: Model) -> list[Score]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TypeVar
 
 from ..plant import Plant
@@ -53,7 +54,7 @@ def likeliest(
         most = least[-1] if len(least) == number else math.inf
         total = begun[place]
         if len(items) > 1 and total <= most:
-            for own in side_by_side(lambda item, place=place: left(plants[place], item), items[1:]):
+            for own in side_by_side(partial(left, plants[place]), items[1:]):
                 total += own
                 if total > most:
                     break
