@@ -48,17 +48,14 @@ def likeliest(
         return found if math.isfinite(found) else math.inf
 
     begun = list(side_by_side(lambda plant: left(plant, items[0]), plants))
-    totals: dict[int, float] = {}
-    for place in sorted(range(len(plants)), key=lambda place: (begun[place], place)):
-        least = sorted(totals.values())[:number]
-        most = least[-1] if len(least) == number else math.inf
-        total = begun[place]
+    totals: list[tuple[float, int]] = []
+    for total, place in sorted(zip(begun, range(len(plants)), strict=True)):
+        most = totals[number - 1][0] if len(totals) >= number else math.inf
         if len(items) > 1 and total <= most:
             for own in side_by_side(partial(left, plants[place]), items[1:]):
                 total += own
                 if total > most:
                     break
         if total <= most:
-            totals[place] = total
-    best = sorted(totals, key=lambda place: (totals[place], place))
-    return [plants[place] for place in best[:number]]
+            totals = sorted([*totals, (total, place)])
+    return [plants[place] for _, place in totals[:number]]
