@@ -264,6 +264,18 @@ class Motor:
         start: dict[str, float] | None = None,
         strict: bool = True,
     ) -> _Floats: ...
+    def shoot_signatures(
+        self,
+        motion: Motion,
+        weights: npt.ArrayLike,
+        stride: int,
+        candidates: Iterable[tuple[str, dict[str, float]]],
+        parts: int,
+        *,
+        start: dict[str, float] | None = None,
+        threads: int = 1,
+        strict: bool = True,
+    ) -> _Floats: ...
     def sensitivity(
         self,
         current: npt.ArrayLike,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
@@ -185,24 +184,12 @@ class ShootingForm(WeakForm):
 
         Parameters and return value are those of ``WeakForm.signatures``.
         """
-        needed, driven, ahead = self.begun(plant, self.position).signatures(
-            self.motion, list(candidates), start=start, strict=False
-        )
         weights = self.kernel.second
         number = min(RESPONSE_PARTS, len(weights))
-        response = self.begun(plant, self.position).shoot_response(
-            self.motion, weights, self.stride, number, start=start, strict=False
+        found = self.begun(plant, self.position).shoot_signatures(
+            self.motion, weights, self.stride, list(candidates), number, start=start, strict=False
         )
-        edges = [k * (len(weights) // number) for k in range(number)] + [len(weights)]
-        starts = self.stride * np.arange(len(self))
-        columns = np.empty((len(self), len(needed)))
-        for k, (need, drive, shift) in enumerate(zip(needed, driven, ahead, strict=True)):
-            total = np.concatenate([[0.0], np.cumsum(drive - need)])
-            answer = np.zeros(len(self))
-            for part, (first, last) in enumerate(pairwise(edges)):
-                mean = (total[starts + last] - total[starts + first]) / (last - first)
-                answer += response[part] * mean
-            columns[:, k] = self.unit * (answer - self._bent(shift))
+        columns: FloatArray = self.unit * found.T
         return columns if kept is None else columns[kept]
 
     def missed(

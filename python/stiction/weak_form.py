@@ -233,7 +233,7 @@ class WeakForm:
         ``driving`` is the motion that drives friction: where it rests under the whole kernel, a
         machine that noise seems to move has none.
         """
-        found = self._thin(self.kernel.second_derivative(readings[1:]))
+        found = self.kernel.second_derivative(readings[1:], every=self.stride)
         if driving is not None and not (self.adapts or self.prescribed):
             found[self._mean(_moves(driving)) == 0.0] = 0.0
         return found
@@ -529,7 +529,7 @@ class WeakForm:
         """Second derivative, through the kernel, of a distance at the sample ends."""
         if not np.any(ahead):
             return np.zeros(len(self))
-        return self._thin(self.kernel.second_derivative(ahead))
+        return self.kernel.second_derivative(ahead, every=self.stride)
 
     def _mean(self, values: FloatArray) -> FloatArray:
         return self.kernel.mean(values, every=self.stride)

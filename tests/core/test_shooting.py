@@ -1,5 +1,7 @@
 """Windows of simulation along a motion, against simulations put together from pieces."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -107,6 +109,40 @@ def test_the_response_to_all_parts_is_that_to_a_constant_effort():
     assert np.abs(parts.sum(axis=0) - by_bias).max() < ROUND_OFF * np.abs(by_bias).max()
 
 
+CANDIDATES = [
+    ("gravity_unbalance", {}),
+    ("cogging", {"order": 7.0}),
+    ("encoder_eccentricity", {}),
+    ("viscous_quadratic", {}),
+    ("drive_deadband", {}),
+    ("input_delay", {}),
+]
+
+
+def test_signatures_of_windows_are_what_effects_add_times_the_response():
+    parts = 7
+    machine, position, current = moved("hook", 6)
+    machine.reset(position[0], 0.0)
+    motion = st.Motion(position, current, DT)
+    found = machine.shoot_signatures(motion, weights(), STRIDE, CANDIDATES, parts)
+    response = machine.shoot_response(motion, weights(), STRIDE, parts)
+    edges = [k * (LENGTH // parts) for k in range(parts)] + [LENGTH]
+    starts = STRIDE * np.arange(response.shape[1])
+    rows = zip(found, *machine.signatures(motion, CANDIDATES), strict=True)
+    for row, needed, driven, ahead in rows:
+        total = np.concatenate([[0.0], np.cumsum(driven - needed)])
+        means = [
+            (total[starts + last] - total[starts + first]) / (last - first)
+            for first, last in pairwise(edges)
+        ]
+        bent = [weights() @ ahead[start : start + LENGTH] for start in starts]
+        expected = np.sum(response * np.array(means), axis=0) - bent
+        assert np.any(expected != 0.0)
+        assert np.abs(row - expected).max() < ROUND_OFF * np.abs(expected).max()
+    short = st.Motion(position[:100], current[:99], DT)
+    assert machine.shoot_signatures(short, weights(), STRIDE, CANDIDATES, parts).size == 0
+
+
 def test_a_run_that_is_drawn_needs_no_pull_when_the_pull_is_its_load():
     machine, position, current = moved("hook", 4)
     load = 0.03 * np.cos(200.0 * DT * np.arange(len(current)))
@@ -128,5 +164,7 @@ def test_windows_that_are_none_are_refused():
         machine.shoot(st.Motion(position, current, DT), weights(), 0)
     with pytest.raises(InputError, match="parts"):
         machine.shoot_response(st.Motion(position, current, DT), weights(), STRIDE, LENGTH + 1)
+    with pytest.raises(InputError, match="parts"):
+        machine.shoot_signatures(st.Motion(position, current, DT), weights(), STRIDE, [], 0)
     assert len(machine.shoot(st.Motion(position[:100], current[:99], DT), weights(), STRIDE)) == 0
     assert isinstance(machine, st.Motor)

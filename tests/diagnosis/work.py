@@ -26,7 +26,7 @@ KNOWN = Path(__file__).with_name("work.json")
 DEMO = Path(st.__file__).parent / "demo_session" / "session.toml"
 VALUES = ("follow", "follow_rows", "shoot", "shoot_response", "run")
 """Passes of the core over numbers; those below are over derivatives."""
-DERIVATIVES = ("follow_columns", "shoot_sensitivity", "sensitivity")
+DERIVATIVES = ("follow_columns", "shoot_sensitivity", "shoot_signatures", "sensitivity")
 SIGNATURES = ("signatures", "signature_columns")
 DECOMPOSED = ("svd", "lstsq", "qr", "eigh", "solve", "pinv")
 

@@ -95,7 +95,7 @@ fn any(values: &[f64]) -> bool {
 
 /// Sum of products, in eight sums side by side.
 #[inline(always)]
-fn inner(values: &[f64], weights: &[f64]) -> f64 {
+pub(crate) fn inner(values: &[f64], weights: &[f64]) -> f64 {
     const LANES: usize = 8;
     let (some, left) = values.as_chunks::<LANES>();
     let (other, right) = weights.as_chunks::<LANES>();

@@ -4,16 +4,20 @@
 use std::sync::{Mutex, PoisonError};
 
 use crate::effects::{EffectRecord, Hook};
+use crate::error::Result;
 use crate::interrupt;
 use crate::kernel::RowKernel;
 use crate::motor::{EffectSpec, MotorSpec, Running};
 use crate::scalar::{COLUMNS, Dual};
 use crate::sensitivity::{EffortSensitivity, MeasuredMotion, Start, Target, columns, seeded};
+use crate::shoot::{Windows, shoot_response};
 use crate::traces::Traces;
 
 mod direct;
+mod windows;
 
 use direct::{Direct, at_once};
+use windows::{Answer, marks};
 
 /// Follows given positions and differentiates the efforts by every gain of effects that the motor
 /// does not have, each at the gain 0 and at its own shape; rows in the order of the candidates and
@@ -51,6 +55,38 @@ pub fn signature_columns(
     let targets = columns(&mut values, number, kernel, motion.samples(), kept);
     signatures_into(spec, start, motion, candidates, threads, Some(kernel), targets);
     values
+}
+
+/// The sums of all windows (see [`Running::shoot`]), differentiated by every gain, of first order in two
+/// places: what an effect adds is taken along the measured motion, and how the simulated motion answers
+/// to an effort along its own, in so many parts of a window. All windows of the first gain, then all of
+/// the next.
+pub fn shoot_signatures(
+    spec: &MotorSpec,
+    start: Start<'_>,
+    motion: &MeasuredMotion<'_>,
+    windows: &Windows<'_>,
+    candidates: &[EffectSpec],
+    parts: usize,
+    threads: usize,
+) -> Result<Vec<f64>> {
+    let (number, width) = (gains_of(candidates).len(), windows.number(motion.samples()));
+    let response = shoot_response(spec, start, motion, windows, parts)?;
+    let marks = marks(windows, &response, parts, width);
+    let Windows { stride, weights } = *windows;
+    let mean = &weights[weights.len().min(2)..];
+    let kernel = RowKernel { mean, second: weights, every: stride, inertia: 1.0, held: false };
+    let mut values = vec![0.0; number * width];
+    let targets = values.chunks_mut(width.max(1)).map(|values| Answer {
+        marks: &marks,
+        kernel: &kernel,
+        values,
+        done: 0,
+        total: 0.0,
+        ended: 0,
+    });
+    signatures_into(spec, start, motion, candidates, threads, Some(&kernel), targets.collect());
+    Ok(values)
 }
 
 /// Candidate and place among its parameters of every gain.

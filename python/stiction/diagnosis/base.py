@@ -16,7 +16,7 @@ from ..fitting.solve import left_by_fit, settled
 from ..plant import Plant
 from ..recording import Recording
 from .evidence import Evidence
-from .model import Model, fitted
+from .model import Known, Model, fitted
 
 __all__ = ["based", "based_joined", "based_over_windows", "based_simulated", "based_wider"]
 
@@ -34,13 +34,15 @@ def based(
     wide: bool = False,
     joined: bool = False,
     windows: bool | None = None,
+    along: Evidence | None = None,
 ) -> tuple[Evidence, Model]:
     """A session and the base that is fitted to its rows of train.
 
     The way is that of `stiction.fit`: a first pass from starts that the data give, a second with
     recordings weighted by what the first left in each. Wider kernels (see ``wider_of``) are tried
     with ``wide`` alone: what a cause explains through narrow ones must not be averaged away.
-    ``joined`` as in ``Evidence``, ``windows`` as in ``first_pass``.
+    ``joined`` as in ``Evidence``, ``windows`` as in ``first_pass``; ``along`` is the session as it
+    was seen through kernels before, for the same plant, its rows that test unopened.
 
     Returns
     -------
@@ -54,7 +56,7 @@ def based(
     NotEnoughData
         As for ``Evidence``; a base that lost the inertia that the motion shows.
     """
-    evidence = Evidence(plant, recordings, joined=joined)
+    evidence = Evidence(plant, recordings, joined=joined) if along is None else along.anew()
     first = first_pass(
         plant,
         evidence,
@@ -119,7 +121,7 @@ def based_simulated(
     evidence: Evidence,
     final: Model,
     tried: Sequence[Model] = (),
-) -> tuple[Evidence, Model, list[Model]] | None:
+) -> tuple[Evidence, Model, list[Known]] | None:
     """The base simulated over windows, where a rigid contact was led astray; None elsewhere.
 
     What a cause leaves out hides what the readings do to friction that is led along them. Beside
@@ -140,7 +142,7 @@ def based_simulated(
 
     Returns
     -------
-    (Evidence, Model, list of Model) or None
+    (Evidence, Model, list of Known) or None
         The last are the models above as a simulation has them, what leaves least first. After
         Ctrl-C whatever is there, and the solution of the base is interrupted.
     """
@@ -154,25 +156,42 @@ def based_simulated(
     ]
     if horizon is None or not begun:
         return None
-    through = Through(horizon=horizon)
+    known = evidence.plant is plant and not evidence.joined
+    narrow = known and not any(form.widened for form in evidence.forms)
     try:
-        windows = Evidence(begun[0].plant, recordings, through=through, watch=evidence.watch)
-        own = [(fitted(windows, each.plant, each.nuisances), each) for each in begun]
-        best, led = min(own, key=lambda pair: pair[0].power)
-        if not best.solution.interrupted and not astray(
-            led.plant,
-            led.nuisances,
-            evidence.train,
-            (best.plant, best.solution.nuisances),
-            windows.train,
-        ):
+        led = _led_astray(recordings, evidence, begun, Through(horizon=horizon))
+        if led is None:
             return None
-        return *based(plant, recordings, windows=True), sorted(
-            (each for each, _ in own), key=lambda model: model.power
-        )
+        along = evidence if narrow else None
+        return *based(plant, recordings, windows=True, along=along), led
     except InputError:
         # What was found along the readings stands.
         return None
+
+
+def _led_astray(
+    recordings: Sequence[Recording],
+    evidence: Evidence,
+    begun: Sequence[Model],
+    through: Through,
+) -> list[Known] | None:
+    """Models as a simulation has them, what leaves least first; None where none was led astray.
+
+    The windows of this question are let go of: those that the base goes on with are others.
+    """
+    windows = Evidence(begun[0].plant, recordings, through=through, watch=evidence.watch)
+    own = [(fitted(windows, each.plant, each.nuisances), each) for each in begun]
+    best, led = min(own, key=lambda pair: pair[0].power)
+    if not best.solution.interrupted and not astray(
+        led.plant,
+        led.nuisances,
+        evidence.train,
+        (best.plant, best.solution.nuisances),
+        windows.train,
+    ):
+        return None
+    models = sorted((each for each, _ in own), key=lambda model: model.power)
+    return [Known(model.plant, model.nuisances) for model in models]
 
 
 def based_over_windows(

@@ -174,6 +174,18 @@ class Evidence:
         other.train = [new[rows.index].of(rows.mask) for rows in self.train]
         return other
 
+    def anew(self) -> Evidence:
+        """The same session before anything was fitted to it: all rows weigh alike."""
+        other = copy(self)
+        other.train = [rows.of(rows.mask) for rows in self.train]
+        other.shown = [rows.of(rows.mask) for rows in self.shown]
+        for rows in (*other.train, *other.shown):
+            rows.weight = 1.0
+        other._weights = [1.0] * len(self.recordings)
+        other.weights = np.ones(len(self.fitted))
+        other.floor = 0.0
+        return other
+
     @property
     def simulated(self) -> bool:
         """Whether rows are those of simulations, not of efforts along the measured motion."""

@@ -30,7 +30,7 @@ from .gain import Gain, HeldOut, gain_of
 from .gains import heldout_gain
 from .left_open import OF_A_LAW
 from .lone import Lone
-from .model import LEAST_GIVEN, Model, fitted, power_of
+from .model import LEAST_GIVEN, Model, fitted, likeliest_of
 from .result import Advice, LawRow
 from .selection import Search
 from .within import left_within
@@ -340,7 +340,7 @@ def _falling(plain: Model) -> Model:
         for share in FALLS_AT
     ]
     try:
-        begin = min(plants, key=lambda plant: power_of(plain.evidence, plant, plain.nuisances))
+        begin = likeliest_of(plain.evidence, plants, plain.nuisances)
         return _worth_its_terms(fitted(plain.evidence, begin, plain.nuisances), plain)
     except InputError as error:
         _logger.info("%s that falls with speed: %s", friction.law, error)

@@ -6,13 +6,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from ..catalogue import effects
 from ..finite import finite
 from ..fitting.levenberg import FIRST_DAMPING
+from ..fitting.likeliest import likeliest
 from ..fitting.minimise import Solution, minimise
 from ..fitting.result import FitResult
 from ..fitting.rows import Nuisances, Rows, timing_bound
@@ -33,9 +34,10 @@ from .replay import NoReplayError, reread
 __all__ = [
     "LEAST_GIVEN",
     "REFIT_CONVERGED",
+    "Known",
     "Model",
     "fitted",
-    "power_of",
+    "likeliest_of",
     "stepped",
     "with_effect",
     "with_last_free",
@@ -61,6 +63,13 @@ LEAST_GIVEN: Final = 0.01
 """And what leaves less than this share explains nothing at all."""
 INSIDE: Final = 0.98
 """A timing offset beyond this share of its bound is held by the bound."""
+
+
+class Known(NamedTuple):
+    """A plant that was fitted, and what was fitted along, without the rows they were fitted to."""
+
+    plant: Plant
+    nuisances: Nuisances
 
 
 @dataclass(frozen=True)
@@ -331,15 +340,14 @@ def fitted(
     return Model(evidence, solution, nuisances or Nuisances())
 
 
-def power_of(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
-    """Weighted power that a plant leaves in the rows of train; infinite where it runs away."""
+def likeliest_of(evidence: Evidence, plants: Sequence[Plant], nuisances: Nuisances) -> Plant:
+    """The plant that leaves the least weighted power in the rows of train."""
 
-    def left(rows: Rows) -> float:
+    def left(plant: Plant, rows: Rows) -> float:
         own = rows.weight * rows.residual(plant, nuisances)[rows.mask]
         return float(own @ own)
 
-    power = sum(evidence.each(left, evidence.train))
-    return power if np.isfinite(power) else float("inf")
+    return likeliest(plants, evidence.train, left)[0]
 
 
 def stepped(model: Model, explained: FloatArray) -> Plant:

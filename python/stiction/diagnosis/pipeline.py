@@ -36,7 +36,7 @@ from .conclude import MESSAGE, Conclusion, base_alone, surrogates_of
 from .decide import SMALLEST
 from .evidence import Evidence
 from .laws import THE_LAW, law_names
-from .model import Model, fitted
+from .model import Known, Model, fitted
 from .noise import Noise
 from .result import Diagnosis, Unexplained
 from .rounds import search
@@ -63,6 +63,9 @@ NOT_DRIVEN: Final = (
     "known to which anything could be compared; add a recording that is driven, or the column that "
     "drives."
 )
+
+_Shot = tuple[Evidence, Model, list[Known]]
+"""Windows, the base over them, and whence effects are begun as well."""
 
 _logger = logging.getLogger(__name__)
 
@@ -238,26 +241,19 @@ def _testable(
     if replays is None:
         return base_alone(found, evidence, base)
     phase(_logger, "screening the effects")
-    shots = []
-
-    def led_astray(first: Search) -> bool:
-        last = first.models[-1]
-        shot = based_simulated(found.plant, session.recordings, evidence, last, first.tried)
-        shots.extend([] if shot is None else [shot])
-        return bool(shots)
-
-    # What is added to a first cause along readings that lead astray only follows these.
-    first = asked.search(evidence, base, replays[0], stops=led_astray)
-    look = _Searched(found, evidence, base, *replays, first)
     again = partial(_again, asked=asked)
-    if not look.selection.interrupted and not shots:
+    look, shot = _first_look(found, evidence, base, replays, session, asked)
+    # A look that takes the place of this one is all that is held from then on.
+    del evidence, base, replays
+    if not look.selection.interrupted and shot is None:
         final = look.selection.models[-1]
-        wider = based_wider(found.plant, session.recordings, evidence, final)
+        wider = based_wider(found.plant, session.recordings, look.evidence, final)
         if wider is not None:
             phase(_logger, "screening the effects again, through wider kernels")
             look = again(look, wider) or look
     if not look.selection.interrupted:
-        look = _simulated(look, shots[0] if shots else None, session, asked, again)
+        look = _simulated(look, shot, session, asked, again)
+    del shot
     if acts_for_seconds(look.evidence, look.selection, look.null):
         phase(_logger, "screening limits again, over the rows that decide as well")
         joined = based_joined(found.plant, session.recordings, look.evidence)
@@ -302,9 +298,31 @@ def _testable(
     return _restated(told, conclusion, of)
 
 
+def _first_look(
+    found: Diagnosis,
+    evidence: Evidence,
+    base: Model,
+    replays: tuple[FloatArray, Mapping[int, Noise]],
+    session: Session,
+    asked: _Asked,
+) -> tuple[_Searched, _Shot | None]:
+    """The first search, and over which windows to make it again where readings lead astray."""
+    shots: list[_Shot] = []
+
+    def led_astray(first: Search) -> bool:
+        last = first.models[-1]
+        shot = based_simulated(found.plant, session.recordings, evidence, last, first.tried)
+        shots.extend([] if shot is None else [shot])
+        return bool(shots)
+
+    # What is added to a first cause along readings that lead astray only follows these.
+    first = asked.search(evidence, base, replays[0], stops=led_astray)
+    return _Searched(found, evidence, base, *replays, first), shots[0] if shots else None
+
+
 def _simulated(
     look: _Searched,
-    shot: tuple[Evidence, Model, list[Model]] | None,
+    shot: _Shot | None,
     session: Session,
     asked: _Asked,
     again: Callable[..., _Searched | None],
@@ -349,7 +367,7 @@ def _seen_otherwise(
         plant, recordings = look.found.plant, look.evidence.recordings
         seen: tuple[Evidence, Model] | None = (look.evidence, look.base)
         if look.evidence.simulated:
-            earlier = _tried_along(look, asked)
+            earlier: Sequence[Known | Model] = _tried_along(look, asked)
             seen = seen if earlier else None
         else:
             # What was found last stands where all others have led the plant.
@@ -435,7 +453,7 @@ class _Asked(NamedTuple):
         evidence: Evidence,
         base: Model,
         null: FloatArray,
-        earlier: Sequence[Model] = (),
+        earlier: Sequence[Known | Model] = (),
         stops: Callable[[Search], bool] | None = None,
     ) -> Search:
         """The search for effects beside a base, after an earlier one; see ``search``."""
@@ -466,7 +484,7 @@ def _again(
     seen: tuple[Evidence, Model],
     *,
     asked: _Asked,
-    earlier: Sequence[Model] = (),
+    earlier: Sequence[Known | Model] = (),
 ) -> _Searched | None:
     """The same search with another base; None after Ctrl-C: what was found is the best so far."""
     found, replays = _replayed(look.found, *seen, asked.surrogates)

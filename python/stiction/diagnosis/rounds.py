@@ -21,7 +21,7 @@ from .decide import LEAST_GAIN, LEAST_STRENGTH, SMALLEST, Trial, emptied
 from .evidence import Evidence
 from .exact_forms import several
 from .fewer import MIMIC, chained, dropped_by_the_latest, join, without
-from .model import Model, without_effect
+from .model import Known, Model, without_effect
 from .replay import centre, read_alone, shared
 from .restarts import from_before, from_the_first
 from .result import CandidateRow
@@ -75,7 +75,7 @@ def search(
     *,
     without: Sequence[str] = (),
     smallest: float = SMALLEST,
-    earlier: Sequence[Model] = (),
+    earlier: Sequence[Known | Model] = (),
     stops: Callable[[Search], bool] | None = None,
 ) -> Search:
     """Adds effects to a base as long as one passes.
@@ -90,7 +90,7 @@ def search(
         Effects that are not tried.
     smallest : float
         Share of the friction that an effect has to contribute to be worth a name.
-    earlier : sequence of Model
+    earlier : sequence of Known or Model
         Fitted to the same rows: whence effects are begun as well, likelier ones first.
     stops : callable, optional
         Whether the first cause tells that the search has to be made otherwise.

@@ -15,7 +15,7 @@ from ..stated import Effect
 from .choose import Choice
 from .decide import LEAST_GAIN, LEAST_Z, PENALTY, Trial
 from .gains import heldout_gain, log_gain
-from .model import Model, power_of
+from .model import Model, likeliest_of
 from .trials import MUCH, Screening, promises, whole_fit
 
 __all__ = ["beside_a_second", "is_sharpened", "sharpened"]
@@ -107,10 +107,9 @@ def _freed(screening: Screening, winner: Trial) -> Model | None:
     if not held:
         return None
     plants = _with_shapes_free(before.plant, record, held)
-    if len(plants) > 1:
-        evidence, nuisances = screening.evidence, before.nuisances
-        plants.sort(key=lambda plant: power_of(evidence, plant, nuisances))
-    model = whole_fit(screening.evidence, plants[0], before.nuisances)
+    evidence, nuisances = screening.evidence, before.nuisances
+    start = likeliest_of(evidence, plants, nuisances) if len(plants) > 1 else plants[0]
+    model = whole_fit(evidence, start, nuisances)
     gain, z = heldout_gain(before, model)
     if gain <= LEAST_GAIN or z <= LEAST_Z or log_gain(before, model) <= PENALTY * len(held):
         return None

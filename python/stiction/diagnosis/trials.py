@@ -20,9 +20,10 @@ from .decide import SMALLEST, Trial, emptied, judge
 from .evidence import Evidence
 from .model import (
     REFIT_CONVERGED,
+    Known,
     Model,
     fitted,
-    power_of,
+    likeliest_of,
     stepped,
     with_effect,
     with_last_free,
@@ -108,7 +109,7 @@ class Screening:
         Weighted rms of what the base needs beside inertia.
     smallest : float
         Share of it that an effect has to contribute to be worth a name.
-    earlier : sequence of Model
+    earlier : sequence of Known or Model
         From which to begin as well: fitted to the same rows, likelier ones first.
     kept : list of (Model, list of Score)
         Of the last few models that were screened: they are asked for again and again.
@@ -120,7 +121,7 @@ class Screening:
     bias: FloatArray
     friction: float
     smallest: float = SMALLEST
-    earlier: Sequence[Model] = ()
+    earlier: Sequence[Known | Model] = ()
     kept: list[tuple[Model, list[Score]]] = field(default_factory=list)
 
     def scores(self, model: Model) -> list[Score]:
@@ -312,7 +313,7 @@ def _from_screening(
     shares = SHARES if evidence.simulated else FEW_SHARES
     alike = _alike(signatures, index, gains, base.plant.inertia)
     plants = [begun(share, *like) for like in alike for share in shares]
-    start = min(plants, key=lambda plant: power_of(evidence, plant, base.nuisances))
+    start = likeliest_of(evidence, plants, base.nuisances)
     model = compared_fit(evidence, start, base.nuisances)
     record = score.candidate.record
     untold = record.swings or record.slope_misleads(loop=evidence.loop)

@@ -13,8 +13,8 @@ from ..errors import NotEnoughData
 from ..parameter import Parameter
 from ..plant import Plant
 from ..stated import Effect
-from ..trajectory import FloatArray
 from ..weak_form import WeakForm
+from .likeliest import likeliest
 from .rows import begun
 from .variables import records
 
@@ -164,7 +164,7 @@ def clinging(plant: Plant, starts: Sequence[Plant], forms: Sequence[WeakForm]) -
             }
         )
 
-    return _likeliest([clings(start) for start in starts], forms)[:1]
+    return _likeliest([clings(start) for start in starts], forms, 1)
 
 
 def lightly_held(plant: Plant, whole: Plant, forms: Sequence[WeakForm]) -> Plant:
@@ -329,17 +329,13 @@ def _stiffness(
     return _likeliest([tried(share * span) for share in REACHES], forms)
 
 
-def _likeliest(plants: Sequence[Plant], forms: Sequence[WeakForm]) -> list[Plant]:
+def _likeliest(
+    plants: Sequence[Plant], forms: Sequence[WeakForm], number: int = TRIED
+) -> list[Plant]:
     """Those that leave the least residual, the best first."""
 
-    def left(plant: Plant) -> float:
-        seen = (form.seen_by(plant) for form in forms)
-        return sum(_power(form.residual(plant, begun(plant, form))) for form in seen)
+    def left(plant: Plant, form: WeakForm) -> float:
+        seen = form.seen_by(plant)
+        return float(np.sum(seen.residual(plant, begun(plant, seen)) ** 2))
 
-    powers = [left(plant) for plant in plants]
-    return [plants[k] for k in np.argsort(powers, kind="stable")[:TRIED]]
-
-
-def _power(residual: FloatArray) -> float:
-    power = float(np.sum(residual**2))
-    return power if np.isfinite(power) else float("inf")
+    return likeliest(plants, forms, left, number)

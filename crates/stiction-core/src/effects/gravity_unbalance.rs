@@ -22,7 +22,12 @@ parameters! {
 /// Neutral: a = b = 0.
 /// Source: the pendulum; ISO 21940-11:2016 on what balancing leaves of it.
 #[derive(Debug, Clone)]
-pub struct GravityUnbalance<S>(GravityUnbalanceParameters<S>);
+pub struct GravityUnbalance<S> {
+    amplitudes: GravityUnbalanceParameters<S>,
+    /// Waves a turn: 1. Read with the amplitudes, for a sine that hangs on nothing of an effect is
+    /// computed wherever effects are gone through, before it is known which there are.
+    order: f64,
+}
 
 impl<S: Scalar> Effect<S> for GravityUnbalance<S> {
     const PARAMETERS: &'static [ParameterSpec] = GravityUnbalanceParameters::<f64>::SPECS;
@@ -47,16 +52,16 @@ impl<S: Scalar> Effect<S> for GravityUnbalance<S> {
     };
 
     fn build(values: &[S]) -> Self {
-        Self(GravityUnbalanceParameters::from_values(values))
+        Self { amplitudes: GravityUnbalanceParameters::from_values(values), order: 1.0 }
     }
 
     #[inline(always)]
     fn effort(&self, at: &Situation<S>, _memory: &Memory<S>) -> S {
-        let (sine, cosine) = at.position.sin_cos();
-        self.0.cosine * cosine + self.0.sine * sine
+        let (sine, cosine) = (at.position * self.order).sin_cos();
+        self.amplitudes.cosine * cosine + self.amplitudes.sine * sine
     }
 
     fn stiffness(&self, _sliding: f64) -> f64 {
-        self.0.cosine.re().hypot(self.0.sine.re())
+        self.amplitudes.cosine.re().hypot(self.amplitudes.sine.re())
     }
 }

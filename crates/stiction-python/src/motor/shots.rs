@@ -2,10 +2,11 @@
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use stiction_core::shoot::{Pull, shoot_response, shoot_sensitivity};
+use stiction_core::shoot::{Pull, Windows, shoot_response, shoot_sensitivity};
+use stiction_core::signatures::shoot_signatures;
 
 use super::Motor;
-use crate::arguments::{Names, Shots};
+use crate::arguments::{Names, Shots, candidates_of, gains_of, threads_of};
 use crate::error::{IntoPython, finite, input_error, outcome};
 use crate::motion::Motion;
 use crate::real::real;
@@ -190,13 +191,7 @@ impl Motor {
         let measured = motion.measured();
         let shots = Shots::read(weights, stride)?;
         let windows = shots.windows()?;
-        let most = windows.weights.len();
-        let Some(parts) = usize::try_from(parts).ok().filter(|n| (1..=most).contains(n)) else {
-            return Err(input_error(
-                py,
-                format!("parts = {parts} is out of bounds: allowed is 1 to {most}, one a sample"),
-            ));
-        };
+        let parts = parts_of(py, parts, &windows)?;
         let rows = self.beside(py, start, |spec, start| {
             shoot_response(spec, start, &measured, &windows, parts)
         })?;
@@ -205,4 +200,67 @@ impl Motor {
         outcome(py, strict, "derivatives", [rows.as_slice()])?;
         PyArray1::from_vec(py, rows).reshape(shape)
     }
+
+    /// Derivatives of what ``shoot`` returns by the gains of effects beside the motor's own, each at
+    /// the gain 0; the motor is left as it was.
+    ///
+    /// Of first order in two places: what an effect adds is taken along the measured motion, and how
+    /// the simulated motion answers to an effort (see ``shoot_response``) along its own.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion, weights, stride, parts
+    ///     As for ``shoot_response``.
+    /// candidates, start, threads, strict
+    ///     As for ``signatures``.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (gains, windows)
+    ///     SI, per unit of the gain.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``shoot_response`` and ``signatures``.
+    #[pyo3(signature = (motion, weights, stride, candidates, parts, *, start=None, threads=1, strict=true))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn shoot_signatures<'py>(
+        &self,
+        py: Python<'py>,
+        motion: &Bound<'py, Motion>,
+        weights: &Bound<'py, PyAny>,
+        stride: i64,
+        candidates: &Bound<'py, PyAny>,
+        parts: i64,
+        start: Option<&Bound<'py, PyAny>>,
+        threads: i64,
+        strict: bool,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let motion = motion.get();
+        let measured = motion.measured();
+        let shots = Shots::read(weights, stride)?;
+        let windows = shots.windows()?;
+        let parts = parts_of(py, parts, &windows)?;
+        let threads = threads_of(py, threads)?;
+        let list = candidates_of(candidates)?;
+        let rows = self.beside(py, start, |spec, start| {
+            shoot_signatures(spec, start, &measured, &windows, &list, parts, threads)
+        })?;
+        let shape = [gains_of(&list), windows.number(motion.samples())];
+        let rows = rows.or_input_error(py)?;
+        outcome(py, strict, "derivatives", [rows.as_slice()])?;
+        PyArray1::from_vec(py, rows).reshape(shape)
+    }
+}
+
+/// Into how many parts a window is divided.
+fn parts_of(py: Python<'_>, parts: i64, windows: &Windows<'_>) -> PyResult<usize> {
+    let most = windows.weights.len();
+    usize::try_from(parts).ok().filter(|n| (1..=most).contains(n)).ok_or_else(|| {
+        input_error(
+            py,
+            format!("parts = {parts} is out of bounds: allowed is 1 to {most}, one a sample"),
+        )
+    })
 }
