@@ -123,6 +123,19 @@ def write_delimited(path: Path, seed: int) -> None:
     path.write_text("\n".join([*head, *rows, ""]), encoding="utf-8")
 
 
+def write_lvm(path: Path, seed: int) -> None:
+    sign, times = "\t,"[seed % 2], seed % 3 > 0
+    head = [["LabVIEW Measurement"], ["Writer_Version", "2"],
+            ["Separator", ("Tab", "Comma")[seed % 2]], ["X_Columns", ("No", "One")[times]],
+            ["***End_of_Header***"], [], ["Channels", "2"], ["Delta_X", "0.01"],
+            ["***End_of_Header***"], ["X_Value", "u", "q", "Comment"]]  # fmt: skip
+    rows = [
+        [repr(float(t)) if times else "", repr(float(u)), repr(float(q))]
+        for t, u, q in zip(*columns(seed).values(), strict=True)
+    ]
+    path.write_text("\r\n".join(map(sign.join, [*head, *rows, []])), encoding="utf-8")
+
+
 def write_npz(path: Path, seed: int) -> None:
     (np.savez_compressed if seed % 2 else np.savez)(path, **(odd(seed) if seed % 3 else columns(0)))
 
@@ -205,6 +218,7 @@ def write_parameters(path: Path, seed: int) -> None:
 
 WRITERS: dict[str, Writer] = {
     ".csv": write_delimited,
+    ".lvm": write_lvm,
     ".mat": write_mat,
     ".npz": write_npz,
     ".json": write_json,

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import InputError
 from ..given import shown
 from ..wording import listed
-from .columns import CANONICAL, ROLES, Column, Columns
+from .columns import CANONICAL, ROLES, Column, Columns, numbered
 from .repair import check_lengths
 from .table import Table
 from .units import (
@@ -98,6 +98,7 @@ def read_channels(
     _check_choice("motion", motion, ("rotary", "linear"))
     _check_choice("drive", drive, DRIVES)
     notes: list[str] = []
+    columns = _by_name(table, columns)
     chosen = {
         role: _choose(table, role, column, f"{columns.where}: {role}", drive, motion, notes)
         for role, column in columns.items()
@@ -121,6 +122,18 @@ def read_channels(
     if "input" not in values and "effort" not in values:
         values["effort"], units["effort"] = _effort_of_friction(values, units, notes)
     return Channels(values, units, names, motion, tuple(notes))
+
+
+def _by_name(table: Table, columns: Columns) -> Columns:
+    """The same columns, of which those that go by their number have the name in the header."""
+    names = [*table.columns]
+    numbers = {numbered(place): name for place, name in enumerate(names, start=1)}
+    named = {
+        role: replace(column, name=numbers[column.name])
+        for role, column in columns.items()
+        if column.name not in table.columns and column.name in numbers
+    }
+    return Columns({**columns, **named}, where=columns.where) if named else columns
 
 
 def _check_choice(name: str, value: str | None, allowed: tuple[str, ...]) -> None:

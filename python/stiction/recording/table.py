@@ -49,7 +49,14 @@ class Table:
     lines : sequence of int, optional
         1-based line number of each row, for formats that have lines.
     units : dict of str to str
-        Units that stand in a line of their own below the names, by column.
+        Units that the file states beside the names (in a line of their own below them), by column.
+    begins : dict of str to float
+        When the first row was, s since 1970, by column of time, where the file tells it.
+    clocks : dict of str to str
+        The column that holds the time of another one, by that one's name, where the signals of a
+        file have clocks of their own.
+    header : dict of str to float or str
+        What the file states once, of all its rows.
     """
 
     path: Path
@@ -58,9 +65,12 @@ class Table:
     unusable: dict[str, str] = field(default_factory=dict)
     lines: LineNumbers | None = None
     units: dict[str, str] = field(default_factory=dict)
+    begins: dict[str, float] = field(default_factory=dict)
+    clocks: dict[str, str] = field(default_factory=dict)
+    header: dict[str, float | str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for what in ("columns", "unusable", "units"):
+        for what in ("columns", "unusable", "units", "begins", "clocks", "header"):
             names = instance(getattr(self, what), dict, f"Table: {what}", "a dict by column")
             for name in names:
                 word(name, f"Table: {what}: a column")
@@ -68,6 +78,8 @@ class Table:
                 renamed = {printable(name): value for name, value in names.items()}
                 names.clear()
                 names.update(renamed)
+        for name, clock in self.clocks.items():
+            self.clocks[name] = printable(word(clock, "Table: clocks: a column"))
 
     def heading(self, name: str) -> str:
         """A column's name, with the unit below it in brackets where it has none itself."""
