@@ -174,8 +174,11 @@ def session_text(
     paths: Sequence[Path],
     left_out: Sequence[tuple[Path, str]],
     where: Path,
+    joints: Sequence[str] = (),
 ) -> str:
     """A session.toml for what was guessed, to stand in the folder ``where``.
+
+    Of files of several ``joints`` the first of them is that of the columns.
 
     Raises
     ------
@@ -190,6 +193,7 @@ def session_text(
         "",
         'plant = "plant.toml"',
         "",
+        *_comment(_joint(joints)),
         *_comment(
             "Columns by role. SI value = scale·value + offset, after conversion from the unit; "
             "scale = -1 flips a sensor."
@@ -212,6 +216,15 @@ def session_text(
             lines += _comment(f"{_quoted(one.column)}: {one.reason}", "#   ")
     lines += ["", *_recordings(paths, left_out, where)]
     return "\n".join(lines) + "\n"
+
+
+def _joint(joints: Sequence[str]) -> str:
+    if not joints:
+        return ""
+    return (
+        f"Joint {joints[0]} alone: the recordings hold {listed(joints[1:])} as well, which init "
+        "--joint takes. What the others do to it (inertia, gravity) is not in this plant."
+    )
 
 
 def _column(one: ColumnGuess) -> list[str]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
-from ..given import instance, whole, word
+from ..given import instance, mapping, whole, word
 from ..wording import counted, did_you_mean, listed, printable
 from .text.lines import LineNumbers
 from .units import FloatArray, bracketed_unit
@@ -85,6 +86,29 @@ class Table:
         """A column's name, with the unit below it in brackets where it has none itself."""
         below = self.units.get(word(name, "Table.heading: name"))
         return name if below is None or bracketed_unit(name) else f"{name} [{below}]"
+
+    def renamed(self, names: Mapping[str, str]) -> Table:
+        """The table with other names of some columns.
+
+        Parameters
+        ----------
+        names : mapping of str to str
+            The new name, by the present one.
+        """
+        mapping(names, "Table.renamed: names", "a mapping of names")
+
+        def new(name: str) -> str:
+            return names.get(name, name)
+
+        return replace(
+            self,
+            columns={new(name): values for name, values in self.columns.items()},
+            cells=tuple(replace(cell, column=new(cell.column)) for cell in self.cells),
+            unusable={new(name): why for name, why in self.unusable.items()},
+            units={new(name): unit for name, unit in self.units.items()},
+            begins={new(name): begin for name, begin in self.begins.items()},
+            clocks={new(name): new(clock) for name, clock in self.clocks.items()},
+        )
 
     def place(self, row: int) -> str:
         """How a reader finds a 0-based row again: ``"line 19"``, or ``"row 17"`` (1-based)."""
