@@ -171,14 +171,15 @@ def _sensor(found: Guess) -> list[str]:
 
 def session_text(
     found: Guess,
-    paths: Sequence[Path],
+    paths: Sequence[Sequence[Path]],
     left_out: Sequence[tuple[Path, str]],
     where: Path,
     joints: Sequence[str] = (),
 ) -> str:
     """A session.toml for what was guessed, to stand in the folder ``where``.
 
-    Of files of several ``joints`` the first of them is that of the columns.
+    Each recording has a file, or one for each signal; of files of several ``joints`` the first of
+    them is that of the columns.
 
     Raises
     ------
@@ -262,9 +263,9 @@ def _missing(role: str, found: Guess) -> list[str]:
 
 
 def _recordings(
-    paths: Sequence[Path], left_out: Sequence[tuple[Path, str]], where: Path
+    paths: Sequence[Sequence[Path]], left_out: Sequence[tuple[Path, str]], where: Path
 ) -> list[str]:
-    kinds = kinds_of(paths)
+    kinds = kinds_of([files[0] for files in paths])
     lines = _comment(
         "Recordings of one machine in one state: with another load or another arm it is another "
         'session. A recording may have role = "train" (it is fitted), "select" (it decides '
@@ -272,8 +273,10 @@ def _recordings(
         "without roles they are dealt."
         + (" The kinds are from the names of the files." if any(kinds) else "")
     )
-    for path, kind in zip(paths, kinds, strict=True):
-        lines += ["", "[[recordings]]", f"file = {_quoted(_relative(path, where))}"]
+    for files, kind in zip(paths, kinds, strict=True):
+        named = [_quoted(_relative(path, where)) for path in files]
+        told = named[0] if len(named) == 1 else f"[{', '.join(named)}]"
+        lines += ["", "[[recordings]]", f"file = {told}"]
         lines += [f"kind = {_quoted(kind)}"] if kind else []
     for path, why in left_out:
         told = why.removeprefix(f"{path}: ")

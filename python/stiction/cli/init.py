@@ -23,6 +23,7 @@ from ..recording.formats import FORMATS
 from ..recording.guess import Guess, guess
 from ..recording.joints import MOST, joints_of
 from ..recording.repair import FEWEST_ROWS
+from ..recording.signals import read_signals, runs_of_signals
 from ..wording import counted, listed
 from .answer import answer, folder, written
 from .draft import plant_text, session_text
@@ -66,14 +67,14 @@ def init(
     """
     vacant(out, _FILES, "another folder with --out")
     with progress():
-        tables, left_out = _read([data, *more])
+        tables, left_out, files_of = _read([data, *more])
         phase(_logger, "guessing what each column is")
         tables, calls = _named(tables, header)
         tables, joints = _one_joint(tables, joint)
         found = _as_in_file(guess(tables), calls)
     where = folder(out)
     files = [where / name for name in _FILES]
-    paths = [table.path for table in tables]
+    paths = [files_of[table.path] for table in tables]
     texts = (plant_text(found), session_text(found, paths, left_out, where, joints))
     with written(where):
         for file, text in zip(files, texts, strict=True):
@@ -164,8 +165,12 @@ def _as_in_file(found: Guess, calls: Mapping[str, str]) -> Guess:
     return replace(found, columns=columns)
 
 
-def _read(paths: Sequence[Path]) -> tuple[list[Table], list[tuple[Path, str]]]:
-    """The tables that are guessed about, and files of a folder that are left out, with reasons."""
+_Read = tuple[list[Table], list[tuple[Path, str]], dict[Path, list[Path]]]
+
+
+def _read(paths: Sequence[Path]) -> _Read:
+    """The tables that are guessed about, files of a folder that are left out, with reasons, and the
+    files of each table."""
     tables: list[Table] = []
     left_out: list[tuple[Path, str]] = []
     alone = len(paths) == 1
@@ -190,7 +195,11 @@ def _read(paths: Sequence[Path]) -> tuple[list[Table], list[tuple[Path, str]]]:
         raise InputError(
             f"{listed(str(path) for path in paths)}: no file in it can be used: {faults}"
         )
-    return _same_columns(tables, left_out, chosen=not any(map(os.path.isdir, paths)))
+    if runs := runs_of_signals(tables):
+        tables = [read_signals(run) for run in runs]
+    files = {t.path: run for t, run in zip(tables, runs or [[t.path] for t in tables], strict=True)}
+    chosen = not any(map(os.path.isdir, paths))
+    return (*_same_columns(tables, left_out, chosen=chosen), files)
 
 
 def _files_in(path: Path) -> list[Path]:

@@ -15,9 +15,9 @@ import numpy as np
 
 from ..errors import InputError
 from ..wording import counted, did_you_mean, listed
+from .column_words import what_it_says
 from .columns import numbered
 from .guess.evidence import Column, columns_of, rate_of
-from .guess.words import what_it_says
 from .table import Table
 from .units import FloatArray, bracketed_unit
 

@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import InputError
 from ..given import shown
 from ..wording import listed
+from .clocks import aligned
 from .columns import CANONICAL, ROLES, Column, Columns, numbered
 from .repair import check_lengths
 from .table import Table
@@ -49,13 +50,15 @@ _QUANTITIES_OF_MOTION: Final[dict[Motion, tuple[str, ...]]] = {
 
 @dataclass(frozen=True)
 class Channels:
-    """SI values by role, the units they have, and what was decided on the way."""
+    """SI values by role, the units they have, what was decided, and the row of the file that
+    became the first."""
 
     values: dict[str, FloatArray]
     units: dict[str, str]
     names: dict[str, str]
     motion: Motion | None
     notes: tuple[str, ...]
+    first: int = 0
 
 
 @dataclass(frozen=True)
@@ -115,13 +118,18 @@ def read_channels(
             values[role] = _converted(table, role, chosen[role], count_size)
             units[role] = _si_unit(role, chosen[role].unit, drive, motion)
     names = {role: choice.column.name for role, choice in chosen.items()}
+    unit = chosen["time"].unit
+    factor = (1.0 if unit is None else unit.factor or 1.0) * chosen["time"].column.scale
+    placed = aligned(table, values, names, factor)
+    values, first = placed.values, placed.first
+    notes += placed.notes
     check_lengths(
         str(table.path),
         {f"{role} (column '{names[role]}')": len(array) for role, array in values.items()},
     )
     if "input" not in values and "effort" not in values:
         values["effort"], units["effort"] = _effort_of_friction(values, units, notes)
-    return Channels(values, units, names, motion, tuple(notes))
+    return Channels(values, units, names, motion, tuple(notes), first)
 
 
 def _by_name(table: Table, columns: Columns) -> Columns:

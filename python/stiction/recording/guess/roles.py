@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from ...wording import listed
+from ..clocks import on_main_clock
 from ..columns import ROLES
 from ..mapping import PRESCRIBED
 from ..table import Table, shown
@@ -57,7 +58,7 @@ class _Guesser:
     """One call of `guess`: the columns, and those that have a role by now."""
 
     def __init__(self, tables: Sequence[Table]) -> None:
-        self.columns = columns_of(tables)
+        self.columns = columns_of([on_main_clock(table) for table in tables])
         self.given: dict[str, ColumnGuess] = {}
         self.refused: dict[str, str] = {}
         self.missing: dict[str, str] = {}
