@@ -15,7 +15,7 @@ from ...wording import nearest
 from ..row_count import complete
 from ..stamps import one_clock
 from ..table import Table
-from . import delimited, json_records, lvm, mat, npz, parquet
+from . import delimited, hdf, json_records, lvm, mat, mcap, mdf, npz, parquet, rosbag, tdms, ulog
 from .format import Format
 
 __all__ = ["FORMATS", "Format", "read_table"]
@@ -27,6 +27,13 @@ FORMATS: tuple[Format, ...] = (
     npz.FORMAT,
     json_records.FORMAT,
     parquet.FORMAT,
+    parquet.ARROW,
+    hdf.FORMAT,
+    mcap.FORMAT,
+    rosbag.FORMAT,
+    ulog.FORMAT,
+    tdms.FORMAT,
+    mdf.FORMAT,
 )
 
 
