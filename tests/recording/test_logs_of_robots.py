@@ -16,6 +16,9 @@ from stiction.recording import Recording, read_table
 from stiction.recording.expansion import VARIABLE
 from stiction.recording.joints import joints_of
 
+# Of a file that cannot be opened asammdf leaves an object that cannot be taken down.
+pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+
 ROWS = 400
 START = 1_700_000_000
 TIME = 0.01 * np.arange(ROWS)
@@ -222,8 +225,6 @@ def test_one_recording_is_the_same_in_every_format(
     np.testing.assert_allclose(found.time, wanted.time, atol=2e-7)
 
 
-# Of a file that cannot be opened asammdf leaves an object that cannot be taken down.
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.parametrize("make", MAKERS)
 def test_a_file_cut_short_or_full_of_noise_is_a_table_or_a_sentence(
     tmp_path: Path, make: Callable[[Path], Made]

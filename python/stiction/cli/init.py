@@ -75,7 +75,8 @@ def init(
     where = folder(out)
     files = [where / name for name in _FILES]
     paths = [files_of[table.path] for table in tables]
-    texts = (plant_text(found), session_text(found, paths, left_out, where, joints))
+    headers = [table.header for table in tables]
+    texts = (plant_text(found), session_text(found, paths, left_out, where, joints, headers))
     with written(where):
         for file, text in zip(files, texts, strict=True):
             create_text(file, text)

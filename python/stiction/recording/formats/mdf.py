@@ -35,7 +35,7 @@ def read(path: Path) -> Table:
         raise missing(path, "MDF", "asammdf", "mdf", error) from error
     found = Gathered(path)
     try:
-        with asammdf.MDF(str(path)) as stored:
+        with path.open("rb") as file, asammdf.MDF(file) as stored:
             for place, group in enumerate(stored.groups):
                 _add(found, stored, place, group, several=len(stored.groups) > 1)
     except Exception as error:

@@ -294,10 +294,13 @@ class _Guesser:
     ) -> float:
         """Gives position, reference and velocity their units; returns SI over position cells."""
         if position is None:
-            self.missing["position"] = "no column is known to be the position: name it and its unit"
+            if velocity is None or not self.clock:
+                told = "no column is known to be the position: name it and its unit"
+                self.missing["position"] = told
             if velocity is not None:
                 unit = units.velocity_unit(velocity, motion, None, 1.0, self.clock)
-                self._give_moving(velocity, "velocity", unit, self._by_name(velocity), motion)
+                why = f"{self._by_name(velocity)}; no position is recorded, and it is integrated"
+                self._give_moving(velocity, "velocity", unit, why, motion)
             return 1.0
         others = self._free("position")
         why = self._by_name(position)
