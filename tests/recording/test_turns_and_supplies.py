@@ -67,7 +67,7 @@ def test_a_velocity_alone_is_integrated_and_said(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["supply_voltage", "vin", "input_volts", "Vbus", "battery_voltage"]
+    "name", ["supply_voltage", "Vin [V]", "input_volts", "vbus_V", "battery_voltage"]
 )
 def test_a_supply_is_never_an_input(name: str) -> None:
     columns = {"t": TIME, "q": ANGLE, name: 12.0 + 9.0 * EFFORT}

@@ -38,7 +38,10 @@ def read(path: Path) -> Table:
     found = Gathered(path)
     try:
         # Of the file itself: the library would look for an index beside it.
-        with path.open("rb") as file, nptdms.TdmsFile.open(file) as stored:
+        with (
+            path.open("rb") as file,
+            nptdms.TdmsFile(file, read_metadata_only=True, keep_open=True) as stored,
+        ):
             groups = stored.groups()
             for group in groups:
                 _add(found, group, "" if len(groups) == 1 else group.name)
