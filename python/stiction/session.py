@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,23 +13,23 @@ from typing import Any
 from . import given
 from .errors import InputError
 from .frozen import Frozen, freeze
-from .keys import choice, known
-from .parameter import number
+from .keys import known
 from .plant import Plant
 from .plant_file import read_toml, section
 from .progress import phase, steps
-from .recording import SETTINGS, Columns, Recording
+from .recording import Columns, Recording
 from .recording.names import names_of
-from .recording.recording import SPLIT_ROLES, recordings_of
+from .recording.recording import recordings_of
 from .recording.session_clock import ages_of, starts_of
 from .recording.split import BLOCK_S, EDGE_S, Split, split
 from .recording.units import FloatArray, Motion
+from .session_entries import Entry, beside, entries_of
 from .wording import counted, did_you_mean, listed
 
 __all__ = ["Session", "load", "load_beside", "load_recording"]
 
 _TABLES = ("plant", "columns", "recordings")
-_RECORDING = ("file", "role", "kind", "start_s", "cold", "replicate_of", "columns", *SETTINGS)
+_FAULTS_TOLD = 8
 
 
 @dataclass(frozen=True)
@@ -43,6 +42,8 @@ class Session:
     plant : Plant, optional
     replicates : mapping of int to int, optional
         Index of a recording to the index of the one whose motion it repeats.
+    left_out : sequence of str, optional
+        Files that were found and could not be read, a sentence each.
 
     Attributes
     ----------
@@ -67,6 +68,7 @@ class Session:
     recordings: Sequence[Recording]
     plant: Plant | None = None
     replicates: Mapping[int, int] = field(default_factory=dict)
+    left_out: Sequence[str] = ()
     starts: tuple[float, ...] = field(init=False)
     ages: tuple[float, ...] = field(init=False)
 
@@ -82,6 +84,9 @@ class Session:
                     f"session: replicates says that recording {index} repeats recording {of}; "
                     f"give two different indices from 0 to {len(self.recordings) - 1}"
                 )
+        told = given.each_of(self.left_out, "session: left_out", "sentences")
+        sentences = tuple(given.word(each, "session: left_out: a sentence") for each in told)
+        object.__setattr__(self, "left_out", sentences)
         object.__setattr__(self, "starts", starts_of(self.recordings))
         object.__setattr__(self, "ages", ages_of(self.recordings))
 
@@ -205,7 +210,7 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
             raise InputError(
                 f'{source}: plant = {named!r} is not a path; write plant = "plant.toml"'
             )
-        itself = _beside(path, named, f"{source}: plant") == path.resolve()
+        itself = beside(path, named, f"{source}: plant") == path.resolve()
         if itself or os.path.isdir(path.parent / named):
             what = "this file itself" if itself else "a folder"
             raise InputError(f"{source}: plant = {named!r} is {what}; name the plant's own file")
@@ -216,56 +221,34 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         raise InputError(f"{source}: recordings is not a list of tables; write [[recordings]]")
     if not entries:
         raise InputError(f"{source}: there are no [[recordings]]; list at least one file")
-    seen: dict[Path, int] = {}
-    recordings = []
+    listed_ = entries_of(path, entries)
+    recordings: dict[int, Recording] = {}
+    faults: list[str] = []
+    left_out: list[str] = []
     phase(_logger, "reading the recordings")
-    for index, entry in enumerate(steps(entries, "recording"), 1):
-        where = f"{source}: [[recordings]] {index}"
-        known(entry, _RECORDING, where)
-        if "file" not in entry:
-            raise InputError(f'{where}: file is missing; write file = "run.csv"')
-        if not isinstance(entry["file"], str) or not entry["file"]:
-            raise InputError(
-                f'{where}: file = {entry["file"]!r} is not a path; write file = "run.csv"'
-            )
-        file = _beside(path, entry["file"], f"{where}: file")
-        if file in seen:
-            raise InputError(
-                f"{where}: {entry['file']} is already recording {seen[file]}; "
-                "a file has one role, drop one of the two"
-            )
-        seen[file] = index
-        role = choice(entry["role"], SPLIT_ROLES, f"{where} role") if "role" in entry else None
-        kind = entry.get("kind", "")
-        if not isinstance(kind, str):
-            raise InputError(f'{where} kind = {kind!r} is not text; write kind = "…"')
-        start = number(entry.get("start_s", 0.0), f"{where} start_s")
-        if not math.isfinite(start):
-            raise InputError(f"{where} start_s = {start} is not a finite number of seconds")
-        cold = entry.get("cold", False)
-        if not isinstance(cold, bool):
-            raise InputError(f"{where} cold = {cold!r} is not true or false")
-        own = {**columns, **section(entry, "columns", where)}
-        settings = {
-            name: number(entry[name], f"{where} {name}") for name in SETTINGS if name in entry
-        }
-        recordings.append(
-            load_recording(
-                file,
+    for index, entry in enumerate(steps(listed_, "recording")):
+        try:
+            recordings[index] = load_recording(
+                entry.files if len(entry.files) > 1 else entry.files[0],
                 plant,
-                own,
-                role=role,
-                kind=kind,
-                start_s=start,
-                cold=cold,
-                settings=settings,
+                {**columns, **entry.columns},
                 keep_faulty=keep_faulty,
                 where=source,
+                **entry.labels,
             )
-        )
-    replicates = _replicates(path, entries, seen)
+        except InputError as error:
+            # What a pattern finds need not be a recording; what is named has to be.
+            (left_out if entry.found else faults).append(str(error))
+    if faults or not recordings:
+        raise InputError(_together(source, faults or left_out))
+    kept = {index: place for place, index in enumerate(recordings)}
+    replicates = {
+        kept[index]: kept[of]
+        for index, of in _replicates(path, listed_).items()
+        if index in kept and of in kept
+    }
     try:
-        return Session(tuple(recordings), plant, replicates)
+        return Session(tuple(recordings.values()), plant, replicates, tuple(left_out))
     except InputError as error:
         raise InputError(f"{source}: {str(error).removeprefix('session: ')}") from None
 
@@ -292,45 +275,42 @@ def load_beside(path: str | Path, files: Sequence[Path], plant: Plant) -> list[R
     return [load_recording(file, plant, dict(columns), where=source) for file in files]
 
 
-def _beside(path: Path, named: str, where: str) -> Path:
-    """The file that a session file names by a path relative to itself.
-
-    Raises
-    ------
-    InputError
-        No file can be there: the path holds a zero character, or its links lead in a circle.
-    """
-    try:
-        return (path.parent / named).resolve()
-    except (OSError, RuntimeError, ValueError) as error:
-        raise InputError(f"{where} = {named!r} is not a path ({error}); mend it") from None
+def _together(source: str, faults: Sequence[str]) -> str:
+    """All that is wrong with the recordings, in one sentence."""
+    if len(faults) == 1:
+        return faults[0]
+    told = "; ".join(f"({k}) {fault}" for k, fault in enumerate(faults[:_FAULTS_TOLD], 1))
+    more = f"; and {len(faults) - _FAULTS_TOLD} more" if len(faults) > _FAULTS_TOLD else ""
+    return f"{source}: {len(faults)} recordings cannot be read: {told}{more}"
 
 
-def _replicates(path: Path, entries: list[dict[str, Any]], seen: dict[Path, int]) -> dict[int, int]:
-    """Index to index, from what ``replicate_of`` names; ``seen`` counts from 1."""
+def _replicates(path: Path, entries: Sequence[Entry]) -> dict[int, int]:
+    """Index to index, from what ``replicate_of`` names."""
+    places = {entry.files[0]: index for index, entry in reversed([*enumerate(entries)])}
     replicates = {}
     for index, entry in enumerate(entries):
-        if "replicate_of" not in entry:
+        named = entry.replicate_of
+        if named is None:
             continue
-        named = entry["replicate_of"]
-        where = f"{path}: [[recordings]] {index + 1} replicate_of = {named!r}"
+        where = f"{path}: [[recordings]] {entry.place} replicate_of = {named!r}"
         if not isinstance(named, str):
             raise InputError(f'{where} is not a path; write replicate_of = "…"')
-        of = seen.get(_beside(path, named, f"{path}: [[recordings]] {index + 1} replicate_of"))
+        file = beside(path, named, f"{path}: [[recordings]] {entry.place} replicate_of")
+        of = places.get(file)
         if of is None:
-            files = [other["file"] for other in entries if other is not entry]
+            files = [other.named for other in entries if other is not entry]
             raise InputError(
                 f"{where} is none of the recordings{did_you_mean(named, files)}; name the file of "
                 f"another one: {listed(files)}"
             )
-        if of == index + 1:
+        if of == index or file == entry.files[0]:
             raise InputError(f"{where} is the recording itself; name another, or leave it out")
-        replicates[index] = of - 1
+        replicates[index] = of
     return replicates
 
 
 def load_recording(
-    file: str | Path,
+    file: str | Path | Sequence[Path],
     plant: Plant | None,
     columns: dict[str, Any] | None = None,
     *,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import struct
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -123,6 +124,19 @@ def write_delimited(path: Path, seed: int) -> None:
     path.write_text("\n".join([*head, *rows, ""]), encoding="utf-8")
 
 
+def write_lvm(path: Path, seed: int) -> None:
+    sign, times = "\t,"[seed % 2], seed % 3 > 0
+    head = [["LabVIEW Measurement"], ["Writer_Version", "2"],
+            ["Separator", ("Tab", "Comma")[seed % 2]], ["X_Columns", ("No", "One")[times]],
+            ["***End_of_Header***"], [], ["Channels", "2"], ["Delta_X", "0.01"],
+            ["***End_of_Header***"], ["X_Value", "u", "q", "Comment"]]  # fmt: skip
+    rows = [
+        [repr(float(t)) if times else "", repr(float(u)), repr(float(q))]
+        for t, u, q in zip(*columns(seed).values(), strict=True)
+    ]
+    path.write_text("\r\n".join(map(sign.join, [*head, *rows, []])), encoding="utf-8")
+
+
 def write_npz(path: Path, seed: int) -> None:
     (np.savez_compressed if seed % 2 else np.savez)(path, **(odd(seed) if seed % 3 else columns(0)))
 
@@ -178,6 +192,80 @@ def write_parquet(path: Path, seed: int) -> None:
     parquet.write_table(pyarrow.table(fit), path, compression=("snappy", "none", "zstd")[seed % 3])
 
 
+def write_arrow(path: Path, seed: int) -> None:
+    import pyarrow
+    from pyarrow import feather
+
+    table = columns(seed)
+    lists = pyarrow.array(np.column_stack([table["q"], table["u"]]).tolist())
+    stored = pyarrow.table({**table, "x": lists})
+    feather.write_feather(stored, path, compression=("uncompressed", "lz4")[seed % 2])
+
+
+def write_hdf5(path: Path, seed: int) -> None:
+    import h5py
+
+    with h5py.File(path, "w", libver=("earliest", "latest")) as file:
+        for name, values in columns(seed).items():
+            file[f"log/{name}"] = values
+        file["log/x"] = np.column_stack(list(columns(seed).values()))
+
+
+def write_mcap(path: Path, seed: int) -> None:
+    from mcap.writer import Writer as Log
+
+    with path.open("wb") as file:
+        writer = Log(file, chunk_size=1000)
+        writer.start()
+        schema = writer.register_schema("Axis", "jsonschema", b"{}")
+        channel = writer.register_channel("/axis", "json", schema)
+        for k, row in enumerate(zip(*columns(seed).values(), strict=True)):
+            data = json.dumps(dict(zip("tuq", map(float, row), strict=True))).encode()
+            writer.add_message(channel, 10**7 * k, data, 10**7 * k)
+        writer.finish()
+
+
+def write_bag(path: Path, seed: int) -> None:
+    """Of ROS 2, and of nothing but numbers: the tables of SQLite are what is damaged."""
+    import sqlite3
+
+    path.unlink(missing_ok=True)
+    bag = sqlite3.connect(path)
+    bag.execute("CREATE TABLE topics (id, name, type, serialization_format)")
+    bag.execute("CREATE TABLE messages (topic_id, timestamp, data)")
+    bag.execute("INSERT INTO topics VALUES (1, '/u', 'std_msgs/msg/Float64', 'cdr')")
+    for k, value in enumerate(columns(seed)["u"]):
+        data = b"\0\1\0\0" + np.float64(value).tobytes()
+        bag.execute("INSERT INTO messages VALUES (1, ?, ?)", (10**7 * k, data))
+    bag.commit()
+    bag.close()
+
+
+def write_ulog(path: Path, seed: int) -> None:
+    def record(kind: bytes, content: bytes) -> bytes:
+        return struct.pack("<Hc", len(content), kind) + content
+
+    content = b"ULog\x01\x12\x35\x01" + bytes(8) + record(b"B", bytes(40))
+    content += record(b"F", b"axis:uint64_t timestamp;double u;double q;")
+    content += record(b"A", struct.pack("<BH", 0, 0) + b"axis")
+    for t, u, q in zip(*columns(seed).values(), strict=True):
+        content += record(b"D", struct.pack("<HQdd", 0, round(1e6 * float(t)), u, q))
+    path.write_bytes(content)
+
+
+def write_tdms(path: Path, seed: int) -> None:
+    from nptdms import ChannelObject, TdmsWriter
+
+    own = {"wf_increment": 0.01}
+    with TdmsWriter(path) as writer:
+        writer.write_segment([ChannelObject("bench", k, v, own) for k, v in columns(seed).items()])
+
+
+def write_mdf(path: Path, seed: int) -> None:
+    """No more than begins one: the library that writes it is not among those of the tests."""
+    path.write_bytes(b"MDF     4.10    " + bytes(2000))
+
+
 def write_checkpoint(path: Path, seed: int) -> None:
     import stiction as st
 
@@ -205,10 +293,18 @@ def write_parameters(path: Path, seed: int) -> None:
 
 WRITERS: dict[str, Writer] = {
     ".csv": write_delimited,
+    ".lvm": write_lvm,
     ".mat": write_mat,
     ".npz": write_npz,
     ".json": write_json,
     ".parquet": write_parquet,
+    ".arrow": write_arrow,
+    ".h5": write_hdf5,
+    ".mcap": write_mcap,
+    ".db3": write_bag,
+    ".ulg": write_ulog,
+    ".tdms": write_tdms,
+    ".mf4": write_mdf,
     "checkpoint": write_checkpoint,
     "plant.toml": write_plant,
     "session.toml": write_session,

@@ -22,7 +22,7 @@ def test_a_name_and_a_table_are_both_columns() -> None:
     [
         ({"tim": "t"}, r"^columns: 'tim' is not known \(did you mean 'time'\?\)"),
         ({"position_rad": "q"}, "did you mean 'position'"),
-        ({"time": 3}, "time is 3; give the name of a column"),
+        ({"time": 3.0}, "time is 3.0; give the name of a column"),
         ({"time": ""}, "name of the column is ''"),
         ({"time": {"unit": "s"}}, "name of the column is missing"),
         ({"time": {"name": "t", "scal": 1}}, "'scal' is not known.*did you mean 'scale'"),

@@ -57,15 +57,18 @@ def test_empty_cells_are_missing_and_are_filled(tmp_path: Path) -> None:
     assert "row 8" in recording.notes[0]
 
 
-def test_text_and_dates_are_passed_over_and_refused_when_asked_for(tmp_path: Path) -> None:
-    day = datetime.datetime(2020, 1, 1)
-    columns = {"t": VECTOR, "note": ["x"] * 300, "when": [day] * 300, "many": [[1.0]] * 300}
+def test_text_and_times_of_day_are_passed_over_and_refused_when_asked_for(tmp_path: Path) -> None:
+    noon = datetime.time(12)
+    lists = [[1.0] * (k % 3) for k in range(300)]
+    columns = {"t": VECTOR, "note": ["x"] * 300, "when": [noon] * 300, "many": lists}
     path = saved(tmp_path / "run.parquet", columns)
     assert list(read_table(path).columns) == ["t"]
     with pytest.raises(InputError, match=r"'note', asked for as input, holds string, not numbers"):
         Recording.load(path, {"time": "t", "input": "note"})
     with pytest.raises(InputError, match="'when', asked for as time, holds dates"):
         Recording.load(path, {"time": "when", "input": "t"})
+    with pytest.raises(InputError, match="'many', asked for as input, holds lists that are not"):
+        Recording.load(path, {"time": "t", "input": "many"})
 
 
 def test_a_file_without_numbers_says_what_it_holds(tmp_path: Path) -> None:

@@ -112,7 +112,7 @@ def test_every_way_through_a_block_reads_the_same(
     ("content", "message"),
     [
         (b"t,x\n" + b"1,2\n" * 900 + b"1,2,3\n", "line 902 has 3 cells"),
-        (b"t,x\r\n" + b"1,2\r\n" * 900 + b"\xb5,2\r\n", "line 902 holds the byte 0xB5"),
+        (b"t,x\r\n" + b"1,2\r\n" * 900 + b"\xb5\x05,2\r\n", "line 902 holds the byte 0xB5"),
         (b"t x\r" + b"1 2\r" * 900 + b"1\r2 3\r", "line 902 has 1 cell"),
         (b"t;x\n" + b"1;2\n" * 900 + b"\0", "line 902 holds a zero byte"),
     ],

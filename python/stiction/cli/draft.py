@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import takewhile
 from pathlib import Path
 from textwrap import wrap
@@ -19,6 +20,7 @@ from ..wording import listed
 __all__ = ["kinds_of", "plant_text", "session_text"]
 
 _WIDTH = 98
+_MOST_STATED = 12
 _GAIN_UNIT = {"current_a": "A", "voltage_v": "V"}
 _EXAMPLES = {
     "time": 'time = { name = "…", unit = "s" }',
@@ -171,11 +173,16 @@ def _sensor(found: Guess) -> list[str]:
 
 def session_text(
     found: Guess,
-    paths: Sequence[Path],
+    paths: Sequence[Sequence[Path]],
     left_out: Sequence[tuple[Path, str]],
     where: Path,
+    joints: Sequence[str] = (),
+    headers: Sequence[Mapping[str, float | str]] = (),
 ) -> str:
     """A session.toml for what was guessed, to stand in the folder ``where``.
+
+    Each recording has a file, or one for each signal; of files of several ``joints`` the first of
+    them is that of the columns. ``headers`` is what each of the files states once.
 
     Raises
     ------
@@ -190,6 +197,7 @@ def session_text(
         "",
         'plant = "plant.toml"',
         "",
+        *_comment(_joint(joints)),
         *_comment(
             "Columns by role. SI value = scale·value + offset, after conversion from the unit; "
             "scale = -1 flips a sensor."
@@ -210,8 +218,17 @@ def session_text(
         lines += ["", "# Not used:"]
         for one in unused:
             lines += _comment(f"{_quoted(one.column)}: {one.reason}", "#   ")
-    lines += ["", *_recordings(paths, left_out, where)]
+    lines += ["", *_recordings(paths, left_out, where, headers)]
     return "\n".join(lines) + "\n"
+
+
+def _joint(joints: Sequence[str]) -> str:
+    if not joints:
+        return ""
+    return (
+        f"Joint {joints[0]} alone: the recordings hold {listed(joints[1:])} as well, which init "
+        "--joint takes. What the others do to it (inertia, gravity) is not in this plant."
+    )
 
 
 def _column(one: ColumnGuess) -> list[str]:
@@ -249,9 +266,12 @@ def _missing(role: str, found: Guess) -> list[str]:
 
 
 def _recordings(
-    paths: Sequence[Path], left_out: Sequence[tuple[Path, str]], where: Path
+    paths: Sequence[Sequence[Path]],
+    left_out: Sequence[tuple[Path, str]],
+    where: Path,
+    headers: Sequence[Mapping[str, float | str]],
 ) -> list[str]:
-    kinds = kinds_of(paths)
+    kinds = kinds_of([files[0] for files in paths])
     lines = _comment(
         "Recordings of one machine in one state: with another load or another arm it is another "
         'session. A recording may have role = "train" (it is fitted), "select" (it decides '
@@ -259,13 +279,35 @@ def _recordings(
         "without roles they are dealt."
         + (" The kinds are from the names of the files." if any(kinds) else "")
     )
-    for path, kind in zip(paths, kinds, strict=True):
-        lines += ["", "[[recordings]]", f"file = {_quoted(_relative(path, where))}"]
+    for files, kind, header in zip(paths, kinds, headers or [{}] * len(paths), strict=True):
+        named = [_quoted(_relative(path, where)) for path in files]
+        told = named[0] if len(named) == 1 else f"[{', '.join(named)}]"
+        lines += ["", "[[recordings]]", f"file = {told}"]
         lines += [f"kind = {_quoted(kind)}"] if kind else []
+        lines += _stated(header)
     for path, why in left_out:
         told = why.removeprefix(f"{path}: ")
         lines += ["", *_comment(f"Left out: {_printable(told)}")]
         lines += ["# [[recordings]]", f"# file = {_quoted(_relative(path, where))}"]
+    return lines
+
+
+def _stated(header: Mapping[str, float | str]) -> list[str]:
+    """What a file states of its recording: a payload as settings, all else as a comment."""
+    mass, length = header.get("mass"), header.get("length")
+    lines = []
+    rest = dict(header)
+    if (
+        isinstance(mass, float)
+        and isinstance(length, float)
+        and 0.0 <= mass < math.inf
+        and 0.0 < length < math.inf
+    ):
+        lines = [f"payload_kg = {mass!r}", f"payload_m = {length!r}"]
+        del rest["mass"], rest["length"]
+    if rest:
+        told = ", ".join(f"{name} {value}" for name, value in list(rest.items())[:_MOST_STATED])
+        lines += _comment(f"The file says {_printable(told)}.")
     return lines
 
 

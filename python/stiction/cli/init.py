@@ -5,7 +5,8 @@ from __future__ import annotations
 import logging
 import os
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,9 +18,12 @@ from ..errors import InputError
 from ..given import vacant
 from ..progress import phase, steps
 from ..recording import Table, read_table
+from ..recording.columns import numbered
 from ..recording.formats import FORMATS
 from ..recording.guess import Guess, guess
+from ..recording.joints import MOST, joints_of
 from ..recording.repair import FEWEST_ROWS
+from ..recording.signals import read_signals, runs_of_signals
 from ..wording import counted, listed
 from .answer import answer, folder, written
 from .draft import plant_text, session_text
@@ -35,6 +39,8 @@ _FILES = ("plant.toml", "session.toml")
 def init(
     data: Path,
     *more: Path,
+    joint: str = "",
+    header: str = "",
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path(),
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
@@ -46,9 +52,14 @@ def init(
     Parameters
     ----------
     data
-        CSV, MAT, NPZ, JSON or Parquet file, or a folder of them.
+        Recording in any of the formats that are read, or a folder of them.
     more
         More files with the same columns.
+    joint
+        Of files of several joints the one that is wanted, as its columns call it.
+    header
+        Names for the columns of files that have none, separated by commas: "t,q*6,tau*6", where
+        q*6 stands for q1 to q6.
     out
         Folder to write into, the present one without it.
     json
@@ -56,12 +67,16 @@ def init(
     """
     vacant(out, _FILES, "another folder with --out")
     with progress():
-        tables, left_out = _read([data, *more])
+        tables, left_out, files_of = _read([data, *more])
         phase(_logger, "guessing what each column is")
-        found = guess(tables)
+        tables, calls = _named(tables, header)
+        tables, joints = _one_joint(tables, joint)
+        found = _as_in_file(guess(tables), calls)
     where = folder(out)
     files = [where / name for name in _FILES]
-    texts = (plant_text(found), session_text(found, [t.path for t in tables], left_out, where))
+    paths = [files_of[table.path] for table in tables]
+    headers = [table.header for table in tables]
+    texts = (plant_text(found), session_text(found, paths, left_out, where, joints, headers))
     with written(where):
         for file, text in zip(files, texts, strict=True):
             create_text(file, text)
@@ -76,16 +91,87 @@ def init(
             todo.append(str(error))
     result = {
         **found.to_dict(),
+        "joints": joints,
         "recordings": [str(table.path) for table in tables],
         "left_out": {str(path): why for path, why in left_out},
         "to_do": todo,
         "files": [str(file) for file in files],
     }
-    answer(_text(found, tables, left_out, todo, files), result, as_json=json)
+    answer(_text(found, tables, left_out, todo, files, joints), result, as_json=json)
 
 
-def _read(paths: Sequence[Path]) -> tuple[list[Table], list[tuple[Path, str]]]:
-    """The tables that are guessed about, and files of a folder that are left out, with reasons."""
+def _named(tables: list[Table], header: str) -> tuple[list[Table], dict[str, str]]:
+    """The tables under the names that were given, and what their columns are called in the file.
+
+    Raises
+    ------
+    InputError
+        Files that have names, or another number of columns.
+    """
+    if not header:
+        return tables, {}
+    names: list[str] = []
+    for name in header.split(","):
+        base, star, number = name.strip().partition("*")
+        if star and not (number.isdigit() and 0 < int(number) <= MOST):
+            raise InputError(f"--header: '{name.strip()}' ends in no number from 1 to {MOST}")
+        names += [f"{base}{k}" for k in range(1, int(number) + 1)] if star else [base]
+    if len(set(names)) < len(names) or not all(names):
+        raise InputError("--header: a name is empty or there twice; give each column its own")
+    for table in tables:
+        own = list(table.columns)
+        if own != [numbered(place) for place in range(1, len(own) + 1)]:
+            raise InputError(
+                f"{table.path}: its columns have names ({listed(own)}), and --header is for files "
+                "without; leave it out"
+            )
+        if len(own) != len(names):
+            raise InputError(
+                f"{table.path}: has {counted(len(own), 'column')}, and --header names {len(names)}"
+            )
+    calls = dict(zip(names, tables[0].columns, strict=True))
+    back = {column: name for name, column in calls.items()}
+    return [table.renamed(back) for table in tables], calls
+
+
+def _one_joint(tables: list[Table], wanted: str) -> tuple[list[Table], list[str]]:
+    """The columns of one joint, and what the joints are called, that one first.
+
+    Raises
+    ------
+    InputError
+        There is no such joint, or nothing tells several.
+    """
+    joints = joints_of(tables)
+    if joints is None:
+        if wanted:
+            raise InputError(
+                f"{tables[0].path}: --joint is {wanted}, and the columns are not those of several "
+                f"joints ({listed(tables[0].columns)}); leave it out"
+            )
+        return tables, []
+    joint = wanted or joints.moving(tables)
+    others = [label for label in joints.labels if label != joint]
+    return [joints.only(table, joint) for table in tables], [joint, *others]
+
+
+def _as_in_file(found: Guess, calls: Mapping[str, str]) -> Guess:
+    """The guess with the columns called as they are in the file."""
+    columns = tuple(
+        replace(one, column=calls[one.column], reason=f"'{one.column}': {one.reason}")
+        if one.column in calls
+        else one
+        for one in found.columns
+    )
+    return replace(found, columns=columns)
+
+
+_Read = tuple[list[Table], list[tuple[Path, str]], dict[Path, list[Path]]]
+
+
+def _read(paths: Sequence[Path]) -> _Read:
+    """The tables that are guessed about, files of a folder that are left out, with reasons, and the
+    files of each table."""
     tables: list[Table] = []
     left_out: list[tuple[Path, str]] = []
     alone = len(paths) == 1
@@ -110,7 +196,11 @@ def _read(paths: Sequence[Path]) -> tuple[list[Table], list[tuple[Path, str]]]:
         raise InputError(
             f"{listed(str(path) for path in paths)}: no file in it can be used: {faults}"
         )
-    return _same_columns(tables, left_out, chosen=not any(map(os.path.isdir, paths)))
+    if runs := runs_of_signals(tables):
+        tables = [read_signals(run) for run in runs]
+    files = {t.path: run for t, run in zip(tables, runs or [[t.path] for t in tables], strict=True)}
+    chosen = not any(map(os.path.isdir, paths))
+    return (*_same_columns(tables, left_out, chosen=chosen), files)
 
 
 def _files_in(path: Path) -> list[Path]:
@@ -171,6 +261,7 @@ def _text(
     left_out: Sequence[tuple[Path, str]],
     todo: Sequence[str],
     files: Sequence[Path],
+    joints: Sequence[str],
 ) -> str:
     rows: list[tuple[Any, ...]] = [("column", "role", "unit", "why")]
     for one in found.columns:
@@ -179,6 +270,8 @@ def _text(
     widths = [max(len(row[k]) for row in rows) for k in range(3)]
     lines = [f"guessed from {counted(len(tables), 'recording')}:", ""]
     lines += ["  ".join([*(f"{row[k]:<{widths[k]}}" for k in range(3)), row[3]]) for row in rows]
+    if joints:
+        lines += ["", f"joint: {joints[0]} (others: {listed(joints[1:])}; --joint takes them)"]
     lines += ["", f"motion: {found.motion} ({found.motion_reason})"]
     lines += [f"drive: {found.drive or 'not known'} ({found.drive_reason})"]
     lines += [f"left out: {path}: {why.removeprefix(f'{path}: ')}" for path, why in left_out]

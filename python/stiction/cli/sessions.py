@@ -88,7 +88,14 @@ def spared(plant: Plant, where: Path) -> None:
 
 
 def mended(session: Session) -> list[str]:
-    """What was repaired on reading, a sentence each."""
+    """What was left out or repaired on reading, a sentence each."""
+    return [
+        *(f"left out: {fault}" for fault in session.left_out),
+        *_repaired(session),
+    ]
+
+
+def _repaired(session: Session) -> list[str]:
     return [
         f"{name}: {repair}"
         for name, recording in zip(names_of(list(session)), session, strict=True)

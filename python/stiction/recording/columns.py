@@ -91,7 +91,8 @@ class Column:
 
         Parameters
         ----------
-        value : str, dict or Column
+        value : str, int, dict or Column
+            In place of its name a column may have its number, from 1.
         where : str
             Start of the error sentences: the file and the field.
 
@@ -102,7 +103,7 @@ class Column:
         """
         if isinstance(value, Column):
             return value
-        if isinstance(value, str):
+        if isinstance(value, (str, int)):
             value = {"name": value}
         if not isinstance(value, Mapping):
             raise InputError(
@@ -117,10 +118,12 @@ class Column:
                     f"{', '.join(_COLUMN_KEYS)}"
                 )
         name = value.get("name")
+        if isinstance(name, int) and not isinstance(name, bool) and name > 0:
+            name = numbered(name)
         if not isinstance(name, str) or not name:
             raise InputError(
                 f"{where}: the name of the column is {_given(name)}; "
-                "give the text that stands in the header"
+                "give the text that stands in the header, or its number from 1"
             )
         unit = value.get("unit")
         if unit is not None:
@@ -134,6 +137,17 @@ class Column:
                 "give another number, or leave it out"
             )
         return cls(name, unit, scale, _finite(value.get("offset", 0.0), "offset", where))
+
+
+def numbered(place: int) -> str:
+    """What a column without a name is called.
+
+    Parameters
+    ----------
+    place : int
+        From 1.
+    """
+    return f"column {place}"
 
 
 class Columns(Mapping[str, Column]):

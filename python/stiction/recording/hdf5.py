@@ -10,6 +10,8 @@ import zlib
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from ..errors import InputError
 from ..wording import printable
 from .expansion import Expansion, most_bytes
@@ -17,6 +19,7 @@ from .table import unfit, vector
 from .units import FloatArray
 
 _DEEPEST: Final = 64
+_WIDEST: Final = 64
 _DEFLATE: Final = 1
 _MOST_DEFLATED: Final = 1032
 """Bytes that one deflated byte may expand to."""
@@ -31,9 +34,14 @@ class Hdf5:
     h5py : module
     found : dict
         Variables by dotted name, or why they cannot be columns; filled here.
+    matrices : bool
+        Whether the columns of a matrix are columns, ``q[0]``, ``q[1]``: not so in MATLAB's files.
     """
 
-    def __init__(self, path: Path, h5py: Any, found: dict[str, FloatArray | str]) -> None:
+    def __init__(
+        self, path: Path, h5py: Any, found: dict[str, FloatArray | str], *, matrices: bool = False
+    ) -> None:
+        self._matrices = matrices
         self._path, self._h5py, self._found = path, h5py, found
         self._expansion = Expansion(path)
         self._groups: set[int] = set()
@@ -49,7 +57,12 @@ class Hdf5:
         if isinstance(node, self._h5py.Group):
             self._add_group(name, node, depth)
         elif isinstance(node, self._h5py.Dataset):
-            self._found[name] = self._column(name, node)
+            column = self._column(name, node)
+            if isinstance(column, np.ndarray) and column.ndim == 2:
+                for k, values in enumerate(column.T):
+                    self._found[f"{name}[{k}]"] = np.ascontiguousarray(values)
+            else:
+                self._found[name] = column
         else:
             self._found[name] = "is a type, not numbers"
 
@@ -98,13 +111,16 @@ class Hdf5:
             return "holds complex numbers" if complex_ else "holds records, not numbers"
         if node.shape is None:
             return "is empty"
-        if reason := unfit(dtype.kind, node.shape):
+        plain = self._matrices and len(node.shape) == 2 and 1 < node.shape[1] <= _WIDEST
+        matrix = plain and node.shape[0] > node.shape[1] and dtype.kind in "biuf"
+        if not matrix and (reason := unfit(dtype.kind, node.shape)):
             return reason
         size = node.size * (dtype.itemsize + 8)
         self._expansion.bytes(f"variable '{name}'", size)
         if storage.get_layout() == self._h5py.h5d.CHUNKED:
             self._check_chunks(name, node, storage)
-        return vector(node[()])
+        values = node[()]
+        return np.asarray(values, dtype=np.float64) if matrix else vector(values)
 
     def _check_chunks(self, name: str, node: Any, storage: Any) -> None:
         """Refuse chunks that do not say how far they expand, and chunks larger than all data."""

@@ -10,10 +10,12 @@ import numpy as np
 
 from ..errors import InputError
 from ..given import shown
-from ..wording import listed
-from .columns import CANONICAL, ROLES, Column, Columns
+from ..wording import counted, listed
+from .clocks import aligned
+from .columns import CANONICAL, ROLES, Column, Columns, numbered
 from .repair import check_lengths
 from .table import Table
+from .turns import unwrapped
 from .units import (
     MOTION_OF_QUANTITY,
     SI_UNIT,
@@ -49,13 +51,15 @@ _QUANTITIES_OF_MOTION: Final[dict[Motion, tuple[str, ...]]] = {
 
 @dataclass(frozen=True)
 class Channels:
-    """SI values by role, the units they have, and what was decided on the way."""
+    """SI values by role, the units they have, what was decided, and the row of the file that
+    became the first."""
 
     values: dict[str, FloatArray]
     units: dict[str, str]
     names: dict[str, str]
     motion: Motion | None
     notes: tuple[str, ...]
+    first: int = 0
 
 
 @dataclass(frozen=True)
@@ -98,6 +102,7 @@ def read_channels(
     _check_choice("motion", motion, ("rotary", "linear"))
     _check_choice("drive", drive, DRIVES)
     notes: list[str] = []
+    columns = _by_name(table, columns)
     chosen = {
         role: _choose(table, role, column, f"{columns.where}: {role}", drive, motion, notes)
         for role, column in columns.items()
@@ -114,13 +119,70 @@ def read_channels(
             values[role] = _converted(table, role, chosen[role], count_size)
             units[role] = _si_unit(role, chosen[role].unit, drive, motion)
     names = {role: choice.column.name for role, choice in chosen.items()}
+    if motion == "rotary":
+        _go_on(values, names, notes)
+    unit = chosen["time"].unit
+    factor = (1.0 if unit is None else unit.factor or 1.0) * chosen["time"].column.scale
+    placed = aligned(table, values, names, factor)
+    values, first = placed.values, placed.first
+    notes += placed.notes
     check_lengths(
         str(table.path),
         {f"{role} (column '{names[role]}')": len(array) for role, array in values.items()},
     )
     if "input" not in values and "effort" not in values:
         values["effort"], units["effort"] = _effort_of_friction(values, units, notes)
-    return Channels(values, units, names, motion, tuple(notes))
+    if "position" not in values and "velocity" in values and "input" in values:
+        values["position"] = _integrated(values["time"], values["velocity"])
+        units["position"] = {"rad/s": "rad", "m/s": "m"}.get(units["velocity"], "")
+        notes.append(
+            f"position: none is recorded, and it is the integral of column '{names['velocity']}', "
+            "from 0"
+        )
+    return Channels(values, units, names, motion, tuple(notes), first)
+
+
+def _go_on(values: dict[str, FloatArray], names: Mapping[str, str], notes: list[str]) -> None:
+    """Angles that begin anew after a turn go on; the reference keeps to the position."""
+    for role in ("position", "reference"):
+        if role not in values:
+            continue
+        values[role], number = unwrapped(values[role])
+        if number:
+            notes.append(
+                f"{role}: column '{names[role]}' begins anew after a turn "
+                f"({counted(number, 'time')}), and was made to go on"
+            )
+        if number and role == "reference" and len(values[role]) == len(values["position"]):
+            apart = np.nanmedian(values["position"] - values[role]) / (2.0 * np.pi)
+            if np.isfinite(apart):
+                values[role] += 2.0 * np.pi * np.round(apart)
+
+
+def _integrated(time: FloatArray, velocity: FloatArray) -> FloatArray:
+    """What a velocity adds up to; cells that are missing lie between their neighbours."""
+    known = np.isfinite(velocity)
+    if not known.any():
+        return np.full(len(velocity), np.nan)
+    rows = np.arange(len(velocity))
+    v = np.interp(rows, rows[known], velocity[known])
+    with np.errstate(over="ignore", invalid="ignore"):
+        # A stamp that steps back is mended later, and takes no way back with it.
+        steps = np.nan_to_num(np.maximum(np.diff(time), 0.0), posinf=0.0)
+        way: FloatArray = np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * steps)])
+    return way
+
+
+def _by_name(table: Table, columns: Columns) -> Columns:
+    """The same columns, of which those that go by their number have the name in the header."""
+    names = [*table.columns]
+    numbers = {numbered(place): name for place, name in enumerate(names, start=1)}
+    named = {
+        role: replace(column, name=numbers[column.name])
+        for role, column in columns.items()
+        if column.name not in table.columns and column.name in numbers
+    }
+    return Columns({**columns, **named}, where=columns.where) if named else columns
 
 
 def _check_choice(name: str, value: str | None, allowed: tuple[str, ...]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,8 +23,10 @@ from ..wording import did_you_mean
 from .columns import ROLES, Columns
 from .formats import read_table
 from .mapping import read_channels
+from .part import part_of
 from .rendering import as_html, as_text
 from .repair import Place, Repair, check_lengths, mend
+from .signals import read_signals
 from .units import FloatArray, Motion
 
 SPLIT_ROLES: Final = ("train", "select", "test")
@@ -151,9 +153,11 @@ class Recording:
     @classmethod
     def load(
         cls,
-        path: str | os.PathLike[str],
+        path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
         columns: Mapping[str, Any] | Columns | None = None,
         *,
+        begin: float | str | None = None,
+        end: float | str | None = None,
         motion: Motion | None = None,
         drive: str | None = None,
         count_size: float | None = None,
@@ -164,14 +168,20 @@ class Recording:
         settings: Mapping[str, float] | None = None,
         keep_faulty: bool = False,
     ) -> Recording:
-        """Read a recording from a CSV, MAT, NPZ, JSON or Parquet file.
+        """Read a recording from a file of any of the formats, or from several of one signal each.
 
         Parameters
         ----------
-        path : str or path-like
+        path : str or path-like, or a sequence of them
+            Several files were recorded at once, each with a time of its own: what is not on the
+            clock of the channel time is brought to its rows.
         columns : mapping of role to column, optional
-            As ``[columns]`` of session.toml: each a name, or a table of name, unit, scale and
-            offset.  Roles left out are looked for under their canonical names (``time_s``).
+            As ``[columns]`` of session.toml: each a name, a number from 1, or a table of name,
+            unit, scale and offset.  Roles left out are looked for under their canonical names
+            (``time_s``).
+        begin, end : float or str, optional
+            The part that is read, both ends in it: s on the clock of the file, or a row as in
+            ``"row 120"``, counted from 1.
         motion : {"rotary", "linear"}, optional
             Without it the units tell.
         drive : str, optional
@@ -195,15 +205,20 @@ class Recording:
         mapped = Columns.parse(columns)
         if count_size is not None and not 0.0 < number(count_size, "count_size") < math.inf:
             raise InputError(f"count_size = {count_size!r} is not a finite number above 0")
-        table = read_table(file_path(path, "Recording.load"))
+        if isinstance(path, (list, tuple)):
+            table = read_signals([file_path(each, "Recording.load") for each in path])
+        else:
+            table = read_table(file_path(path, "Recording.load"))  # type: ignore[arg-type]
         channels = read_channels(table, mapped, drive=drive, motion=motion, count_size=count_size)
+        rows = part_of(channels.values["time"], begin, end, str(table.path))
+        first = channels.first + rows.start
         # The columns have been copied, and may be a good part of the memory at hand.
         table = replace(table, columns={})
         recording = cls.__new__(cls)
         recording._fill(
-            channels.values,
+            {role: values[rows] for role, values in channels.values.items()},
             source=str(table.path),
-            place=table.place,
+            place=lambda row: table.place(first + row),
             labels=labels,
             units=channels.units,
             motion=channels.motion,

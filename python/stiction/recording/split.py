@@ -265,6 +265,7 @@ class _Dealer:
     def _refuse_copies(self, *, joined: bool) -> None:
         """The same data may not be fitted and judged on, not even in a fold."""
         first: dict[str, int] = {}
+        faults: list[str] = []
         for index, recording in enumerate(self.recordings):
             at = first.setdefault(recording.hash, index)
             one, two = self.roles[at], self.roles[index]
@@ -273,10 +274,15 @@ class _Dealer:
             shared = one == two and not folded
             if at != index and not shared:
                 where = f"as {one} and as {two}" if one != two else "in train"
-                raise InputError(
-                    f"session: {self.names[at]} and {self.names[index]} are the same recording "
-                    f"twice, {where}; held-out data must not be fitted on, drop one of the two"
+                faults.append(
+                    f"{self.names[at]} and {self.names[index]} are the same recording twice, "
+                    f"{where}"
                 )
+        if faults:
+            raise InputError(
+                f"session: {listed(faults)}; held-out data must not be fitted on, drop one of the "
+                "two"
+            )
 
     def _split_off(self) -> None:
         kinds = self._kinds_of_train()

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
-from ..given import instance, whole, word
+from ..given import instance, mapping, whole, word
 from ..wording import counted, did_you_mean, listed, printable
 from .text.lines import LineNumbers
 from .units import FloatArray, bracketed_unit
@@ -49,7 +50,14 @@ class Table:
     lines : sequence of int, optional
         1-based line number of each row, for formats that have lines.
     units : dict of str to str
-        Units that stand in a line of their own below the names, by column.
+        Units that the file states beside the names (in a line of their own below them), by column.
+    begins : dict of str to float
+        When the first row was, s since 1970, by column of time, where the file tells it.
+    clocks : dict of str to str
+        The column that holds the time of another one, by that one's name, where the signals of a
+        file have clocks of their own.
+    header : dict of str to float or str
+        What the file states once, of all its rows.
     """
 
     path: Path
@@ -58,9 +66,12 @@ class Table:
     unusable: dict[str, str] = field(default_factory=dict)
     lines: LineNumbers | None = None
     units: dict[str, str] = field(default_factory=dict)
+    begins: dict[str, float] = field(default_factory=dict)
+    clocks: dict[str, str] = field(default_factory=dict)
+    header: dict[str, float | str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for what in ("columns", "unusable", "units"):
+        for what in ("columns", "unusable", "units", "begins", "clocks", "header"):
             names = instance(getattr(self, what), dict, f"Table: {what}", "a dict by column")
             for name in names:
                 word(name, f"Table: {what}: a column")
@@ -68,11 +79,36 @@ class Table:
                 renamed = {printable(name): value for name, value in names.items()}
                 names.clear()
                 names.update(renamed)
+        for name, clock in self.clocks.items():
+            self.clocks[name] = printable(word(clock, "Table: clocks: a column"))
 
     def heading(self, name: str) -> str:
         """A column's name, with the unit below it in brackets where it has none itself."""
         below = self.units.get(word(name, "Table.heading: name"))
         return name if below is None or bracketed_unit(name) else f"{name} [{below}]"
+
+    def renamed(self, names: Mapping[str, str]) -> Table:
+        """The table with other names of some columns.
+
+        Parameters
+        ----------
+        names : mapping of str to str
+            The new name, by the present one.
+        """
+        mapping(names, "Table.renamed: names", "a mapping of names")
+
+        def new(name: str) -> str:
+            return names.get(name, name)
+
+        return replace(
+            self,
+            columns={new(name): values for name, values in self.columns.items()},
+            cells=tuple(replace(cell, column=new(cell.column)) for cell in self.cells),
+            unusable={new(name): why for name, why in self.unusable.items()},
+            units={new(name): unit for name, unit in self.units.items()},
+            begins={new(name): begin for name, begin in self.begins.items()},
+            clocks={new(name): new(clock) for name, clock in self.clocks.items()},
+        )
 
     def place(self, row: int) -> str:
         """How a reader finds a 0-based row again: ``"line 19"``, or ``"row 17"`` (1-based)."""

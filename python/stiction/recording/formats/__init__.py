@@ -13,18 +13,27 @@ from ...given import path as file_path
 from ...given import regular
 from ...wording import nearest
 from ..row_count import complete
+from ..stamps import one_clock
 from ..table import Table
-from . import delimited, json_records, mat, npz, parquet
+from . import delimited, hdf, json_records, lvm, mat, mcap, mdf, npz, parquet, rosbag, tdms, ulog
 from .format import Format
 
 __all__ = ["FORMATS", "Format", "read_table"]
 
 FORMATS: tuple[Format, ...] = (
     delimited.FORMAT,
+    lvm.FORMAT,
     mat.FORMAT,
     npz.FORMAT,
     json_records.FORMAT,
     parquet.FORMAT,
+    parquet.ARROW,
+    hdf.FORMAT,
+    mcap.FORMAT,
+    rosbag.FORMAT,
+    ulog.FORMAT,
+    tdms.FORMAT,
+    mdf.FORMAT,
 )
 
 
@@ -73,7 +82,7 @@ def read_table(path: str | os.PathLike[str]) -> Table:
         raise InputError(
             f"{file}: the file changed while it was read; wait until it is complete, or copy it"
         )
-    return complete(table)
+    return one_clock(complete(table))
 
 
 def _format_of(file: Path) -> Format:

@@ -1,4 +1,7 @@
-"""JSON: a list of records, or an object whose one list of records is the table."""
+"""JSON: a list of records, or an object whose one list of records is the table.
+
+Numbers and words beside that list are said of all its rows: the mass and the length of a pendulum.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,8 @@ _SHAPE: Final = 'write [{"time_s": 0.0, ...}, ...], or an object that holds one 
 def read(path: Path) -> Table:
     """Read a JSON file of records; true and false count as 1 and 0, null as missing."""
     expansion = Expansion(path)
-    records = _records(path, _content(path, expansion))
+    content = _content(path, expansion)
+    records = _records(path, content)
     names = list(dict.fromkeys(name for record in records for name in record))
     wanted = f"{len(records)} records of {counted(len(names), 'name')}"
     expansion.numbers(wanted, len(records) * len(names))
@@ -39,7 +43,17 @@ def read(path: Path) -> Table:
                 text = value if isinstance(value, str) else _KINDS[type(value)]
                 cells.append(Cell(row, name, text))
                 kept[name] += 1
-    return Table(path, columns, tuple(cells))
+    return Table(path, columns, tuple(cells), header=_header(content))
+
+
+def _header(content: Any) -> dict[str, float | str]:
+    """What the object states once, beside its list of records."""
+    beside = content.items() if isinstance(content, dict) else ()
+    return {
+        name: value if isinstance(value, str) else _double(value)
+        for name, value in beside
+        if isinstance(value, (str, int, float)) and not isinstance(value, bool)
+    }
 
 
 FORMAT = Format("JSON", (".json",), read)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
@@ -22,6 +23,12 @@ SUPPLY: Final = 0.5
 ZERO: Final = 0.05
 """A magnitude comes this near to 0, as a share of its range."""
 
+_SUPPLY: Final = re.compile(
+    r"supply|(?<![a-z])(vin|vbus|v_bus|vcc|vdd|vbat|batt?(ery)?|mains|dc_?link|bus_?volt\w*)(?![a-z])"
+    r"|input_?volts?|input_?voltage|volt(age)?_?in(?![a-z])|link_?volt",
+    re.IGNORECASE,
+)
+_PERCENT: Final = re.compile(r"%|‰|percent|per_?mille?|\bpct\b|_pct", re.IGNORECASE)
 _OTHER: Final[dict[Motion, str]] = {"rotary": "force", "linear": "torque"}
 # A torque or force needs no gain; of the others current is nearest to it.
 _RANK: Final = ("torque", "force", "current", "voltage", "")
@@ -101,6 +108,11 @@ def runs_backward(position: Column, effort: Column) -> bool:
 
 def _fault(column: Column, motion: Motion, position: Column | None) -> str:
     """Why a column cannot be the input, "" where it can."""
+    if _PERCENT.search(column.said.strange_unit or column.name):
+        return (
+            f"in parts of a rated value ('{column.said.strange_unit or column.name}'), which the "
+            "file does not say: give the unit of that value, and as scale the value over 100"
+        )
     quantity = quantity_of(column)
     if quantity not in _RANK:
         return f"{quantity} is no quantity of an input"
@@ -112,6 +124,8 @@ def _fault(column: Column, motion: Motion, position: Column | None) -> str:
             f"a {quantity}, and the motion is {motion}: give it as {own}, with a scale for the "
             f"lever, radius or lead, or correct the kind of motion"
         )
+    if quantity == "voltage" and _SUPPLY.search(column.name):
+        return "a supply by its name, not what drives"
     low, high = column.low, column.high
     mean = 0.5 * (low + high)
     if quantity == "voltage" and low * high > 0.0 and high - low < 2.0 * SUPPLY * abs(mean):

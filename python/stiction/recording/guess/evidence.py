@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 
 from ...motion import count_of
+from ..column_words import Said, what_it_says
 from ..table import Table, shown
 from ..units import FloatArray
-from .words import Said, what_it_says
 
 RISING: Final = 0.95
 """Share of steps upward that makes a clock: a logger's odd slip is repaired later."""

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from ...wording import listed
+from ..clocks import on_main_clock
 from ..columns import ROLES
 from ..mapping import PRESCRIBED
 from ..table import Table, shown
@@ -17,6 +18,8 @@ from ..units import MOTION_OF_QUANTITY, UNITS, FloatArray, Motion
 from . import units
 from .drive import Drive, choose_drive, quantity_of, runs_backward
 from .evidence import Column, alike, columns_of, counts_in_a_turn, rate_of, round_figure
+from .kinds import by_name, kinds_of, quantity_said
+from .nameless import explained, motion_of
 from .result import DRIVE_OF, ColumnGuess, Guess
 from .units import UnitGuess, stated
 
@@ -26,22 +29,11 @@ SMOOTHER: Final = 0.5
 """A reference has at most this share of the roughness of what follows it."""
 FOLLOWS: Final = 0.8
 """Correlation of a velocity with the changes of position."""
+EXPLAINED: Final = 0.3
+"""Share of a column without a name that the motion explains where it may be what drives."""
 FINE_SCALE: Final = 1e-5
 """Linear scales have round steps below this, in m."""
 
-_KIND_OF_QUANTITY: Final = {
-    "time": "time",
-    "angle": "position",
-    "length": "position",
-    "count": "position",
-    "angular velocity": "velocity",
-    "velocity": "velocity",
-    "current": "drive",
-    "voltage": "drive",
-    "torque": "drive",
-    "force": "drive",
-    "temperature": "temperature",
-}
 # q stands for the coordinate of any joint, of sliding ones too.
 _WEAK: Final = frozenset(("q", "qm", "qa", "qg", "qr", "qref", "qdes", "qsp", "qd"))
 
@@ -66,16 +58,18 @@ class _Guesser:
     """One call of `guess`: the columns, and those that have a role by now."""
 
     def __init__(self, tables: Sequence[Table]) -> None:
-        self.columns = columns_of(tables)
+        self.columns = columns_of([on_main_clock(table) for table in tables])
         self.given: dict[str, ColumnGuess] = {}
         self.refused: dict[str, str] = {}
         self.missing: dict[str, str] = {}
         self.clock: list[FloatArray] = []
-        self.kinds = {column.name: _kinds(column) for column in self.columns}
+        self.kinds = {column.name: kinds_of(column) for column in self.columns}
+        self.reasons: dict[str, str] = {}
+        self.shares: dict[str, float] = {}
 
     def run(self) -> Guess:
         self._time()
-        position = self._pick("position")
+        position = self._pick("position") or self._nameless_motion()
         self._settle_doubles(position)
         reference = self._reference(position)
         velocity = self._velocity(position)
@@ -165,7 +159,7 @@ class _Guesser:
             and not (column.whole and column.step == 1.0)
         ]
         if sure:
-            chosen, why = sure[0], _by_name(sure[0])
+            chosen, why = sure[0], by_name(sure[0])
             why += ", and it increases" if chosen.rises else ", though it does not increase"
         elif len(nameless) == 1:
             chosen, why = nameless[0], "the only column that increases evenly"
@@ -180,6 +174,38 @@ class _Guesser:
         self.clock = [array * unit.factor for array in chosen.arrays]
 
     # Motion ------------------------------------------------------------------------------
+
+    def _nameless(self) -> list[Column]:
+        """Columns of which the name tells nothing, and that have no role yet."""
+        return [
+            column
+            for column in self.columns
+            if not (column.trouble or self.kinds[column.name] or column.said.unit)
+            and column.name not in self.given
+        ]
+
+    def _nameless_motion(self) -> Column | None:
+        """The position among columns that no name tells apart, where its velocity is beside it."""
+        if any(kinds[:1] == ("velocity",) for kinds in self.kinds.values()):
+            return None
+        found = motion_of(self._nameless(), self.clock)
+        if found is None:
+            return None
+        position, velocity, fit = found
+        self.kinds[position.name], self.kinds[velocity.name] = ("position",), ("velocity",)
+        self.reasons[position.name] = (
+            f"no name tells; {shown(velocity.name)} is its rate of change (correlation {fit:.3f})"
+        )
+        self.reasons[velocity.name] = (
+            f"no name tells; it is the rate of change of {shown(position.name)}"
+        )
+        for other in self._nameless():
+            share = explained(position, velocity, self.clock, other)
+            self.shares[other.name] = share
+        return position
+
+    def _by_name(self, column: Column) -> str:
+        return self.reasons.get(column.name) or by_name(column)
 
     def _settle_doubles(self, position: Column | None) -> None:
         """Names with two meanings get the one that the data bear out."""
@@ -242,7 +268,7 @@ class _Guesser:
             if column.said.motion is not None and column.said.word not in _WEAK:
                 return column.said.motion, f"by the name {shown(column.name)}"
         for column in self.columns:
-            quantity = _quantity(column)
+            quantity = quantity_said(column)
             if not column.trouble and quantity in ("torque", "force"):
                 kind = MOTION_OF_QUANTITY[quantity]
                 return kind, f"column {shown(column.name)} is a {quantity}"
@@ -268,19 +294,22 @@ class _Guesser:
     ) -> float:
         """Gives position, reference and velocity their units; returns SI over position cells."""
         if position is None:
-            self.missing["position"] = "no column is known to be the position: name it and its unit"
+            if velocity is None or not self.clock:
+                told = "no column is known to be the position: name it and its unit"
+                self.missing["position"] = told
             if velocity is not None:
                 unit = units.velocity_unit(velocity, motion, None, 1.0, self.clock)
-                self._give_moving(velocity, "velocity", unit, _by_name(velocity), motion)
+                why = f"{self._by_name(velocity)}; no position is recorded, and it is integrated"
+                self._give_moving(velocity, "velocity", unit, why, motion)
             return 1.0
         others = self._free("position")
-        why = _by_name(position)
+        why = self._by_name(position)
         twin = self._smoother(position) if reference is None else None
         if twin is not None:
             smooth, rough = sorted((position, twin), key=lambda c: c.roughness)
             if smooth.roughness < SMOOTHER * rough.roughness:
                 position, reference = rough, smooth
-                why = f"{_by_name(position)}, and rougher than {shown(reference.name)}"
+                why = f"{self._by_name(position)}, and rougher than {shown(reference.name)}"
         unit = stated(position, ROLES["position"]) or units.position_unit(
             position, motion, velocity, self.clock
         )
@@ -290,12 +319,14 @@ class _Guesser:
                 reference, position, unit
             )
             smoother = why.endswith(shown(reference.name))
-            why = "smoother than the position it resembles" if smoother else _by_name(reference)
+            why = (
+                "smoother than the position it resembles" if smoother else self._by_name(reference)
+            )
             self._give_moving(reference, "reference", own, why, motion)
         if velocity is not None:
             own = units.velocity_unit(velocity, motion, position, unit.factor, self.clock)
             others = [c for c in self._free("velocity") if c is not velocity]
-            self._give_moving(velocity, "velocity", own, _by_name(velocity), motion, others)
+            self._give_moving(velocity, "velocity", own, self._by_name(velocity), motion, others)
         return unit.factor
 
     def _give_moving(
@@ -326,7 +357,7 @@ class _Guesser:
             return chosen
         quantity = chosen.quantity
         unit = stated(chosen.column, (quantity,)) or units.drive_unit(chosen.column, quantity)
-        why = _by_name(chosen.column)
+        why = self._by_name(chosen.column)
         if chosen.name == PRESCRIBED:
             if position is not None and runs_backward(position, chosen.column):
                 unit = replace(unit, scale=-unit.scale)
@@ -377,10 +408,10 @@ class _Guesser:
                 )
                 return
             unit = told or UnitGuess("N", 1.0, "N: the SI unit", ("MPa",))
-        if kind == "load" and MOTION_OF_QUANTITY[_quantity(column) or "torque"] != motion:
+        if kind == "load" and MOTION_OF_QUANTITY[quantity_said(column) or "torque"] != motion:
             self.refused[column.name] = f"a load in {unit.unit} is none of a {motion} machine"
             return
-        self._give(column, kind, unit, _by_name(column))
+        self._give(column, kind, unit, self._by_name(column))
 
     def _enabled(self) -> None:
         """Where a drive is off it gives nothing, whatever it is commanded."""
@@ -389,7 +420,9 @@ class _Guesser:
             return
         values = {float(value) for array in column.arrays for value in np.unique(array)}
         if values == {0.0, 1.0}:
-            self._give(column, "enabled", UnitGuess("1", 1.0, "1: on, 0: off"), _by_name(column))
+            self._give(
+                column, "enabled", UnitGuess("1", 1.0, "1: on, 0: off"), self._by_name(column)
+            )
         elif values == {1.0}:
             self.refused[column.name] = "it is 1 in every row: the drive was always on"
         else:
@@ -415,35 +448,19 @@ class _Guesser:
             why = f"could be {'an input' if kind == 'drive' else kind}; another column was taken"
         elif not why:
             why = "no word of its name is known"
+        if (share := self.shares.get(column.name)) is not None:
+            return self._nameless_told(column, share)
         quantity = quantity_of(column) or "voltage"
         if column.trouble or self.kinds[column.name][:1] != ("drive",) or quantity not in DRIVE_OF:
             return ColumnGuess(column.name, None, reason=why)
         unit = stated(column, (quantity,)) or units.drive_unit(column, quantity)
         return ColumnGuess(column.name, None, unit.unit, unit.scale, why, candidate="input")
 
-
-def _kinds(column: Column) -> tuple[str, ...]:
-    said = column.said
-    if said.unit is None:
-        return said.kinds
-    kind = _KIND_OF_QUANTITY.get(said.unit.quantity, "")
-    if said.kinds:
-        return (kind,) if kind in said.kinds else said.kinds
-    if kind == "position" and said.wanted:
-        return ("reference",)
-    return (kind,) if kind else ()
-
-
-def _quantity(column: Column) -> str | None:
-    """Of a drive or load: what it is measured in, by unit or word."""
-    if column.said.unit is not None:
-        return column.said.unit.quantity
-    return column.said.quantity if column.said.kinds[:1] == ("drive",) else None
-
-
-def _by_name(column: Column) -> str:
-    if column.said.strength == 3:
-        return "the name is a canonical one"
-    if column.said.word:
-        return f"by the word '{column.said.word}' in its name"
-    return "by the unit in its name" if column.said.unit else "by its name"
+    def _nameless_told(self, column: Column, share: float) -> ColumnGuess:
+        """What no name tells may be an input, the more so the more of it the motion explains."""
+        why = (
+            f"no word of its name is known; acceleration, friction and gravity of the motion "
+            f"explain {100.0 * share:.0f} % of it"
+        )
+        able = not column.constant and share >= EXPLAINED
+        return ColumnGuess(column.name, None, "A", 1.0, why, candidate="input" if able else None)

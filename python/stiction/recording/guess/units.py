@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
+
 from ..units import UNITS, FloatArray, Motion
 from .evidence import Column, counts_in_a_turn, rate_of
 
@@ -171,6 +173,8 @@ def drive_unit(column: Column, quantity: str) -> UnitGuess:
 
 def temperature_unit(column: Column) -> UnitGuess:
     """Degrees Celsius, or kelvin where it would be hot."""
-    if column.low > 200.0:
-        return UnitGuess("K", 1.0, f"K: it is never below {column.low:.4g}", ("degC",))
-    return UnitGuess("degC", 1.0, f"degC: it is around {column.high:.4g}", ("K",))
+    # The median: a reading that failed is no temperature.
+    usual = float(np.median(np.concatenate(column.arrays)))
+    if usual > 200.0:
+        return UnitGuess("K", 1.0, f"K: it is around {usual:.4g}", ("degC",))
+    return UnitGuess("degC", 1.0, f"degC: it is around {usual:.4g}", ("K",))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import codecs
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -21,7 +22,11 @@ LONGEST_LINE: Final = 2**20
 much."""
 
 _AS_TEXT: Final = 2**20
-_BYTE_ORDER_MARKS_16: Final = (b"\xff\xfe", b"\xfe\xff")
+_BYTE_ORDER_MARKS_16: Final = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
+_ASCII: Final = bytes(range(128))
+_OF_TEXT: Final = bytes(b for b in range(256) if b >= 32 or b in b"\0\t\n\f\v\r\x1a")
+_MOST_FOREIGN: Final = 0.3
+"""Bytes of Latin-1 beyond ASCII that a text of numbers has, as a share."""
 _BYTE_ORDER_MARK_8: Final = b"\xef\xbb\xbf"
 
 IntArray = npt.NDArray[np.int64]
@@ -80,31 +85,35 @@ class Block:
 def blocks(path: Path) -> Iterator[Block]:
     """A text file as it is at the first step, in blocks of whole lines.
 
+    UTF-8; UTF-16 where a mark at the beginning says so; a block that is neither is read as Latin-1,
+    in the way of Windows: in its place are names and units at most, for digits are the same.
+
     Raises
     ------
     InputError
-        Where the file is not UTF-8, holds a zero byte, or a line beyond ``LONGEST_LINE``.
+        Where the file holds a zero byte, a line beyond ``LONGEST_LINE``, or half of a character of
+        UTF-16.
     """
     with path.open("rb") as file:
         left = os.fstat(file.fileno()).st_size  # what a logger adds while this reads is left
         first, rest = 1, b""
-        begun = False
+        decoded: Callable[[bytes, bool], bytes] | None = None
         while left > 0 and (piece := file.read(min(BLOCK, left))):
             left -= len(piece)
-            if not begun:
-                piece, begun = _without_mark(path, piece), True
-            data = rest + piece
+            if decoded is None:
+                piece, decoded = _without_mark(path, piece)
+            data = rest + decoded(piece, not left)
             end = _end_of_lines(data) if left else len(data)
             data, rest = data[:end], data[end:]
             if len(rest) > LONGEST_LINE:
                 _refuse_long(path, first + _plain_ends(data).count(b"\n"))
             if data:
-                block = Block(first, _plain_ends(data))
+                block = Block(first, _in_utf_8(path, first, _plain_ends(data)))
                 _check(path, block)
                 yield block
                 first += block.data.count(b"\n")
         if rest:  # the file was cut while it was read
-            yield Block(first, _plain_ends(rest))
+            yield Block(first, _in_utf_8(path, first, _plain_ends(rest)))
 
 
 def check_length(path: Path, number: int, line: str) -> None:
@@ -126,10 +135,44 @@ def _refuse_long(path: Path, number: int) -> None:
     )
 
 
-def _without_mark(path: Path, piece: bytes) -> bytes:
-    if piece.startswith(_BYTE_ORDER_MARKS_16):
-        raise InputError(f"{path}: the text is encoded in UTF-16; save it as UTF-8")
-    return piece.removeprefix(_BYTE_ORDER_MARK_8)
+def _without_mark(path: Path, piece: bytes) -> tuple[bytes, Callable[[bytes, bool], bytes]]:
+    """The first bytes without their mark, and what makes UTF-8 of all that follow."""
+    encoding = _BYTE_ORDER_MARKS_16.get(piece[:2])
+    if encoding is None:
+        return piece.removeprefix(_BYTE_ORDER_MARK_8), lambda data, last: data
+    decoder = codecs.getincrementaldecoder(encoding)()
+
+    def decoded(data: bytes, last: bool) -> bytes:
+        try:
+            return decoder.decode(data, last).encode()
+        except UnicodeError as error:
+            raise InputError(
+                f"{path}: the text begins as UTF-16 and is none further on; save it as UTF-8"
+            ) from error
+
+    return piece[2:], decoded
+
+
+def _in_utf_8(path: Path, first: int, data: bytes) -> bytes:
+    """Whole lines in UTF-8, of which the first has this number."""
+    if data.isascii():
+        return data
+    try:
+        data.decode()
+        return data
+    except UnicodeDecodeError as error:
+        foreign = len(data.translate(None, _ASCII))
+        if foreign > _MOST_FOREIGN * len(data) or data.translate(None, _OF_TEXT):
+            line = first + data.count(b"\n", 0, error.start)
+            raise InputError(
+                f"{path}: line {line} holds the byte 0x{data[error.start]:02X}, which is not "
+                "UTF-8, and too much here is no text at all; export the recording as CSV text, or "
+                "correct the file's ending"
+            ) from error
+    try:
+        return data.decode("cp1252").encode()
+    except UnicodeDecodeError:
+        return data.decode("latin-1").encode()
 
 
 def _end_of_lines(data: bytes) -> int:
@@ -149,17 +192,6 @@ def _check(path: Path, block: Block) -> None:
             f"{path}: line {line} holds a zero byte, so this is not a text file; "
             "export the recording as CSV text, or correct the file's ending"
         )
-    if data.isascii():
-        return
-    try:
-        data.decode()
-    except UnicodeDecodeError as error:
-        line = block.first + data.count(b"\n", 0, error.start)
-        byte = data[error.start : error.start + 1]
-        raise InputError(
-            f"{path}: line {line} holds the byte 0x{byte.hex().upper()}, which is not UTF-8 "
-            f"(in Latin-1 it is {byte.decode('latin-1')!r}); save the text as UTF-8"
-        ) from error
 
 
 class LineNumbers:

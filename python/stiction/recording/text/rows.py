@@ -11,11 +11,12 @@ import numpy as np
 from ...errors import InputError
 from ...wording import counted
 from ..expansion import BYTES_OF_A_NUMBER, check_expansion, most_bytes
-from ..table import CELLS_KEPT, Cell
+from ..table import CELLS_KEPT, Cell, is_missing
 from ..units import FloatArray
 from .cells import BLANKS, DECIMAL_COMMA, number, split
 from .lines import Block, IntArray, LineNumbers, check_length
 from .plain import plain_numbers
+from .stamps import Stamps
 
 _CELLS_AT_ONCE: Final = 2**18
 """Cells that are held as text at a time."""
@@ -35,6 +36,8 @@ class Head:
         By column, where a line holds them.
     last : int
         The line above the first row.
+    stamps : frozenset of int
+        Places of the columns that hold dates and times of day.
     """
 
     delimiter: str
@@ -42,6 +45,7 @@ class Head:
     names: list[str]
     units: dict[str, str]
     last: int
+    stamps: frozenset[int] = frozenset()
 
 
 class Rows:
@@ -71,9 +75,16 @@ class Rows:
         self._size = path.stat().st_size
         self._columns: list[FloatArray] = []
         self._cells: list[list[Cell]] = [[] for _ in head.names]
+        self._stamps = {index: Stamps() for index in sorted(head.stamps)}
         self._commas_seen = self._points_seen = False
         # Between blanks an empty cell leaves no trace: only a last line, broken off, is safe.
         self._broken: tuple[int, int] | None = None
+
+    @property
+    def begins(self) -> dict[str, float]:
+        """When the first row was, s since 1970, by each column of stamps with a date."""
+        names = self._head.names
+        return {names[k]: s.begins for k, s in self._stamps.items() if s.begins is not None}
 
     @property
     def mixed(self) -> bool:
@@ -169,6 +180,8 @@ class Rows:
         self._append(numbers, np.array([line for line, _ in taken], dtype=np.int64))
 
     def _numbers(self, index: int, column: tuple[str, ...]) -> FloatArray:
+        if index in self._stamps:
+            return self._seconds(index, column)
         if self._commas and not self._points_seen:
             self._points_seen = any("." in text and number(text) is not None for text in column)
         if not any("_" in text for text in column):
@@ -186,6 +199,17 @@ class Rows:
                 values[row] = value
             elif len(cells) < CELLS_KEPT:
                 cells.append(Cell(len(self.lines) + row, self._head.names[index], text))
+        return values
+
+    def _seconds(self, index: int, column: tuple[str, ...]) -> FloatArray:
+        values = np.full(len(column), np.nan)
+        for row, text in enumerate(column):
+            second = self._stamps[index].second(text)
+            if second is not None:
+                values[row] = second
+            elif not is_missing(text) and len(self._cells[index]) < CELLS_KEPT:
+                name = self._head.names[index]
+                self._cells[index].append(Cell(len(self.lines) + row, name, text))
         return values
 
     def _append(self, columns: list[FloatArray], lines: range | IntArray) -> None:

@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-from ...errors import InputError
-from ..columns import CANONICAL
-from ..units import UNITS, Motion, bracketed_unit, find_unit
+from ..errors import InputError
+from .columns import CANONICAL
+from .units import UNITS, Motion, bracketed_unit, find_unit
 
 Kind = str
 """A role; ``"drive"`` for what may be an input or a measured effort; ``"flag"`` and ``"index"`` for
@@ -218,10 +218,14 @@ def what_it_says(name: str) -> Said:
         return Said((kind,), written.quantity, word=name, strength=3, unit=written)
     unit, strange = _in_brackets(name)
     bare = _BRACKETS.sub("", name).strip() if unit or strange else name
-    last = bare.rpartition(".")[2]
+    before, _, last = bare.rpartition(".")
     text = last if _PARTS.search(last) else bare
     parts = [part.casefold() for part in _PARTS.findall(text)]
     words, modifiers = _meanings(parts)
+    field = before.rpartition(".")[2].casefold()
+    if not words and field in WORDS:
+        # position.elbow: the last part names a joint.
+        words, parts = [field], [field]
     meant = sorted(
         (word for word in words if WORDS[word].kinds),
         key=lambda word: len(word) == 1 or _ORDER.index(WORDS[word].kinds[0]) - len(_ORDER),
