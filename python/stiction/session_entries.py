@@ -24,7 +24,7 @@ _KEYS: Final = (
     *("file", "from", "to", "role", "kind", "start_s", "cold", "replicate_of", "columns"),
     *SETTINGS,
 )
-_WILD: Final = re.compile(r"[*?\[]")
+_WILD: Final = re.compile(r"[*?]|\[[^\]]+\]")
 _ROW: Final = re.compile(r"row ([1-9]\d{0,14})")
 _MOST_FILES: Final = 10_000
 

@@ -571,9 +571,9 @@ def test_findings_hold_every_field_that_others_build_on() -> None:
     recordings = [recorded(k, role=role) for k, role in enumerate(("train", "select", "test"))]
     found = st.diagnose(true_plant(), recordings, surrogates=4, laws=("coulomb",)).to_dict()
     assert list(found) == [
-        "schema", "verdict", "sentence", "effects", "gain", "gap_closed", "candidates", "laws",
-        "better_law", "baseline", "extended", "unexplained", "advice", "data", "version", "seed",
-        "smallest", "seconds",
+        "schema", "verdict", "sentence", "effects", "gain", "gap_closed", "evidence", "candidates",
+        "laws", "better_law", "baseline", "extended", "unexplained", "advice", "data", "version",
+        "seed", "smallest", "seconds",
     ]  # fmt: skip
     assert found["schema"] == 1
     assert {row["name"] for row in found["candidates"]} == {e.name for e in st.effects()}
@@ -592,6 +592,7 @@ def test_findings_hold_every_field_that_others_build_on() -> None:
             assert set(parameter) == {"value", "ci95", "unit", "at_bound"}
     assert set(found["data"]) == {
         "checks", "split", "replicates", "residual", "hashes", "noise", "chosen", "complete",
+        "through",
     }  # fmt: skip
     assert [each["recording"] for each in found["data"]["noise"]] == ["recording 1", "recording 2"]
     assert all(each["effort"] > 0.0 for each in found["data"]["noise"])

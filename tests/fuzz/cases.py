@@ -9,7 +9,7 @@ from functools import cache
 from stiction.library import entries
 
 from .draw import EFFECTS, LAWS, Draw
-from .files import kinds
+from .files import kinds, names_in
 from .meanings import arguments, mapped, moved
 from .surface import Target, targets
 
@@ -151,7 +151,7 @@ def file_lines(draw: Draw, kind: str) -> Program:
         streamed = f"list(st.stream(x, {chunks}, 1e-3, checkpoint=p))"
         return [f"p = {path}", f"x = motor({law!r})", streamed, "x.step(0.1, 1e-4)"]
     lines = [f"p = {path}", "stiction.recording.read_table(p)"]
-    columns = mapped(draw) if draw.chance(0.8) else "None"
+    columns = mapped(draw, names_in(kind)) if draw.chance(0.8) else "None"
     faulty = draw.chance(0.3)
     lines.append(f"x = st.Recording.load(p, {columns}, motion='rotary', keep_faulty={faulty})")
     return [*lines, "stiction.recording.check(x)", "look(x)"]

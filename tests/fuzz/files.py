@@ -225,6 +225,20 @@ def write_mcap(path: Path, seed: int) -> None:
         writer.finish()
 
 
+def write_first_bag(path: Path, seed: int) -> None:
+    """Of ROS 1: two topics of numbers."""
+    from rosbags.rosbag1 import Writer as Bag
+    from rosbags.typesys import Stores, get_typestore
+
+    store, kind = get_typestore(Stores.ROS1_NOETIC), "std_msgs/msg/Float64"
+    path.unlink(missing_ok=True)
+    with Bag(path) as bag:
+        topics = {name: bag.add_connection(f"/{name}", kind, typestore=store) for name in "uq"}
+        for k in range(ROWS):
+            for name, topic in topics.items():
+                bag.write(topic, 10**7 * (k + 1), columns(seed)[name][k].tobytes())
+
+
 def write_bag(path: Path, seed: int) -> None:
     """Of ROS 2, and of nothing but numbers: the tables of SQLite are what is damaged."""
     import sqlite3
@@ -233,10 +247,12 @@ def write_bag(path: Path, seed: int) -> None:
     bag = sqlite3.connect(path)
     bag.execute("CREATE TABLE topics (id, name, type, serialization_format)")
     bag.execute("CREATE TABLE messages (topic_id, timestamp, data)")
-    bag.execute("INSERT INTO topics VALUES (1, '/u', 'std_msgs/msg/Float64', 'cdr')")
-    for k, value in enumerate(columns(seed)["u"]):
-        data = b"\0\1\0\0" + np.float64(value).tobytes()
-        bag.execute("INSERT INTO messages VALUES (1, ?, ?)", (10**7 * k, data))
+    for topic, name in enumerate("uq"):
+        kind = (topic, f"/{name}", "std_msgs/msg/Float64", "cdr")
+        bag.execute("INSERT INTO topics VALUES (?, ?, ?, ?)", kind)
+        for k, value in enumerate(columns(seed)[name]):
+            data = b"\0\1\0\0" + np.float64(value).tobytes()
+            bag.execute("INSERT INTO messages VALUES (?, ?, ?)", (topic, 10**7 * k, data))
     bag.commit()
     bag.close()
 
@@ -301,6 +317,7 @@ WRITERS: dict[str, Writer] = {
     ".arrow": write_arrow,
     ".h5": write_hdf5,
     ".mcap": write_mcap,
+    ".bag": write_first_bag,
     ".db3": write_bag,
     ".ulg": write_ulog,
     ".tdms": write_tdms,
@@ -310,6 +327,24 @@ WRITERS: dict[str, Writer] = {
     "session.toml": write_session,
     "params.json": write_parameters,
 }
+
+
+NAMED = {
+    ".lvm": ("X_Value", "u", "q"),
+    ".h5": ("log.t", "log.u", "log.q"),
+    ".mcap": ("axis.t", "axis.u", "axis.q"),
+    ".bag": ("u.time", "u.data", "q.data"),
+    ".db3": ("u.time", "u.data", "q.data"),
+    ".ulg": ("axis.time", "axis.u", "axis.q"),
+    ".tdms": ("time", "u", "q"),
+}
+"""What time, input and position are called where that is not t, u and q."""
+
+
+def names_in(kind: str) -> tuple[str, str, str]:
+    """What time, input and position are called in good files of a kind."""
+    alike = next((known.suffixes for known in FORMATS if kind in known.suffixes), ())
+    return next((NAMED[each] for each in alike if each in NAMED), ("t", "u", "q"))
 
 
 def kinds() -> list[str]:

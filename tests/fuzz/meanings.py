@@ -46,10 +46,12 @@ def _candidates(draw: Draw) -> str:
     return f"[{', '.join(f'({draw.text([n])}, {{}})' for n in names)}]"
 
 
-def mapped(draw: Draw) -> str:
-    """Which column plays which role."""
+def mapped(draw: Draw, names: tuple[str, str, str] = ("t", "u", "q")) -> str:
+    """Which column plays which role, of a file that calls them so."""
     if draw.chance(0.6):
-        return "{'time': 't', 'input': {'name': 'u', 'unit': 'Nm'}, 'position': 'q'}"
+        time, given, position = map(repr, names)
+        own = f"{{'name': {given}, 'unit': 'Nm'}}"
+        return f"{{'time': {time}, 'input': {own}, 'position': {position}}}"
     roles = draw.random.sample(sorted(ROLES), draw.random.randint(0, 3))
     tables = {
         role: draw.table({"name": draw.text(["t", "u", "q"]), "unit": draw.text(["s", "rad", "A"]),

@@ -30,7 +30,7 @@ from .gain import HeldOut, gain_of, residuals_of
 from .held_numbers import Held, held_numbers, held_words
 from .holds import holds_of
 from .laws import THE_LAW, Rival, better_laws, event_words, law_rows, rivals_of
-from .left_open import beside_another_law, left_open, waves_left_open
+from .left_open import beside_another_law, left_open, unconfirmed, waves_left_open
 from .listing import in_order
 from .lone import lone_event
 from .loop import borne_out, replayed
@@ -364,7 +364,8 @@ class Conclusion:
             of_names = rests_of(causes, self.rests[1], left_beside(selection))
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
             replaced = {name for each in self.held for name in each.instead}
-            causes = left_open(selection, causes, unexplained, of_names, replaced)
+            unsure = unconfirmed(causes, test, found.seed)
+            causes = left_open(selection, causes, unexplained, of_names, replaced, unsure)
             causes = beside_another_law(causes) if self.restated else causes
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
@@ -440,7 +441,7 @@ class Conclusion:
                 ),
             ),
             better_law="" if better is None else better.law,
-            bets=bets,
+            evidence=bets,
             success=not self.interrupted,
             message=MESSAGE if self.interrupted else found.message,
             pictures=Pictures(

@@ -10,6 +10,7 @@ from typing import Final
 from .chance import unrepeated
 from .decide import SURE
 from .exact_forms import doubted
+from .gain import HeldOut, gain_of
 from .passing import MOMENTS
 from .result import Cause, Unexplained
 from .selection import Search
@@ -51,6 +52,7 @@ def left_open(
     left: Sequence[Unexplained],
     rests: Sequence[Unexplained],
     replaced: Collection[str],
+    unsure: Collection[str],
 ) -> list[Cause]:
     """Causes, undecided where what is left, or how they came in, leaves doubt of their names.
 
@@ -65,10 +67,12 @@ def left_open(
         What is left where names leave nothing, as ``rests_of`` tells.
     replaced : collection of str
         Names that a number of the plant file, were it free, explains as well.
+    unsure : collection of str
+        Names that ``unconfirmed`` tells.
     """
     found = [doubted(cause, left, rests) for cause in causes]
     found = known_by_themselves(selection, found)
-    doubts = dict.fromkeys(unconfirmed(causes), UNCONFIRMED)
+    doubts = dict.fromkeys(unsure, UNCONFIRMED)
     doubts |= dict.fromkeys(outweighed(selection, left), OUTWEIGHED)
     doubts |= dict.fromkeys(selection.partly, PARTLY)
     doubts |= dict.fromkeys(of_one_curve(selection), ONE_CURVE)
@@ -103,12 +107,20 @@ def beside_another_law(causes: Sequence[Cause]) -> list[Cause]:
     ]
 
 
-def unconfirmed(causes: Sequence[Cause]) -> Set[str]:
-    """Which names may make the rows that test worse.
+def unconfirmed(causes: Sequence[Cause], test: HeldOut | None, seed: int) -> Set[str]:
+    """Which names may make the rows that test worse, by themselves and with those after them.
 
-    An interval that ends at 0 has draws of blocks in which nothing happens, and these say nothing.
+    What comes after a cause may be what hid its gain. An interval that ends at 0 has draws of
+    blocks in which nothing happens, and these say nothing.
     """
-    return {each.name for each in causes if each.gain is not None and each.gain.ci95[0] < 0.0}
+    if test is None:
+        return set()
+    last = len(causes)
+    return {
+        cause.name
+        for place, cause in enumerate(causes)
+        if all(gain_of(test, place, to, seed).ci95[0] < 0.0 for to in (place + 1, last))
+    }
 
 
 def of_one_curve(selection: Search) -> Set[str]:

@@ -363,7 +363,7 @@ class Diagnosis:
         Friction law that alone explains clearly more than what was named, "" where none does.
     smallest : float
         Share of the friction that an effect has to contribute (rms) to be worth a name.
-    bets : Bets
+    evidence : Bets
         What each recording held out says of all causes together.
     pictures : Pictures or None
         What the figures are drawn from.
@@ -390,7 +390,7 @@ class Diagnosis:
     ceiling: Ceiling | None = None
     better_law: str = ""
     smallest: float = 0.0
-    bets: Bets = field(default_factory=Bets)
+    evidence: Bets = field(default_factory=Bets)
     pictures: Pictures | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -429,7 +429,7 @@ class Diagnosis:
             "effects": [cause.to_dict() for cause in self.effects],
             "gain": None if self.gain is None else self.gain.to_dict(),
             "gap_closed": self.gap_closed,
-            "evidence": self.bets.to_dict() if self.bets.each else None,
+            "evidence": self.evidence.to_dict() if self.evidence.each else None,
             "candidates": [row.to_dict() for row in self.candidates],
             "laws": [row.to_dict() for row in self.laws],
             "better_law": self.better_law or None,

@@ -470,8 +470,8 @@ def summary(diagnosis: Diagnosis) -> str:
         if diagnosis.effects and after.heldout_relative is not None:
             told += f" before, {by.share(after.heldout_relative)} after"
         lines += ["", told]
-    if len(diagnosis.bets.each) > 1:
-        lines.append(diagnosis.bets.words)
+    if len(diagnosis.evidence.each) > 1:
+        lines.append(diagnosis.evidence.words)
     if before is not None:
         lines += before.assumed
     if diagnosis.ceiling is not None:
