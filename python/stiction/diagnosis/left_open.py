@@ -108,18 +108,23 @@ def beside_another_law(causes: Sequence[Cause]) -> list[Cause]:
 
 
 def unconfirmed(causes: Sequence[Cause], test: HeldOut | None, seed: int) -> Set[str]:
-    """Which names may make the rows that test worse, by themselves and with those after them.
+    """Which names may make the rows that test worse by as much as they make them better.
 
-    What comes after a cause may be what hid its gain. An interval that ends at 0 has draws of
-    blocks in which nothing happens, and these say nothing.
+    By themselves and with those after them: what comes after a cause may be what hid its gain. What
+    acts in few blocks is in few draws of them, and draws without it lose a little by chance.
     """
     if test is None:
         return set()
     last = len(causes)
+
+    def may_lose(place: int, to: int) -> bool:
+        gain = gain_of(test, place, to, seed)
+        return gain.ci95[0] < -max(gain.value, 0.0)
+
     return {
         cause.name
         for place, cause in enumerate(causes)
-        if all(gain_of(test, place, to, seed).ci95[0] < 0.0 for to in (place + 1, last))
+        if all(may_lose(place, to) for to in (place + 1, last))
     }
 
 

@@ -71,7 +71,7 @@ OUTWEIGHED = "what is left without a name is worth more than half of what it too
 """Why a name may be none."""
 PARTLY = "it acts in a few seconds alone, and takes a part there of what is beyond the limit"
 """Why a limit may be something else that came then."""
-UNCONFIRMED = "it may make the held-out rows worse"
+UNCONFIRMED = "it may make the held-out rows worse by as much as it makes them better"
 """Why a name that the rows that decide bear out may be none."""
 UNREPEATED = "less than one period was travelled, and a spring may look the same"
 """Why what should repeat with position may be something else."""
