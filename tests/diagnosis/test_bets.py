@@ -146,6 +146,27 @@ def test_a_recording_of_another_machine_is_told(
     assert said in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("lost", ["effects", "extended", "evidence", "schema", "data.through"])
+def test_findings_that_somebody_damaged_are_refused_in_a_sentence(
+    diagnosed: Path, lost: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = json.loads((diagnosed / "out" / "findings.json").read_text(encoding="utf-8"))
+    first, _, then = lost.partition(".")
+    if then:
+        found[first][then] = {"horizon": 0.3, "nonsense": 1}
+    else:
+        found[first] = 7
+    (tmp_path / "findings.json").write_text(json.dumps(found), encoding="utf-8")
+    for plant in ("base.toml", "plant.toml"):
+        (tmp_path / plant).write_bytes((diagnosed / "out" / plant).read_bytes())
+    words = ["diagnose", str(diagnosed / "session.toml"), "-o", str(tmp_path)]
+    capsys.readouterr()
+    assert run([*words, "--add", str(diagnosed / "none.npz")]) == 2
+    error = capsys.readouterr().err
+    assert "run stiction diagnose" in error
+    assert error.count("\n") == 1
+
+
 def test_what_cannot_be_added_is_refused_in_a_sentence(
     diagnosed: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from .. import given
 from ..atomic_files import write_text
@@ -73,8 +73,8 @@ class Added:
             gain = bet.gain
             if gain is None or gain <= 0.0:
                 told = (
-                    f"{bet.recording} speaks against {them}: adding makes it no better ({change}); "
-                    "diagnose again with it in the session"
+                    f"{bet.recording} speaks against {them}: adding {them} makes nothing better "
+                    f"({change}); diagnose again with this recording in the session"
                 )
             else:
                 told = (
@@ -84,7 +84,7 @@ class Added:
         if self.held_out is not None and bet.after > BEYOND * self.held_out:
             told += (
                 f"; that is {bet.after / self.held_out:.3g} times what was left on rows held out: "
-                "something more is missing here, and the recording belongs into the session"
+                "something more is missing here; diagnose again with this recording in the session"
             )
         return told
 
@@ -111,65 +111,101 @@ def add(folder: Path, session: Session, recordings: Sequence[Recording]) -> Adde
         known already, or too short.
     """
     found = _findings(folder, session)
-    known = {*found["data"]["hashes"], *(each["hash"] for each in found.get("added", ()))}
+    before = found.bets
+    known = set(found.hashes)
     for recording in recordings:
         if recording.hash in known:
             raise InputError(
                 f"{recording.path}: is part of this diagnosis already; add a recording that is new"
             )
         known.add(recording.hash)
-    through = dict(found["data"]["through"])
-    timing = through.pop("timing_s")
     plants = [Plant.load(folder / name) for name in ("base.toml", "plant.toml")]
     known_ones = [each.with_role("train") for each in session.recordings]
     whole = [*known_ones, *(each.with_role("test") for each in recordings)]
     try:
-        evidence = Evidence(plants[0], whole, through=Through(**through))
+        evidence = Evidence(plants[0], whole, through=found.through)
     except NotEnoughData as error:
         raise InputError(str(error)) from None
     stiffen(evidence.forms, plants[0])
     opened = evidence.open_test()
-    models = [(plant, Nuisances(own)) for plant, own in zip(plants, timing, strict=True)]
+    models = [(plant, Nuisances(own)) for plant, own in zip(plants, found.timing, strict=True)]
     test = residuals_of(evidence, opened, models)
     if test is None:
         raise InputError(f"{recordings[0].path}: none of its rows can be used; add a longer one")
     new = bets_of(test, 1, evidence.names, added=True)
-    before = [_bet(each) for each in (found["evidence"] or {}).get("recordings", ())]
     bets = Bets((*before, *new.each))
-    names = tuple(cause["name"] for cause in found["effects"])
-    found["evidence"] = bets.to_dict()
-    found["added"] = [
-        *found.get("added", ()),
-        *({"recording": str(each.path), "hash": each.hash} for each in recordings),
-    ]
-    write_text(folder / FINDINGS, json_of(found) + "\n")
-    extended = found["extended"]
-    return Added(new.each, bets, names, extended["heldout_rms"], extended["unit"], found)
+    content = {
+        **found.content,
+        "evidence": bets.to_dict(),
+        "added": [
+            *found.content.get("added", ()),
+            *({"recording": str(each.path), "hash": each.hash} for each in recordings),
+        ],
+    }
+    write_text(folder / FINDINGS, json_of(content) + "\n")
+    return Added(new.each, bets, found.names, found.held_out, found.unit, content)
 
 
-def _findings(folder: Path, session: Session) -> dict[str, Any]:
+class _Found(NamedTuple):
+    """What is asked of a findings.json."""
+
+    content: dict[str, Any]
+    hashes: tuple[str, ...]
+    through: Through
+    timing: tuple[float, float]
+    bets: tuple[Bet, ...]
+    names: tuple[str, ...]
+    held_out: float | None
+    unit: str
+
+
+def _findings(folder: Path, session: Session) -> _Found:
     """findings.json of a folder, which has to be a diagnosis of this session."""
     file = folder / FINDINGS
     try:
         given.regular(file)
-        found = json.loads(file.read_text(encoding="utf-8"))
-        fits = found["schema"] == SCHEMA and isinstance(found["data"]["hashes"], list)
+        content = json.loads(file.read_text(encoding="utf-8"))
+        known, version = list(content["data"]["hashes"]), content["schema"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         why = "" if isinstance(error, FileNotFoundError) else f" ({error})"
         raise InputError(
             f"{file}: there is no diagnosis{why}; run stiction diagnose without --add first"
         ) from None
-    if not fits:
-        raise InputError(f"{file}: is no diagnosis of this version; run stiction diagnose again")
-    if list(session.hashes) != found["data"]["hashes"]:
+    if list(session.hashes) != known:
         raise InputError(
             f"{file}: is the diagnosis of another session, or its recordings have changed; run "
             "stiction diagnose again"
         )
-    if found.get("extended") is None or "through" not in found["data"]:
-        raise InputError(f"{file}: holds no fitted plant; run stiction diagnose again")
-    return dict(found)
+    try:
+        if version != SCHEMA or content["extended"] is None:
+            raise ValueError("it holds no fitted plant")
+        return _asked(content)
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise InputError(
+            f"{file}: nothing can be added to it ({error}); run stiction diagnose again"
+        ) from None
 
 
-def _bet(entry: dict[str, Any]) -> Bet:
-    return Bet(entry["recording"], entry["before_rms"], entry["after_rms"], entry["added"])
+def _asked(content: dict[str, Any]) -> _Found:
+    data, extended = content["data"], content["extended"]
+    through = dict(data["through"])
+    one, two = map(float, through.pop("timing_s"))
+    held_out = extended["heldout_rms"]
+    return _Found(
+        content,
+        (*data["hashes"], *(each["hash"] for each in content.get("added", ()))),
+        Through(**through),
+        (one, two),
+        tuple(
+            Bet(
+                str(each["recording"]),
+                float(each["before_rms"]),
+                float(each["after_rms"]),
+                bool(each["added"]),
+            )
+            for each in (content["evidence"] or {}).get("recordings", ())
+        ),
+        tuple(str(cause["name"]) for cause in content["effects"]),
+        None if held_out is None else float(held_out),
+        str(extended["unit"]),
+    )
