@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from copy import copy
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 import numpy as np
 
@@ -25,6 +27,8 @@ RESPONSE_PARTS: Final = 16
 """Parts of a window whose efforts are told apart for screening: four to a knot of the kernel."""
 READ_AGAIN: Final = 11
 """Seed of the noise with which a motion is read again: always the same."""
+MOST_LED: Final = 2
+"""Plants by whose motion windows begin at a time, beside the first one: each holds its motion."""
 MOVES_TIMES: Final = 2.0
 """Counts, or four times as many standard deviations of the white noise, that a machine must travel
 within a horizon to be moving."""
@@ -100,6 +104,34 @@ class ShootingForm(WeakForm):
         if stated and self._is_rigid(plant):
             self._leader = plant
             self.read_with(self.noise)
+
+    @property
+    def leads(self) -> bool:
+        """Whether windows begin in the motion that a plant makes near the measured one."""
+        return self._leader is not None
+
+    @cached_property
+    def _led(self) -> list[Self]:
+        """The same led by other plants, the last ones of them."""
+        return []
+
+    def led_by(self, leader: Plant | None) -> Self:
+        """The recording with windows that begin in the motion that a plant makes near it.
+
+        What a plant lacks makes its run late, by up to what is missing over its inertia and the
+        square of the rate of the pull: windows of a plant that lacks nothing must not begin there.
+        """
+        if leader is None or leader is self._leader or self._leader is None:
+            return self
+        for known in self._led:
+            if known._leader is leader:
+                return known
+        other = copy(self)
+        other._leader = leader
+        other.read_with(self.noise)
+        self._led.append(other)
+        del self._led[:-MOST_LED]
+        return other
 
     def _is_rigid(self, plant: Plant) -> bool:
         """Whether pre-sliding is over within a count."""

@@ -57,7 +57,7 @@ effort: a coarse encoder needs more than 30 ms."""
 ACCELERATION_SHARE: Final = 0.1
 """Where no inertia is stated: share of the acceleration that may be noise."""
 
-_CACHED: Final = ("motion", "lateness", "_answers", "_known", "_otherwise", "stirs")
+_CACHED: Final = ("motion", "lateness", "_answers", "_known", "_otherwise", "_led", "stirs")
 """What is computed once from readings and effort."""
 MOSTLY: Final = 0.9
 """Share of the kernel through which a machine with a rigid contact moves in rows that tell of
@@ -183,6 +183,15 @@ class WeakForm:
         """
         alike = self.simulated or plant.friction.springy == self.springy
         return self if alike else self._otherwise
+
+    @property
+    def leads(self) -> bool:
+        """Whether windows begin in the motion that a plant makes near the measured one."""
+        return False
+
+    def led_by(self, leader: Plant | None) -> Self:
+        """The recording with windows that begin in the motion of a plant; see ``ShootingForm``."""
+        return self
 
     @cached_property
     def _otherwise(self) -> Self:

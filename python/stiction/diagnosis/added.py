@@ -128,7 +128,10 @@ def add(folder: Path, session: Session, recordings: Sequence[Recording]) -> Adde
         raise InputError(str(error)) from None
     stiffen(evidence.forms, plants[0])
     opened = evidence.open_test()
-    models = [(plant, Nuisances(own)) for plant, own in zip(plants, found.timing, strict=True)]
+    models = [
+        (plant, Nuisances(own, leader=plant))
+        for plant, own in zip(plants, found.timing, strict=True)
+    ]
     test = residuals_of(evidence, opened, models)
     if test is None:
         raise InputError(f"{recordings[0].path}: none of its rows can be used; add a longer one")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final, TypeVar
 
@@ -244,9 +244,7 @@ class Evidence:
         """
         others = [rows for rows in self.shown if rows.index not in self.trained]
         near = known.of({rows.index for rows in others})
-        return self.started(plant, Nuisances(nuisances.timing, near.starts), others).joined(
-            nuisances
-        )
+        return self.started(plant, replace(nuisances, starts=near.starts), others).joined(nuisances)
 
     def started(self, plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> Nuisances:
         """Nuisances with a start of each of these recordings; see `started` of the fit."""

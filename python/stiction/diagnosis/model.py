@@ -12,6 +12,7 @@ import numpy as np
 
 from ..catalogue import effects
 from ..finite import finite
+from ..fitting.leading import led_by_itself
 from ..fitting.levenberg import FIRST_DAMPING
 from ..fitting.likeliest import likeliest
 from ..fitting.minimise import Solution, minimise
@@ -327,9 +328,11 @@ def fitted(
 
     ``only`` names an effect whose parameters alone are varied, beside the nuisances.
     """
+    paths = [p for p in free_paths(plant) if p.startswith(f"effects.{only}." if only else "")]
+
     solution = minimise(
         plant,
-        [path for path in free_paths(plant) if path.startswith(f"effects.{only}." if only else "")],
+        paths,
         evidence.train,
         most=most,
         nuisances=None if nuisances is None else nuisances.of(evidence.trained),
@@ -337,6 +340,8 @@ def fitted(
         # What is fitted here starts from a model that was fitted.
         beyond_kinks=False,
     )
+    if not only:
+        solution = led_by_itself(solution, evidence.train, most=most, converged=converged)
     return Model(evidence, solution, nuisances or Nuisances())
 
 

@@ -143,6 +143,7 @@ class _Replay:
 
     @classmethod
     def of(cls, rows: Rows, plant: Plant, nuisances: Nuisances) -> _Replay:
+        rows = rows.led_by(nuisances)
         form, start = rows.form, nuisances.start(rows.index)
         if isinstance(form, LoopForm):
             motion, residual = _looped(form, plant, start)

@@ -375,7 +375,11 @@ class _Seen:
             for piece in _pieces(len(slices), at_once(len(kept))):
                 wanted = [(one.name, dict(one.shape)) for one in candidates[piece]]
                 # Hundreds of columns: each is written once, in one piece.
-                values = each.form.signatures(self.plant, wanted, start, kept).T
+                values = (
+                    each.form.led_by(self.nuisances.leader)
+                    .signatures(self.plant, wanted, start, kept)
+                    .T
+                )
                 values *= -weight
                 values = finite(values)
                 if single:

@@ -22,6 +22,7 @@ from .slopes import places_of, slopes
 from .variables import Variables, records
 
 __all__ = [
+    "CONVERGED",
     "MOST_EVALUATIONS",
     "Solution",
     "alone",
@@ -331,7 +332,7 @@ class _Minimiser:
         self.variables = Variables.of(plant, paths)
         self.begin = self.variables.vector(np.array([plant.parameters[p].value for p in paths]))
         given = primed(plant, rows) if nuisances is None else nuisances
-        self.starts = places_of(given)
+        self.starts, self.leader = places_of(given), given.leader
         self.evaluations = 0
         self._slopes: FloatArray | None = None
         self._last: tuple[FloatArray, FloatArray] | None = None
@@ -459,7 +460,7 @@ class _Minimiser:
         for (index, name), value in zip(self.starts, full[count + 1 :].tolist(), strict=True):
             starts.setdefault(index, {})[name] = value
         plant = self.variables.plant(self.plant, full[:count])
-        return plant, Nuisances(float(full[count]), starts)
+        return plant, Nuisances(float(full[count]), starts, self.leader)
 
     def residual(self, full: FloatArray) -> FloatArray:
         residual = self._left(full)

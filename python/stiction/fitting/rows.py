@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 import numpy as np
@@ -60,10 +60,13 @@ class Nuisances:
         By how much the input is stamped early, s; one for all recordings.
     starts : Mapping of int to dict
         Friction state at the first row, by the index of the recording.
+    leader : Plant or None
+        Of whose motion windows begin (see ``ShootingForm``); None for that of their form.
     """
 
     timing: float = 0.0
     starts: Mapping[int, Start] = field(default_factory=dict)
+    leader: Plant | None = None
 
     def start(self, index: int) -> Start | None:
         """Start of a recording, None where it was never moved as far as anybody knows."""
@@ -72,11 +75,11 @@ class Nuisances:
     def of(self, recordings: Set[int]) -> Nuisances:
         """The same with the starts of these recordings alone."""
         starts = {index: start for index, start in self.starts.items() if index in recordings}
-        return Nuisances(self.timing, starts)
+        return replace(self, starts=starts)
 
     def joined(self, others: Nuisances) -> Nuisances:
         """The same with the starts of others where it has none."""
-        return Nuisances(self.timing, {**others.starts, **self.starts})
+        return replace(self, starts={**others.starts, **self.starts})
 
 
 class Rows:
@@ -107,9 +110,19 @@ class Rows:
         other.mask = mask
         return other
 
+    def led_by(self, nuisances: Nuisances) -> Rows:
+        """The same with windows that begin as they did for a plant with these nuisances."""
+        other = copy(self)
+        other.form = self.form.led_by(nuisances.leader)
+        return other
+
+    def led(self, plant: Plant, nuisances: Nuisances) -> WeakForm:
+        """The recording as a plant has to be driven along it, from where its windows begin."""
+        return self.form.seen_by(plant).led_by(nuisances.leader)
+
     def residual(self, plant: Plant, nuisances: Nuisances) -> FloatArray:
         """Measured minus needed effort of every row; shape (n,)."""
-        left = self.form.seen_by(plant).residual(plant, nuisances.start(self.index))
+        left = self.led(plant, nuisances).residual(plant, nuisances.start(self.index))
         return left + nuisances.timing * self.late
 
     def jacobian(self, plant: Plant, paths: Sequence[str], nuisances: Nuisances) -> FloatArray:
@@ -119,7 +132,7 @@ class Rows:
         """
         follows = plant.following(paths)
         every = [*paths, *(path for path, _, _ in follows)]
-        form = self.form.seen_by(plant)
+        form = self.led(plant, nuisances)
         found = form.jacobian(plant, every, nuisances.start(self.index))
         columns = found[:, : len(paths)]
         for column, (_, place, factor) in enumerate(follows, len(paths)):
@@ -261,20 +274,23 @@ def primed(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances | None = Non
     before = nuisances or Nuisances()
     new = {each.index: begun(plant, each.form) for each in rows}
     starts: dict[int, Start] = {}
-    for index, name in told_starts(plant, rows):
+    for index, name in told_starts(plant, rows, before.leader):
         known = new[index] | (before.start(index) or {})
         starts.setdefault(index, {})[name] = known[name]
         starts[index] |= {turn: known[turn] for turn in TURNS if known.get(turn)}
-    return Nuisances(before.timing, starts)
+    return replace(before, starts=starts)
 
 
-def told_starts(plant: Plant, rows: Sequence[Rows]) -> list[tuple[int, str]]:
+def told_starts(
+    plant: Plant, rows: Sequence[Rows], leader: Plant | None = None
+) -> list[tuple[int, str]]:
     """Starts that the rows tell of: index of the recording and quantity."""
     names = start_quantities(plant)
     if not names:
         return []
     told = []
-    virgin = Nuisances(starts={each.index: dict.fromkeys(names, 0.0) for each in rows})
+    starts = {each.index: dict.fromkeys(names, 0.0) for each in rows}
+    virgin = Nuisances(starts=starts, leader=leader)
     for each in rows:
         left = each.residual(plant, virgin)[each.mask]
         columns = each.jacobian(plant, [f"start.{name}" for name in names], virgin)[each.mask]

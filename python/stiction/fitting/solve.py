@@ -30,7 +30,15 @@ from ..workers import with_workers
 from .clock import bounded
 from .first_pass import first_pass, launched, share_left
 from .forms import KERNELS, Through, as_session, as_stated, forms_of
-from .minimise import MOST_EVALUATIONS, Solution, from_elsewhere, minimise, stopped
+from .leading import led_by_itself
+from .minimise import (
+    CONVERGED,
+    MOST_EVALUATIONS,
+    Solution,
+    from_elsewhere,
+    minimise,
+    stopped,
+)
 from .pushes import Watch
 from .pushes import told as pushes_told
 from .result import FitParameter, FitResult
@@ -249,7 +257,8 @@ def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
     except KeyboardInterrupt:
         # Before the second pass had anything to keep.
         return stopped(first)
-    return _followed(from_elsewhere(second, rows, most=most), rows, most=most)
+    found = _followed(from_elsewhere(second, rows, most=most), rows, most=most)
+    return led_by_itself(found, rows, most=most, converged=CONVERGED)
 
 
 def _followed(found: Solution, rows: Sequence[Rows], *, most: int) -> Solution:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import product
 from typing import Final
 
@@ -64,10 +65,10 @@ def started(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisanc
         own = primed(plant, [each]).starts.get(each.index, {}) if known is None else known
         if own:
             most = TURN_EVALUATIONS if TURNS[0] in own else EVALUATIONS
-            begin = Nuisances(nuisances.timing, {each.index: own})
+            begin = replace(nuisances, starts={each.index: own})
             own = alone(plant, each, begin, most=most).nuisances.starts[each.index]
         found[each.index] = _turned(plant, each, own, nuisances) if known is None else own
-    return Nuisances(nuisances.timing, found)
+    return replace(nuisances, starts=found)
 
 
 def turned(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisances:
@@ -94,7 +95,7 @@ def turned(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisance
         own = found.get(each.index)
         if own:
             found[each.index] = _turned(plant, each, own, nuisances)
-    return Nuisances(nuisances.timing, found)
+    return replace(nuisances, starts=found)
 
 
 def with_turns(found: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
@@ -127,7 +128,7 @@ def _turned(plant: Plant, rows: Rows, known: Start, nuisances: Nuisances) -> Sta
         return known
 
     def nuisances_of(start: Start) -> Nuisances:
-        return Nuisances(nuisances.timing, {rows.index: start})
+        return replace(nuisances, starts={rows.index: start})
 
     def left(start: Start) -> FloatArray:
         return rows.residual(plant, nuisances_of(start))[rows.mask]
