@@ -11,10 +11,10 @@ from .rows import Rows
 
 __all__ = ["led_by_itself"]
 
-MOST_LED: Final = 3
+MOST_LED: Final = 2
 """Times that windows begin anew: what the plant before was late by has gone a hundredfold then."""
-AS_BEFORE: Final = 1e-3
-"""Change of the power at which they would begin where they did."""
+ENOUGH: Final = 0.05
+"""Change of the power from which on they do once more: the next one is a hundredth of it."""
 
 
 def led_by_itself(
@@ -25,7 +25,7 @@ def led_by_itself(
     Windows of a rigid contact begin in a run that a plant makes near the measured motion, late by
     what this plant lacks (see ``ShootingForm``). Led by another one a plant that lacks nothing
     leaves what the other one lacks, and a fit is pulled towards it. So each is led by itself, in
-    turn with the fit, until that changes nothing.
+    turn with the fit, until that changes little.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def led_by_itself(
         except KeyboardInterrupt:
             # Before it had anything to keep.
             return stopped(found)
-        settled = abs(further.power - found.power) <= AS_BEFORE * found.power
+        settled = abs(further.power - found.power) <= ENOUGH * found.power
         evaluations = found.evaluations + further.evaluations
         found = replace(further, begin=found.begin, evaluations=evaluations)
         if settled:
