@@ -162,15 +162,16 @@ def outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
 
 
 def known_by_themselves(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
-    """Causes, those beside the first undecided where every one of their numbers may be 0.
+    """Causes, undecided where every one of their numbers may be 0.
 
-    All of its numbers together may help beyond doubt, and they may help to mend what the form of a
-    first cause leaves: of eight wrong second and third names every number of seven reached 0, at
-    strengths of 9 at most where these were asked. What blocks leave no doubt of needs no number.
+    All of its numbers together may help beyond doubt, and they may help to mend what the form of
+    the law or of a first cause leaves: of eight wrong second and third names every number of seven
+    reached 0, at strengths of 9 at most where these were asked, and of three first ones two were
+    wrong. What blocks leave no doubt of needs no number.
     """
     final = selection.models[-1]
     found = list(causes)
     for place, (choice, cause) in enumerate(zip(selection.choices, causes, strict=True)):
-        if place and cause.doubtful and final.strength(choice.winner.candidate) < SURE:
+        if cause.doubtful and final.strength(choice.winner.candidate) < SURE:
             found[place] = replace(cause, decided=False, doubt=MAY_BE_NOTHING)
     return found
