@@ -43,6 +43,7 @@ from .outlying import outlying_in_test
 from .passing import MOMENTS
 from .pictures import Pictures
 from .regression import refitted
+from .reliability import reliability_of
 from .replay import centre, shared, surrogate_residuals
 from .result import Diagnosis, Unexplained, Verdict
 from .rounds import friction_of
@@ -413,7 +414,17 @@ class Conclusion:
             )
             + (f" {hint}" if hint else ""),
             plant=extended.plant,
-            effects=tuple(causes),
+            effects=tuple(
+                replace(
+                    cause,
+                    reliability=reliability_of(
+                        decided=cause.decided,
+                        several=bool(cause.look_alikes),
+                        unexplained=verdict == "unexplained",
+                    ),
+                )
+                for cause in causes
+            ),
             gain=gain,
             candidates=in_order(selection.rows.values(), causes),
             laws=law_rows(

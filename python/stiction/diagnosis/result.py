@@ -16,6 +16,7 @@ from ..plant import Plant
 from .bets import Bets
 from .gain import Gain
 from .loop import Replay
+from .reliability import Reliability
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -91,6 +92,8 @@ class Cause(_Gained):
         order of a wave is.
     size : float
         rms of the effort that it contributes, as a share of the friction's.
+    reliability : Reliability or None
+        What names that were told like this one came to where the truth was known.
     """
 
     name: str
@@ -107,6 +110,7 @@ class Cause(_Gained):
     waves: Mapping[str, FitParameter] = field(default_factory=dict)
     chosen: Mapping[str, float] = field(default_factory=dict)
     size: float = 0.0
+    reliability: Reliability | None = None
 
     def __post_init__(self) -> None:
         freeze(self, ByPath, "parameters", "waves", "chosen")
@@ -143,6 +147,20 @@ class Cause(_Gained):
             },
             "heldout_gain": self.heldout_gain,
             "heldout_gain_ci95": None if self.gain is None else list(self.gain.ci95),
+            **self._likely(),
+        }
+
+    def _likely(self) -> dict[str, Any]:
+        """How probable it is, and how its look-alikes are."""
+        held = self.reliability
+        if held is None:
+            return {"probability": None, "alternatives": [], "reliability": None}
+        # Nothing is known of one look-alike that is not known of the others.
+        each = (held.covered - held.probability) / max(len(self.look_alikes), 1)
+        return {
+            "probability": held.probability,
+            "alternatives": [{"name": name, "probability": each} for name in self.look_alikes],
+            "reliability": held.to_dict(),
         }
 
 
