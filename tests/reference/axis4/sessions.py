@@ -1,15 +1,19 @@
-"""Ordinary sessions of the axis, drawn from a seed: what an engineer records, as files, and the truth in a folder apart."""
+"""Ordinary sessions of the axis, drawn from a seed: what an engineer records, as files.
+
+The truth lies in a folder apart.
+"""
 
 from __future__ import annotations
 
 import csv
 import json
 import math
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-
 from tests.reference.axis4.machine import Loop, Machine, Motion, share, simulate
 
 FAMILIES = ("torque_axis", "dc_motor", "geared_joint", "ballscrew")
@@ -32,6 +36,9 @@ EFFECTS = (
     "log_delay",
 )
 KINDS = ("sines", "ramps", "steps", "squares", "chirp")
+DEAL = len(EFFECTS)
+SLOWEST = 0.02
+"""s: what a lag or a delay of size 1 is."""
 LEAD = 0.01  # m per turn of the ballscrew
 
 
@@ -73,14 +80,21 @@ def draw(seed: int, family: str, *, six: bool, seconds: float, contact: str | No
     viscous = r.uniform(0.3, 0.9) * coulomb / typical
     inertia = viscous * log(0.06, 0.4)
     looped = family in ("geared_joint", "ballscrew")
-    period = float(r.choice([0.001, 0.002, 0.004, 0.005] if looped else [0.001, 0.002, 0.005, 0.01]))
+    period = float(
+        r.choice([0.001, 0.002, 0.004, 0.005] if looped else [0.001, 0.002, 0.005, 0.01])
+    )
     counts = int(2 ** r.integers(14 if looped else 10, 21))
     turn = LEAD if linear else 2 * math.pi
     count = turn / counts
     contact = contact or "rigid"
     reach = typical * 0.004  # the bristle's deflection where it slides
     bristle = coulomb / reach if contact != "rigid" else 0.0
-    gain = {"torque_axis": 1.0, "dc_motor": log(0.05, 0.5), "geared_joint": 1.0, "ballscrew": log(20.0, 200.0)}[family]
+    gain = {
+        "torque_axis": 1.0,
+        "dc_motor": log(0.05, 0.5),
+        "geared_joint": 1.0,
+        "ballscrew": log(20.0, 200.0),
+    }[family]
     machine = Machine(
         inertia,
         coulomb,
@@ -94,13 +108,22 @@ def draw(seed: int, family: str, *, six: bool, seconds: float, contact: str | No
     if looped:
         width = min(2 * math.pi * r.uniform(3.0, 8.0), 0.12 / period)
         kind = "position" if linear or r.random() < 0.5 else "velocity"
-        loop = Loop(kind, inertia * width, inertia * width * width / 4, width / 4, 0.35 / width, 12 * coulomb)
+        loop = Loop(
+            kind,
+            inertia * width,
+            inertia * width * width / 4,
+            width / 4,
+            0.35 / width,
+            12 * coulomb,
+        )
     if six:
-        kinds = tuple(KINDS[i] for i in r.permutation(5)) + (str(r.choice(KINDS)),)
+        kinds = (*(KINDS[i] for i in r.permutation(5)), str(r.choice(KINDS)))
         length = seconds / 6
     else:
         kinds, length = (str(r.choice(["sines", "squares", "chirp", "ramps"])),), seconds
-    starts = tuple(float(x) for x in np.cumsum([0.0] + [length + r.uniform(2, 8) for _ in kinds[1:]]))
+    starts = tuple(
+        float(x) for x in np.cumsum([0.0] + [length + r.uniform(2, 8) for _ in kinds[1:]])
+    )
     return Bench(
         seed,
         family,
@@ -143,12 +166,15 @@ def _shape(kind: str, t: np.ndarray, length: float, r: np.random.Generator) -> n
     if kind == "sines":
         rates = np.exp(r.uniform(np.log(0.2), np.log(3.0), 4))
         sizes, phases = r.uniform(0.4, 1.0, 4), r.uniform(0, 2 * np.pi, 4)
-        y = sum(a * (np.sin(2 * np.pi * f * t + p)) for a, f, p in zip(sizes, rates, phases, strict=True))
+        y = sum(
+            a * (np.sin(2 * np.pi * f * t + p))
+            for a, f, p in zip(sizes, rates, phases, strict=True)
+        )
         return y / (0.6 * np.sum(sizes)) * np.minimum(t / 0.3, 1.0)
     if kind == "ramps":
         period = r.uniform(1.5, 4.0)
         phase = (t / period + 0.25) % 1.0
-        return 1.2 * (1.0 - 4.0 * np.abs(phase - 0.5)) * (0.5 + 0.5 * np.floor(t / period + 0.25) % 2)
+        return 1.2 * (1.0 - 4.0 * np.abs(phase - 0.5)) * (0.5 + 0.5 * (np.floor(t / period) % 2))
     if kind == "steps":
         hold = r.uniform(0.3, 0.8)
         levels = r.uniform(-1.3, 1.3, math.ceil(length / hold) + 1)
@@ -157,62 +183,95 @@ def _shape(kind: str, t: np.ndarray, length: float, r: np.random.Generator) -> n
         period, duty = r.uniform(1.0, 2.5), r.uniform(0.5, 0.8)
         phase = t / period % 1.0
         size = np.array([1.0, 0.7, 1.2])[(t / period).astype(int) % 3]
-        return np.where(phase < duty / 2, size, np.where((phase > 0.5) & (phase < 0.5 + duty / 2), -size, 0.0))
+        return np.where(
+            phase < duty / 2, size, np.where((phase > 0.5) & (phase < 0.5 + duty / 2), -size, 0.0)
+        )
     low, high = 0.15, r.uniform(2.0, 5.0)
     k = np.log(high / low) / length
     return 1.1 * np.sin(2 * np.pi * low / k * (np.exp(k * t) - 1.0))
 
 
-def hide(b: Bench, effect: str, size: float, r: np.random.Generator, peak: float) -> tuple[Machine, float]:
-    """The machine with the effect, and how late its readings are logged. `size` is a number without unit, calibrated later."""
-    m = b.machine
-    turn = LEAD if b.linear else 2 * math.pi
-    total = b.seconds * len(b.kinds)
-    two = dict(load_inertia=r.uniform(0.35, 0.6) * m.inertia, load_viscous=0.05 * m.viscous)
-    if effect == "stribeck":
-        return replace(m, stribeck=3 * size * m.coulomb, stribeck_speed=b.typical * r.uniform(0.08, 0.3)), 0.0
-    if effect == "asymmetry":
-        return replace(m, asymmetry=size), 0.0
-    if effect == "viscous_quadratic":
-        return replace(m, quadratic=size * m.coulomb / b.typical**2), 0.0
-    if effect == "cogging":
-        wave = 2 * math.pi / turn * int(r.integers(4, 13))
-        p, q = r.uniform(0, 2 * math.pi, 2)
-        return replace(m, ripple=((size * m.coulomb, wave, p), (0.4 * size * m.coulomb, 2 * wave, q))), 0.0
-    if effect == "torque_bias":
-        return replace(m, bias=size * m.coulomb * float(r.choice([-1, 1]))), 0.0
-    if effect == "position_load":
-        if b.linear:
-            return replace(m, spring=size * m.coulomb / (b.typical * 0.5)), 0.0
-        return replace(m, gravity=1.4 * size * m.coulomb, gravity_zero=r.uniform(-math.pi, math.pi)), 0.0
-    if effect in ("backlash", "shaft_compliance"):
-        if effect == "backlash":  # a stiff mesh, so that the gap is what is seen
-            two["load_inertia"] = r.uniform(0.15, 0.35) * m.inertia
-        jl = two["load_inertia"]
-        reduced = jl * (m.inertia - jl) / m.inertia
-        rate = 2 * math.pi * (120.0 if effect == "backlash" else 14.0 / math.sqrt(max(size, 0.02)))
-        rate = min(rate, 2 * math.pi * 150.0)
-        shaft, damping = reduced * rate**2, 2 * 0.06 * reduced * rate
-        gap = 0.06 * size * b.typical if effect == "backlash" else 0.0
-        return replace(m, **two, shaft=shaft, shaft_damping=damping, play=gap), 0.0
-    if effect == "load_dependence":
-        return replace(m, load_share=size * 0.6), 0.0
-    if effect == "input_saturation":
-        return replace(m, limit=peak * (1.0 - min(size, 0.8))), 0.0
-    if effect == "input_dead_band":
-        return replace(m, dead_band=size * m.coulomb), 0.0
-    if effect == "current_loop_lag":
-        return replace(m, lag=size * 0.02), 0.0
-    if effect == "torque_constant_error":
-        return replace(m, weakening=min(size, 0.7), weakening_at=peak), 0.0
-    if effect == "position_friction":
-        wave = 2 * math.pi / turn * int(r.integers(1, 4)) / (10 if b.linear else 1)
-        return replace(m, patch=1.4 * min(size, 0.6), patch_wave=wave, patch_phase=r.uniform(0, 2 * math.pi)), 0.0
-    if effect == "temperature_drift":
-        return replace(m, warm=2 * size, warm_time=0.4 * total), 0.0
+def hide(
+    b: Bench, effect: str, size: float, r: np.random.Generator, peak: float
+) -> tuple[Machine, float]:
+    """The machine with the effect, and how late its readings are logged.
+
+    `size` has no unit and is about the share of coulomb; `calibrate` finds the right one.
+    """
     if effect == "log_delay":
-        return m, min(size, 2.0) * 0.02
-    raise ValueError(effect)
+        return b.machine, min(size, 2.0) * SLOWEST
+    return replace(b.machine, **_PARTS[effect](_Hiding(b, size, r, peak))), 0.0
+
+
+class _Hiding:
+    """What the size of an effect is measured in."""
+
+    def __init__(self, b: Bench, size: float, r: np.random.Generator, peak: float) -> None:
+        self.m, self.typical, self.linear = b.machine, b.typical, b.linear
+        self.size, self.r, self.peak = size, r, peak
+        self.force = size * b.machine.coulomb
+        self.wave = 2 * math.pi / (LEAD if b.linear else 2 * math.pi)  # once a turn
+        self.total = b.seconds * len(b.kinds)
+        self.far = r.uniform(0.35, 0.6)  # share of the inertia behind the shaft
+
+
+def _cogging(h: _Hiding) -> dict[str, Any]:
+    wave, (p, q) = h.wave * int(h.r.integers(4, 13)), h.r.uniform(0, 2 * math.pi, 2)
+    return {"ripple": ((h.force, wave, p), (0.4 * h.force, 2 * wave, q))}
+
+
+def _position_load(h: _Hiding) -> dict[str, Any]:
+    if h.linear:
+        return {"spring": h.force / (h.typical * 0.5)}
+    return {"gravity": 1.4 * h.size * h.m.coulomb, "gravity_zero": h.r.uniform(-math.pi, math.pi)}
+
+
+def _backlash(h: _Hiding) -> dict[str, Any]:
+    # A stiff mesh, so that the gap is what is seen.
+    return _behind(h, h.r.uniform(0.15, 0.35), 120.0) | {"play": 0.06 * h.size * h.typical}
+
+
+def _compliance(h: _Hiding) -> dict[str, Any]:
+    return _behind(h, h.far, 14.0 / math.sqrt(max(h.size, 0.02)))
+
+
+def _behind(h: _Hiding, share: float, hertz: float) -> dict[str, Any]:
+    far = share * h.m.inertia
+    reduced, rate = far * (h.m.inertia - far) / h.m.inertia, 2 * math.pi * min(hertz, 150.0)
+    return {
+        "load_inertia": far,
+        "load_viscous": 0.05 * h.m.viscous,
+        "shaft": reduced * rate**2,
+        "shaft_damping": 2 * 0.06 * reduced * rate,
+    }
+
+
+def _position_friction(h: _Hiding) -> dict[str, Any]:
+    wave = h.wave * int(h.r.integers(1, 4)) / (10 if h.linear else 1)
+    share, phase = 1.4 * min(h.size, 0.6), h.r.uniform(0, 2 * math.pi)
+    return {"patch": share, "patch_wave": wave, "patch_phase": phase}
+
+
+_PARTS: dict[str, Callable[[_Hiding], dict[str, Any]]] = {
+    "stribeck": lambda h: {
+        "stribeck": 3 * h.force,
+        "stribeck_speed": h.typical * h.r.uniform(0.08, 0.3),
+    },
+    "asymmetry": lambda h: {"asymmetry": h.size},
+    "viscous_quadratic": lambda h: {"quadratic": h.force / h.typical**2},
+    "cogging": _cogging,
+    "torque_bias": lambda h: {"bias": h.force * float(h.r.choice([-1, 1]))},
+    "position_load": _position_load,
+    "backlash": _backlash,
+    "shaft_compliance": _compliance,
+    "load_dependence": lambda h: {"load_share": h.size * 0.6},
+    "input_saturation": lambda h: {"limit": h.peak * (1.0 - min(h.size, 0.8))},
+    "input_dead_band": lambda h: {"dead_band": h.force},
+    "current_loop_lag": lambda h: {"lag": h.size * SLOWEST},
+    "torque_constant_error": lambda h: {"weakening": min(h.size, 0.7), "weakening_at": h.peak},
+    "position_friction": _position_friction,
+    "temperature_drift": lambda h: {"warm": 2 * h.size, "warm_time": 0.4 * h.total},
+}
 
 
 def run_all(b: Bench, m: Machine, drives: list[np.ndarray], step: float) -> list[Motion]:
@@ -234,7 +293,9 @@ def calibrate(b: Bench, effect: str, target: float, drives: list[np.ndarray], pe
     return size
 
 
-def write(b: Bench, effect: str | None, target: float, folder: Path, truth: Path) -> dict[str, object]:
+def write(
+    b: Bench, effect: str | None, target: float, folder: Path, truth: Path
+) -> dict[str, object]:
     """Simulates the session and writes its files; what was hidden goes into `truth` alone."""
     r = np.random.default_rng([6, b.seed])
     drives = [excitation(b, kind, r) for kind in b.kinds]
@@ -273,11 +334,15 @@ def write(b: Bench, effect: str | None, target: float, folder: Path, truth: Path
         "machine": asdict(m),
     }
     truth.mkdir(parents=True, exist_ok=True)
-    (truth / f"{folder.name}.json").write_text(json.dumps(facts, indent=1, default=float), encoding="utf-8")
+    (truth / f"{folder.name}.json").write_text(
+        json.dumps(facts, indent=1, default=float), encoding="utf-8"
+    )
     return facts
 
 
-def _save(b: Bench, m: Machine, run: Motion, late: float, r: np.random.Generator, path: Path) -> None:
+def _save(
+    b: Bench, m: Machine, run: Motion, late: float, r: np.random.Generator, path: Path
+) -> None:
     x = np.interp(run.time - late, run.time, run.position) if late else run.position
     read = np.floor(x / b.count + b.noise * r.standard_normal(len(x)) + 0.5) * b.count
     put = (run.command + b.log_noise * m.coulomb * r.standard_normal(len(x))) / m.gain
@@ -289,22 +354,34 @@ def _save(b: Bench, m: Machine, run: Motion, late: float, r: np.random.Generator
     with path.open("w", newline="", encoding="utf-8") as f:
         out = csv.writer(f)
         out.writerow(table)
-        out.writerows([f"{t:.6f}", f"{u:.9g}", f"{p:.12g}"] for t, u, p in zip(*table.values(), strict=True))
+        out.writerows(
+            [f"{t:.6f}", f"{u:.9g}", f"{p:.12g}"] for t, u, p in zip(*table.values(), strict=True)
+        )
 
 
 def _names(b: Bench) -> tuple[str, str]:
-    unit = {"torque_axis": "torque_nm", "dc_motor": "voltage_v", "geared_joint": "torque_nm", "ballscrew": "current_a"}
+    unit = {
+        "torque_axis": "torque_nm",
+        "dc_motor": "voltage_v",
+        "geared_joint": "torque_nm",
+        "ballscrew": "current_a",
+    }
     return unit[b.family], "position_m" if b.linear else "position_rad"
 
 
+def stated_law(m: Machine) -> str:
+    """What the plant file says: the form of contact that the machine has."""
+    return "coulomb" if m.contact == "rigid" else m.contact
+
+
 def _toml(b: Bench, names: list[str], r: np.random.Generator, folder: Path) -> None:
-    law = "coulomb" if b.machine.contact == "rigid" else b.machine.contact
     sensor = f"count_m = {b.count!r}" if b.linear else f"counts_per_rev = {b.counts}"
+    drawn = b.machine.inertia * r.uniform(0.85, 1.15)
     (folder / "plant.toml").write_text(
         f'[motion]\nkind = "{"linear" if b.linear else "rotary"}"\n\n'
         f'[drive]\ninput = "{_names(b)[0]}"\ngain = {b.machine.gain!r}\n\n'
-        f"[body]\ninertia = {b.machine.inertia * r.uniform(0.85, 1.15):.4g}  # from the drawings\n\n"
-        f'[friction]\nlaw = "{law}"\n\n[sensor]\n{sensor}\n',
+        f"[body]\ninertia = {drawn:.4g}  # from the drawings\n\n"
+        f'[friction]\nlaw = "{stated_law(b.machine)}"\n\n[sensor]\n{sensor}\n',
         encoding="utf-8",
     )
     text = 'plant = "plant.toml"\n'
@@ -313,39 +390,54 @@ def _toml(b: Bench, names: list[str], r: np.random.Generator, folder: Path) -> N
     (folder / "session.toml").write_text(text, encoding="utf-8")
 
 
-def plan(seed: int, number: int = 16) -> list[tuple[str, Bench, str | None, float]]:
-    """Names, benches, hidden effects and wanted shares: as many nulls as hidden ones; each effect once in sixteen."""
-    r = np.random.default_rng([7, seed])
-    out: list[tuple[str, Bench, str | None, float]] = []
+@dataclass(frozen=True)
+class Planned:
+    """A session that is to be made."""
+
+    name: str
+    bench: Bench
+    effect: str | None
+    share: float
+
+
+def plan(seed: int, number: int = 16, seconds: tuple[float, float] = (20.0, 30.0)) -> list[Planned]:
+    """As many with nothing hidden as with one effect; a longer plan holds the shorter one."""
+    deals = [_deal(seed, k, seconds) for k in range(-(-number // DEAL))]
+    plain = [each for deal in deals for each in deal[:DEAL]]
+    hidden = [each for deal in deals for each in deal[DEAL:]]
+    return plain[:number] + hidden[:number]
+
+
+def _deal(seed: int, deal: int, seconds: tuple[float, float]) -> list[Planned]:
+    """Sixteen sessions with nothing hidden, and every effect once."""
+    r = np.random.default_rng([7, seed, deal])
+    found = []
     contacts = ["rigid"] * 12 + ["dahl", "lugre"] * 2
-    for i in range(number):
-        own = 1000 * seed + i
-        bench = draw(
-            own, FAMILIES[i % 4], six=bool(i // 4 % 2), seconds=float(r.uniform(20, 30)), contact=contacts[(i * 5) % 16]
-        )
-        out.append((f"n{own:05d}", bench, None, 0.0))
-    order = r.permutation(len(EFFECTS))
-    for i in range(number):
-        own = 1000 * seed + 500 + i
-        effect = EFFECTS[order[i % len(EFFECTS)]]
+    for i in range(DEAL):
+        own, length = 1000 * seed + DEAL * deal + i, float(r.uniform(*seconds))
+        contact = contacts[i * 5 % DEAL]
+        bench = draw(own, FAMILIES[i % 4], six=bool(i // 4 % 2), seconds=length, contact=contact)
+        found.append(Planned(f"n{own:05d}", bench, None, 0.0))
+    for i, k in enumerate(r.permutation(DEAL)):
+        own, length = 1000 * seed + 500 + DEAL * deal + i, float(r.uniform(*seconds))
+        effect = EFFECTS[k]
         six = bool(i // 4 % 2) or effect == "temperature_drift"
-        bench = draw(own, FAMILIES[i % 4], six=six, seconds=float(r.uniform(20, 30)))
+        bench = draw(own, FAMILIES[i % 4], six=six, seconds=length)
         if effect == "backlash" and bench.loop and bench.counts < 2**17:
-            # Else the loop makes the encoder's steps into effort, and the mesh's resonance outweighs the gap.
+            # Else the loop makes the encoder's steps into effort, and the mesh's resonance
+            # outweighs the gap.
             bench = replace(bench, counts=2**17, count=bench.count * bench.counts / 2**17)
-        out.append((f"h{own:05d}", bench, effect, float(np.exp(r.uniform(np.log(0.08), np.log(0.4))))))
-    return out
+        size = float(np.exp(r.uniform(np.log(0.08), np.log(0.4))))
+        found.append(Planned(f"h{own:05d}", bench, effect, size))
+    return found
 
 
 def make(seed: int, out: Path, number: int = 16) -> None:
-    for name, bench, effect, target in plan(seed, number):
-        facts = write(bench, effect, target, out / "sessions" / name, out / "truth")
-        print(
-            f"{name} {bench.family:12} {facts['contact']:6} {effect or '-':22} {target:.3f} {facts['share']:.3f}"
-            f" {facts['share_left_by_the_fit']:.3f} size {facts['size']:.3f} dt {bench.period} counts {bench.counts}"
-            f" {bench.loop.kind if bench.loop else 'open':9} {','.join(bench.kinds):20} slides {facts['sliding']:.2f}",
-            flush=True,
-        )
+    for each in plan(seed, number):
+        bench = each.bench
+        facts = write(bench, each.effect, each.share, out / "sessions" / each.name, out / "truth")
+        asked, got = each.share, facts["share"]
+        print(f"{each.name} {bench.family} {each.effect}: {asked:.3f} asked, {got:.3f}", flush=True)
 
 
 if __name__ == "__main__":
