@@ -46,6 +46,7 @@ def beside(judges):
         ),
         ("hidden: name", True, named),
         ("hidden: class", True, classed),
+        ("hidden: the first cause is of its class", True, _begins_right),
         ("hidden: the effect among all that is told", True, _among),
         ("hidden: a sure and wrong name", True, wrong_names),
         ("hidden: silence", True, _is("nothing_missing")),
@@ -118,6 +119,10 @@ def _refused(row):
 def _among(row):
     said = {name for cause in row["found"] for name in (cause["name"], *cause["look_alikes"])}
     return set(row["names"]) <= said
+
+
+def _begins_right(row):
+    return bool(row["found"]) and row["found"][0]["class"] in row["classes"]
 
 
 def _each(rows):

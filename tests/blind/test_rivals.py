@@ -59,10 +59,17 @@ def test_an_effect_that_was_taken_in_is_asked_no_more():
 
 
 def test_a_session_gives_the_columns_that_the_diagnosis_screens(tmp_path):
-    case = next(c for c in PLANTS["axis4"](("hidden",), 16, 4, (8.0, 8.1)) if c.effect == "cogging")
+    case = next(
+        c for c in PLANTS["axis4"](("hidden",), 16, 4, (16.0, 16.1)) if c.effect == "cogging"
+    )
     lib = library(case.lay(tmp_path / "s").path)
     assert {"cogging", "stribeck", "input_delay"} <= {entry.name for entry in lib.entries}
     assert all(len(entry.columns) == len(lib.residual) == len(lib.block) for entry in lib.entries)
     assert 0.0 < lib.share <= 1.0
-    own = lib.best()
-    assert max(own, key=lambda name: own[name][0]) == "cogging"
+    power, entry, gains = max(lib.best().values(), key=lambda one: one[0])
+    assert entry.name == "cogging"
+    # Refitted, next to nothing is left of it; projected off, as much as its slopes missed.
+    more, less = lib.again(entry, gains), lib.without(entry)
+    assert "cogging" not in {each.name for each in more.entries}
+    assert more.residual @ more.residual < 1.2 * (less.residual @ less.residual)
+    assert power == pytest.approx(lib.residual @ lib.residual - less.residual @ less.residual)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,12 +10,17 @@ import numpy as np
 import stiction as st
 from stiction.diagnosis.base import based
 from stiction.diagnosis.decide import SMALLEST
+from stiction.diagnosis.model import fitted, likeliest_of, stepped, with_effect
 from stiction.diagnosis.regression import bounded
 from stiction.diagnosis.rounds import _candidates, friction_of
 from stiction.diagnosis.selection import Search
 from stiction.diagnosis.signatures import Signatures
 
 ALPHA = 0.01
+SHARES = (1.0, 0.3, 0.1)
+"""Of what slopes say, at which a refit may begin."""
+FLAT = 1e-8
+"""Directions of the base with less than this share of the strongest one are dropped."""
 MOST = 3
 """Names at most: as many causes as a machine is asked for at once."""
 PARALLEL = 1e-8
@@ -54,6 +60,9 @@ class Library:
         How many directions the base has.
     rows : float
         Independent rows: those that do not lie under one kernel.
+    again : callable, optional
+        The same beside the base with an entry, refitted; None where the fit fails. Without it, and
+        there, the entry is projected off.
     least : float
         Power below which an effect is not worth a name, as for the diagnosis.
     """
@@ -64,6 +73,7 @@ class Library:
     base: int
     rows: float
     least: float
+    again: Callable[[Entry, np.ndarray], Library | None] | None = None
 
     @property
     def share(self):
@@ -102,21 +112,56 @@ def library(path):
         tried = _candidates(evidence, base, (), Search([base]))
     except st.InputError:
         return None
-    signatures = Signatures.of(evidence, base.plant, base.nuisances, tried)
-    left, sizes, _ = np.linalg.svd(base.columns / _norms(base.columns), full_matrices=False)
-    q = left[:, sizes > 1e-8 * sizes[0]]
-    entries = []
+    return _seen(evidence, base, tried)
+
+
+def _seen(evidence, model, tried):
+    """What the effects would change beside a model."""
+    signatures = Signatures.of(evidence, model.plant, model.nuisances, tried)
+    left, sizes, _ = np.linalg.svd(model.columns / _norms(model.columns), full_matrices=False)
+    q = left[:, sizes > FLAT * sizes[0]]
+    entries, places = [], {}
     for k, candidate in enumerate(signatures.candidates):
         whole = signatures.whole(k)
         own = whole - q @ (q.T @ whole)
         if np.all(np.sum(own**2, axis=0) > PARALLEL * np.sum(whole**2, axis=0)):
             low, high = np.array(candidate.bounds).T
+            places[len(entries)] = k
             entries.append(Entry(candidate.name, own, low, high, candidate.parameters))
-    residual = base.residual - q @ (q.T @ base.residual)
-    n = len(residual)
-    least = n * (SMALLEST * friction_of(evidence, base)) ** 2
-    rows = n / max(evidence.overlap, 1.0)
-    return Library(residual, entries, evidence.cells.block, q.shape[1], rows, least)
+    n = len(model.residual)
+
+    def again(entry, gains):
+        k = next(places[j] for j, each in enumerate(entries) if each is entry)
+        return _refitted(evidence, model, tried, signatures, k, gains)
+
+    return Library(
+        residual=model.residual - q @ (q.T @ model.residual),
+        entries=entries,
+        block=evidence.cells.block,
+        base=q.shape[1],
+        rows=n / max(evidence.overlap, 1.0),
+        least=n * (SMALLEST * friction_of(evidence, model)) ** 2,
+        again=again,
+    )
+
+
+def _refitted(evidence, model, tried, signatures, k, gains):
+    """The columns beside the model with one more effect, all of it fitted; None where that fails.
+
+    Slopes at no gain tell little of what a whole gain does: it begins at what they say, or less.
+    """
+    candidate = signatures.candidates[k]
+    begun = [
+        with_effect(
+            stepped(model, share * signatures.explained(k, gains)), candidate, share * gains
+        )
+        for share in SHARES
+    ]
+    start = likeliest_of(evidence, begun, model.nuisances)
+    more = fitted(evidence, start, model.nuisances)
+    if not more.power < model.power:
+        return None
+    return _seen(evidence, more, [each for each in tried if each.name != candidate.name])
 
 
 def forward(lib, accept):
@@ -128,7 +173,8 @@ def forward(lib, accept):
         if chosen is None:
             return names
         names.append(chosen)
-        lib = lib.without(own[chosen][1])
+        _, entry, gains = own[chosen]
+        lib = (lib.again and lib.again(entry, gains)) or lib.without(entry)
     return names
 
 

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tests.reference.axis4.machine import Loop, Machine, Motion, share, simulate
+
+from .machine import Loop, Machine, Motion, share, simulate
 
 FAMILIES = ("torque_axis", "dc_motor", "geared_joint", "ballscrew")
 EFFECTS = (
@@ -39,7 +40,10 @@ KINDS = ("sines", "ramps", "steps", "squares", "chirp")
 DEAL = len(EFFECTS)
 SLOWEST = 0.02
 """s: what a lag or a delay of size 1 is."""
-LEAD = 0.01  # m per turn of the ballscrew
+REACH_S = 0.004
+"""s at the typical speed in which a bristle is bent to where it slides."""
+LEAD = 0.01
+"""m a turn of the ballscrew."""
 
 
 @dataclass
@@ -67,79 +71,68 @@ class Bench:
         return self.family == "ballscrew"
 
 
-def draw(seed: int, family: str, *, six: bool, seconds: float, contact: str | None = None) -> Bench:
+def draw(seed: int, family: str, *, six: bool, seconds: float, contact: str = "rigid") -> Bench:
     """A machine and a plan of recordings; `seconds` is the whole session's data."""
     r = np.random.default_rng([4, seed])
-
-    def log(low: float, high: float) -> float:
-        return float(np.exp(r.uniform(np.log(low), np.log(high))))
-
-    linear = family == "ballscrew"
-    coulomb = log(10.0, 80.0) if linear else log(0.02, 5.0)
-    typical = log(0.03, 0.2) if linear else log(2.0, 20.0)
+    linear, looped = family == "ballscrew", family in ("geared_joint", "ballscrew")
+    coulomb = _log(r, 10.0, 80.0) if linear else _log(r, 0.02, 5.0)
+    typical = _log(r, 0.03, 0.2) if linear else _log(r, 2.0, 20.0)
     viscous = r.uniform(0.3, 0.9) * coulomb / typical
-    inertia = viscous * log(0.06, 0.4)
-    looped = family in ("geared_joint", "ballscrew")
-    period = float(
-        r.choice([0.001, 0.002, 0.004, 0.005] if looped else [0.001, 0.002, 0.005, 0.01])
-    )
+    inertia = viscous * _log(r, 0.06, 0.4)
+    periods = [0.001, 0.002, 0.004, 0.005] if looped else [0.001, 0.002, 0.005, 0.01]
+    period = float(r.choice(periods))
     counts = int(2 ** r.integers(14 if looped else 10, 21))
-    turn = LEAD if linear else 2 * math.pi
-    count = turn / counts
-    contact = contact or "rigid"
-    reach = typical * 0.004  # the bristle's deflection where it slides
-    bristle = coulomb / reach if contact != "rigid" else 0.0
-    gain = {
-        "torque_axis": 1.0,
-        "dc_motor": log(0.05, 0.5),
-        "geared_joint": 1.0,
-        "ballscrew": log(20.0, 200.0),
-    }[family]
-    machine = Machine(
-        inertia,
-        coulomb,
-        float(viscous),
-        contact=contact,
-        bristle=bristle,
-        bristle_damping=0.6 * math.sqrt(bristle * inertia) if contact == "lugre" else 0.0,
-        gain=gain,
-    )
-    loop = None
-    if looped:
-        width = min(2 * math.pi * r.uniform(3.0, 8.0), 0.12 / period)
-        kind = "position" if linear or r.random() < 0.5 else "velocity"
-        loop = Loop(
-            kind,
-            inertia * width,
-            inertia * width * width / 4,
-            width / 4,
-            0.35 / width,
-            12 * coulomb,
-        )
+    volts, amperes = _log(r, 0.05, 0.5), _log(r, 20.0, 200.0)
+    gain = {"dc_motor": volts, "ballscrew": amperes}.get(family, 1.0)
+    machine = Machine(inertia, coulomb, float(viscous), gain=gain)
+    if contact != "rigid":
+        machine = _yielding(machine, contact, REACH_S * typical)
+    loop = _loop(r, machine, period, linear=linear) if looped else None
     if six:
         kinds = (*(KINDS[i] for i in r.permutation(5)), str(r.choice(KINDS)))
-        length = seconds / 6
     else:
-        kinds, length = (str(r.choice(["sines", "squares", "chirp", "ramps"])),), seconds
-    starts = tuple(
-        float(x) for x in np.cumsum([0.0] + [length + r.uniform(2, 8) for _ in kinds[1:]])
-    )
+        kinds = (str(r.choice(["sines", "squares", "chirp", "ramps"])),)
+    length = seconds / len(kinds)
+    gaps = [length + r.uniform(2, 8) for _ in kinds[1:]]
     return Bench(
-        seed,
-        family,
-        machine,
-        period,
-        counts,
-        count,
-        float(r.uniform(0.0, 0.4)),
-        float(r.choice([0.0, 0.02])),
-        typical,
-        kinds,
-        length,
-        loop,
-        float(r.choice([0.0, r.uniform(0.5, 40.0)])),
-        str(r.choice(["csv", "npz"])),
-        starts,
+        seed=seed,
+        family=family,
+        machine=machine,
+        period=period,
+        counts=counts,
+        count=(LEAD if linear else 2 * math.pi) / counts,
+        typical=typical,
+        kinds=kinds,
+        seconds=length,
+        loop=loop,
+        starts=tuple(float(x) for x in np.cumsum([0.0, *gaps])),
+        noise=float(r.uniform(0.0, 0.4)),
+        log_noise=float(r.choice([0.0, 0.02])),
+        offset=float(r.choice([0.0, r.uniform(0.5, 40.0)])),
+        form=str(r.choice(["csv", "npz"])),
+    )
+
+
+def _log(r: np.random.Generator, low: float, high: float) -> float:
+    return float(np.exp(r.uniform(np.log(low), np.log(high))))
+
+
+def _yielding(m: Machine, contact: str, reach: float) -> Machine:
+    """With a bristle that slides where it is bent by `reach`."""
+    stiffness = m.coulomb / reach
+    damping = 0.6 * math.sqrt(stiffness * m.inertia) if contact == "lugre" else 0.0
+    return replace(m, contact=contact, bristle=stiffness, bristle_damping=damping)
+
+
+def _loop(r: np.random.Generator, m: Machine, period: float, *, linear: bool) -> Loop:
+    width = min(2 * math.pi * r.uniform(3.0, 8.0), 0.12 / period)
+    return Loop(
+        kind="position" if linear or r.random() < 0.5 else "velocity",
+        proportional=m.inertia * width,
+        integral=m.inertia * width * width / 4,
+        position=width / 4,
+        filter_s=0.35 / width,
+        limit=12 * m.coulomb,
     )
 
 

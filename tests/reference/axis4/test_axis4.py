@@ -26,7 +26,7 @@ CALIBRATED = (0.6, 1.5)
 def sums(n, dt, seed=0):
     """An effort that slides both ways and rests between."""
     t, r = np.arange(n) * dt, np.random.default_rng(seed)
-    return sum(a * np.sin(f * t + p) for a, f, p in zip((0.3, 0.2), (7.0, 2.3), r.random(2)))
+    return 0.3 * np.sin(7.0 * t + r.random()) + 0.2 * np.sin(2.3 * t + r.random())
 
 
 @pytest.mark.parametrize("path", [machine, sessions], ids=lambda each: each.__name__[-8:])
