@@ -98,7 +98,9 @@ class Library:
             if entry.name != chosen.name
         ]
         left = self.residual - q @ (q.T @ self.residual)
-        return replace(self, residual=left, entries=others, base=self.base + q.shape[1])
+        base = self.base + q.shape[1]
+        # What was projected off stands in no model, so that nothing can be refitted beside it.
+        return replace(self, residual=left, entries=others, base=base, again=None)
 
 
 def library(path):

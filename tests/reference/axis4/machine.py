@@ -195,7 +195,7 @@ class _Axis:
         self.damping = m.bristle_damping if m.contact == "lugre" else 0.0
         self.varies = bool(m.stribeck or m.load_share or m.patch or m.warm)
         self.placed = bool(m.ripple or m.gravity or m.spring)
-        self.work = self.dry = self.viscous = self.forward = 0.0
+        self.work = self.dry = self.viscous = self.forward = self.slope = 0.0
         self.whole = True
 
     def balance(self, speed: float) -> dict[str, float]:
@@ -224,7 +224,10 @@ class _Axis:
             t -= self._at_place(xm)
         shaft = self._shaft(xm, h) if self.two else 0.0
         t -= shaft
-        c = self.m.viscous + self.m.quadratic * abs(self.w)
+        c = self.m.viscous
+        if self.m.quadratic:
+            # At the middle of the step, as far as the last one tells.
+            c += self.m.quadratic * abs(self.w + 0.5 * h * self.slope)
         if self.rigid:
             s, w1, dry, h = self._rigid(t, c, xm, u, now, h)
         else:
@@ -236,6 +239,7 @@ class _Axis:
             self.viscous += c * mean * mean * h
             self.forward += s * h
             self.x += mean * h
+            self.slope = (w1 - self.w) / h
             self.w = w1
         if self.two:
             self._load(shaft, h)

@@ -140,7 +140,7 @@ def test_every_effect_comes_once_and_a_longer_plan_holds_the_shorter():
 
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_an_effect_has_the_size_that_was_asked_for(effect, tmp_path):
-    bench = sessions.draw(11, "dc_motor", six=True, seconds=9.0)
+    bench = sessions.draw(11, "dc_motor", six=True, seconds=6.0)
     facts = sessions.write(bench, effect, 0.15, tmp_path / "s", tmp_path / "truth")
     assert CALIBRATED[0] * 0.15 < facts["share"] < CALIBRATED[1] * 0.15
 
