@@ -28,9 +28,48 @@ def report(rows):
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
+def beside(judges):
+    """Counts of several judges of the same sessions, a column each, as Markdown.
+
+    Parameters
+    ----------
+    judges : dict of str to list of rows
+    """
+    tests = (
+        ("nothing hidden: a name", False, lambda r: r["found"]),
+        ("nothing hidden: a sure name", False, confident),
+        ("nothing hidden: unexplained", False, _is("unexplained")),
+        (
+            "hidden: the name, and no other sure one",
+            True,
+            lambda r: named(r) and not wrong_names(r),
+        ),
+        ("hidden: name", True, named),
+        ("hidden: class", True, classed),
+        ("hidden: the first cause is of its class", True, _begins_right),
+        ("hidden: the effect among all that is told", True, _among),
+        ("hidden: a sure and wrong name", True, wrong_names),
+        ("hidden: silence", True, _is("nothing_missing")),
+    )
+    told = {name: [r for r in rows if "verdict" in r] for name, rows in judges.items()}
+    lines = [
+        (
+            what,
+            *(
+                rate([r for r in rows if bool(r["names"]) is hidden], test)
+                for rows in told.values()
+            ),
+        )
+        for what, hidden, test in tests
+    ]
+    return table(("what", *told), lines) + "\n"
+
+
 def has_own_law(row):
     """Whether the plant file states the law that the machine has, in every detail."""
     spec = row["spec"]
+    if "own_law" in spec:
+        return spec["own_law"]
     return OWN_LAWS[spec["contact"]] == spec["law"] and spec["kind"] == "driven"
 
 
@@ -80,6 +119,10 @@ def _refused(row):
 def _among(row):
     said = {name for cause in row["found"] for name in (cause["name"], *cause["look_alikes"])}
     return set(row["names"]) <= said
+
+
+def _begins_right(row):
+    return bool(row["found"]) and row["found"][0]["class"] in row["classes"]
 
 
 def _each(rows):
