@@ -1,0 +1,73 @@
+"""Long columns of numbers as short text, which a page unpacks without a library."""
+
+from __future__ import annotations
+
+import zlib
+from base64 import b64encode
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from ..trajectory import FloatArray
+
+__all__ = ["Packed", "pack"]
+
+FINEST: Final = 2.0**-26
+"""Steps of a column are no finer than this share of its range: differences of the second order of
+whole numbers of steps still have 32 bits then."""
+PLANES: Final = 4
+"""Bytes of a whole number. Those of one weight stand together: the higher ones are 0 nearly all."""
+ORDERS: Final = (0, 1, 2)
+LEVEL: Final = 6
+"""Of the compression: beyond it the time doubles and a hundredth of the size goes."""
+
+
+@dataclass(frozen=True)
+class Packed:
+    """A column of n numbers.
+
+    Value k is ``origin`` + ``step`` times a whole number. Of these the differences of an order are
+    kept, 0 → 0, -1 → 1, 1 → 2, -2 → 3 …, as bytes of equal weight one column after the other,
+    deflated (RFC 1950), in base 64.
+
+    Attributes
+    ----------
+    origin, step : float
+    order : int
+        Of the differences: 0, 1 or 2; the first ones are those from 0.
+    text : str
+    """
+
+    origin: float
+    step: float
+    order: int
+    text: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """What a page needs beside the text."""
+        return {"origin": self.origin, "step": self.step, "order": self.order}
+
+
+def pack(values: FloatArray, step: float) -> Packed:
+    """A column of finite numbers, each rounded to a step.
+
+    Parameters
+    ----------
+    values : numpy.ndarray, shape (n,)
+    step : float
+        Nobody looks closer than this. Where it is finer than what the range allows it is taken
+        wider.
+    """
+    values = np.nan_to_num(np.asarray(values, dtype=np.float64), posinf=0.0, neginf=0.0)
+    low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
+    step = max(step, FINEST * (high - low)) or 1.0
+    whole = np.round((values - low) / step).astype(np.int64)
+    changes = {order: np.diff(whole, order, prepend=np.zeros(order, np.int64)) for order in ORDERS}
+    order = min(ORDERS, key=lambda each: float(np.sum(np.log2(1.0 + np.abs(changes[each])))))
+    chosen = changes[order]
+    # Small numbers of either sign have high bytes of 0 so.
+    zigzag = ((chosen << 1) ^ (chosen >> 63)).astype("<u4")
+    planes = zigzag.view(np.uint8).reshape(-1, PLANES).T
+    text = b64encode(zlib.compress(planes.tobytes(), LEVEL)).decode("ascii")
+    return Packed(low, step, order, text)
