@@ -73,10 +73,10 @@ class Explorer:
     licence: str
 
     @property
-    def allowed(self) -> str:
+    def allowed(self) -> Markup:
         """Sources of a content security policy: these scripts by their SHA-256, and no other."""
         digests = (b64encode(sha256(each.encode()).digest()).decode() for each in self.scripts)
-        return " ".join(f"'sha256-{digest}'" for digest in digests)
+        return Markup(" ".join(f"'sha256-{digest}'" for digest in digests))
 
 
 def explorer(diagnosis: Diagnosis) -> Explorer | None:
@@ -220,11 +220,11 @@ def _candidates(diagnosis: Diagnosis, stored: Sequence[str]) -> list[dict[str, s
 
 
 def _missed(traces: Sequence[Trace]) -> list[float]:
-    """Sizes of the errors of the simulated positions."""
+    """Sizes of the errors of the positions that the last model simulates."""
     return [
-        float(np.sqrt(np.mean((trace.position - own) ** 2)))
+        float(np.sqrt(np.mean((trace.position - trace.simulated[1]) ** 2)))
         for trace in traces
-        for own in trace.simulated or ()
+        if trace.simulated is not None
     ]
 
 

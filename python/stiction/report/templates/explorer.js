@@ -37,8 +37,7 @@ function tell() {
   const index = single();
   const size = key => columns[key] ? rms(first, last, columns[key].values) : NaN;
   const where = index < 0 ? "Several recordings" : `${recordings[index].name} (${roleOf(index)})`;
-  const from = index < 0 ? along[0] : recordings[index].offset;
-  let text = `${where}, ${digits(view[0] - from, 5)} to ${digits(view[1] - from, 5)} s: residual `
+  let text = `${where}, ${stamp(view[0])} to ${stamp(view[1])} s: residual `
     + `${change(size("before"), size("after"), units.residual)} rms`;
   const missed = [size("error-before"), size("error-after")];
   if (Number.isFinite(missed[1])) text += `; simulated position off by ${change(...missed, units.error)} rms`;

@@ -21,11 +21,13 @@ const naming = {
   error: `error (${units.error})`,
   effort: `effort (${units.effort})`,
   residual: `residual (${units.residual})`,
-  friction: `less inertia (${units.effort})`,
+  friction: `effort less inertia (${units.effort})`,
 };
 const shown = list => list.filter(([key, kind]) =>
   columns[key] && (both || kind !== "before") || (key === "effect" && candidate));
 const column = key => key === "effect" ? columns[candidate] : columns[key];
+const timeLabel = () => single() < 0 && recordings.length > 1
+  ? "time, recordings one after the other (s)" : "time in the recording (s)";
 const label = text => text.replace(" (1)", "").replace(" ()", "");
 
 const axes = (x, y) => [x, y].map((text, k) => ({
@@ -110,7 +112,7 @@ function timePanel(name, holder, last) {
       width, height: heights[name] + (last ? 50 : 12), legend: { show: false },
       scales: { x: { time: false, range: () => view }, y: { range: (_, low, high) => padded(low, high) } },
       axes: axes("time in the recording (s)", naming[name]).map((axis, k) => k ? axis : {
-        ...axis, splits: ticks, ...(last ? { values: (_, at) => at.map(stamp), size: 30 }
+        ...axis, splits: ticks, ...(last ? { label: timeLabel, values: (_, at) => at.map(stamp), size: 30 }
           : { label: undefined, values: () => [], size: 6 }),
       }),
       series: [{}, ...list.map(([, kind]) => ({
@@ -146,7 +148,7 @@ const origin = () => {
   const index = single();
   return index < 0 ? along[0] : recordings[index].offset;
 };
-const stamp = time => digits(Math.abs(time - origin()) < 1e-9 ? 0 : time - origin(), 7);
+const stamp = time => digits(Math.abs(time - origin()) < 1e-9 ? 0 : time - origin(), 5);
 function ticks(u, axis, low, high, step) {
   const zero = origin(), at = [];
   for (let k = Math.ceil((low - zero) / step); zero + k * step <= high; k++) at.push(zero + k * step);
