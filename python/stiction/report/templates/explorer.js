@@ -54,13 +54,19 @@ let waiting = 0, telling = 0, over = [], pairsDrawn = [];
 function later() {
   if (!waiting) waiting = requestAnimationFrame(() => {
     waiting = 0;
-    [...over, ...pairsDrawn].forEach(plot => plot.draw());
-    pairsDrawn.forEach(plot => plot.mark());
+    over.forEach(plot => plot.draw());
+    // Points and words follow when the window has come to rest.
     clearTimeout(telling);
-    telling = setTimeout(tell, 120);
+    telling = setTimeout(settle, 80);
   });
 }
+function settle() {
+  findRows();
+  pairsDrawn.forEach(plot => { plot.draw(); plot.mark(); });
+  tell();
+}
 const rebuild = () => {
+  findRows();
   [...over, ...pairsDrawn].forEach(plot => plot.build());
   pairsDrawn.forEach(plot => plot.mark());
   tell();

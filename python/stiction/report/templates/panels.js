@@ -38,11 +38,11 @@ const axes = (x, y) => [x, y].map((text, k) => ({
   values: (_, splits) => splits.map(value => digits(value, 6)),
 }));
 
-// Points of some columns over the window: all of them, or two for each half pixel.
+// Points of some columns over the window: all of them, or two for each pixel.
 function drawn(keys, width) {
   const xs = [], ys = keys.map(() => []);
   const first = place(view[0]), last = place(view[1]);
-  const block = Math.max(1, Math.floor((last - first) / (2 * width)));
+  const block = Math.max(1, Math.floor((last - first) / width));
   for (const { rows } of recordings) {
     if (rows[1] <= first || rows[0] > last) continue;
     // One more row on either side: lines go on beyond the window.
@@ -116,7 +116,7 @@ function timePanel(name, holder, last) {
           : { label: undefined, values: () => [], size: 6 }),
       }),
       series: [{}, ...list.map(([, kind]) => ({
-        stroke: colour(kind), width: kind === "measured" ? 1.6 : 1.1, points: { show: false },
+        stroke: colour(kind), width: kind === "measured" ? 1.6 : 1, points: { show: false },
       }))],
       cursor: {
         sync: { key: "recordings" }, y: false, points: { size: 6 },
@@ -157,15 +157,21 @@ function ticks(u, axis, low, high, step) {
 
 // --- panels over speed and position
 
-const MOST_POINTS = 6000;
+const MOST_POINTS = 4000;
 
-function rowsShown() {
+// Rows of the window that are selected; of many so many, evenly.
+let rows = [];
+function findRows() {
   const first = place(view[0]), last = place(view[1]);
-  const rows = [];
-  for (let k = first; k < last; k++) if (!chosen || chosen[k]) rows.push(k);
-  if (rows.length <= MOST_POINTS) return rows;
-  const step = rows.length / MOST_POINTS;
-  return Array.from({ length: MOST_POINTS }, (_, k) => rows[Math.floor(k * step)]);
+  let number = last - first, step = 1, seen = 0;
+  if (chosen) for (let k = first, all = number; k < first + all; k++) number -= 1 - chosen[k];
+  step = Math.max(number / MOST_POINTS, 1);
+  rows = [];
+  for (let k = first; k < last; k++) {
+    if (chosen && !chosen[k]) continue;
+    if (seen >= rows.length * step) rows.push(k);
+    seen += 1;
+  }
 }
 
 function paint(u, series) {
@@ -181,12 +187,12 @@ function paint(u, series) {
     const size = 2 * devicePixelRatio;
     ctx.beginPath();
     xs.forEach((x, k) => {
-      const [cx, cy] = [toX(x, scaleX, width, left), toY(ys[k], scaleY, height, top)];
-      if (!joined) ctx.rect(cx - size / 2, cy - size / 2, size, size);
+      const cx = toX(x, scaleX, width, left), cy = toY(ys[k], scaleY, height, top);
+      if (!joined) ctx.fillRect(cx - size / 2, cy - size / 2, size, size);
       else if (k && u.rows[k] === u.rows[k - 1] + 1) ctx.lineTo(cx, cy);
       else ctx.moveTo(cx, cy);
     });
-    if (joined) ctx.stroke(); else ctx.fill();
+    if (joined) ctx.stroke();
     ctx.restore();
   });
   return null;
@@ -200,10 +206,9 @@ function pairPanel([across, up], holder, joins) {
     return extremes(columns[across], first, last) ? padded(found.low, found.high) : [-1, 1];
   };
   const data = list => {
-    const rows = rowsShown();
-    return { rows, data: [null, ...list.map(([key]) => [
-      rows.map(k => columns[across].values[k]), rows.map(k => column(key).values[k]),
-    ])] };
+    const at = values => Float64Array.from(rows, k => values[k]);
+    const xs = at(columns[across].values);
+    return [null, ...list.map(([key]) => [xs, at(column(key).values)])];
   };
   const bounds = u => {
     let low = Infinity, high = -Infinity;
@@ -213,10 +218,10 @@ function pairPanel([across, up], holder, joins) {
     }
     return padded(low, high);
   };
-  const put = (u, { rows, data }) => {
+  const put = (u, found) => {
     u.rows = rows;
     u.joined = joins && rows.length < MOST_POINTS;
-    u.setData(data);
+    u.setData(found);
   };
   plot.build = () => {
     plot.u?.destroy();
@@ -241,7 +246,7 @@ function pairPanel([across, up], holder, joins) {
         u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
         select(across, limits);
       }] },
-    }, first.data, holder);
+    }, first, holder);
     put(plot.u, first);
     plot.dot = plot.u.over.appendChild(document.createElement("i"));
     plot.u.over.addEventListener("mousemove", event => {
