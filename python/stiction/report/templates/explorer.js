@@ -189,7 +189,9 @@ async function start() {
   controls();
   root.hidden = false;
   document.documentElement.classList.add("interactive");
-  const names = Object.keys(lines).filter(name => name !== "error" || columns["error-after"]);
+  // The residual of a servo is its error of position.
+  const names = Object.keys(lines).filter(name =>
+    name !== "error" || (told.friction && columns["error-after"]));
   over = names.map(name =>
     timePanel(name, one("plots").querySelector(`[data-time="${name}"]`), name === "residual"));
   pairsDrawn = pairs.map((pair, k) => {
