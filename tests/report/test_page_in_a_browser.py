@@ -1,4 +1,4 @@
-"""The page as its reader has it: in a Chromium, without a network, by mouse and keys, on a phone."""
+"""The page as its reader has it: in Chromium, without a network, by mouse and keys, on a phone."""
 
 from __future__ import annotations
 
