@@ -94,6 +94,7 @@ class Browser:
             deviceScaleFactor=2 if phone else 1,
             mobile=phone,
         )
+        self.call("Emulation.setTouchEmulationEnabled", enabled=phone)
 
     def dark(self, on: bool = True) -> None:
         """Whether the reader likes it dark."""
@@ -136,6 +137,21 @@ class Browser:
         for place in places[1:]:
             mouse("mouseMoved", place, "left")
         mouse("mouseReleased", places[-1], "left")
+
+    def touch(self, element: str, places: list[tuple[float, ...]]) -> None:
+        """With one finger or two on an element, from share to share of its width."""
+        left, top, width, height = self.run(
+            f"(() => {{ const b = {element}.getBoundingClientRect();"
+            " return [b.left, b.top, b.width, b.height]; })()"
+        )
+        for number, fingers in enumerate(places):
+            points = [
+                {"x": left + share * width, "y": top + 0.5 * height, "id": k}
+                for k, share in enumerate(fingers)
+            ]
+            kind = "touchMove" if number else "touchStart"
+            self.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
 
     def picture(self, path: Path, *, whole: bool = False) -> None:
         """What is seen, as a PNG."""

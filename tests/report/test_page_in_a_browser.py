@@ -205,6 +205,26 @@ def test_a_phone_shows_it_without_scrolling_sideways(browser: Browser, page: Pat
     click(browser, "in")
 
 
+def test_fingers_zoom_move_and_read(browser: Browser, page: Path) -> None:
+    browser.size(360, 740, phone=True)
+    browser.open(page)
+    browser.wait(READY)
+    browser.wait(STATUS)
+    browser.run(f"{panel('residual')}.scrollIntoView({{block: 'center'}})")
+    _, first, last = seen(browser)
+    before = browser.run(STATUS)
+    browser.touch(panel("residual"), [(0.4, 0.6), (0.3, 0.7), (0.2, 0.8)])
+    changed(browser, before)
+    _, low, high = seen(browser)
+    assert high - low == pytest.approx((last - first) / 3.0, rel=0.05)
+    before = browser.run(STATUS)
+    browser.touch(panel("residual"), [(0.6,), (0.5,), (0.4,)])
+    changed(browser, before)
+    assert seen(browser)[1] == pytest.approx(low + 0.2 * (high - low), abs=0.05)
+    browser.touch(panel("residual"), [(0.5,)])
+    browser.wait("document.querySelector('[data-readout]').textContent.includes('residual')")
+
+
 def test_it_is_dark_where_the_reader_likes_it_dark(browser: Browser) -> None:
     background = "getComputedStyle(document.body).backgroundColor"
     light = browser.run(background)

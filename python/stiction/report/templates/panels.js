@@ -137,10 +137,47 @@ function timePanel(name, holder, last) {
         }],
       },
     }, drawn(plot.keys, width), holder);
+    describe(plot.u, `${naming[name]} over time`);
+    touched(plot.u);
   };
   plot.build = build;
   plot.draw = () => plot.u.setData(drawn(plot.keys, plot.u.width));
   return plot;
+}
+
+function describe(u, text) {
+  u.root.setAttribute("role", "img");
+  u.root.setAttribute("aria-label", label(text));
+}
+
+// Fingers: one goes along the time, or reads where it taps; two zoom. Up and down the page scrolls.
+function touched(u) {
+  const at = event => {
+    const { left, width } = u.over.getBoundingClientRect();
+    return view[0] + (event.clientX - left) / width * (view[1] - view[0]);
+  };
+  const fingers = new Map();
+  let moved = false;
+  u.over.addEventListener("pointerdown", event => {
+    if (event.pointerType !== "touch") return;
+    fingers.set(event.pointerId, at(event));
+    moved = false;
+  });
+  u.over.addEventListener("pointermove", event => {
+    if (!fingers.has(event.pointerId)) return;
+    const here = fingers.get(event.pointerId), now = at(event);
+    moved = true;
+    if (fingers.size === 1) return show(view[0] + here - now, view[1] + here - now);
+    // What lies under each finger stays there.
+    const [other] = [...fingers].filter(([id]) => id !== event.pointerId).map(([, time]) => time);
+    if (now === other || (here - other) / (now - other) <= 0) return;
+    const factor = (here - other) / (now - other);
+    show(other + (view[0] - other) * factor, other + (view[1] - other) * factor);
+  });
+  for (const name of ["pointerup", "pointercancel"]) u.over.addEventListener(name, event => {
+    if (!fingers.delete(event.pointerId) || moved || name === "pointercancel") return;
+    mark(nearest(at(event)));
+  });
 }
 
 // Seconds count from the first row of a recording where the window lies within one.
@@ -248,6 +285,7 @@ function pairPanel([across, up], holder, joins) {
       }] },
     }, first, holder);
     put(plot.u, first);
+    describe(plot.u, `${naming[up]} over ${naming[across]}`);
     plot.dot = plot.u.over.appendChild(document.createElement("i"));
     plot.u.over.addEventListener("mousemove", event => {
       const box = plot.u.over.getBoundingClientRect();
