@@ -58,12 +58,12 @@ def test_the_title_says_what_is_missing_and_what_becomes_of_the_error(tmp_path: 
     assert found.baseline is not None
     before = replace(found.baseline, heldout_relative=0.0098)
     one = replace(found, baseline=before)
-    said = "Missing: constant offset of the effort. Held-out error 0.98 → 3.00\u00a0% of the effort"
+    said = "Missing: constant offset of the effort. Held‑out error 0.98 → 3.00\u00a0% of the effort"
     assert heading(one, tmp_path) == said
     fall = replace(found.effects[0], name="stribeck")
     both = replace(found, effects=(*found.effects, fall))
     assert heading(both, tmp_path).startswith(
-        "Missing: constant offset of the effort and Stribeck friction. Held-out error 3.00 → "
+        "Missing: constant offset of the effort and Stribeck friction. Held‑out error 3.00 → "
     )
     untested = replace(before, heldout_relative=None, train_relative=0.123)
     assert "Error on the rows fitted 12.3 → " in heading(replace(one, baseline=untested), tmp_path)

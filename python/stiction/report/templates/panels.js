@@ -116,7 +116,7 @@ function timePanel(name, holder, last) {
           : { label: undefined, values: () => [], size: 6 }),
       }),
       series: [{}, ...list.map(([, kind]) => ({
-        stroke: colour(kind), width: kind === "measured" ? 1.6 : 1, points: { show: false },
+        stroke: colour(kind), width: { measured: 1.6, effect: 2 }[kind] || 1, points: { show: false },
       }))],
       cursor: {
         sync: { key: "recordings" }, y: false, points: { size: 6 },
