@@ -69,8 +69,12 @@ def test_noise_costs_little_more_than_a_byte_and_an_even_clock_nothing() -> None
 
 
 def test_values_that_are_none_do_no_harm() -> None:
-    assert np.isfinite(unpacked(pack(np.array([1.0, np.nan, np.inf]), 0.1))).all()
+    packed = pack(np.array([np.nan, 1.0, np.nan, np.inf, 2.0, -np.inf]), 0.1)
+    assert packed.blank == [[0, 1], [2, 4], [5, 6]]
+    np.testing.assert_allclose(unpacked(packed)[[1, 4]], [1.0, 2.0], atol=0.05)
+    assert np.isfinite(unpacked(packed)).all()
     assert unpacked(pack(np.array([]), 0.1)).size == 0
+    assert pack(np.full(3, np.nan), 0.1).blank == [[0, 3]]
 
 
 def test_a_million_rows_keep_what_is_extreme(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -96,8 +100,8 @@ def test_where_a_loop_ran_away_nothing_is_drawn() -> None:
     made = explorer(replace(found, pictures=pictures))
     assert made is not None
     told = json.loads(re.search(r'id="explorer-data">(.*?)</script>', made.data)[1])  # type: ignore[index]
-    assert [each["simulated"] for each in told["recordings"]] == [False, True]
-    assert "simulated-after" in told["columns"]
+    assert told["columns"]["simulated-after"]["blank"] == [[0, 100]]
+    assert told["columns"]["position"]["blank"] == []
 
 
 def test_a_page_without_recordings_has_no_script(tmp_path: Path) -> None:

@@ -151,7 +151,9 @@ def _columns(diagnosis: Diagnosis, traces: Sequence[Trace]) -> _Columns:
     if any(trace.simulated is not None for trace in traces):
         for place, key in enumerate(("simulated-before", "simulated-after")):
             # Where nothing was simulated the page draws nothing.
-            own = np.concatenate([(t.simulated or (t.position,) * 2)[place] for t in traces])
+            nothing = [np.full(len(trace.time), np.nan) for trace in traces]
+            both = [t.simulated or (blank, blank) for t, blank in zip(traces, nothing, strict=True)]
+            own = np.concatenate([each[place] for each in both])
             found[key] = packed(own, step / POSITIONS, of_position)
     for number, name in enumerate(traces[0].contributions):
         own = np.concatenate([trace.contributions[name] for trace in traces])
@@ -172,7 +174,6 @@ def _told(diagnosis: Diagnosis, columns: _Columns) -> dict[str, Any]:
                 "name": trace.name,
                 "rows": [begin, end],
                 "offset": offset,
-                "simulated": trace.simulated is not None,
                 "parts": _parts(trace.role, begin),
             }
         )

@@ -36,30 +36,37 @@ class Packed:
     origin, step : float
     order : int
         Of the differences: 0, 1 or 2; the first ones are those from 0.
+    blank : list of [int, int]
+        Stretches of rows without a value: the first row, and the one behind the last.
     text : str
     """
 
     origin: float
     step: float
     order: int
+    blank: list[list[int]]
     text: str
 
     def to_dict(self) -> dict[str, Any]:
         """What a page needs beside the text."""
-        return {"origin": self.origin, "step": self.step, "order": self.order}
+        return {"origin": self.origin, "step": self.step, "order": self.order, "blank": self.blank}
 
 
 def pack(values: FloatArray, step: float) -> Packed:
-    """A column of finite numbers, each rounded to a step.
+    """A column of numbers, each rounded to a step.
 
     Parameters
     ----------
     values : numpy.ndarray, shape (n,)
+        What is not finite stays blank.
     step : float
         Nobody looks closer than this. Where it is finer than what the range allows it is taken
         wider.
     """
-    values = np.nan_to_num(np.asarray(values, dtype=np.float64), posinf=0.0, neginf=0.0)
+    known = np.isfinite(values)
+    # A blank row goes on at the value before it, which costs nothing.
+    last = np.maximum.accumulate(np.where(known, np.arange(values.size), 0))
+    values = np.where(known[last], values[last], 0.0) if values.size else values
     low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
     step = max(step, FINEST * (high - low)) or 1.0
     whole = np.round((values - low) / step).astype(np.int64)
@@ -70,4 +77,10 @@ def pack(values: FloatArray, step: float) -> Packed:
     zigzag = ((chosen << 1) ^ (chosen >> 63)).astype("<u4")
     planes = zigzag.view(np.uint8).reshape(-1, PLANES).T
     text = b64encode(zlib.compress(planes.tobytes(), LEVEL)).decode("ascii")
-    return Packed(low, step, order, text)
+    return Packed(low, step, order, _stretches(~known), text)
+
+
+def _stretches(rows: np.ndarray) -> list[list[int]]:
+    """Where rows that are set begin and end, one behind the last."""
+    edges = np.flatnonzero(np.diff(rows.astype(np.int8), prepend=0, append=0))
+    return [[int(begin), int(end)] for begin, end in edges.reshape(-1, 2)]

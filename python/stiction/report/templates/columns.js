@@ -3,7 +3,7 @@
 
 const BASE = 16;
 
-async function unpacked(text, { origin, step, order }) {
+async function unpacked(text, { origin, step, order, blank }) {
   text = atob(text);
   const packed = new Uint8Array(text.length);
   for (let k = 0; k < text.length; k++) packed[k] = text.charCodeAt(k);
@@ -20,6 +20,7 @@ async function unpacked(text, { origin, step, order }) {
     whole = order === 0 ? slope : whole + slope;
     values[k] = origin + step * whole;
   }
+  for (const [begin, end] of blank) values.fill(NaN, begin, end);
   return values;
 }
 

@@ -171,11 +171,8 @@ async function start() {
   if (!window.DecompressionStream || !window.uPlot) return;
   const began = performance.now();
   await Promise.all(Object.keys(told.columns).map(async key => {
-    const values = await unpacked(
-      document.getElementById(`column-${key}`).textContent, told.columns[key]);
-    if (key.startsWith("simulated"))
-      for (const { rows, simulated } of recordings) if (!simulated) values.fill(NaN, ...rows);
-    columns[key] = levelled(values);
+    const text = document.getElementById(`column-${key}`).textContent;
+    columns[key] = levelled(await unpacked(text, told.columns[key]));
   }));
   derive();
   along = Float64Array.from(columns.time.values);
