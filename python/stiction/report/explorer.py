@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Explorer", "explorer"]
 
-MOST_VALUES: Final = 5_000_000
+MOST_VALUES: Final = 4_400_000
 """Numbers that a page holds, at about 1.1 bytes each: of a longer session the rows are kept in
 which something is extreme."""
 FEWEST_BLOCKS: Final = 50
