@@ -7,6 +7,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import time
 from base64 import b64decode
 from collections.abc import Iterator
@@ -17,6 +18,11 @@ from typing import Any
 __all__ = ["Browser", "chromium", "opened"]
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+INTO_PLACE = (
+    "import os, sys; os.dup2(int(sys.argv[1]), 3); os.dup2(int(sys.argv[2]), 4); "
+    "os.execv(sys.argv[3], sys.argv[3:])"
+)
+"""A browser reads from 3 and writes to 4."""
 PATIENCE_S = 30.0
 """Machines that test are slow, and others use them as well."""
 
@@ -187,28 +193,26 @@ class Browser:
 @contextmanager
 def opened(program: str, folder: Path) -> Iterator[Browser]:
     """A browser of its own, without a network, that ends with the block."""
+    import fcntl  # There is none on Windows.
+
     ours, theirs = os.pipe(), os.pipe()  # to the browser, and from it
-
-    def into_place() -> None:
-        # The browser reads from 3 and writes to 4, whatever these are here.
-        read, write = os.dup(ours[0]), os.dup(theirs[1])
-        os.dup2(read, 3)
-        os.dup2(write, 4)
-
+    # Out of the way of the places that the browser wants them in.
+    ends = [fcntl.fcntl(end, fcntl.F_DUPFD_CLOEXEC, 10) for end in (ours[0], theirs[1])]
+    os.close(ours[0])
+    os.close(theirs[1])
     arguments = [
         *("--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run"),
         *("--disable-background-networking", "--disable-dev-shm-usage", "--remote-debugging-pipe"),
         f"--user-data-dir={folder}",
     ]
     process = subprocess.Popen(
-        [program, *arguments],
-        preexec_fn=into_place,
-        close_fds=False,
+        [sys.executable, "-c", INTO_PLACE, *map(str, ends), program, *arguments],
+        pass_fds=ends,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
-    os.close(ours[0])
-    os.close(theirs[1])
+    for end in ends:
+        os.close(end)
     browser = Browser(ours[1], theirs[0])
     try:
         browser.attach()

@@ -205,6 +205,14 @@ def test_a_phone_shows_it_without_scrolling_sideways(browser: Browser, page: Pat
     click(browser, "in")
 
 
+def test_a_wide_screen_is_used_and_not_left(browser: Browser, page: Path) -> None:
+    browser.size(1600, 1000)
+    browser.open(page)
+    browser.wait(READY)
+    assert browser.run("document.scrollingElement.scrollWidth") <= 1600
+    assert browser.run(f"{panel('residual')}.clientWidth") > 1000
+
+
 def test_fingers_zoom_move_and_read(browser: Browser, page: Path) -> None:
     browser.size(360, 740, phone=True)
     browser.open(page)
