@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from base64 import b64encode
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from importlib import resources
@@ -114,51 +114,53 @@ class _Columns:
 def _columns(diagnosis: Diagnosis, traces: Sequence[Trace]) -> _Columns:
     pictures = diagnosis.pictures
     assert pictures is not None
-
-    def stacked(own: Callable[[Trace], FloatArray]) -> FloatArray:
-        return np.concatenate([own(trace) for trace in traces])
-
-    position, speed, effort = (
-        stacked(lambda t: t.position),
-        stacked(lambda t: t.velocity),
-        stacked(lambda t: t.effort),
-    )
+    names = ("position", "velocity", "effort", "inertial", "before", "after")
+    own = {name: np.concatenate([getattr(trace, name) for trace in traces]) for name in names}
     unit = pictures.position_unit
-    scales = (
-        suited([_greatest(position)], unit),
-        suited([_greatest(speed)], f"{unit}/s"),
-        suited([_greatest(effort)], pictures.effort_unit),
-        scale_of(diagnosis),
-    )
-    step = min((trace.step for trace in traces if trace.step > 0.0), default=0.0)
-    noise = pictures.floor if np.isfinite(pictures.floor) else 0.0
-    fine = noise / FINER
-    dt = min(float(np.min(np.diff(trace.time))) for trace in traces if len(trace.time) > 1)
+    position = suited([_greatest(own["position"])], unit)
+    speed = suited([_greatest(own["velocity"])], f"{unit}/s")
+    effort = suited([_greatest(own["effort"])], pictures.effort_unit)
+    residual = scale_of(diagnosis)
+    count = min((trace.step for trace in traces if trace.step > 0.0), default=0.0)
+    fine = pictures.floor / FINER if np.isfinite(pictures.floor) else 0.0
 
-    def packed(values: FloatArray, step: float, scale: Scale) -> Packed:
+    def packed(values: FloatArray, scale: Scale, step: float) -> Packed:
         return pack(scale.factor * values, abs(scale.factor) * step)
 
-    of_position, of_speed, of_effort, of_residual = scales
     found = {
-        "time": pack(stacked(lambda t: t.time), dt / STAMPS),
-        "position": packed(position, step / POSITIONS, of_position),
-        "speed": packed(speed, step / SLOWEST_S, of_speed),
-        "effort": packed(effort, fine, of_effort),
-        "inertial": packed(stacked(lambda t: t.inertial), fine, of_effort),
-        "before": packed(stacked(lambda t: t.before), fine, of_residual),
-        "after": packed(stacked(lambda t: t.after), fine, of_residual),
+        "time": _time(traces),
+        "position": packed(own["position"], position, count / POSITIONS),
+        "speed": packed(own["velocity"], speed, count / SLOWEST_S),
+        "effort": packed(own["effort"], effort, fine),
+        "inertial": packed(own["inertial"], effort, fine),
+        "before": packed(own["before"], residual, fine),
+        "after": packed(own["after"], residual, fine),
     }
-    if any(trace.simulated is not None for trace in traces):
-        for place, key in enumerate(("simulated-before", "simulated-after")):
-            # Where nothing was simulated the page draws nothing.
-            nothing = [np.full(len(trace.time), np.nan) for trace in traces]
-            both = [t.simulated or (blank, blank) for t, blank in zip(traces, nothing, strict=True)]
-            own = np.concatenate([each[place] for each in both])
-            found[key] = packed(own, step / POSITIONS, of_position)
+    for key, values in _simulated(traces).items():
+        found[key] = packed(values, position, count / POSITIONS)
     for number, name in enumerate(traces[0].contributions):
-        own = np.concatenate([trace.contributions[name] for trace in traces])
-        found[f"effect-{number}"] = packed(own, fine, of_residual)
-    return _Columns(traces, found, *scales, suited(_missed(traces), unit))
+        values = np.concatenate([trace.contributions[name] for trace in traces])
+        found[f"effect-{number}"] = packed(values, residual, fine)
+    missed = suited(_missed(traces), unit)
+    return _Columns(traces, found, position, speed, effort, residual, missed)
+
+
+def _time(traces: Sequence[Trace]) -> Packed:
+    steps = np.concatenate([np.diff(trace.time) for trace in traces])
+    least = float(steps.min()) if steps.size else 1.0
+    return pack(np.concatenate([trace.time for trace in traces]), least / STAMPS)
+
+
+def _simulated(traces: Sequence[Trace]) -> dict[str, FloatArray]:
+    """Positions of both models; blank in recordings that could not be simulated."""
+    if all(trace.simulated is None for trace in traces):
+        return {}
+    blank = [np.full(len(trace.time), np.nan) for trace in traces]
+    both = [t.simulated or (none, none) for t, none in zip(traces, blank, strict=True)]
+    return {
+        f"simulated-{name}": np.concatenate([each[place] for each in both])
+        for place, name in enumerate(("before", "after"))
+    }
 
 
 def _told(diagnosis: Diagnosis, columns: _Columns) -> dict[str, Any]:
