@@ -194,6 +194,18 @@ def test_an_effect_is_drawn_where_it_is_known_what_it_explains(browser: Browser)
     assert browser.run(legend)
 
 
+def test_curves_can_be_hidden_so_that_what_is_left_fills_its_panel(browser: Browser) -> None:
+    drawn = "document.querySelectorAll('.uplot').length"
+    assert browser.run(drawn) == 7
+    for kind in ("before", "measured", "after"):
+        button = f"document.querySelector('[data-kind={kind}]')"
+        browser.run(f"{button}.click()")
+        assert browser.run(f"{button}.getAttribute('aria-pressed')") == "false"
+        assert browser.run(drawn) == 7
+    browser.run("document.querySelector('[data-kind=after]').click()")
+    pressed(browser, "+")
+
+
 def test_a_phone_shows_it_without_scrolling_sideways(browser: Browser, page: Path) -> None:
     browser.size(360, 740, phone=True)
     browser.open(page)

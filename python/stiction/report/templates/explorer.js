@@ -120,6 +120,12 @@ function controls() {
     clear: () => { select("speed", null); select("position", null); },
   };
   for (const [name, act] of Object.entries(doing)) one(name).addEventListener("click", act);
+  for (const button of root.querySelectorAll("[data-kind]")) button.addEventListener("click", () => {
+    const { kind } = button.dataset;
+    if (!hidden.delete(kind)) hidden.add(kind);
+    button.setAttribute("aria-pressed", String(!hidden.has(kind)));
+    rebuild();
+  });
   const next = way => {
     const index = single();
     go(Math.min(Math.max((index < 0 ? recordingOf(place(view[0])) : index + way), 0), recordings.length - 1));

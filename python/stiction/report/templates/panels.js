@@ -23,7 +23,7 @@ const naming = {
   residual: `residual (${units.residual})`,
   friction: `effort less inertia (${units.effort})`,
 };
-const shown = list => list.filter(([key, kind]) =>
+const shown = list => list.filter(([key, kind]) => !hidden.has(kind)).filter(([key, kind]) =>
   columns[key] && (both || kind !== "before") || (key === "effect" && candidate));
 const column = key => key === "effect" ? columns[candidate] : columns[key];
 const timeLabel = () => single() < 0 && recordings.length > 1
@@ -243,6 +243,8 @@ function pairPanel([across, up], holder, joins) {
     return extremes(columns[across], first, last) ? padded(found.low, found.high) : [-1, 1];
   };
   const data = list => {
+    // A panel needs a curve, if only one without points.
+    if (!list.length) return [null, [[], []]];
     const at = values => Float64Array.from(rows, k => values[k]);
     const xs = at(columns[across].values);
     return [null, ...list.map(([key]) => [xs, at(column(key).values)])];
@@ -268,7 +270,7 @@ function pairPanel([across, up], holder, joins) {
       mode: 2, width: Math.max(holder.clientWidth, 180), height: 230, legend: { show: false },
       scales: { x: { time: false, range: () => range() }, y: { range: u => bounds(u) } },
       axes: axes(naming[across], naming[up]),
-      series: [{}, ...plot.list.map(([, kind]) => ({
+      series: [{}, ...(plot.list.length ? plot.list : [["", "soft"]]).map(([, kind]) => ({
         facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }],
         stroke: colour(kind), paths: paint, points: { show: false },
       }))],
@@ -294,6 +296,8 @@ function pairPanel([across, up], holder, joins) {
   };
   plot.draw = () => put(plot.u, data(plot.list));
   plot.mark = () => {
+    plot.dot.style.display = "none";
+    if (!plot.list.length) return;
     const key = plot.list[plot.list.length - 1][0];
     const x = plot.u.valToPos(columns[across].values[marked], "x");
     const y = plot.u.valToPos(column(key).values[marked], "y");

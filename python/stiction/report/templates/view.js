@@ -21,6 +21,7 @@ let chosen = null;    // 1 for rows within the selected speeds and positions; nu
 let view = [0, 1];    // window of `along` that is shown
 let marked = -1;      // row under the cursor
 let candidate = null;
+const hidden = new Set();  // of "measured", "before" and "after"
 const selected = { speed: null, position: null };
 
 const place = time => {
