@@ -8,10 +8,11 @@ import numpy as np
 
 import stiction as st
 from stiction.diagnosis import Diagnosis
+from stiction.diagnosis.bets import Bet, Bets
 from stiction.diagnosis.coordinates import COORDINATES
 from stiction.diagnosis.gain import Gain
 from stiction.diagnosis.omnibus import Rest, View
-from stiction.diagnosis.pictures import Pictures, Stretch
+from stiction.diagnosis.pictures import Pictures, Stretch, Trace
 from stiction.diagnosis.result import (
     Advice,
     CandidateRow,
@@ -106,7 +107,30 @@ def pictures(*, effects: bool, names: tuple[str, ...]) -> Pictures:
         effort_unit="N·m",
         position_unit="rad",
         floor=0.008,
+        traces=tuple(trace(name, 1 + k % 3, effects=effects) for k, name in enumerate(names)),
         causes=((rest(0.02).views[0], rest(0.001).views[0]),) if effects else (),
+    )
+
+
+def trace(name: str, role: int, *, effects: bool, rows: int = 1000) -> Trace:
+    """A recording to and fro, of which a fifth is left out; ``role`` is that of the others."""
+    time = 0.015 + 0.005 * np.arange(rows)
+    noise = 0.008 * np.random.default_rng(role).standard_normal((3, rows))
+    position, velocity = np.sin(time), np.cos(time)
+    missed = 0.02 * np.sin(time) if effects else np.zeros(rows)
+    return Trace(
+        name=name,
+        time=time,
+        position=position,
+        velocity=velocity,
+        effort=0.3 * np.sign(velocity) + missed + noise[0],
+        inertial=-0.0076 * position,
+        before=missed + noise[1],
+        after=noise[2],
+        role=np.where(np.arange(rows) < rows // 5, 0, role),
+        simulated=(position + 0.01 * time, position + 0.001 * time),
+        contributions={"torque_bias": missed} if effects else {},
+        step=1e-5,
     )
 
 
@@ -182,6 +206,7 @@ def diagnosis(verdict: Verdict, *, name: str = "run.csv", names: int = 2) -> Dia
         advice=(Advice("slow full turns", "it tells cogging apart", ("cogging",)),),
         data=data(name),
         version="0.1.0",
+        evidence=Bets(tuple(Bet(f"{k} {name}", 0.02, 0.01) for k in range(names * effects))),
         pictures=pictures(effects=effects, names=tuple(f"{k} {name}" for k in range(names))),
     )
 

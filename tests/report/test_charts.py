@@ -13,7 +13,7 @@ import pytest
 from tests.report.canned import diagnosis
 from tests.report.test_left_out import whole
 
-from stiction.report import figures
+from stiction.report import figures, motion_figures
 from stiction.report.axis import Axis, Scaling, around
 from stiction.report.chart import Area, Bars, Chart, Line, Panel, Span, Words
 from stiction.report.chart_figure import make_figure
@@ -125,6 +125,7 @@ def test_every_figure_can_be_a_figure_of_matplotlib() -> None:
     found = whole()
     charts = [getattr(figures, name) for name in figures.__all__ if name not in
               ("cause", "most_shown", "quantity_of")]  # fmt: skip
+    charts += [motion_figures.motion, motion_figures.curves]
     for chart in (*(each(found) for each in charts), figures.cause(found, 0)):
         assert len(make_figure(chart).axes) >= len(chart.panels)
 

@@ -20,7 +20,7 @@ from stiction.cli import run
 from stiction.diagnosis import Diagnosis
 from stiction.diagnosis.omnibus import Rest, View
 from stiction.diagnosis.pictures import Tracking
-from stiction.report import drawings, figures
+from stiction.report import drawings, figures, motion_figures
 from stiction.report.axis import Axis
 from stiction.report.chart import Chart, Line, Panel
 from stiction.report.sections import BUILDERS, Section, name_of, rest
@@ -76,6 +76,7 @@ def answered(
 def test_the_diagnosis_of_these_tests_has_every_figure() -> None:
     names = [order.name.rstrip("0123456789-") for order in ORDERS]
     drawn = {name for name in figures.__all__ if name not in ("most_shown", "quantity_of")}
+    drawn |= set(motion_figures.__all__) - {"simulated_trace"}
     assert len(names) == len(drawn)
 
 

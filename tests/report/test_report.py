@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import os
 import re
+from base64 import b64encode
 from dataclasses import replace
+from hashlib import sha256
 from html.parser import HTMLParser
 from pathlib import Path
 from types import MappingProxyType
@@ -50,6 +52,7 @@ class Page(HTMLParser):
         self.ids: list[str] = []
         self.addresses: list[str] = []
         self.tags: list[str] = []
+        self.scripts: list[tuple[dict[str, str | None], str]] = []
         self.text = ""
         self.feed(text)
         self.close()
@@ -61,6 +64,8 @@ class Page(HTMLParser):
 
     def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.tags.append(tag)
+        if tag == "script":
+            self.scripts.append((dict(attrs), ""))
         for name, value in attrs:
             assert not name.startswith("on"), f"{tag} runs {name}"
             if name == "id":
@@ -72,7 +77,16 @@ class Page(HTMLParser):
         assert self.open.pop() == tag
 
     def handle_data(self, text: str) -> None:
-        self.text += text
+        if self.open and self.open[-1] == "script":
+            attributes, before = self.scripts.pop()
+            self.scripts.append((attributes, before + text))
+        else:
+            self.text += text
+
+    @property
+    def running(self) -> list[str]:
+        """Scripts that run: all others hold data."""
+        return [text for attributes, text in self.scripts if "type" not in attributes]
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +104,13 @@ def test_report_opens_without_a_network(pages: dict[str, Path], verdict: Verdict
     page = Page(text)
     assert page.open == []
     assert len(page.ids) == len(set(page.ids))
-    assert "script" not in page.tags
+    # What runs is named by its sum, and nothing else may be asked for or run.
+    policy = re.findall(r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', text)
+    allowed = re.findall(r"'sha256-([^']*)'", policy[0])
+    assert policy[0].startswith("default-src 'none'; ")
+    sums = [b64encode(sha256(script.encode()).digest()).decode() for script in page.running]
+    assert sums == allowed
+    assert len(sums) == (2 if diagnosis(verdict).pictures else 0)
     assert "link" not in page.tags
     files = {path.relative_to(pages[verdict].parent).as_posix()
              for path in pages[verdict].parent.rglob("*")}  # fmt: skip
@@ -149,7 +169,7 @@ def test_files_beside_the_report_are_whole(pages: dict[str, Path], verdict: Verd
     names = {"report.html", "findings.json", "plant.toml", "base.toml", "begins.toml", "figures"}
     assert {path.name for path in folder.iterdir()} == names
     figures = sorted(path.stem for path in (folder / "figures").iterdir())
-    drawn = ["before-after", "candidates", "coordinates", "errors"]
+    drawn = ["before-after", "candidates", "coordinates", "curves", "errors", "motion"]
     assert figures == ([] if found.pictures is None else
                        sorted([*drawn, *["cause-1-torque_bias"] * len(found.effects)]))  # fmt: skip
     for path in (folder / "figures").iterdir():
@@ -163,7 +183,7 @@ def test_figures_in_the_page_are_named_for_those_who_do_not_see_them(
 ) -> None:
     text = pages["missing_effect"].read_text("utf-8")
     drawings = re.findall(r"<svg[^>]*>", text)
-    assert len(drawings) == 2 * 5 + 1  # each for screens and for phones, and the bar of the gain
+    assert len(drawings) == 2 * 7 + 1  # each for screens and for phones, and the bar of the gain
     for drawing in drawings:
         assert 'role="img"' in drawing
         assert re.search(r'aria-label="[^"]{20,}"', drawing)
@@ -175,7 +195,7 @@ def test_same_diagnosis_gives_the_same_bytes(pages: dict[str, Path], tmp_path: P
     (tmp_path / "report.html").write_text("an earlier report")
     write(diagnosis("missing_effect"), tmp_path)
     files = [path.relative_to(first) for path in first.rglob("*") if path.is_file()]
-    assert len(files) == 10
+    assert len(files) == 12
     for file in files:
         assert (tmp_path / file).read_bytes() == (first / file).read_bytes()
 
@@ -185,8 +205,13 @@ def test_names_of_files_cannot_break_the_page(tmp_path: Path) -> None:
         path = write(diagnosis(verdict, name=HOSTILE), tmp_path / verdict)
         text = path.read_text("utf-8")
         page = Page(text)
-        assert "script" not in page.tags
+        assert len(page.running) == (2 if verdict == "unexplained" else 0)
+        assert not any("alert" in script for script in page.running)
         assert HOSTILE in page.text
+        for attributes, told in page.scripts:
+            if attributes.get("id") == "explorer-data":
+                names = [each["name"] for each in json.loads(told)["recordings"]]
+                assert names == [f"0 {HOSTILE}", f"1 {HOSTILE}"]
         for figure in (path.parent / "figures").glob("*.svg"):
             ElementTree.parse(figure)
 

@@ -6,12 +6,16 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+from tests.report.canned import diagnosis
 from tests.report.test_report import undrawn
 
+import stiction as st
+from stiction.diagnosis import Diagnosis
 from stiction.diagnosis.gain import Gain
-from stiction.diagnosis.result import Verdict
+from stiction.diagnosis.result import Advice, Verdict
 from stiction.report import write
 from stiction.report.labels import told_apart
+from stiction.report.titles import NAMES, effect_title
 
 
 def test_names_that_are_too_long_stay_apart() -> None:
@@ -42,3 +46,68 @@ def test_the_title_does_not_claim_what_rows_held_out_do_not_bear_out(tmp_path: P
     text = write(found, tmp_path).read_text("utf-8")
     (said,) = re.findall(r"<h1[^>]*>(.*?)</h1>", text)
     assert "does not help on held-out rows" in said
+
+
+def heading(found: Diagnosis, folder: Path) -> str:
+    (said,) = re.findall(r"<h1[^>]*>(.*?)</h1>", write(found, folder).read_text("utf-8"))
+    return str(said)
+
+
+def test_the_title_says_what_is_missing_and_what_becomes_of_the_error(tmp_path: Path) -> None:
+    found = undrawn("missing_effect")
+    assert found.baseline is not None
+    before = replace(found.baseline, heldout_relative=0.0098)
+    one = replace(found, baseline=before)
+    said = "Missing: constant offset of the effort. Held‑out error 0.98 → 3.00\u00a0% of the effort"
+    assert heading(one, tmp_path) == said
+    fall = replace(found.effects[0], name="stribeck")
+    both = replace(found, effects=(*found.effects, fall))
+    assert heading(both, tmp_path).startswith(
+        "Missing: constant offset of the effort and Stribeck friction. Held‑out error 3.00 → "
+    )
+    untested = replace(before, heldout_relative=None, train_relative=0.123)
+    assert "Error on the rows fitted 12.3 → " in heading(replace(one, baseline=untested), tmp_path)
+
+
+def test_the_title_names_all_that_cannot_be_told_apart(tmp_path: Path) -> None:
+    said = heading(undrawn("ambiguous"), tmp_path)
+    assert said.startswith(
+        "Missing: constant offset of the effort or friction that differs by direction, which these"
+    )
+
+
+def test_every_effect_has_a_name_that_reads_well() -> None:
+    names = {record.name for record in st.effects()}
+    assert set(NAMES) <= names
+    assert not [name for name in names if "_" in effect_title(name)]
+
+
+def test_refused_effects_and_further_experiments_wait_behind_a_line(tmp_path: Path) -> None:
+    solved = undrawn("missing_effect")
+    two = (*solved.advice, Advice("a second experiment", "it may help", ()))
+    text = write(replace(solved, advice=two), tmp_path).read_text("utf-8")
+    advice = text[text.index('id="advice"') : text.index('id="data"')]
+    assert advice.index("Slow full turns") < advice.index("<details") < advice.index("A second")
+    tried = text[text.index('id="candidates"') : text.index('id="models"')]
+    assert tried.index("torque_bias") < tried.index("<details") < tried.index("cogging")
+    open_case = replace(undrawn("ambiguous"), advice=two)
+    text = write(open_case, tmp_path).read_text("utf-8")
+    advice = text[text.index('id="advice"') : text.index('id="data"')]
+    assert "<details" not in advice
+    assert "A second experiment" in advice
+
+
+def test_noise_is_told_before_and_after_where_the_search_changed_it(tmp_path: Path) -> None:
+    found = undrawn("missing_effect")
+    assert found.baseline is not None
+    assert "0.0160" not in write(found, tmp_path).read_text("utf-8")
+    louder = replace(found, baseline=replace(found.baseline, noise_floor_rms=0.016))
+    text = write(louder, tmp_path).read_text("utf-8")
+    assert re.search(r'16\.0 <span class="to">→</span> 8\.00.mN·m', text)
+
+
+def test_odds_stand_beside_each_recording_held_out(tmp_path: Path) -> None:
+    text = write(diagnosis("missing_effect"), tmp_path).read_text("utf-8")
+    evidence = text[text.index('id="evidence"') : text.index('id="rest"')]
+    assert "odds of" in evidence
+    assert evidence.count("75.0\u00a0%") == 2

@@ -57,6 +57,7 @@ from .told import (
     stretches_of,
     summary_of,
 )
+from .traces import traces_of
 from .verdict import left_beside, unnamed, verdict_of
 from .view import View
 from .words import (
@@ -464,6 +465,7 @@ class Conclusion:
                 position_unit=final.plant.position_unit,
                 floor=floor,
                 causes=self.own,
+                traces=traces_of(evidence, test, selection),
             ),
         )
 

@@ -19,6 +19,7 @@ from ..trajectory import FloatArray
 from ..wording import counted
 from .evidence import Evidence, SealedError
 from .pictures import Pictures, Tracking
+from .traces import with_loops
 from .words import WORSE, worse_loop_words
 
 if TYPE_CHECKING:
@@ -214,6 +215,7 @@ def _pictured(
     """With the loop of the recording that gains most; of train where none tests."""
     if pictures is None:
         return None
+    pictures = replace(pictures, traces=with_loops(pictures.traces, evidence, before, after))
     drawn = []
     for parts in (evidence.split.test, evidence.split.train):
         for index, run in before.items():

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
 
 from ..errors import InputError
 from ..trajectory import FloatArray
@@ -15,7 +18,11 @@ if TYPE_CHECKING:
 
     from .result import Diagnosis
 
-__all__ = ["Pictures", "Stretch", "Tracking", "before_and_after"]
+__all__ = ["ROLES", "Pictures", "Stretch", "Trace", "Tracking", "before_and_after"]
+
+ROLES: Final = ("", "train", "select", "test")
+"""What a row was used for, by its number; the first are left out: the warm-up, gaps, disturbances
+from outside."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +73,54 @@ class Tracking:
 
 
 @dataclass(frozen=True)
+class Trace:
+    """A whole recording, what both models leave of it, and where they would take it.
+
+    Attributes
+    ----------
+    name : str
+    time : numpy.ndarray, shape (n,)
+        s since its first row, rising.
+    position, velocity : numpy.ndarray, shape (n,)
+        rad or m, and per s.
+    effort, inertial : numpy.ndarray, shape (n,)
+        Measured effort, and what of it accelerates the inertia of the extended plant.
+    before, after : numpy.ndarray, shape (n,)
+        Residuals, in effort.
+    role : numpy.ndarray of int, shape (n,)
+        Places in ``ROLES``.
+    simulated : tuple of numpy.ndarray, or None
+        Position by the baseline and by the extended plant, shape (n,) each, started once and left
+        alone; None where nothing can be simulated.
+    loop : bool
+        Whether that was under its controller; otherwise by the recorded input alone.
+    contributions : Mapping of str to numpy.ndarray
+        By effect: how much of the residual goes when it is added, shape (n,) each.
+    step : float
+        Positions that are nearer than this are not told apart, rad or m.
+    """
+
+    name: str
+    time: FloatArray
+    position: FloatArray
+    velocity: FloatArray
+    effort: FloatArray
+    inertial: FloatArray
+    before: FloatArray
+    after: FloatArray
+    role: np.ndarray
+    simulated: tuple[FloatArray, FloatArray] | None = None
+    loop: bool = False
+    contributions: Mapping[str, FloatArray] = field(default_factory=dict)
+    step: float = 0.0
+
+    @property
+    def tests(self) -> np.ndarray:
+        """Which rows test; shape (n,)."""
+        return np.asarray(self.role == ROLES.index("test"))
+
+
+@dataclass(frozen=True)
 class Pictures:
     """What the figures show.
 
@@ -86,6 +141,8 @@ class Pictures:
     tracking : Tracking or None
         The held-out recording with the largest improvement in closed loop; None where no loop was
         replayed.
+    traces : tuple of Trace
+        All recordings, in their order.
     """
 
     stretches: tuple[Stretch, ...]
@@ -97,6 +154,7 @@ class Pictures:
     causes: tuple[tuple[View, View], ...] = ()
     effort_name: str = "measured effort"
     tracking: Tracking | None = None
+    traces: tuple[Trace, ...] = ()
 
 
 def before_and_after(diagnosis: Diagnosis) -> Figure:

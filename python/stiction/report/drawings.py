@@ -15,7 +15,7 @@ from markupsafe import Markup
 from ..best_effort import Failure, attempt
 from ..compared import compared_by
 from ..progress import phase, steps
-from . import figures
+from . import figures, motion_figures
 from .chart_svg import write_svg
 from .numbers import isolated, percent, plain
 from .scale import scale_of
@@ -119,6 +119,10 @@ def orders(diagnosis: Diagnosis) -> list[Order]:
     if pictures is not None:
         if pictures.stretches:
             found.append(Order("before-after", _headline))
+        if motion_figures.simulated_trace(diagnosis) is not None:
+            found.append(Order("motion", _motion))
+        if pictures.traces and not compared_by(diagnosis.plant).loop:
+            found.append(Order("curves", _curves))
         for index, (cause, _) in enumerate(zip(diagnosis.effects, pictures.causes, strict=False)):
             found.append(Order(cause_name(index, cause.name), partial(_cause, index=index)))
         if pictures.after.views:
@@ -178,6 +182,34 @@ def _headline(diagnosis: Diagnosis) -> _Shown:
         label,
         f"{shown}, in {isolated(stretch.name)}: {rows}. Gaps are rows used otherwise or left "
         f"out. Grey band: what noise alone would leave, ±{band} (twice its rms).",
+    )
+
+
+def _motion(diagnosis: Diagnosis) -> _Shown:
+    trace = motion_figures.simulated_trace(diagnosis)
+    assert trace is not None
+    both = " before and after" if diagnosis.effects else ""
+    how = (
+        "machine and controller together, from the first measured position on"
+        if trace.loop
+        else "from the measured start, by the recorded input alone"
+    )
+    return _Shown(
+        motion_figures.motion,
+        f"Position over time, measured and simulated{both}, and their difference.",
+        f"Position, measured and simulated{both} ({how}), in {isolated(trace.name)}; beneath, what "
+        "the simulation misses of it.",
+    )
+
+
+def _curves(diagnosis: Diagnosis) -> _Shown:
+    both = ", before and after" if diagnosis.effects else ""
+    return _Shown(
+        motion_figures.curves,
+        f"Friction over speed by the model{both}, and what it leaves there.",
+        f"Lines: friction in steady motion by the model{both}, the mean of both directions; beside "
+        "it, where that differs from place to place, the effort to stand there. Points: the last "
+        "line with the mean residual there added (partial residual), over all rows that were used.",
     )
 
 

@@ -15,9 +15,10 @@ import numpy as np
 
 from ..compared import compared_by
 from ..errors import InputError
-from ..plot import ACCENT, FAINT, INK, MEASURED, SIMULATED, SMALL, TEXT, WIDTH, thinned
+from ..plot import ACCENT, FAINT, INK, MEASURED, SIMULATED, SMALL, TEXT
 from .axis import Axis, around
 from .chart import Area, Bars, Chart, Line, Mark, Panel, Span, Words
+from .chart_parts import INCH, extent, time_axis, trace_line, width_of
 from .labels import shortened, told_apart
 from .numbers import NO_BREAK, digits, percent
 from .scale import Scale, loop_scale_of, prefixed, scale_of, suited
@@ -38,10 +39,6 @@ __all__ = [
     "quantity_of",
 ]
 
-INCH: Final = 72.0
-"""Points: lengths of charts are in these."""
-WIDE, NARROW = WIDTH * INCH, 3.9 * INCH
-"""Widths of a figure for a page and for a phone: there text keeps its size on 360 pixels."""
 BEFORE, AFTER, BAND, REFUSED = ACCENT, SIMULATED, "#dde1e5", "#b9c0c7"
 """Orange and blue are told apart by people who do not see red and green alike."""
 FLOOR_TIMES: Final = 2.0
@@ -86,9 +83,9 @@ def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
         left = [("left", stretch.after, AFTER)]
     by = compared_by(diagnosis.plant)
     unit = pictures.position_unit if by.loop else pictures.effort_unit
-    given = suited([_extent([stretch.measured])], unit)
-    time, size = _time(stretch.time, narrow), SMALL if narrow else TEXT
-    measured = _trace(stretch.time, given.factor * stretch.measured, MEASURED, 0.9, narrow)
+    given = suited([extent([stretch.measured])], unit)
+    time, size = time_axis(stretch.time, narrow), SMALL if narrow else TEXT
+    measured = trace_line(stretch.time, given.factor * stretch.measured, MEASURED, 0.9, narrow)
     upright = Axis(0.0, 1.0, given.on_axis(by.quantity), _up(narrow))
     panels = [
         Panel(
@@ -101,10 +98,10 @@ def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
         )
     ]
     band = FLOOR_TIMES * scale.factor * pictures.floor
-    span = 1.08 * max(scale.factor * _extent([values for _, values, _ in left]), 1.3 * band)
+    span = 1.08 * max(scale.factor * extent([values for _, values, _ in left]), 1.3 * band)
     for number, (name, values, colour) in enumerate(left, 1):
         last = number == len(left)
-        trace = _trace(stretch.time, scale.factor * values, colour, 0.8, narrow)
+        trace = trace_line(stretch.time, scale.factor * values, colour, 0.8, narrow)
         panels.append(
             Panel(
                 x=replace(time, label="time in the recording (s)") if last else panels[0].x,
@@ -116,7 +113,7 @@ def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
                 remark="band: noise alone" if number == 1 and not narrow else "",
             )
         )
-    return Chart(_width(narrow), panels)
+    return Chart(width_of(narrow), panels)
 
 
 def cause(diagnosis: Diagnosis, index: int, *, narrow: bool = False) -> Chart:
@@ -142,7 +139,7 @@ def cause(diagnosis: Diagnosis, index: int, *, narrow: bool = False) -> Chart:
         height=2.4 * INCH,
         legend=True,
     )
-    return Chart(_width(narrow), [panel])
+    return Chart(width_of(narrow), [panel])
 
 
 def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
@@ -162,7 +159,7 @@ def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     both, scale = bool(diagnosis.effects), scale_of(diagnosis)
     shown = (*views, *(before.values() if both else ()))
     parts = [part for view in shown for part in (view.mean, view.low, view.high)]
-    span = 1.1 * scale.factor * _extent(parts)
+    span = 1.1 * scale.factor * extent(parts)
     panels = []
     for position, view in enumerate(views):
         first = before.get(view.coordinate.name, view)
@@ -184,7 +181,7 @@ def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
             )
         )
     upright = scale.on_axis("mean residual")
-    return Chart(_width(narrow), panels, columns, legend=True, upright=upright)
+    return Chart(width_of(narrow), panels, columns, legend=True, upright=upright)
 
 
 def most_shown(pictures: Pictures) -> list[View]:
@@ -241,7 +238,7 @@ def candidates(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
         height=BAR * len(rows),
         legend=True,
     )
-    return Chart(_width(narrow), [panel])
+    return Chart(width_of(narrow), [panel])
 
 
 def errors(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
@@ -272,7 +269,7 @@ def errors(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     panel = Panel(
         x=Axis(
             0.0,
-            1.08 * max(_extent([one, two]), floor),
+            1.08 * max(extent([one, two]), floor),
             scale.on_axis("residual, rms"),
             4 if narrow else 7,
         ),
@@ -281,7 +278,7 @@ def errors(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
         height=ROW * len(rows),
         legend=True,
     )
-    return Chart(_width(narrow), [panel])
+    return Chart(width_of(narrow), [panel])
 
 
 def closed_loop(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
@@ -307,7 +304,7 @@ def closed_loop(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     simulated.append(("after" if both else "simulated", tracking.after, tracking.left, AFTER))
 
     def line(values: np.ndarray, colour: str, width: float, label: str) -> Line:
-        trace = _trace(tracking.time, scale.factor * values, colour, width, narrow)
+        trace = trace_line(tracking.time, scale.factor * values, colour, width, narrow)
         return replace(trace, label=label)
 
     above = [line(tracking.measured, MEASURED, 1.8, "measured")]
@@ -315,7 +312,7 @@ def closed_loop(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     below = [line(left, colour, 0.8, name) for name, _, left, colour in simulated]
     sizes = [digits(scale.factor * _rms(left)) for _, _, left, _ in simulated]
     what = "rms" if narrow else "measured − simulated, rms:"
-    time = _time(tracking.time, narrow)
+    time = time_axis(tracking.time, narrow)
 
     def upright(name: str, lines: Sequence[Line]) -> Axis:
         return around([each.y for each in lines], Axis(0.0, 1.0, name, _up(narrow)))
@@ -337,25 +334,12 @@ def closed_loop(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
             size=SMALL if narrow else TEXT,
         ),
     ]
-    return Chart(_width(narrow), panels)
-
-
-def _width(narrow: bool) -> float:
-    return NARROW if narrow else WIDE
+    return Chart(width_of(narrow), panels)
 
 
 def _up(narrow: bool) -> int:
     """Intervals between ticks of a vertical axis."""
     return 4 if narrow else 5
-
-
-def _time(time: np.ndarray, narrow: bool) -> Axis:
-    return Axis(min(0.0, float(time[0])), float(time[-1]), most=5 if narrow else 9)
-
-
-def _trace(time: np.ndarray, values: np.ndarray, colour: str, width: float, narrow: bool) -> Line:
-    """A line over time, of as many points as can be seen."""
-    return Line(*thinned(time, values, 350 if narrow else 700), colour, width)
 
 
 def _list(names: Sequence[str]) -> Axis:
@@ -466,7 +450,7 @@ def _upright(view: View, pictures: Pictures, scale: Scale) -> tuple[str, Scale]:
     name, unit = quantity_of(view.coordinate.upright, pictures)
     if unit == "%":
         return name, Scale(100.0, unit)
-    return name, suited([_extent([view.mean])], unit)
+    return name, suited([extent([view.mean])], unit)
 
 
 def _across(view: View) -> tuple[float, str]:
@@ -474,7 +458,7 @@ def _across(view: View) -> tuple[float, str]:
 
     Small ones keep the unit that the machine moves in, so that figures can be compared.
     """
-    return prefixed(_extent([view.at]), at_least=1.0)
+    return prefixed(extent([view.at]), at_least=1.0)
 
 
 def quantity_of(axis: str, pictures: Pictures) -> tuple[str, str]:
@@ -514,9 +498,3 @@ def _error(model: ModelSummary, key: str) -> float | None:
 def _rms(values: np.ndarray) -> float:
     seen = values[np.isfinite(values)]
     return float(np.sqrt(np.mean(seen**2))) if seen.size else math.nan
-
-
-def _extent(parts: Sequence[np.ndarray]) -> float:
-    """Greatest magnitude of all that is finite, 1 where there is nothing."""
-    greatest = [float(np.max(np.abs(p[np.isfinite(p)]))) for p in parts if np.isfinite(p).any()]
-    return max(greatest, default=0.0) or 1.0

@@ -12,7 +12,7 @@ from ..errors import InputError
 __all__ = ["made", "refused", "without_others"]
 
 OWN: Final = re.compile(
-    r"(before-after|closed-loop|coordinates|candidates|errors|cause-\d+-\w+)\.svg"
+    r"(before-after|candidates|closed-loop|coordinates|curves|errors|motion|cause-\d+-\w+)\.svg"
 )
 """What a report calls its figures."""
 

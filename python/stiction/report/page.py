@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup, escape
 
 from ..best_effort import Failure, attempt
+from .explorer import explorer
 from .sections import BUILDERS, Builder, name_of
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def render(diagnosis: Diagnosis, drawings: Drawings, remarks: Sequence[str] = ()
     Returns
     -------
     str
-        A whole page: style and figures are in it, and it has no script.
+        A whole page: style, figures and scripts are in it, and it asks for nothing else.
     """
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
@@ -65,13 +66,17 @@ def render(diagnosis: Diagnosis, drawings: Drawings, remarks: Sequence[str] = ()
         for each in drawings.values()
         if each.failure and not any(escape(each.failure) in section.body for section in sections)
     ]
+    walked = attempt("the panels that zoom", partial(explorer, diagnosis))
+    if isinstance(walked, Failure):
+        remarks, walked = [*remarks, walked.sentence], None
     page: str = environment.get_template("page.html").render(
         diagnosis=diagnosis,
         drawings=drawings,
         sections=sections,
         remarks=[*remarks, *unsaid],
+        explorer=walked,
     )
-    return labelled(page)
+    return page
 
 
 def _section(
@@ -98,7 +103,7 @@ def _built(
         return None
     body = environment.get_template(f"{section.name}.html").render(content=section.content)
     kind = str(section.content.get("verdict", ""))
-    return _Rendered(section.name, section.title, Markup(body), kind)
+    return _Rendered(section.name, section.title, Markup(labelled(body)), kind)
 
 
 def labelled(page: str) -> str:

@@ -5,7 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from . import advice, candidates, data, findings, laws, loop, method, models, rest, verdict
+from . import (
+    advice,
+    candidates,
+    curves,
+    data,
+    evidence,
+    findings,
+    laws,
+    loop,
+    method,
+    models,
+    motion,
+    rest,
+    verdict,
+)
 from .section import Section
 
 if TYPE_CHECKING:
@@ -18,7 +32,10 @@ Builder: TypeAlias = "Callable[[Diagnosis, Drawings], Section | None]"
 
 BUILDERS: Final[tuple[Builder, ...]] = (
     verdict.build,
+    motion.build,
+    curves.build,
     findings.build,
+    evidence.build,
     rest.build,
     candidates.build,
     models.build,

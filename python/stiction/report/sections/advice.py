@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from .section import Section
 
@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     from ..drawings import Drawings
 
 __all__ = ["build"]
+
+SOLVED: Final = ("missing_effect", "nothing_missing")
+"""Where a name stands one experiment is enough to begin with."""
 
 
 def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
@@ -23,7 +26,10 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
     ]
     if not rows:
         return None
-    return Section("advice", "What to record next", {"rows": rows})
+    solved = diagnosis.verdict in SOLVED and all(cause.decided for cause in diagnosis.effects)
+    first = rows[:1] if solved else rows
+    content = {"first": first, "further": rows[len(first) :]}
+    return Section("advice", "What to record next", content)
 
 
 def _remedies(diagnosis: Diagnosis) -> set[str]:

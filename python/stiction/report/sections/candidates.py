@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..numbers import percent, plain
+from ..numbers import percent
+from ..titles import effect_title
 from .section import Section
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
     rows = [
         {
             "name": row.name,
-            "title": plain(row.name),
+            "title": effect_title(row.name),
             "score": percent(row.score),
             "threshold": percent(row.threshold),
             "gain": percent(row.select_gain),
@@ -31,5 +32,9 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
         }
         for row in diagnosis.candidates
     ]
-    content = {"rows": rows, "picture": drawings.get("candidates")}
+    content = {
+        "accepted": [row for row in rows if row["accepted"]],
+        "refused": [row for row in rows if not row["accepted"]],
+        "picture": drawings.get("candidates"),
+    }
     return Section("candidates", "All effects that were tried", content)

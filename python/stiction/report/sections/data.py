@@ -43,7 +43,7 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
         "fine": _grouped([check for check in checks if check["verdict"] == "fine"]),
         "passed": _passed(checks),
         "split": _split(data.get("split")),
-        "residual": data.get("residual") or "",
+        "residual": " ".join(filter(None, (data.get("residual"), _through(data.get("through"))))),
         "noise": [
             _noise(entry, plant.position_unit, effort_unit_of(diagnosis)) for entry in data["noise"]
         ]
@@ -98,6 +98,26 @@ def _split(split: Mapping[str, Any] | None) -> dict[str, Any] | None:
             }
         )
     return {"rules": list(split.get("rules") or ()), "roles": roles}
+
+
+def _through(through: Mapping[str, Any] | None) -> str:
+    """Kernel or horizon that was chosen, and by how much the input is stamped early."""
+    if not through:
+        return ""
+    told = []
+    if through.get("support"):
+        told.append(
+            f"The kernel is {suited([through['support']], 's').text(through['support'])} wide."
+        )
+    if through.get("horizon"):
+        horizon = suited([through["horizon"]], "s").text(through["horizon"])
+        told.append(f"Each simulation lasts {horizon}.")
+    before, after = through.get("timing_s") or (0.0, 0.0)
+    if before or after:
+        scale = suited([before, after], "s")
+        times = f"{scale.factor * before:.3g} → {scale.text(after)}".replace("-", "−")
+        told.append(f"The input is stamped {times} early as fitted with it, before → after.")
+    return " ".join(told)
 
 
 def _pieces(names: Sequence[str]) -> str:

@@ -12,6 +12,7 @@ from ...diagnosis.words import joined
 from ..drawings import cause_name
 from ..numbers import percent, percent_between, plain, quantity
 from ..scale import effort_unit_of
+from ..titles import effect_title
 from .parameters import row, rows_of_effect
 from .section import Section
 
@@ -85,7 +86,7 @@ def _cause(cause: Cause, record: EffectRecord | None, diagnosis: Diagnosis) -> d
     gain = cause.gain
     return {
         "name": cause.name,
-        "title": plain(cause.name),
+        "title": effect_title(cause.name),
         "decided": cause.decided,
         "doubt": cause.doubt,
         "doubtful": cause.doubtful,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ...compared import compared_by
 from ..numbers import digits, percent, percent_between
 from ..scale import scale_of
+from ..titles import headline
 from .section import Section
 
 if TYPE_CHECKING:
@@ -16,22 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["build"]
 
-TITLES: Final = {
-    "data_fault": "The data cannot be used",
-    "not_testable": "These data cannot be tested",
-    "unexplained": "Something is missing that no known effect explains",
-    "ambiguous": "Something is missing, and these data leave more than one name for it",
-    "missing_effect": "The simulation lacks an effect that is known by name",
-    "nothing_missing": "Nothing is missing from the simulation",
-}
-INTERRUPTED: Final = "Interrupted before anything was named"
-NAMED_IN_PART: Final = "The simulation lacks {}, and something that has no name"
-UNCONFIRMED: Final = "Something is missing, and what was named does not help on held-out rows"
-LAW: Final = "The friction law of the simulation lacks something"
-LAW_AND_EFFECTS: Final = f"{LAW}, and effects beside it may only stand for that"
-"""Where another law explains more than what was named the sentence begins with the law as well."""
-UNSURE: Final = "Something is missing, and not every name for it is sure"
-SEVERAL: Final = "The simulation lacks effects that are known by name"
+ALIKE: Final = 0.005
+"""Noise before and after the search is told as one where it differs by less."""
 
 
 def build(diagnosis: Diagnosis, drawings: Drawings) -> Section:
@@ -51,25 +38,7 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section:
         "faults": faults,
         "picture": drawings.get("before-after"),
     }
-    return Section("verdict", _title(diagnosis), content)
-
-
-def _title(diagnosis: Diagnosis) -> str:
-    if not diagnosis.success and not diagnosis.effects:
-        return INTERRUPTED
-    if diagnosis.better_law:
-        return LAW_AND_EFFECTS if diagnosis.effects else LAW
-    if diagnosis.gain is not None and diagnosis.gain.value <= 0.0:
-        return UNCONFIRMED
-    if diagnosis.verdict == "unexplained" and diagnosis.effects:
-        several = len(diagnosis.effects) > 1
-        return NAMED_IN_PART.format("known effects" if several else "a known effect")
-    alike = any(effect.look_alikes for effect in diagnosis.effects)
-    if diagnosis.verdict == "ambiguous" and not alike:
-        return UNSURE
-    if diagnosis.verdict == "missing_effect" and len(diagnosis.effects) > 1:
-        return SEVERAL
-    return TITLES[diagnosis.verdict]
+    return Section("verdict", headline(diagnosis), content)
 
 
 def _gain(gain: Gain) -> dict[str, Any]:
@@ -102,7 +71,7 @@ def _errors(diagnosis: Diagnosis) -> dict[str, Any] | None:
         model.heldout_relative if tested else model.train_relative for model in (before, after)
     ]
     scale, by = scale_of(diagnosis), compared_by(diagnosis.plant)
-    floor = after.noise_floor_rms
+    floor, earlier = after.noise_floor_rms, before.noise_floor_rms
     return {
         "rows": "on held-out rows" if tested else "on the rows fitted",
         "both": bool(diagnosis.effects),
@@ -112,6 +81,8 @@ def _errors(diagnosis: Diagnosis) -> dict[str, Any] | None:
         "error": by.error[0].upper() + by.error[1:] if by.loop else "Effort not explained",
         "whole": by.whole,
         "floor": scale.text(floor),
+        # What the baseline lacks may be as fast as noise, and counted as such before it was named.
+        "earlier": digits(scale.factor * earlier) if abs(earlier - floor) > ALIKE * floor else "",
         "closed": None if diagnosis.gap_closed is None else percent(diagnosis.gap_closed, 0),
         # Noise is that of the rows fitted: recordings held out may be quieter, and nothing that
         # was called unexplained lies within it.

@@ -1,0 +1,113 @@
+"""What effects are called in the field, and the sentence that a page is headed by."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from ..compared import compared_by
+from ..diagnosis.words import joined
+from .numbers import NO_BREAK, percent, plain
+
+if TYPE_CHECKING:
+    from ..diagnosis.result import Diagnosis
+
+__all__ = ["effect_title", "headline"]
+
+NAMES: Final = {
+    "back_emf": "back-EMF",
+    "creep_hardening": "creep with hardening",
+    "current_loop_lag": "lag of the current loop",
+    "direction_asymmetry": "friction that differs by direction",
+    "drive_deadband": "dead band of the drive",
+    "drive_saturation": "saturation of the drive",
+    "dwell_strengthening": "strengthening at rest",
+    "encoder_eccentricity": "eccentric encoder",
+    "goal_rate_limit": "rate limit of the setpoint",
+    "load_dependent_friction": "load-dependent friction",
+    "position_dependent_friction": "position-dependent friction",
+    "rate_dependent_breakaway": "rate-dependent break-away",
+    "reverse_point_memory": "reversal-point memory",
+    "run_in": "running-in",
+    "shaft_compliance": "compliant shaft",
+    "stribeck": "Stribeck friction",
+    "temperature_dependent_friction": "temperature-dependent friction",
+    "torque_bias": "constant offset of the effort",
+    "torque_constant_ripple": "torque ripple",
+    "torque_constant_saturation": "saturation of the torque constant",
+    "viscous_quadratic": "quadratic viscous friction",
+    "voltage_limit": "voltage limit",
+    "warm_up": "warming up",
+}
+"""Names of effects that are not their words."""
+VERDICTS: Final = {
+    "data_fault": "The data cannot be used",
+    "not_testable": "These data cannot be tested",
+    "unexplained": "Something is missing that no known effect explains",
+    "ambiguous": "Something is missing, and these data leave more than one name for it",
+    "nothing_missing": "Nothing is missing from the simulation",
+}
+INTERRUPTED: Final = "Interrupted before anything was named"
+NAMED_IN_PART: Final = "The simulation lacks {}, and something that has no name"
+UNCONFIRMED: Final = "Something is missing, and what was named does not help on held-out rows"
+LAW: Final = "The friction law of the simulation lacks something"
+LAW_AND_EFFECTS: Final = f"{LAW}, and effects beside it may only stand for that"
+"""Where another law explains more than what was named the sentence begins with the law as well."""
+UNSURE: Final = "Something is missing, and not every name for it is sure"
+MISSING: Final = "Missing: {}"
+OR: Final = "Missing: {} or {}, which these data do not tell apart"
+FINE: Final = 0.1
+"""Shares below this have one more digit."""
+
+
+def effect_title(name: str) -> str:
+    """An effect as an engineer would call it; an unknown one by its own words."""
+    return NAMES.get(name, plain(name))
+
+
+def headline(diagnosis: Diagnosis) -> str:
+    """What was found, and what became of the error, as the title of a page."""
+    found = _found(diagnosis)
+    # What is doubtful is not followed by a number that looks like a proof.
+    sure = found.startswith("Missing") or diagnosis.verdict == "nothing_missing"
+    return f"{found}. {_error(diagnosis)}" if sure and _error(diagnosis) else found
+
+
+def _found(diagnosis: Diagnosis) -> str:
+    if not diagnosis.success and not diagnosis.effects:
+        return INTERRUPTED
+    if diagnosis.better_law:
+        return LAW_AND_EFFECTS if diagnosis.effects else LAW
+    if diagnosis.gain is not None and diagnosis.gain.value <= 0.0:
+        return UNCONFIRMED
+    if diagnosis.verdict == "unexplained" and diagnosis.effects:
+        several = len(diagnosis.effects) > 1
+        return NAMED_IN_PART.format("known effects" if several else "a known effect")
+    alike = any(effect.look_alikes for effect in diagnosis.effects)
+    if diagnosis.verdict == "ambiguous" and not alike:
+        return UNSURE
+    if diagnosis.verdict == "ambiguous" and len(diagnosis.effects) == 1:
+        *others, last = (diagnosis.effects[0].name, *diagnosis.effects[0].look_alikes)
+        return OR.format(", ".join(effect_title(each) for each in others), effect_title(last))
+    if diagnosis.verdict == "missing_effect":
+        return MISSING.format(joined([effect_title(each.name) for each in diagnosis.effects]))
+    return VERDICTS[diagnosis.verdict]
+
+
+def _error(diagnosis: Diagnosis) -> str:
+    """The residual as a share of what it is a part of, "" where it is not known."""
+    models = (diagnosis.baseline, diagnosis.extended)
+    if any(model is None for model in models):
+        return ""
+    held_out = [model.heldout_relative for model in models if model is not None]
+    fitted = [model.train_relative for model in models if model is not None]
+    tested = None not in held_out
+    before, after = (
+        percent(share, 2 if (share or 0.0) < FINE else 1)
+        for share in (held_out if tested else fitted)
+    )
+    what = "Held-out error" if tested else "Error on the rows fitted"
+    whole = compared_by(diagnosis.plant).whole
+    if not before or not after:
+        return ""
+    number = before.removesuffix(f"{NO_BREAK}%")
+    return f"{what} {f'{number} → ' if diagnosis.effects else ''}{after} of {whole}"
