@@ -27,6 +27,7 @@ from .part import part_of
 from .rendering import as_html, as_text
 from .repair import Place, Repair, check_lengths, mend
 from .signals import read_signals
+from .table import Table
 from .units import FloatArray, Motion
 
 SPLIT_ROLES: Final = ("train", "select", "test")
@@ -209,7 +210,33 @@ class Recording:
             table = read_signals([file_path(each, "Recording.load") for each in path])
         else:
             table = read_table(file_path(path, "Recording.load"))  # type: ignore[arg-type]
-        channels = read_channels(table, mapped, drive=drive, motion=motion, count_size=count_size)
+        return cls._of(
+            table,
+            mapped,
+            labels,
+            begin=begin,
+            end=end,
+            motion=motion,
+            drive=drive,
+            count_size=count_size,
+            keep_faulty=keep_faulty,
+        )
+
+    @classmethod
+    def _of(
+        cls,
+        table: Table,
+        columns: Columns,
+        labels: Mapping[str, Any],
+        *,
+        begin: float | str | None,
+        end: float | str | None,
+        motion: Motion | None,
+        drive: str | None,
+        count_size: float | None,
+        keep_faulty: bool,
+    ) -> Recording:
+        channels = read_channels(table, columns, drive=drive, motion=motion, count_size=count_size)
         rows = part_of(channels.values["time"], begin, end, str(table.path))
         first = channels.first + rows.start
         # The columns have been copied, and may be a good part of the memory at hand.
@@ -283,15 +310,38 @@ class Recording:
             No numbers, or not one for each row.
         """
         again = copy(self)
-        held = numbers(values, "Recording.with_input: values").copy()
+        object.__setattr__(again, "input", self._held(values, "with_input"))
+        return again
+
+    def with_load(self, values: FloatArray) -> Recording:
+        """The same recording with another load.
+
+        Parameters
+        ----------
+        values : numpy.ndarray, shape (rows,)
+            External effort from each row to the next, positive along positive motion, N·m or N;
+            copied.
+
+        Raises
+        ------
+        InputError
+            No numbers, or not one for each row.
+        """
+        again = copy(self)
+        channels = {**self.__dict__["_channels"], "load": self._held(values, "with_load")}
+        object.__setattr__(again, "_channels", channels)
+        return again
+
+    def _held(self, values: FloatArray, method: str) -> FloatArray:
+        """One number a row, copied, that cannot be written to."""
+        held = numbers(values, f"Recording.{method}: values").copy()
         if held.shape != self.time.shape:
             raise InputError(
-                f"Recording.with_input: values has shape {held.shape} where {self.time.shape} is "
+                f"Recording.{method}: values has shape {held.shape} where {self.time.shape} is "
                 "needed; give one value a row"
             )
         held.flags.writeable = False
-        object.__setattr__(again, "input", held)
-        return again
+        return held
 
     def _fill(
         self,
@@ -377,6 +427,46 @@ class Recording:
         for array in (self.time, self.input, self.position, *self.channels.values()):
             if array is not None:
                 array.flags.writeable = False
+
+
+def recording_of(
+    table: Table,
+    columns: Columns,
+    *,
+    drive: str,
+    motion: Motion,
+    begin: float | str | None = None,
+    end: float | str | None = None,
+    role: str | None = None,
+    kind: str = "",
+    start_s: float = 0.0,
+    cold: bool = False,
+    settings: Mapping[str, float] | None = None,
+) -> Recording:
+    """A recording from a table that was read already: of one joint of several in a file.
+
+    Parameters
+    ----------
+    table : Table
+    columns, drive, motion, begin, end, role, kind, start_s, cold, settings
+        As for ``Recording.load``.
+
+    Raises
+    ------
+    InputError
+        As there.
+    """
+    return Recording._of(
+        table,
+        columns,
+        _labels(role, kind, start_s, cold, settings),
+        begin=begin,
+        end=end,
+        motion=motion,
+        drive=drive,
+        count_size=None,
+        keep_faulty=False,
+    )
 
 
 def recordings_of(given: Any, where: str) -> tuple[Recording, ...]:

@@ -1,0 +1,175 @@
+"""The rigid links of a robot from its recordings, and each joint as a machine of one axis."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from ..errors import NotEnoughData
+from ..plant import Plant
+from ..progress import phase, steps
+from ..recording import Recording
+from ..recording.split import Split, split
+from ..session import Session
+from ..trajectory import FloatArray
+from .motion import JointMotion, measured
+from .regression import ArmFit, fitted, rows_of
+from .session import RobotSession, Run
+
+__all__ = ["JointSession", "RobotFit", "fit_robot"]
+
+MOVES: Final = 0.02
+"""rad or m that a joint has to move in a recording to say something of its friction."""
+RESTS: Final = 0.05
+"""Share of the largest travel in any recording that it has to travel as well."""
+
+_logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class RobotFit:
+    """Rigid links, rotors and plain friction of a robot, fitted to what does not test.
+
+    Attributes
+    ----------
+    session : RobotSession
+    arm : ArmFit
+    motions : tuple of JointMotion
+        Of each recording.
+    split : Split
+        Of whole recordings where there are several.
+    """
+
+    session: RobotSession
+    arm: ArmFit
+    motions: tuple[JointMotion, ...]
+    split: Split
+
+    def efforts(self, run: int) -> FloatArray:
+        """Efforts that the links need in a recording, rotors and friction apart.
+
+        Parameters
+        ----------
+        run : int
+
+        Returns
+        -------
+        numpy.ndarray, shape (n, joints)
+            On the even stamps of its motion, N·m or N.
+        """
+        motion, model = self.motions[run], self.session.robot.arm
+        links = self.arm.under(self.session.runs[run].payload, model.carries)
+        return model.efforts(motion.position, motion.velocity, motion.acceleration, links)
+
+    def joint(self, joint: int) -> JointSession:
+        """A joint as a session of one axis, whose load is what the links need.
+
+        A recording in which the joint rests is left out: of its friction it says nothing.
+
+        Parameters
+        ----------
+        joint : int
+
+        Raises
+        ------
+        NotEnoughData
+            It moves in none.
+        """
+        recordings = self.session.of_joint(joint)
+        travel = np.array([np.ptp(motion.position[:, joint]) for motion in self.motions])
+        moves = np.flatnonzero((travel > MOVES) & (travel > RESTS * travel.max()))
+        if len(moves) == 0:
+            name = self.session.robot.names[joint]
+            raise NotEnoughData(f"joint '{name}' moves in no recording")
+        roles = _roles(self.split, len(recordings))
+        kept = [_loaded(recordings[k], self._loads[k][:, joint], roles[k]) for k in moves]
+        payloads = tuple(self.session.runs[k].payload for k in moves)
+        return JointSession(Session(kept, self.plant(joint)), payloads)
+
+    def plant(self, joint: int) -> Plant:
+        """A joint as a machine of one axis, before anything is fitted to it."""
+        robot = self.session.robot
+        own = robot.joints[joint]
+        where = f"{robot.source}: joint '{own.name}'"
+        return own.plant(max(float(self.arm.rotors[joint]), 1e-6), where)
+
+    @cached_property
+    def _loads(self) -> list[FloatArray]:
+        """What acts on each joint from one row to the next, of each recording."""
+        found = []
+        for run, motion in enumerate(self.motions):
+            acts = -self.efforts(run)
+            # A load holds from one row to the next: the mean of what acts at both.
+            acts[:-1] = 0.5 * (acts[1:] + acts[:-1])
+            columns = [np.interp(motion.stamps, motion.time, one) for one in acts.T]
+            found.append(np.stack(columns, axis=1))
+        return found
+
+
+@dataclass(frozen=True)
+class JointSession:
+    """A joint as a session of one axis, and the payload of each of its recordings, kg."""
+
+    session: Session
+    payloads: tuple[float, ...]
+
+
+def fit_robot(session: RobotSession) -> RobotFit:
+    """Fit the rigid links of a robot to all joints together.
+
+    Base parameters are told by a rank-revealing QR; the links are those that can exist and leave
+    least. Joints are weighted by what each leaves. Rows that test are not seen.
+
+    Parameters
+    ----------
+    session : RobotSession
+
+    Raises
+    ------
+    InputError
+        No pinocchio, a URDF that it cannot read.
+    NotEnoughData
+        A joint that never moves.
+    """
+    arm = session.robot.arm
+    phase(_logger, "moving the links along what was measured")
+    dealt = split(session.of_joint(0))
+    gains = np.array([joint.effort_per_input for joint in session.robot.joints])
+    motions, rows = [], []
+    for index, run in enumerate(steps(session.runs, "recording")):
+        motion = measured(run.joints)
+        motions.append(motion)
+        free = _free(dealt, index, motion, run)
+        rows.append(rows_of(arm, motion, motion.input * gains, free, run.payload))
+    phase(_logger, "fitting the links")
+    return RobotFit(session, fitted(arm, rows), tuple(motions), dealt)
+
+
+def _free(dealt: Split, index: int, motion: JointMotion, run: Run) -> list[tuple[int, int]]:
+    """Samples of a recording that do not test."""
+    found = []
+    for part in (*dealt.train, *dealt.select):
+        if part.recording == index:
+            first, last = motion.stamps[part.start], motion.stamps[part.stop - 1]
+            found.append(
+                (int(np.searchsorted(motion.time, first)), int(np.searchsorted(motion.time, last)))
+            )
+    return found
+
+
+def _roles(dealt: Split, number: int) -> list[str | None]:
+    """The role of each recording, where it has one as a whole."""
+    roles: list[str | None] = [None] * number
+    for role in ("train", "select", "test"):
+        for part in getattr(dealt, role):
+            whole = len(part) == dealt.lengths[part.recording]
+            roles[part.recording] = role if whole else None
+    return roles
+
+
+def _loaded(recording: Recording, load: FloatArray, role: str | None) -> Recording:
+    return recording.with_load(load).with_role(role if role is not None else recording.role)
