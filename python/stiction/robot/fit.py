@@ -27,6 +27,9 @@ MOVES: Final = 0.02
 RESTS: Final = 0.05
 """Share of the largest travel in any recording that it has to travel as well."""
 
+POSES: Final = 200
+"""Of a recording, over which the inertia about a joint is averaged."""
+
 _logger = logging.getLogger(__name__)
 
 
@@ -95,14 +98,35 @@ class RobotFit:
         robot = self.session.robot
         own = robot.joints[joint]
         where = f"{robot.source}: joint '{own.name}'"
-        return own.plant(max(float(self.arm.rotors[joint]), 1e-6), where)
+        return own.plant(float(self.arm.rotors[joint] + self.carried[joint]), where)
+
+    @cached_property
+    def carried(self) -> FloatArray:
+        """Inertia of the links about each joint, the mean over its motion, shape (joints,).
+
+        It is the joint's own as a machine of one axis, which without it could not be simulated;
+        what it differs by along the motion is in the load.
+        """
+        model, count = self.session.robot.arm, len(self.session.robot.joints)
+        links, found = self.arm.links, []
+        for motion in self.motions:
+            q = motion.position[:: max(1, len(motion.time) // POSES)]
+            still = np.zeros_like(q)
+            rests = model.efforts(q, still, still, links)
+            pushed = [
+                model.efforts(q, still, still + np.eye(count)[k], links)[:, k] - rests[:, k]
+                for k in range(count)
+            ]
+            found.append(np.mean(pushed, axis=1))
+        mean: FloatArray = np.mean(found, axis=0)
+        return mean
 
     @cached_property
     def _loads(self) -> list[FloatArray]:
         """What acts on each joint from one row to the next, of each recording."""
         found = []
         for run, motion in enumerate(self.motions):
-            acts = -self.efforts(run)
+            acts = self.carried * motion.acceleration - self.efforts(run)
             # A load holds from one row to the next: the mean of what acts at both.
             acts[:-1] = 0.5 * (acts[1:] + acts[:-1])
             columns = [np.interp(motion.stamps, motion.time, one) for one in acts.T]

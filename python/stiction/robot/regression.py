@@ -116,9 +116,8 @@ def rows_of(
     payload : float
         kg.
     """
-    # Efforts of rigid links go with squares of speeds: twice the cutoff, and still thinned first.
-    step = max(1, motion.every // 2)
-    thin = slice(None, None, step)
+    # The motion has gone through the low pass: what its links need has too, nearly.
+    thin = slice(None, None, motion.every)
     q, v, a = (x[thin] for x in (motion.position, motion.velocity, motion.acceleration))
     links = arm.regressor(q, v, a)
     moving = np.abs(motion.velocity) > STANDS * np.sqrt(np.mean(motion.velocity**2, axis=0))
@@ -129,15 +128,13 @@ def rows_of(
     allowed = np.zeros(len(motion.time), dtype=bool)
     for start, stop in free:
         allowed[start:stop] = True
-    kept = slice(None, None, 2 if motion.every >= 2 else 1)
-    count = passed.shape[1]
     still = motion.passed((~moving).astype(float)) > 0.05
     return Rows(
-        links[:, kept][:, :count],
-        motion.passed(motion.acceleration)[:count],
+        links,
+        motion.passed(motion.acceleration),
         passed,
-        motion.passed(effort)[:count],
-        ~still[:count] & allowed[:: motion.every][:count, None],
+        motion.passed(effort),
+        ~still & allowed[thin, None],
         payload,
     )
 
