@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 EFFECTS = ("load_dependent_friction", "stribeck", "viscous_quadratic", "position_dependent_friction")
 RATE = 200.0
+FINER = 8
+"""Steps of the simulator to one row of the recording."""
 
 
 @dataclass(frozen=True)
@@ -84,19 +86,21 @@ class SimulatedRobot:
     def record(self, seed: int, seconds: float) -> Mapping[str, Array]:
         """A recording: t, and q, tau of each joint."""
         rng = np.random.default_rng(seed)
-        time = np.arange(int(seconds * RATE)) / RATE
-        motion = [_multisine(rng, time) for _ in self.joints]
+        count = int(seconds * RATE)
+        fine = np.arange(count * FINER) / (RATE * FINER)
+        motion = [_multisine(rng, fine) for _ in self.joints]
         q, v, a = (np.stack([one[k] for one in motion], axis=1) for k in range(3))
         links = self.links(q, v, a)
-        table = {"t": time}
+        table = {"t": fine[::FINER]}
         for k, friction in enumerate(self.friction):
             torque = links[:, k] + self.rotors[k] * a[:, k]
             torque = torque + friction.acts(q[:, k], v[:, k], links[:, k])
-            torque = torque + self.noise * np.sqrt(np.mean(torque**2)) * rng.standard_normal(len(time))
-            count = 2.0 * np.pi / self.counts
-            table[f"q{k + 1}"] = np.round(q[:, k] / count) * count
             # What is held from a row to the next is the mean of what acts in between.
-            table[f"tau{k + 1}"] = np.append(0.5 * (torque[1:] + torque[:-1]), torque[-1])
+            held = torque.reshape(count, FINER).mean(axis=1)
+            held += self.noise * np.sqrt(np.mean(held**2)) * rng.standard_normal(count)
+            step = 2.0 * np.pi / self.counts
+            table[f"q{k + 1}"] = np.round(q[::FINER, k] / step) * step
+            table[f"tau{k + 1}"] = held
         return table
 
     def links(self, q: Array, v: Array, a: Array) -> Array:

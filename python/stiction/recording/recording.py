@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..frozen import Frozen
-from ..given import instance, mapping, numbers, real, shown
+from ..given import instance, mapping, numbers, real, shown, whole
 from ..given import path as file_path
 from ..parameter import number
 from ..wording import did_you_mean
@@ -25,7 +25,7 @@ from .formats import read_table
 from .mapping import read_channels
 from .part import part_of
 from .rendering import as_html, as_text
-from .repair import Place, Repair, check_lengths, mend
+from .repair import FEWEST_ROWS, Place, Repair, check_lengths, mend
 from .signals import read_signals
 from .table import Table
 from .units import FloatArray, Motion
@@ -330,6 +330,39 @@ class Recording:
         again = copy(self)
         channels = {**self.__dict__["_channels"], "load": self._held(values, "with_load")}
         object.__setattr__(again, "_channels", channels)
+        return again
+
+    def without_ends(self, rows: int) -> Recording:
+        """The same recording without as many rows at its beginning and at its end.
+
+        Parameters
+        ----------
+        rows : int
+
+        Raises
+        ------
+        InputError
+            Fewer than 200 rows would be left.
+        """
+        rows = whole(rows, "Recording.without_ends: rows", least=0)
+        if len(self) - 2 * rows < FEWEST_ROWS:
+            raise InputError(
+                f"Recording.without_ends: rows = {rows} leaves less than {FEWEST_ROWS} of "
+                f"{len(self)} rows; give fewer"
+            )
+        again = copy(self)
+        kept = slice(rows, len(self) - rows)
+
+        def part(values: FloatArray | None) -> FloatArray | None:
+            return None if values is None else values[kept]
+
+        for name in _MAIN:
+            object.__setattr__(again, name, part(getattr(self, name)))
+        channels = {name: part(values) for name, values in self.__dict__["_channels"].items()}
+        object.__setattr__(again, "_channels", channels)
+        began = float(self.time[rows] - self.time[0])
+        # A clock of the session that nobody stated stays unstated.
+        object.__setattr__(again, "start_s", self.start_s + began if self.start_s else 0.0)
         return again
 
     def _held(self, values: FloatArray, method: str) -> FloatArray:

@@ -13,6 +13,7 @@ from ..errors import NotEnoughData
 from ..plant import Plant
 from ..progress import phase, steps
 from ..recording import Recording
+from ..recording.repair import FEWEST_ROWS
 from ..recording.split import Split, split
 from ..session import Session
 from ..trajectory import FloatArray
@@ -89,7 +90,10 @@ class RobotFit:
             name = self.session.robot.names[joint]
             raise NotEnoughData(f"joint '{name}' moves in no recording")
         roles = _roles(self.split, len(recordings))
-        kept = [_loaded(recordings[k], self._loads[k][:, joint], roles[k]) for k in moves]
+        kept = [
+            _loaded(recordings[k], self._loads[k][:, joint], roles[k], self.motions[k].ends)
+            for k in moves
+        ]
         payloads = tuple(self.session.runs[k].payload for k in moves)
         return JointSession(Session(kept, self.plant(joint)), payloads)
 
@@ -195,5 +199,9 @@ def _roles(dealt: Split, number: int) -> list[str | None]:
     return roles
 
 
-def _loaded(recording: Recording, load: FloatArray, role: str | None) -> Recording:
-    return recording.with_load(load).with_role(role if role is not None else recording.role)
+def _loaded(recording: Recording, load: FloatArray, role: str | None, ends: int) -> Recording:
+    """The recording with the load, but its ends, where no acceleration is known."""
+    # As many rows as samples, which stamps that jitter hardly change.
+    ends = min(ends, max(0, (len(recording) - FEWEST_ROWS) // 2))
+    loaded = recording.with_load(load).without_ends(ends)
+    return loaded.with_role(role if role is not None else recording.role)

@@ -22,6 +22,8 @@ CUTOFFS: Final = tuple(float(f) for f in np.geomspace(20.0, 2.0, 14))
 """Hz, tried from the widest: a joint of an arm moves at few hertz, its structure at tens."""
 NYQUIST_SHARE: Final = 0.4
 """Of the rate of the rows that a cutoff may have."""
+ENDS: Final = 2.0
+"""Periods of the cutoff at either end of a recording in which the low pass knows but one side."""
 PER_CUTOFF: Final = 5.0
 """Rows that are kept a period of the cutoff: fewer would fold what it lets pass."""
 
@@ -59,6 +61,11 @@ class JointMotion:
         """Samples from one row that is kept to the next."""
         return max(1, int(1.0 / (PER_CUTOFF * self.cutoff * self.dt)))
 
+    @property
+    def ends(self) -> int:
+        """Samples at either end that tell no acceleration."""
+        return min(int(ENDS / (self.cutoff * self.dt)) + 1, len(self.time) // 4)
+
     def passed(self, values: FloatArray) -> FloatArray:
         """Values through the low pass along the first axis, and those that are kept of them."""
         return filtered(values, self.cutoff, self.dt)[:: self.every]
@@ -80,7 +87,6 @@ def measured(joints: Sequence[Recording]) -> JointMotion:
     read = np.stack([onto(one.position) for one in joints], axis=1)
     driven = np.stack([onto(one.input) for one in joints], axis=1)
     cutoff = _cutoff(read, dt)
-    # What starts and ends in motion would ring: the ends are led on by their own slope.
     position = filtered(read, cutoff, dt)
     velocity = np.gradient(position, dt, axis=0)
     acceleration = np.gradient(velocity, dt, axis=0)

@@ -128,6 +128,7 @@ def rows_of(
     allowed = np.zeros(len(motion.time), dtype=bool)
     for start, stop in free:
         allowed[start:stop] = True
+    allowed[: motion.ends] = allowed[-motion.ends :] = False
     still = motion.passed((~moving).astype(float)) > 0.05
     return Rows(
         links,
