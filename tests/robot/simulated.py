@@ -16,7 +16,12 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-EFFECTS = ("load_dependent_friction", "stribeck", "viscous_quadratic", "position_dependent_friction")
+EFFECTS = (
+    "load_dependent_friction",
+    "stribeck",
+    "viscous_quadratic",
+    "position_dependent_friction",
+)
 RATE = 200.0
 FINER = 8
 """Steps of the simulator to one row of the recording."""
