@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -110,6 +109,8 @@ class SimulatedRobot:
 
     def links(self, q: Array, v: Array, a: Array) -> Array:
         """Efforts of the rigid links, by MuJoCo."""
+        import mujoco
+
         model = mujoco.MjModel.from_xml_string(self.urdf)
         data = mujoco.MjData(model)
         found = np.empty_like(q)

@@ -7,9 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pinocchio = pytest.importorskip("pinocchio")
-pytest.importorskip("mujoco")
-
 from stiction.errors import InputError, NotEnoughData
 from stiction.robot import fit_robot, load_session
 from stiction.robot.consistency import consistent, exist, feasible
@@ -17,6 +14,9 @@ from stiction.robot.dynamics import Arm
 from stiction.robot.regression import base_parameters
 
 from .simulated import SimulatedRobot
+
+pinocchio = pytest.importorskip("pinocchio")
+pytest.importorskip("mujoco")
 
 EXACT = 1e-10
 """Share of the largest effort: rounding of a few thousand products."""

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
+from ..robot.robot import Robot
 from ..robot.session import load_session
 from .answer import answer, folder, told_anyway, written
 from .interrupt import ending_soon, finished
 from .progress import progress
 
-__all__ = ["diagnose_arm"]
+__all__ = ["diagnose_arm", "export_arm"]
 
 
 def diagnose_arm(
@@ -75,3 +76,53 @@ def _spared(robot: Path, where: Path) -> None:
             f"{file}: is the robot file of this session and is not overwritten; give another "
             "folder with --out"
         )
+
+
+def export_arm(
+    robot: Path,
+    to: Sequence[str],
+    speed: float | None,
+    check: Path | None,
+    where: Path,
+    *,
+    as_json: bool,
+) -> None:
+    """``stiction export`` of a robot.
+
+    Parameters
+    ----------
+    robot : Path
+        Robot file.
+    to : sequence of str
+        Targets.
+    speed : float or None
+        Greatest speed at which friction matters.
+    check : Path or None
+        Session to run the targets on, which only machines of one axis are.
+    where : Path
+        Folder for the files.
+    as_json : bool
+        Print JSON.
+
+    Raises
+    ------
+    InputError
+    """
+    from ..robot.export import export_robot
+
+    if check is not None:
+        raise InputError(
+            f"{robot}: --check runs a machine of one axis, and this one is a robot; export and "
+            "check the plant.toml in the folder of a joint"
+        )
+    read = Robot.load(robot)
+    made = [(name, export_robot(read, name, speed=speed)) for name in to]
+    folder(where)
+    told, data = [], []
+    with written(where):
+        for name, parts in made:
+            for part, own in parts.items():
+                own.save(where / name / part)
+                told.append(f"{part or name}: {own}\n  folder: {where / name / part}")
+                data.append({"joint": part or None, **own.to_dict()})
+    answer("\n".join(told), data, as_json=as_json)

@@ -20,7 +20,14 @@ def extended(diagnosis: RobotDiagnosis, folder: Path) -> str:
     """The text of robot.toml: as it was given, with what was found of each joint."""
     robot = diagnosis.fit.session.robot
     found = {joint.name: joint.diagnosis.plant.to_dict() for joint in diagnosis.joints}
-    stated = {joint.name: _stated(joint, found.get(joint.name, {})) for joint in robot.joints}
+    rotors = dict(zip(robot.names, diagnosis.fit.arm.rotors, strict=True))
+    stated = {
+        joint.name: {
+            "rotor_inertia": float(rotors[joint.name]),
+            **_stated(joint, found.get(joint.name, {})),
+        }
+        for joint in robot.joints
+    }
     return robot_text(robot, stated, folder)
 
 
@@ -37,7 +44,7 @@ def robot_text(robot: Robot, joints: dict[str, dict[str, Any]], folder: Path) ->
     ----------
     robot : Robot
     joints : dict of str to dict
-        ``friction`` and ``effects`` of each.
+        ``rotor_inertia``, ``friction`` and ``effects`` of each.
     folder : Path
         That it will stand in.
     """

@@ -24,7 +24,7 @@ from .dynamics import Arm
 __all__ = ["Joint", "Robot", "describes_robot"]
 
 _KEYS: Final = ("urdf", "locked", "gravity", "joints")
-_JOINT: Final = ("name", "columns", "drive", "friction", "effects")
+_JOINT: Final = ("name", "columns", "drive", "rotor_inertia", "friction", "effects")
 _DRIVE: Final = ("input", "gain", "gear_ratio")
 _COLUMNS: Final = ("position", "velocity", "input", "temperature")
 BIAS: Final = {"name": "torque_bias"}
@@ -52,6 +52,8 @@ class Joint:
         As [friction] of a plant file.
     effects : sequence of mapping
         As [[effects]].
+    rotor_inertia : float
+        Of motor and gear on the side of the joint, kg·m² or kg, where it is known: for exports.
     """
 
     name: str
@@ -62,6 +64,7 @@ class Joint:
     gear_ratio: float = 1.0
     friction: Mapping[str, Any] = field(default_factory=lambda: {"law": "coulomb"})
     effects: Sequence[Mapping[str, Any]] = ()
+    rotor_inertia: float = 0.0
 
     @property
     def effort_per_input(self) -> float:
@@ -253,7 +256,15 @@ def _joint(entry: object, kinds: Mapping[str, str], where: str) -> Joint:
         _above_zero(drive.get("gear_ratio", 1.0), f"{where} gear_ratio"),
         {"law": "coulomb", **section(entry, "friction", where)},
         tuple(effects),
+        _inertia(entry.get("rotor_inertia", 0.0), f"{where} rotor_inertia"),
     )
+
+
+def _inertia(value: object, where: str) -> float:
+    found = number(value, where)
+    if not 0.0 <= found < math.inf:
+        raise InputError(f"{where} = {found:g} is out of bounds: give a finite number from 0")
+    return found
 
 
 def _above_zero(value: object, where: str) -> float:
