@@ -91,11 +91,14 @@ class SimulatedRobot:
         """A recording: t, and q, tau of each joint."""
         rng = np.random.default_rng(seed)
         count = int(seconds * RATE)
-        fine = np.arange(count * FINER) / (RATE * FINER)
-        motion = [_multisine(rng, fine) for _ in self.joints]
+        rows = np.arange(count) / RATE
+        # Midpoints of fine steps: their mean over a row lies in its middle.
+        fine = (np.arange(count * FINER) + 0.5) / (RATE * FINER)
+        sines = [_drawn_sines(rng) for _ in self.joints]
+        motion = [_multisine(own, fine) for own in sines]
         q, v, a = (np.stack([one[k] for one in motion], axis=1) for k in range(3))
         links = self.links(q, v, a)
-        table = {"t": fine[::FINER]}
+        table = {"t": rows}
         for k, friction in enumerate(self.friction):
             torque = links[:, k] + self.rotors[k] * a[:, k]
             torque = torque + friction.acts(q[:, k], v[:, k], links[:, k])
@@ -103,7 +106,7 @@ class SimulatedRobot:
             held = torque.reshape(count, FINER).mean(axis=1)
             held += self.noise * np.sqrt(np.mean(held**2)) * rng.standard_normal(count)
             step = 2.0 * np.pi / self.counts
-            table[f"q{k + 1}"] = np.round(q[::FINER, k] / step) * step
+            table[f"q{k + 1}"] = np.round(_multisine(sines[k], rows)[0] / step) * step
             table[f"tau{k + 1}"] = held
         return table
 
@@ -170,15 +173,28 @@ def drawn(seed: int) -> tuple[SimulatedRobot, str, str]:
     return robot, names[hides] if effect else "", effect
 
 
-def _multisine(rng: np.random.Generator, time: Array) -> tuple[Array, Array, Array]:
+Sines = list[tuple[float, float, float]]
+
+
+def _drawn_sines(rng: np.random.Generator) -> Sines:
+    """Angular frequency, amplitude and phase of each."""
+    return [
+        (
+            2.0 * np.pi * frequency,
+            rng.uniform(0.5, 1.0) * 0.5 / (0.5 + 2.0 * frequency),
+            rng.uniform(0, 6.28),
+        )
+        for frequency in rng.uniform(0.08, 0.6, 5)
+    ]
+
+
+def _multisine(sines: Sines, time: Array) -> tuple[Array, Array, Array]:
     """Position, velocity and acceleration of a few sines that begin at rest."""
     ease = 1.0 - np.exp(-((time / 0.5) ** 2))
     d_ease = 2.0 * time / 0.25 * np.exp(-((time / 0.5) ** 2))
     dd_ease = (2.0 / 0.25 - (2.0 * time / 0.25) ** 2) * np.exp(-((time / 0.5) ** 2))
     x, v, a = np.zeros_like(time), np.zeros_like(time), np.zeros_like(time)
-    for frequency in rng.uniform(0.08, 0.6, 5):
-        w = 2.0 * np.pi * frequency
-        size, phase = rng.uniform(0.5, 1.0) * 0.5 / (0.5 + 2.0 * frequency), rng.uniform(0, 6.28)
+    for w, size, phase in sines:
         x += size * np.sin(w * time + phase)
         v += size * w * np.cos(w * time + phase)
         a -= size * w * w * np.sin(w * time + phase)

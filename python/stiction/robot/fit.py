@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from ..errors import NotEnoughData
+from ..given import instance, whole
 from ..plant import Plant
 from ..progress import phase, steps
 from ..recording import Recording
@@ -59,12 +60,19 @@ class RobotFit:
         Parameters
         ----------
         run : int
+            Its place in the session.
+
+        Raises
+        ------
+        InputError
+            There is no such recording; no pinocchio.
 
         Returns
         -------
         numpy.ndarray, shape (n, joints)
             On the even stamps of its motion, N·m or N.
         """
+        run = whole(run, "RobotFit.efforts: run", least=0, most=len(self.motions) - 1)
         motion, model = self.motions[run], self.session.robot.arm
         links = self.arm.under(self.session.runs[run].payload, model.carries)
         return model.efforts(motion.position, motion.velocity, motion.acceleration, links)
@@ -77,12 +85,16 @@ class RobotFit:
         Parameters
         ----------
         joint : int
+            Its place in the robot.
 
         Raises
         ------
+        InputError
+            There is no such joint; no pinocchio.
         NotEnoughData
             It moves in none.
         """
+        joint = self._place(joint)
         recordings = self.session.of_joint(joint)
         travel = np.array([np.ptp(motion.position[:, joint]) for motion in self.motions])
         moves = np.flatnonzero((travel > MOVES) & (travel > RESTS * travel.max()))
@@ -98,11 +110,27 @@ class RobotFit:
         return JointSession(Session(kept, self.plant(joint)), payloads)
 
     def plant(self, joint: int) -> Plant:
-        """A joint as a machine of one axis, before anything is fitted to it."""
+        """A joint as a machine of one axis, before anything is fitted to it.
+
+        Parameters
+        ----------
+        joint : int
+            Its place in the robot.
+
+        Raises
+        ------
+        InputError
+            There is no such joint; no pinocchio.
+        """
+        joint = self._place(joint)
         robot = self.session.robot
         own = robot.joints[joint]
         where = f"{robot.source}: joint '{own.name}'"
         return own.plant(float(self.arm.rotors[joint] + self.carried[joint]), where)
+
+    def _place(self, joint: int) -> int:
+        most = len(self.session.robot.joints) - 1
+        return whole(joint, "RobotFit: joint", least=0, most=most)
 
     @cached_property
     def carried(self) -> FloatArray:
@@ -163,6 +191,7 @@ def fit_robot(session: RobotSession) -> RobotFit:
     NotEnoughData
         A joint that never moves.
     """
+    instance(session, RobotSession, "fit_robot: session", "what load_session returns")
     arm = session.robot.arm
     phase(_logger, "moving the links along what was measured")
     dealt = split(session.of_joint(0))

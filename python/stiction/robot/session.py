@@ -11,11 +11,12 @@ from typing import Any, Final
 from .. import given
 from ..errors import InputError
 from ..keys import known
+from ..parameter import number
 from ..plant_file import read_toml, section
 from ..progress import phase, steps
 from ..recording import Columns, Recording, Table, read_table
 from ..recording.names import names_of
-from ..recording.recording import recording_of
+from ..recording.recording import recording_of, recordings_of
 from ..recording.signals import read_signals
 from ..session_entries import Entry, beside, entries_of
 from ..wording import counted
@@ -27,6 +28,8 @@ _TABLES: Final = ("plant", "columns", "recordings")
 _SHARED: Final = ("time", "temperature")
 _PAYLOAD: Final = "payload_kg"
 _FAULTS_TOLD: Final = 8
+HEAVIEST: Final = 1e6
+"""kg; no arm carries that."""
 
 _logger = logging.getLogger(__name__)
 
@@ -47,11 +50,16 @@ class Run:
     payload: float = 0.0
 
     def __post_init__(self) -> None:
-        rows = {len(one) for one in self.joints}
-        if len(rows) != 1:
+        object.__setattr__(self, "joints", recordings_of(self.joints, "Run"))
+        if len({len(one) for one in self.joints}) != 1:
             raise InputError(
-                f"Run: its joints have {counted(len(rows), 'number')} of rows; give recordings "
-                "over one clock"
+                "Run: its joints have not as many rows each; give recordings over one clock, one "
+                "for each joint"
+            )
+        payload = number(self.payload, "Run: payload")
+        if not 0.0 <= payload < HEAVIEST:
+            raise InputError(
+                f"Run: payload = {payload:g} is out of bounds: give a mass in kg from 0"
             )
 
 
@@ -72,6 +80,14 @@ class RobotSession:
     left_out: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        where = "robot session: robot"
+        given.instance(self.robot, Robot, where, "a Robot, as Robot.load returns it")
+        runs = given.each_of(self.runs, "robot session: runs", "Runs")
+        object.__setattr__(
+            self,
+            "runs",
+            tuple(given.instance(run, Run, "robot session: a run", "a Run") for run in runs),
+        )
         if not self.runs:
             raise InputError("robot session: there are no recordings; give at least one")
         for run in self.runs:
@@ -87,7 +103,20 @@ class RobotSession:
         return names_of([run.joints[0] for run in self.runs])
 
     def of_joint(self, joint: int) -> list[Recording]:
-        """The recordings of one joint."""
+        """The recordings of one joint.
+
+        Parameters
+        ----------
+        joint : int
+            Its place in the robot.
+
+        Raises
+        ------
+        InputError
+            There is no such joint.
+        """
+        most = len(self.robot.joints) - 1
+        joint = given.whole(joint, "RobotSession.of_joint: joint", least=0, most=most)
         return [run.joints[joint] for run in self.runs]
 
 
@@ -159,7 +188,7 @@ def _run(robot: Robot, entry: Entry, shared: dict[str, Any], where: str) -> Run:
             f"{where}: [[recordings]] {entry.place}: {', '.join(settings)} is no setting of a "
             f"robot; it has {_PAYLOAD}"
         )
-    if not 0.0 <= payload < 1e6:
+    if not 0.0 <= payload < HEAVIEST:
         raise InputError(
             f"{where}: [[recordings]] {entry.place}: {_PAYLOAD} = {payload:g} is out of bounds: "
             "give a mass in kg from 0"
