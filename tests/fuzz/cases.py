@@ -145,6 +145,13 @@ def file_lines(draw: Draw, kind: str) -> Program:
         return [f"p = {path}", "x = st.Plant.from_bam(p)", "look(x)"]
     if kind == "session.toml":
         return [f"p = {path}", "x = st.load(p)", "look(x)"]
+    if kind == "robot.toml":
+        return [f"p = {path}", "x = stiction.robot.Robot.load(p)", "look(x)"]
+    if kind == "one.urdf":
+        whole = draw.file("robot.toml", damaged=False)
+        return [f"p = {whole}", path, "x = stiction.robot.Robot.load(p)", "look(x)"]
+    if kind == "robot-session.toml":
+        return [f"p = {path}", "x = stiction.robot.load_session(p)", "look(x)"]
     if kind == "checkpoint":
         law = draw.pick(("coulomb", "hsieh_pan"))
         chunks = "[np.full(5, 0.4), np.full(5, -0.3), np.ones(3)]"

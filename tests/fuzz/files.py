@@ -307,6 +307,36 @@ def write_parameters(path: Path, seed: int) -> None:
     path.write_text(json.dumps({**BAM, **own}), encoding="utf-8")
 
 
+URDF = """<robot name="one"><link name="a"/><link name="b"><inertial><mass value="1"/>
+<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<joint name="turn" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>
+</robot>"""
+
+
+def write_urdf(path: Path, seed: int) -> None:
+    path.write_text(URDF, encoding="utf-8")
+
+
+def write_robot(path: Path, seed: int) -> None:
+    """A robot of one joint, its URDF beside it."""
+    write_urdf(path.with_name("one.urdf"), seed)
+    path.write_text(
+        '[robot]\nurdf = "one.urdf"\n[[robot.joints]]\nname = "turn"\n'
+        'columns = { position = "q", input = "u" }\ndrive = { input = "torque_nm" }\n',
+        encoding="utf-8",
+    )
+
+
+def write_robot_session(path: Path, seed: int) -> None:
+    """A recording of that robot."""
+    write_robot(path.with_name("robot.toml"), seed)
+    write_npz(path.with_name("arm.npz"), seed)
+    path.write_text(
+        'plant = "robot.toml"\n[columns]\ntime = "t"\n[[recordings]]\nfile = "arm.npz"\n',
+        encoding="utf-8",
+    )
+
+
 WRITERS: dict[str, Writer] = {
     ".csv": write_delimited,
     ".lvm": write_lvm,
@@ -326,6 +356,9 @@ WRITERS: dict[str, Writer] = {
     "plant.toml": write_plant,
     "session.toml": write_session,
     "params.json": write_parameters,
+    "one.urdf": write_urdf,
+    "robot.toml": write_robot,
+    "robot-session.toml": write_robot_session,
 }
 
 

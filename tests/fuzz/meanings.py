@@ -184,6 +184,16 @@ BY_NAME: dict[str, Drawer] = {
 }
 """What is drawn for a parameter of this name."""
 
+
+def _robot_table(draw: Draw) -> str:
+    """A robot of one joint, with numbers of its drive that are mostly possible."""
+    gain = draw.signed() if draw.odd() else draw.size()
+    drive = f"{{'input': 'torque_nm', 'gain': {gain}, 'gear_ratio': {draw.size()}}}"
+    columns = "{'position': 'q', 'input': 'u'}"
+    joint = f"{{'name': 'turn', 'columns': {columns}, 'drive': {drive}}}"
+    return f"{{'robot': {{'urdf': {draw.file('one.urdf')}, 'joints': [{joint}]}}}}"
+
+
 OF_TARGET: dict[str, Drawer] = {
     "Motion.position": lambda d: d.array(-6.0, -1.0, n=d.n + 1),
     "Plant.motion": lambda d: d.text(("rotary", "linear")),
@@ -257,6 +267,22 @@ OF_TARGET: dict[str, Drawer] = {
     "Recording.input": lambda d: d.array(n=220),
     "Recording.position": lambda d: d.array(n=220),
     "Recording.with_input.values": lambda d: d.array(n=260),
+    "Recording.with_load.values": lambda d: "0.1 * x.time",
+    "Recording.without_ends.rows": lambda d: d.whole(0, 40),
+    "robot.Robot.load.path": lambda d: d.file("robot.toml"),
+    "robot.Robot.from_dict.table": _robot_table,
+    "robot.load_session.path": lambda d: d.file("robot-session.toml"),
+    "robot.Run.joints": lambda d: "(made('Run').joints[0],)",
+    "robot.Run.payload": lambda d: d.size(),
+    "robot.RobotSession.robot": lambda d: "made('Robot')",
+    "robot.RobotSession.runs": lambda d: "(made('Run'),)",
+    "robot.RobotSession.left_out": lambda d: "()",
+    "robot.RobotSession.of_joint.joint": lambda d: d.whole(0, 0),
+    "robot.RobotFit.efforts.run": lambda d: d.whole(0, 1),
+    "robot.RobotFit.joint.joint": lambda d: d.whole(0, 0),
+    "robot.RobotFit.plant.joint": lambda d: d.whole(0, 0),
+    "robot.fit_robot.session": lambda d: "made('RobotSession')",
+    "robot.diagnose_robot.session": lambda d: "made('RobotSession')",
     "demo_session.copy.folder": lambda d: f"folder + '/{d.pick(('demo', 'other'))}'",
     "report.write.folder": lambda d: "__import__('pathlib').Path(folder)",
     "adaptively_smoothed.noise": lambda d: d.size(-6.0, 0.0),

@@ -39,6 +39,7 @@ PARTS = {
     "Estimated": "part of an estimate",
     "StaticCase": "describes an experiment of the paper",
     "Experiment": "describes an experiment of a plan",
+    "JointFindings": "part of a diagnosis of a robot",
     "Fold": "part of a split",
     "Repair": "part of a recording",
     "Unit": "part of a list of units",

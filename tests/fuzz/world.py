@@ -20,7 +20,7 @@ import numpy as np
 import stiction
 import stiction as st
 
-from .files import Shelf, write_parameters
+from .files import Shelf, write_parameters, write_urdf
 from .surface import modules, named
 
 ROWS = 260
@@ -117,6 +117,42 @@ def bam_reading() -> Any:
         return stiction.bam.read_bam(path)
 
 
+def robot() -> Any:
+    """A robot of one joint. Its URDF is gone when it is asked for efforts."""
+    with tempfile.TemporaryDirectory() as folder:
+        write_urdf(Path(folder) / "one.urdf", 0)
+        columns = {"position": "q", "input": "u"}
+        turn = {"name": "turn", "columns": columns, "drive": {"input": "torque_nm"}}
+        table = {"robot": {"urdf": "one.urdf", "joints": [turn]}}
+        return stiction.robot.Robot.from_dict(table, folder=Path(folder))
+
+
+def robot_session() -> Any:
+    """Two recordings of that robot."""
+    return stiction.robot.RobotSession(
+        robot(), tuple(stiction.robot.Run((recording(ROWS, seed),)) for seed in (0, 1))
+    )
+
+
+def robot_fit() -> Any:
+    """Links that somebody states; nothing is asked of pinocchio, which may not be there."""
+    from stiction.robot.motion import measured
+    from stiction.robot.regression import ArmFit
+
+    own = robot_session()
+    link = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0])
+    plain = np.array([[0.1, 0.2, 0.0]])
+    arm = ArmFit(link, {}, np.array([0.1]), plain, np.array([0.01]), 2, (), 0.0)
+    motions = tuple(measured(run.joints) for run in own.runs)
+    return stiction.robot.RobotFit(own, arm, motions, session().split())
+
+
+def robot_diagnosis() -> Any:
+    """A diagnosis of that robot."""
+    own = stiction.robot.JointFindings("turn", "turn", PRODUCERS["Diagnosis"]())
+    return stiction.robot.RobotDiagnosis(robot_fit(), (own,))
+
+
 PRODUCERS: dict[str, Callable[[], Any]] = {
     "Trajectory": lambda: motor().simulate(wave(50), 1e-3),
     "EnsembleRun": lambda: st.simulate_ensemble(motor(), np.ones((2, 5)), 1e-3),
@@ -132,6 +168,12 @@ PRODUCERS: dict[str, Callable[[], Any]] = {
     "Export": lambda: plant().export("table"),
     "Target": lambda: stiction.export.targets()["table"],
     "BamReading": bam_reading,
+    "Robot": robot,
+    "RobotSession": robot_session,
+    "RobotFit": robot_fit,
+    "RobotDiagnosis": robot_diagnosis,
+    "Run": lambda: robot_session().runs[0],
+    "Joint": lambda: robot().joints[0],
     "Entry": plain_entry,
     "EntryNumber": lambda: plain_entry().numbers["friction.coulomb"],
     "UnitComparison": lambda: stiction.library.compare(plain_entry(), session(0)),

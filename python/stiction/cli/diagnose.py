@@ -11,11 +11,13 @@ from ..diagnosis import SMALLEST, SURROGATES
 from ..diagnosis import diagnose as run
 from ..diagnosis.added import add as added
 from ..diagnosis.result import Diagnosis
+from ..robot.session import robot_of
 from ..session import load_beside
 from .answer import answer, folder, told_anyway, written
 from .given import Whole
 from .interrupt import ending_soon, finished
 from .progress import progress
+from .robot import diagnose_arm
 from .sessions import loaded, mended, spared, spoken_of
 
 __all__ = ["diagnose", "told"]
@@ -37,7 +39,8 @@ def diagnose(
     """Find out what a simulation of the machine is missing, add it and measure the gain.
 
     Writes report.html, findings.json, the extended plant.toml, begins.toml with the state at the
-    start of each recording, and figures.
+    start of each recording, and figures. Of a robot: its own page, robot.toml, and a folder with
+    all of that for each joint.
 
     Parameters
     ----------
@@ -64,6 +67,18 @@ def diagnose(
         Print JSON.
     """
     names = [name.strip() for name in laws.split(",") if name.strip()]
+    robot = robot_of(session)
+    if robot is not None:
+        asked = {
+            "without": without,
+            "laws": names,
+            "surrogates": surrogates,
+            "smallest": smallest,
+            "seed": seed,
+            "threads": threads,
+        }
+        diagnose_arm(session, robot, add, out, asked, as_json=json)
+        return
     with progress():
         recordings, plant = loaded(session, keep_faulty=True)
         where = Path(f"{session.stem}-diagnosis") if out is None else out

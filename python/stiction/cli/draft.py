@@ -17,7 +17,15 @@ from ..recording.guess import ColumnGuess, Guess
 from ..recording.units import SI_UNIT, find_unit
 from ..wording import listed
 
-__all__ = ["kinds_of", "plant_text", "session_text"]
+__all__ = [
+    "column_value",
+    "comment",
+    "kinds_of",
+    "plant_text",
+    "printable",
+    "quoted",
+    "session_text",
+]
 
 _WIDTH = 98
 _MOST_STATED = 12
@@ -38,13 +46,13 @@ def plant_text(found: Guess) -> str:
     damping = f"{measured}·s/{rate}" if measured else f"s/{rate}"
     other = "linear" if found.motion == "rotary" else "rotary"
     lines = [
-        *_comment(
+        *comment(
             "A plant, drafted by stiction init. Every line is a guess: read it, correct it, and "
             "state what you know of the machine. What is left out starts from the data."
         ),
         "",
         "[motion]",
-        *_comment(f"{found.motion}: {found.motion_reason}. The other kind is {other}."),
+        *comment(f"{found.motion}: {found.motion_reason}. The other kind is {other}."),
         f'kind = "{found.motion}"',
         "",
         "[drive]",
@@ -54,7 +62,7 @@ def plant_text(found: Guess) -> str:
         *_body(found, body, effort),
         "",
         "[friction]",
-        *_comment(
+        *comment(
             f"Dry friction with true stick, and viscous friction in {damping}: the "
             "plainest law. `stiction laws` lists the others, `stiction laws coulomb` the "
             "parameters of this one. Naming the law is enough to fit it."
@@ -70,7 +78,7 @@ def plant_text(found: Guess) -> str:
 def _drive(found: Guess, effort: str) -> list[str]:
     if found.prescribed:
         return [
-            *_comment(
+            *comment(
                 f"{found.drive_reason}: the machine is moved, and its effort measured. If that "
                 f"effort drives the machine instead, write input = "
                 f'"{"torque_nm" if effort == "N·m" else "force_n"}" and gain = 1.0 here, and '
@@ -81,7 +89,7 @@ def _drive(found: Guess, effort: str) -> list[str]:
     own = "torque_nm" if effort == "N·m" else "force_n"
     if found.drive is None:
         return [
-            *_comment(
+            *comment(
                 f"{found.drive_reason}. Take away the # when session.toml names one: current_a, "
                 f'voltage_v or {own}; or write kind = "prescribed_motion" where the machine is '
                 "moved and its effort measured." + _servo(found)
@@ -90,15 +98,15 @@ def _drive(found: Guess, effort: str) -> list[str]:
             f"# gain = 1.0  # {effort} per unit of the input",
         ]
     lines = [
-        *_comment(f"{found.drive_reason}. The others are current_a, voltage_v and {own}."),
+        *comment(f"{found.drive_reason}. The others are current_a, voltage_v and {own}."),
         f'input = "{found.drive}"',
     ]
     unit = _GAIN_UNIT.get(found.drive)
     if unit is None:
-        return [*lines, *_comment(f"The input is in {effort} already."), "gain = 1.0"]
+        return [*lines, *comment(f"The input is in {effort} already."), "gain = 1.0"]
     return [
         *lines,
-        *_comment(
+        *comment(
             f"TO DO: state the gain in {effort}/{unit} (motor constant, transmission). Inertia and "
             f"friction scale with it: with 1.0 they come out in {unit} instead of {effort}."
             + _numbers_beside(found)
@@ -129,23 +137,23 @@ def _numbers_beside(found: Guess) -> str:
 def _body(found: Guess, unit: str, effort: str) -> list[str]:
     if found.prescribed:
         return [
-            *_comment(
+            *comment(
                 f"What of the mass moves between the effort sensor and the friction, in {unit}."
             ),
             "inertia = 0.0",
         ]
-    lines = _comment(
+    lines = comment(
         f"In {unit}. Left out, it is fitted from the data. Where you know it, take away the #: "
         "fixed = true keeps it."
     )
     lines.append("# inertia = { value = 0.01, fixed = true }")
     if found.motion == "rotary":
-        lines += _comment(
+        lines += comment(
             f"A pendulum or an arm under gravity: greatest torque in {effort}, and the angle at "
             "which it hangs."
         )
         return [*lines, "# gravity_amplitude = 0.1", "# gravity_zero_rad = 0.0"]
-    lines += _comment(f"An axis that is not level: the force against positive motion, in {effort}.")
+    lines += comment(f"An axis that is not level: the force against positive motion, in {effort}.")
     return [*lines, "# weight_n = 0.0"]
 
 
@@ -157,13 +165,13 @@ def _sensor(found: Guess) -> list[str]:
             if found.counts_needed
             else "Steps that the readings of the position come in; it is not fitted."
         )
-        return ["[sensor]", *_comment(told), f"counts_per_rev = {found.counts_per_rev}"]
+        return ["[sensor]", *comment(told), f"counts_per_rev = {found.counts_per_rev}"]
     if not found.counts_needed:
         return []
     size = "4096" if found.motion == "rotary" else "1e-6"
     return [
         "[sensor]",
-        *_comment(
+        *comment(
             "TO DO: the position is in counts, so state "
             + ("how many make a turn." if found.motion == "rotary" else "the size of one in m.")
         ),
@@ -190,15 +198,15 @@ def session_text(
         A path that cannot be written in a TOML file.
     """
     lines = [
-        *_comment(
+        *comment(
             "Recordings of one machine, drafted by stiction init. Every line is a guess with its "
             "reason: read it, correct it. Paths are relative to this file."
         ),
         "",
         'plant = "plant.toml"',
         "",
-        *_comment(_joint(joints)),
-        *_comment(
+        *comment(_joint(joints)),
+        *comment(
             "Columns by role. SI value = scale·value + offset, after conversion from the unit; "
             "scale = -1 flips a sensor."
         ),
@@ -217,7 +225,7 @@ def session_text(
     if unused:
         lines += ["", "# Not used:"]
         for one in unused:
-            lines += _comment(f"{_quoted(one.column)}: {one.reason}", "#   ")
+            lines += comment(f"{quoted(one.column)}: {one.reason}", "#   ")
     lines += ["", *_recordings(paths, left_out, where, headers)]
     return "\n".join(lines) + "\n"
 
@@ -232,18 +240,19 @@ def _joint(joints: Sequence[str]) -> str:
 
 
 def _column(one: ColumnGuess) -> list[str]:
-    lines = ["", *_comment(f"{_printable(one.reason)}.")]
+    lines = ["", *comment(f"{printable(one.reason)}.")]
     if one.alternatives:
-        lines += _comment(f"Instead: {_printable(', '.join(one.alternatives))}.")
-    return [*lines, f"{one.role} = {_column_value(one)}"]
+        lines += comment(f"Instead: {printable(', '.join(one.alternatives))}.")
+    return [*lines, f"{one.role} = {column_value(one)}"]
 
 
-def _column_value(one: ColumnGuess) -> str:
-    name = _quoted(one.column)
+def column_value(one: ColumnGuess) -> str:
+    """A column as it stands in TOML."""
+    name = quoted(one.column)
     if one.column in CANONICAL and one.scale == 1.0:
         return name
     scale = "" if one.scale == 1.0 else f", scale = {one.scale!r}"
-    return f"{{ name = {name}, unit = {_quoted(one.unit or '1')}{scale} }}"
+    return f"{{ name = {name}, unit = {quoted(one.unit or '1')}{scale} }}"
 
 
 def _measured_unit(found: Guess, effort: str) -> str:
@@ -257,11 +266,11 @@ def _measured_unit(found: Guess, effort: str) -> str:
 
 
 def _missing(role: str, found: Guess) -> list[str]:
-    lines = ["", *_comment(f"TO DO: {_printable(found.missing[role])}.")]
+    lines = ["", *comment(f"TO DO: {printable(found.missing[role])}.")]
     candidates = [one for one in found.columns if one.candidate == role]
     for one in candidates:
-        lines += _comment(f"{_printable(one.reason)}:")
-        lines.append(f"# {role} = {_column_value(one)}")
+        lines += comment(f"{printable(one.reason)}:")
+        lines.append(f"# {role} = {column_value(one)}")
     return lines if candidates else [*lines, f"# {_EXAMPLES[role]}"]
 
 
@@ -272,7 +281,7 @@ def _recordings(
     headers: Sequence[Mapping[str, float | str]],
 ) -> list[str]:
     kinds = kinds_of([files[0] for files in paths])
-    lines = _comment(
+    lines = comment(
         "Recordings of one machine in one state: with another load or another arm it is another "
         'session. A recording may have role = "train" (it is fitted), "select" (it decides '
         'which effects, and how many) or "test" (it is opened once, after the last decision); '
@@ -280,15 +289,15 @@ def _recordings(
         + (" The kinds are from the names of the files." if any(kinds) else "")
     )
     for files, kind, header in zip(paths, kinds, headers or [{}] * len(paths), strict=True):
-        named = [_quoted(_relative(path, where)) for path in files]
+        named = [quoted(_relative(path, where)) for path in files]
         told = named[0] if len(named) == 1 else f"[{', '.join(named)}]"
         lines += ["", "[[recordings]]", f"file = {told}"]
-        lines += [f"kind = {_quoted(kind)}"] if kind else []
+        lines += [f"kind = {quoted(kind)}"] if kind else []
         lines += _stated(header)
     for path, why in left_out:
         told = why.removeprefix(f"{path}: ")
-        lines += ["", *_comment(f"Left out: {_printable(told)}")]
-        lines += ["# [[recordings]]", f"# file = {_quoted(_relative(path, where))}"]
+        lines += ["", *comment(f"Left out: {printable(told)}")]
+        lines += ["# [[recordings]]", f"# file = {quoted(_relative(path, where))}"]
     return lines
 
 
@@ -307,7 +316,7 @@ def _stated(header: Mapping[str, float | str]) -> list[str]:
         del rest["mass"], rest["length"]
     if rest:
         told = ", ".join(f"{name} {value}" for name, value in list(rest.items())[:_MOST_STATED])
-        lines += _comment(f"The file says {_printable(told)}.")
+        lines += comment(f"The file says {printable(told)}.")
     return lines
 
 
@@ -340,7 +349,7 @@ def _relative(path: Path, where: Path) -> str:
         return full.as_posix()
 
 
-def _quoted(text: str) -> str:
+def quoted(text: str) -> str:
     """A TOML string. JSON's escapes are TOML's, but for one control character."""
     quoted = json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007F")
     try:
@@ -352,13 +361,13 @@ def _quoted(text: str) -> str:
     return quoted
 
 
-def _printable(text: str) -> str:
+def printable(text: str) -> str:
     """Text that may stand in a comment: no line ends, no control characters."""
     one_line = " ".join(text.split())
     return "".join(letter if letter.isprintable() else "?" for letter in one_line)
 
 
-def _comment(text: str, start: str = "# ") -> list[str]:
+def comment(text: str, start: str = "# ") -> list[str]:
     """A comment of as many lines as it needs."""
-    lines = wrap(_printable(text), _WIDTH - len(start), break_long_words=False)
+    lines = wrap(printable(text), _WIDTH - len(start), break_long_words=False)
     return [(start if k == 0 else start.replace("   ", "     ")) + x for k, x in enumerate(lines)]

@@ -14,9 +14,11 @@ from ..export import Export, targets
 from ..export.speeds import speed_seen
 from ..plant import Plant
 from ..progress import phase
+from ..robot.robot import describes_robot
 from ..session import Session
 from .answer import answer, folder, written
 from .progress import progress
+from .robot import export_arm
 from .sessions import spoken_of
 
 __all__ = ["export"]
@@ -39,7 +41,7 @@ def export(
     Parameters
     ----------
     plant
-        Plant file.
+        Plant file, or that of a robot: each of its joints is written.
     to
         Target; may be given several times.
     speed
@@ -64,6 +66,10 @@ def export(
         raise InputError("stiction export: no plant file is given; name one, or ask with --list")
     if not to:
         raise InputError(f"stiction export: no target is given; write --to {next(iter(known))}")
+    if describes_robot(plant):
+        where = Path(f"{plant.stem}-export") if out is None else out
+        export_arm(plant, to, speed, check, where, as_json=json)
+        return
     read = Plant.load(plant)
     loaded = None if check is None else sessions.load(check, plant=read)
     if speed is None and loaded is not None:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..frozen import Frozen
-from ..given import instance, mapping, numbers, real, shown
+from ..given import instance, mapping, numbers, real, shown, whole
 from ..given import path as file_path
 from ..parameter import number
 from ..wording import did_you_mean
@@ -25,8 +25,9 @@ from .formats import read_table
 from .mapping import read_channels
 from .part import part_of
 from .rendering import as_html, as_text
-from .repair import Place, Repair, check_lengths, mend
+from .repair import FEWEST_ROWS, Place, Repair, check_lengths, mend
 from .signals import read_signals
+from .table import Table
 from .units import FloatArray, Motion
 
 SPLIT_ROLES: Final = ("train", "select", "test")
@@ -209,7 +210,33 @@ class Recording:
             table = read_signals([file_path(each, "Recording.load") for each in path])
         else:
             table = read_table(file_path(path, "Recording.load"))  # type: ignore[arg-type]
-        channels = read_channels(table, mapped, drive=drive, motion=motion, count_size=count_size)
+        return cls._of(
+            table,
+            mapped,
+            labels,
+            begin=begin,
+            end=end,
+            motion=motion,
+            drive=drive,
+            count_size=count_size,
+            keep_faulty=keep_faulty,
+        )
+
+    @classmethod
+    def _of(
+        cls,
+        table: Table,
+        columns: Columns,
+        labels: Mapping[str, Any],
+        *,
+        begin: float | str | None,
+        end: float | str | None,
+        motion: Motion | None,
+        drive: str | None,
+        count_size: float | None,
+        keep_faulty: bool,
+    ) -> Recording:
+        channels = read_channels(table, columns, drive=drive, motion=motion, count_size=count_size)
         rows = part_of(channels.values["time"], begin, end, str(table.path))
         first = channels.first + rows.start
         # The columns have been copied, and may be a good part of the memory at hand.
@@ -283,15 +310,71 @@ class Recording:
             No numbers, or not one for each row.
         """
         again = copy(self)
-        held = numbers(values, "Recording.with_input: values").copy()
+        object.__setattr__(again, "input", self._held(values, "with_input"))
+        return again
+
+    def with_load(self, values: FloatArray) -> Recording:
+        """The same recording with another load.
+
+        Parameters
+        ----------
+        values : numpy.ndarray, shape (rows,)
+            External effort from each row to the next, positive along positive motion, N·m or N;
+            copied.
+
+        Raises
+        ------
+        InputError
+            No numbers, or not one for each row.
+        """
+        again = copy(self)
+        channels = {**self.__dict__["_channels"], "load": self._held(values, "with_load")}
+        object.__setattr__(again, "_channels", channels)
+        return again
+
+    def without_ends(self, rows: int) -> Recording:
+        """The same recording without as many rows at its beginning and at its end.
+
+        Parameters
+        ----------
+        rows : int
+
+        Raises
+        ------
+        InputError
+            Fewer than 200 rows would be left.
+        """
+        rows = whole(rows, "Recording.without_ends: rows", least=0)
+        if len(self) - 2 * rows < FEWEST_ROWS:
+            raise InputError(
+                f"Recording.without_ends: rows = {rows} leaves less than {FEWEST_ROWS} of "
+                f"{len(self)} rows; give fewer"
+            )
+        again = copy(self)
+        kept = slice(rows, len(self) - rows)
+
+        def part(values: FloatArray | None) -> FloatArray | None:
+            return None if values is None else values[kept]
+
+        for name in _MAIN:
+            object.__setattr__(again, name, part(getattr(self, name)))
+        channels = {name: part(values) for name, values in self.__dict__["_channels"].items()}
+        object.__setattr__(again, "_channels", channels)
+        began = float(self.time[rows] - self.time[0])
+        # A clock of the session that nobody stated stays unstated.
+        object.__setattr__(again, "start_s", self.start_s + began if self.start_s else 0.0)
+        return again
+
+    def _held(self, values: FloatArray, method: str) -> FloatArray:
+        """One number a row, copied, that cannot be written to."""
+        held = numbers(values, f"Recording.{method}: values").copy()
         if held.shape != self.time.shape:
             raise InputError(
-                f"Recording.with_input: values has shape {held.shape} where {self.time.shape} is "
+                f"Recording.{method}: values has shape {held.shape} where {self.time.shape} is "
                 "needed; give one value a row"
             )
         held.flags.writeable = False
-        object.__setattr__(again, "input", held)
-        return again
+        return held
 
     def _fill(
         self,
@@ -377,6 +460,46 @@ class Recording:
         for array in (self.time, self.input, self.position, *self.channels.values()):
             if array is not None:
                 array.flags.writeable = False
+
+
+def recording_of(
+    table: Table,
+    columns: Columns,
+    *,
+    drive: str,
+    motion: Motion,
+    begin: float | str | None = None,
+    end: float | str | None = None,
+    role: str | None = None,
+    kind: str = "",
+    start_s: float = 0.0,
+    cold: bool = False,
+    settings: Mapping[str, float] | None = None,
+) -> Recording:
+    """A recording from a table that was read already: of one joint of several in a file.
+
+    Parameters
+    ----------
+    table : Table
+    columns, drive, motion, begin, end, role, kind, start_s, cold, settings
+        As for ``Recording.load``.
+
+    Raises
+    ------
+    InputError
+        As there.
+    """
+    return Recording._of(
+        table,
+        columns,
+        _labels(role, kind, start_s, cold, settings),
+        begin=begin,
+        end=end,
+        motion=motion,
+        drive=drive,
+        count_size=None,
+        keep_faulty=False,
+    )
 
 
 def recordings_of(given: Any, where: str) -> tuple[Recording, ...]:

@@ -1,0 +1,115 @@
+"""The diagnosis of a robot: its links, then each joint as a machine of one axis."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Sequence
+from typing import Final
+
+from .. import __version__
+from ..best_effort import Failure, attempt
+from ..diagnosis import SMALLEST, SURROGATES, diagnose
+from ..diagnosis.result import Diagnosis
+from ..errors import NotEnoughData
+from ..given import instance
+from ..progress import phase
+from ..session import Session
+from .agreement import Agreement, agreement_of
+from .fit import fit_robot
+from .result import JointFindings, RobotDiagnosis, folder_names
+from .session import RobotSession
+
+__all__ = ["OF_THE_LINKS", "diagnose_robot"]
+
+OF_THE_LINKS: Final = ("gravity_unbalance",)
+"""Effects that the rigid links hold already: a joint is not asked for them."""
+
+_logger = logging.getLogger(__name__)
+
+
+def diagnose_robot(
+    session: RobotSession,
+    *,
+    without: Sequence[str] = (),
+    laws: Sequence[str] = (),
+    surrogates: int = SURROGATES,
+    smallest: float = SMALLEST,
+    seed: int = 0,
+    threads: int | None = None,
+) -> RobotDiagnosis:
+    """Find out what a simulation of a robot is missing, joint by joint.
+
+    The links are fitted to all joints together, and each joint is then diagnosed as a machine of
+    one axis whose load is what the links need of it along the measured motion: names, gains,
+    floors and intervals are those of ``stiction.diagnose``.
+
+    Parameters
+    ----------
+    session : RobotSession
+    without, laws, surrogates, smallest, seed, threads
+        As for ``stiction.diagnose``.
+
+    Returns
+    -------
+    RobotDiagnosis
+        After Ctrl-C the joints that were finished, with ``success`` False.
+
+    Raises
+    ------
+    InputError
+        As for ``stiction.diagnose``, and for ``fit_robot``.
+    KeyboardInterrupt
+        Ctrl-C before a joint was finished, or for the second time.
+    """
+    began = time.perf_counter()
+    instance(session, RobotSession, "diagnose_robot: session", "what load_session returns")
+    fit = fit_robot(session)
+    folders = folder_names(session.robot.names)
+    joints: list[JointFindings] = []
+    agreement: list[Agreement] = []
+    success = True
+    for index, name in enumerate(session.robot.names):
+        phase(_logger, "joint %s (%d of %d)", name, index + 1, len(session.robot.names))
+        try:
+            own = fit.joint(index)
+        except NotEnoughData as error:
+            sentence = f"These data cannot be tested: {error}."
+            untold = Diagnosis("not_testable", sentence, fit.plant(index), version=__version__)
+            joints.append(JointFindings(name, folders[name], untold))
+            continue
+        found = diagnose(
+            None,
+            own.session,
+            without=tuple(dict.fromkeys((*without, *OF_THE_LINKS))),
+            laws=laws,
+            surrogates=surrogates,
+            smallest=smallest,
+            seed=seed,
+            threads=threads,
+        )
+        joints.append(JointFindings(name, folders[name], found))
+        if not found.success:
+            success = False
+            break
+        agreement += _agreement(name, found, own.session, own.payloads)
+    return RobotDiagnosis(
+        fit,
+        tuple(joints),
+        tuple(agreement),
+        success,
+        __version__,
+        seed,
+        time.perf_counter() - began,
+    )
+
+
+def _agreement(
+    name: str, found: Diagnosis, session: Session, payloads: Sequence[float]
+) -> list[Agreement]:
+    if found.extended is None or len(session) < 2:
+        return []
+    made = attempt(
+        f"the agreement of {name}", lambda: agreement_of(name, found.plant, session, payloads)
+    )
+    return [] if isinstance(made, Failure) else made
