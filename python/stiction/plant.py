@@ -15,7 +15,7 @@ from . import given, plant_file, steady
 from ._native import FrictionModel
 from .atomic_files import write_text
 from .catalogue import effects
-from .drive import check_servo, gain_name, servo_numbers
+from .drive import check_servo, gain_name, servo_numbers, unscaled_unit
 from .errors import InputError
 from .frozen import ByPath, Frozen, freeze, path_of
 from .keys import choice
@@ -240,9 +240,14 @@ class Plant:
         return gain.value if isinstance(gain, Parameter) else float(gain)
 
     @property
-    def effort_unit(self) -> str:
-        """Unit of effort."""
+    def si_effort_unit(self) -> str:
+        """What an effort is measured in."""
         return "N·m" if self.motion == "rotary" else "N"
+
+    @property
+    def effort_unit(self) -> str:
+        """Unit of effort; that of the input where nobody states how much effort it makes."""
+        return unscaled_unit(self.drive) or self.si_effort_unit
 
     @property
     def position_unit(self) -> str:

@@ -366,7 +366,7 @@ def evaluate(
     begun = started(plant, others, nuisances)
     heldout = _errors(plant, held, begun) if held else None
     stated = as_stated(plant, given)
-    told = assumed_gain(given.drive, train[0].form.input_unit, given.effort_unit)
+    told = assumed_gain(given.drive, train[0].form.input_unit, given.si_effort_unit)
     return FitResult(
         plant=stated,
         parameters=parameters,
