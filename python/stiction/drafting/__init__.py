@@ -4,5 +4,6 @@ from __future__ import annotations
 
 from .assumed import assumptions
 from .draft import FILES, Draft, draft
+from .tables import recordings_in
 
-__all__ = ["FILES", "Draft", "assumptions", "draft"]
+__all__ = ["FILES", "Draft", "assumptions", "draft", "recordings_in"]

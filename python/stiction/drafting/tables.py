@@ -20,7 +20,7 @@ from ..recording.repair import FEWEST_ROWS
 from ..recording.signals import read_signals, runs_of_signals
 from ..wording import counted, listed
 
-__all__ = ["as_in_file", "named", "one_joint", "read"]
+__all__ = ["as_in_file", "named", "one_joint", "read", "recordings_in"]
 
 _logger = logging.getLogger(__name__)
 
@@ -117,7 +117,7 @@ def read(paths: Sequence[Path]) -> _Read:
         if not os.path.isdir(path):
             tables.append(_table(path))
             continue
-        inside = _files_in(path)
+        inside = recordings_in(path)
         alone = alone and len(inside) == 1
         for file in steps(inside, "file"):
             try:
@@ -139,7 +139,14 @@ def read(paths: Sequence[Path]) -> _Read:
     return (*_same_columns(tables, left_out, chosen=chosen), files)
 
 
-def _files_in(path: Path) -> list[Path]:
+def recordings_in(path: Path) -> list[Path]:
+    """The files of a folder that are recordings by their endings, in order.
+
+    Raises
+    ------
+    InputError
+        There are none, or the folder cannot be read.
+    """
     endings = [suffix for known in FORMATS for suffix in known.suffixes]
     try:
         inside = sorted(
