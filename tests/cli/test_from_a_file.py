@@ -102,7 +102,15 @@ def test_a_draft_is_made_again_until_somebody_changes_it(
         (["run.csv", "plant.toml"], "plant.toml: is no recording"),
         (["plant.toml"], "is a plant file"),
         (["plant.toml", "--gain", "1"], "--gain is for recordings"),
-        (["blue.csv"], '--columns "input='),
+        (["blue.csv"], '--columns "input=NAME [A]"'),
+        (["i.csv"], '--columns "time=NAME [s]"'),
+        (["book.xlsx"], "save a spreadsheet or a log as CSV"),
+        (["run.csv", "--columns", "input=i [Amp]"], "did you mean 'A'?"),
+        (["run.csv", "--columns", "position=theta [degrees]"], "did you mean 'deg'?"),
+        (["run.csv", "--columns", "position:theta"], "is not role=name"),
+        (["run.csv", "--columns", "posn=theta"], "did you mean 'position'?"),
+        (["run.csv", "run.csv"], "run.csv: is given twice; drop one"),
+        (["run.csv", "--gian", "2"], "did you mean '--gain'?"),
         (["none.csv"], "there is no such file"),
         (["empty"], "no recording in this folder"),
     ],
@@ -119,6 +127,8 @@ def test_what_cannot_be_drafted_is_one_sentence(
     write(Path("run.csv"))
     write(Path("blue.csv"), ("t", "blue", "theta"))
     Path("plant.toml").write_text('[friction]\nlaw = "coulomb"\n')
+    Path("book.xlsx").write_bytes(b"PK")
+    Path("i.csv").write_text("i,theta\n" + "0.1,0.2\n0.3,-0.1\n" * 200)
     os.mkdir("empty")
     before = sorted(os.listdir())
     assert told in refused(["diagnose", *words], capsys)

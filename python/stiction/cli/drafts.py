@@ -29,6 +29,7 @@ _SUM: Final = "# Drafted again from the recordings as long as this fits: "
 _SUM_LINE: Final = re.compile(rf"\n{_SUM}([0-9a-f]{{8}})\n\Z")
 _VERBS: Final = {"diagnosis": "diagnose"}
 """What a folder for results ends in, and the verb that writes it."""
+_EXAMPLE: Final = {"time": "NAME [s]", "input": "NAME [A]", "position": "NAME [rad]"}
 _OPTIONS: Final = ("columns", "gain", "law", "joint", "header")
 
 
@@ -97,6 +98,10 @@ def opened(paths: Sequence[Path], out: Path | None, verb: str, stated: Stated) -
     first = paths[0]
     if not all(map(is_data, paths)):
         return _of_session(paths, out, verb, stated)
+    resolved = [path.resolve() for path in paths]
+    for place, path in enumerate(paths):
+        if resolved[place] in resolved[:place]:
+            raise InputError(f"{path}: is given twice; drop one")
     name = first.resolve().name if os.path.isdir(first) else first.stem
     where = Path(f"{name}-{verb}") if out is None else out
     made = draft(
@@ -109,10 +114,9 @@ def opened(paths: Sequence[Path], out: Path | None, verb: str, stated: Stated) -
         gain=stated.gain,
     )
     if todo := made.to_do:
-        raise InputError(
-            f"{first}: {todo[0]}; state it here, as in --columns "
-            f'"input=NAME [A], position=NAME [rad]", or finish the drafts of stiction init'
-        )
+        wanted = ", ".join(f"{role}={_EXAMPLE[role]}" for role in made.found.missing)
+        state = f'state it here, as in --columns "{wanted}", or ' if wanted else ""
+        raise InputError(f"{first}: {todo[0]}; {state}finish the drafts of stiction init")
     inside = folder(folder(where) / FOLDER)
     files = tuple(inside / name for name in FILES)
     with written(inside):
@@ -143,7 +147,16 @@ def _of_session(paths: Sequence[Path], out: Path | None, verb: str, stated: Stat
             f"{path}: {listed(stated.options)} is for recordings, and a session file states it "
             "itself; leave it out and write it there"
         )
-    session, plant = loaded(path, keep_faulty=True)
+    try:
+        session, plant = loaded(path, keep_faulty=True)
+    except InputError:
+        if path.suffix.casefold() == ".toml" or not os.path.isfile(path):
+            raise
+        endings = listed(suffix for known in FORMATS for suffix in known.suffixes)
+        raise InputError(
+            f"{path}: is no session file, and no recording by its ending (known are {endings}); "
+            "save a spreadsheet or a log as CSV"
+        ) from None
     return Opened(path, session, plant, Path(f"{path.stem}-{verb}") if out is None else out)
 
 
