@@ -18,10 +18,11 @@ if TYPE_CHECKING:
     from .diagnosis import Diagnosis, diagnose
     from .ensemble import Ensemble, EnsembleRun, simulate_ensemble
     from .fitting import FitResult, fit
+    from .loading import load
     from .motor import Motor
     from .plant import Plant
     from .recording import Recording
-    from .session import Session, load
+    from .session import Session
     from .streaming import stream
     from .trajectory import Trajectory
 
@@ -66,7 +67,7 @@ _LAZY = {
     "effects": "catalogue",
     "fit": "fitting",
     "laws": "catalogue",
-    "load": "session",
+    "load": "loading",
     "simulate_ensemble": "ensemble",
     "stream": "streaming",
 }
@@ -81,4 +82,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    dunders = (name for name in globals() if name.startswith("__"))
+    return sorted({*dunders, *__all__})

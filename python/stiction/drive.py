@@ -18,6 +18,7 @@ __all__ = [
     "gain_name",
     "read_drive",
     "servo_numbers",
+    "unscaled_unit",
 ]
 
 INPUTS: Final = ("current_a", "voltage_v", "torque_nm", "force_n")
@@ -58,6 +59,21 @@ def gain_name(drive: Mapping[str, Any]) -> str:
     return "torque_constant" if drive.get("kind") == "servo" else "gain"
 
 
+def unscaled_unit(drive: Mapping[str, Any], input_unit: str = "") -> str:
+    """Unit of an input that is no effort and whose gain is stated nowhere; "" for any other.
+
+    Parameters
+    ----------
+    drive : Mapping
+    input_unit : str
+        Of the recorded input, which counts where the drive names none.
+    """
+    if gain_name(drive) in drive or drive.get("kind", "direct") != "direct":
+        return ""
+    unit = _NO_EFFORT.get(drive.get("input", ""), input_unit)
+    return unit if unit in _NO_EFFORT.values() else ""
+
+
 def assumed_gain(drive: Mapping[str, Any], input_unit: str, effort_unit: str) -> str:
     """That the gain of an input which is no effort is stated nowhere, "" where nothing is assumed.
 
@@ -67,15 +83,14 @@ def assumed_gain(drive: Mapping[str, Any], input_unit: str, effort_unit: str) ->
     input_unit : str
         Of the recorded input, "" where nothing tells.
     effort_unit : str
+        What its effort would be measured in.
     """
-    if gain_name(drive) in drive or drive.get("kind", "direct") != "direct":
-        return ""
-    unit = _NO_EFFORT.get(drive.get("input", ""), input_unit)
-    if unit not in _NO_EFFORT.values():
+    unit = unscaled_unit(drive, input_unit)
+    if not unit:
         return ""
     return (
-        f"[drive] gain is not stated and taken as 1 {effort_unit}/{unit}: inertia and friction are "
-        "in units of the input"
+        f"[drive] gain is not stated: every effort, friction and inertia is in {unit} and not in "
+        f"{effort_unit}, until you state the {effort_unit}/{unit}"
     )
 
 

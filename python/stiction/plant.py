@@ -15,7 +15,7 @@ from . import given, plant_file, steady
 from ._native import FrictionModel
 from .atomic_files import write_text
 from .catalogue import effects
-from .drive import check_servo, gain_name, servo_numbers
+from .drive import check_servo, gain_name, servo_numbers, unscaled_unit
 from .errors import InputError
 from .frozen import ByPath, Frozen, freeze, path_of
 from .keys import choice
@@ -27,6 +27,8 @@ from .trajectory import FloatArray, Trajectory
 from .wording import listed
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from .export import Export
 
 __all__ = ["Plant"]
@@ -240,9 +242,14 @@ class Plant:
         return gain.value if isinstance(gain, Parameter) else float(gain)
 
     @property
-    def effort_unit(self) -> str:
-        """Unit of effort."""
+    def si_effort_unit(self) -> str:
+        """What an effort is measured in."""
         return "N·m" if self.motion == "rotary" else "N"
+
+    @property
+    def effort_unit(self) -> str:
+        """Unit of effort; that of the input where nobody states how much effort it makes."""
+        return unscaled_unit(self.drive) or self.si_effort_unit
 
     @property
     def position_unit(self) -> str:
@@ -582,6 +589,43 @@ class Plant:
             Speeds that are no finite numbers.
         """
         return steady.friction_curve(self, speeds)
+
+    def curve_speeds(self) -> FloatArray:
+        """Speeds at which a curve of friction is drawn, both ways, close about rest.
+
+        Returns
+        -------
+        numpy.ndarray, shape (240,)
+            Up to 10 rad/s or 0.2 m/s.
+        """
+        most = 10.0 if self.motion == "rotary" else 0.2
+        one_way = np.geomspace(1e-4 * most, most, 120)
+        return np.concatenate([-one_way[::-1], one_way])
+
+    def plot_friction(self, ax: Axes | None = None, *, label: str = "") -> Axes:
+        """Friction in steady motion over speed, with the effects that go with the speed.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            To draw into, one of a new figure without it: several plants into one compare laws.
+        label : str
+            In the legend, law and effects without it.
+
+        Returns
+        -------
+        matplotlib Axes
+        """
+        from . import plot
+
+        panel = plot.panel_for(ax)
+        speeds = self.curve_speeds()
+        told = label or " + ".join((self.friction.law, *(e.name for e in self.effects)))
+        panel.plot(speeds, self.friction_curve(speeds), label=told, linewidth=1.2)
+        panel.set_xlabel(f"speed ({self.position_unit}/s)")
+        panel.set_ylabel(f"friction ({self.effort_unit})")
+        plot.legend(panel)
+        return panel
 
     def position_effort(self, positions: npt.ArrayLike) -> FloatArray:
         """Effort that the machine needs beside friction to stand at some places.

@@ -40,6 +40,7 @@ __all__ = [
     "figure",
     "legend",
     "overlay",
+    "panel_for",
     "residual",
     "save",
     "save_or_say",
@@ -123,6 +124,21 @@ def figure(
     if title:
         drawn.suptitle(title, x=0.012, ha="left", fontsize=TITLE, color=INK)
     return drawn, panels
+
+
+def panel_for(ax: Axes | None) -> Axes:
+    """The axes that a caller gave, or those of a new figure.
+
+    Raises
+    ------
+    InputError
+        Something else than axes.
+    """
+    if ax is None:
+        return figure()[1][0]
+    from matplotlib.axes import Axes
+
+    return given.instance(ax, Axes, "plot: ax", "axes, as matplotlib's subplots returns them")
 
 
 def legend(panel: Axes, **keywords: Any) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import given
 from .errors import InputError
@@ -26,7 +26,10 @@ from .recording.units import FloatArray, Motion
 from .session_entries import Entry, beside, entries_of
 from .wording import counted, did_you_mean, listed
 
-__all__ = ["Session", "load", "load_beside", "load_recording"]
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["Session", "both_of", "load", "load_beside", "load_recording"]
 
 _TABLES = ("plant", "columns", "recordings")
 _FAULTS_TOLD = 8
@@ -136,6 +139,45 @@ class Session:
         """
         return split(self.recordings, block_s=block_s, edge_s=edge_s)
 
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Position over time of each recording, on the session clock.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            To draw into, one of a new figure without it.
+
+        Returns
+        -------
+        matplotlib Axes
+
+        Raises
+        ------
+        InputError
+            ``ax`` is something else than axes.
+        """
+        from . import plot
+
+        panel = plot.panel_for(ax)
+        for index, (name, each) in enumerate(
+            zip(names_of(self.recordings), self.recordings, strict=True)
+        ):
+            if each.position is not None:
+                line = plot.thinned(self.clock(index), each.position)
+                panel.plot(*line, label=name, linewidth=1.0)
+        panel.set_xlabel("session clock (s)")
+        panel.set_ylabel(f"position ({self._position_unit})")
+        if panel.get_legend_handles_labels()[0]:
+            plot.legend(panel)
+        return panel
+
+    @property
+    def _position_unit(self) -> str:
+        units = {each.units.get("position", "") for each in self.recordings} - {""}
+        if self.plant is not None:
+            units = {self.plant.position_unit}
+        return units.pop() if len(units) == 1 else "rad or m"
+
     def __iter__(self) -> Iterator[Recording]:
         return iter(self.recordings)
 
@@ -146,14 +188,18 @@ class Session:
         return f"Session({counted(len(self.recordings), 'recording')}, plant {self.plant!r})"
 
     def _repr_html_(self) -> str:
-        head = "".join(f"<th>{escape(word)}</th>" for word in _HEAD)
-        body = "".join(
-            "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in self._row(index)) + "</tr>"
-            for index in range(len(self.recordings))
-        )
+        from .notebook import drawing, table
+
+        names = names_of(self.recordings)
+        moved = [
+            (name, each.time, each.position)
+            for name, each in zip(names[:_DRAWN], self.recordings, strict=False)
+            if each.position is not None
+        ]
         return (
             f"<p><b>{escape(repr(self))}</b></p>"
-            f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+            f"{table(_HEAD, [self._row(index) for index in range(len(self.recordings))])}"
+            f"{drawing(moved, 'time (s)', f'position ({self._position_unit})')}"
         )
 
     def _row(self, index: int) -> tuple[str, ...]:
@@ -172,6 +218,8 @@ class Session:
 
 _logger = logging.getLogger(__name__)
 
+_DRAWN = 4
+"""Recordings whose motion a notebook shows."""
 _HEAD = ("recording", "role", "kind", "starts at s", "lasts s", "rows", "replicate of")
 
 
@@ -273,6 +321,27 @@ def load_beside(path: str | Path, files: Sequence[Path], plant: Plant) -> list[R
     source = str(path)
     columns = section(read_toml(Path(path)), "columns", source)
     return [load_recording(file, plant, dict(columns), where=source) for file in files]
+
+
+def both_of(plant: Any, session: Any, where: str) -> tuple[Any, Any]:
+    """A plant and recordings; of a session alone, given in either place, its own plant.
+
+    Raises
+    ------
+    InputError
+        A session without a plant, or a plant without recordings.
+    """
+    if session is None and isinstance(plant, Session):
+        plant, session = None, plant
+    if session is None:
+        raise InputError(
+            f"{where}: there are no recordings; give a session, or a plant and recordings"
+        )
+    if plant is None:
+        plant = session.plant if isinstance(session, Session) else None
+        if plant is None:
+            raise InputError('session: plant is missing; write plant = "plant.toml", or give one')
+    return plant, session
 
 
 def _together(source: str, faults: Sequence[str]) -> str:

@@ -181,9 +181,16 @@ class Trajectory:
             if values.size
         )
         return (
-            f"<p>{self.message}</p><table><tr><th>column</th><th>first</th><th>least</th>"
+            f"<p>{self.message}</p>{self._drawing()}<table><tr><th>column</th><th>first</th><th>least</th>"
             f"<th>greatest</th><th>last</th></tr>{rows}</table>"
         )
+
+    def _drawing(self) -> str:
+        """Position over time, or the first column where there is none."""
+        from .notebook import drawing
+
+        name = "position" if "position" in self._columns else next(iter(self._columns), "")
+        return drawing([(name, self.time, self._columns[name])], "time (s)", name) if name else ""
 
     def to_frame(self) -> Any:
         """A pandas DataFrame indexed by time (pandas is an extra: ``stiction[pandas]``).

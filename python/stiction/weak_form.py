@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, TypedDict
 import numpy as np
 
 from ._native import Motion, RowKernel
+from .drive import unscaled_unit
 from .driving import Driving
 from .errors import InputError, NotEnoughData
 from .motion import (
@@ -125,7 +126,7 @@ class WeakForm:
             raise InputError(f"{source}: {NO_POSITION}")
         self.prescribed = plant.prescribed_motion or recording.input is None
         driving = recording.effort if self.prescribed else recording.input
-        own = plant.effort_unit
+        own = unscaled_unit(plant.drive, self.input_unit) or plant.si_effort_unit
         self.effort_unit = recording.units.get("effort") or own if self.prescribed else own
         if driving is None:
             raise InputError(

@@ -12,7 +12,7 @@ import pytest
 
 import stiction as st
 from stiction.cli import run
-from stiction.cli.draft import kinds_of
+from stiction.drafting.text import kinds_of
 
 ROWS = 3000
 DRAFTS = ("plant.toml", "session.toml")
@@ -106,7 +106,7 @@ def test_the_gain_of_a_current_has_to_be_stated_and_that_of_a_torque_not(tmp_pat
         path = write(tmp_path / "run.mat", ("t", drive, "theta"))
         assert run(["init", str(path), "-o", str(out)]) == 0
         text = (out / "plant.toml").read_text("utf-8")
-        assert tomllib.loads(text)["drive"]["gain"] == 1.0
+        assert tomllib.loads(text)["drive"].get("gain") == (None if unit else 1.0)
         assert (f"TO DO: state the gain in N·m/{unit}" in text) == bool(unit)
         # The number beside the vectors is pointed at.
         assert ("the single numbers gain" in " ".join(text.split())) == bool(unit)

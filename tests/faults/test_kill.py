@@ -41,6 +41,7 @@ REPORT = (
     "import sys; from tests.report.canned import diagnosis\n"
     "diagnosis('missing_effect', names=1).save(sys.argv[1])"
 )
+COLUMNS = "time=t, input=u [Nm], position=q [rad]"
 VERBS: dict[str, list[str]] = {
     "init": ["init", "CSV", "-o", "OUT"],
     "simulate": ["simulate", "PLANT", "SESSION", "-o", "OUT"],
@@ -48,6 +49,7 @@ VERBS: dict[str, list[str]] = {
     "library": ["library", "ur10e_wrist", "--session", "SESSION", "-o", "OUT"],
     "fit": ["fit", "SESSION", "-o", "OUT"],
     "diagnose": ["diagnose", "SESSION", "-o", "OUT"],
+    "watch": ["watch", "LOGS", "--once", "--columns", COLUMNS, "-o", "OUT"],
     "plan": ["plan", "PLANT", "--only", "ramps", "-o", "OUT"],
     "export": ["export", "PLANT", "--to", "table", "--to", "urdf", "--to", "c", "-o", "OUT"],
     "compensate": ["compensate", "PLANT", "--session", "LOOP", "-o", "OUT"],
@@ -63,7 +65,7 @@ VERBS: dict[str, list[str]] = {
 """Arguments of the command line, or of Python where they begin with -c."""
 FRESH = {"init", "import", "plan", "demo", "stream", "bench"}
 """What refuses to write over a file, or goes on from it."""
-SLOW = {"paper", "diagnose"}
+SLOW = {"paper", "diagnose", "watch"}
 """Left to the long run: most of what they do is no writing."""
 
 
@@ -162,6 +164,13 @@ class Killed:
         out.mkdir()
         return out
 
+    def _logs(self) -> Path:
+        """A folder with the recording alone."""
+        logs = self._folder / "logs"
+        logs.mkdir(exist_ok=True)
+        (logs / "run.csv").write_bytes(self._desk.csv.read_bytes())
+        return logs
+
     def _started(self, out: Path) -> subprocess.Popen[bytes]:
         paths = {
             "SESSION": str(self._desk.session),
@@ -169,6 +178,7 @@ class Killed:
             "CSV": str(self._desk.csv),
             "LOOP": str(self._desk.loop()),
             "BAM": str(self._desk.parameters()),
+            "LOGS": str(self._logs()),
         }
         words = [paths.get(each, each.replace("OUT", str(out))) for each in VERBS[self.verb]]
         module = [] if words[0] == "-c" else ["-m", "stiction"]

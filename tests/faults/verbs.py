@@ -29,6 +29,7 @@ VERBS: dict[str, tuple[str, ...]] = {
     "simulate": ("simulate", "plant.toml", "run.csv", "--columns", COLUMNS),
     "fit": ("fit", "session.toml"),
     "diagnose": ("diagnose", "session.toml", "--surrogates", "4"),
+    "watch": ("watch", "logs", "--once", "--columns", COLUMNS, "--surrogates", "4"),
     "plan": ("plan", "plant.toml", "--only", "turns"),
     "init": ("init", "run.csv"),
     "import": ("import", "params.json"),
@@ -170,6 +171,11 @@ def desk(folder: Path) -> Path:
     folder.mkdir(parents=True)
     Desk(folder).loop()
     Desk(folder).parameters()
+    logs = folder / "logs"
+    logs.mkdir()
+    Desk(logs)
+    for name in ("plant.toml", "session.toml"):
+        (logs / name).unlink()
     lay(answered_bench(), folder / "bench")
     return folder
 

@@ -11,8 +11,10 @@ from tests.reference.coulomb_reference import simulate_coulomb
 import stiction as st
 from stiction.report.fit_page import fit_page
 
-TAKEN = "[drive] gain is not stated and taken as 1 N·m/A"
-SENTENCE = f"{TAKEN}: inertia and friction are in units of the input"
+SENTENCE = (
+    "[drive] gain is not stated: every effort, friction and inertia is in A and not in N·m, until "
+    "you state the N·m/A"
+)
 
 
 @cache
@@ -37,13 +39,19 @@ def test_a_gain_that_is_not_stated_is_said_with_a_fit() -> None:
     assert SENTENCE in str(found)
     assert SENTENCE in fit_page(found, [recording()], "Fit")
     assert found.to_dict()["assumed"] == [SENTENCE]
+    assert found.unit == "A"
+    assert found["inertia"].unit == "A·s²/rad"
+    assert found["viscous"].unit == "A·s/rad"
+    assert "N·m" not in str(found).replace(SENTENCE, "")
 
 
 @pytest.mark.parametrize(
     "drive", [{"input": "current_a", "gain": 1.0}, {"input": "torque_nm"}, {}], ids=str
 )
 def test_nothing_is_said_of_a_gain_that_is_stated_or_needs_none(drive: dict[str, object]) -> None:
-    assert st.fit(plant(**drive), recording()).assumed == ()
+    found = st.fit(plant(**drive), recording())
+    assert found.assumed == ()
+    assert (found.unit, found["inertia"].unit) == ("N·m", "kg·m²")
 
 
 def test_a_column_in_amperes_tells_where_the_plant_does_not(tmp_path) -> None:

@@ -139,6 +139,8 @@ BY_NAME: dict[str, Drawer] = {
     "target": lambda d: d.signed(),
     "keep": lambda d: d.text(("every", "last", "rms", "extremes")),
     "integrator": lambda d: d.text(("fast", "reference")),
+    "ax": lambda d: "None",
+    "label": lambda d: d.text(["measured", ""]),
     "law": lambda d: d.text(sorted(LAWS)),
     "to": lambda d: d.text(sorted(targets())),
     "laws": lambda d: d.texts(sorted(LAWS), 1),

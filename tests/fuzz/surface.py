@@ -15,6 +15,7 @@ from typing import Any
 import stiction
 
 HIDDEN = {
+    "drafting": "the verbs init and diagnose are run as commands",
     "cli": "its verbs are run as commands",
     "bench": "lays out, diagnoses and counts folders of sessions; its verb is run as a command",
 }

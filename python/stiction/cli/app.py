@@ -19,6 +19,7 @@ from .library import library
 from .paper import paper
 from .plan import plan
 from .simulate import simulate
+from .watch import watch
 
 __all__ = ["build"]
 
@@ -31,7 +32,7 @@ def build() -> cyclopts.App:
         version=f"stiction {__version__}",
         help_format="plaintext",
     )
-    for verb in (init, demo, simulate, fit, diagnose, plan, export):
+    for verb in (init, demo, simulate, fit, diagnose, watch, plan, export):
         app.command(verb)
     # A word that Python keeps for itself.
     app.command(import_, name="import")

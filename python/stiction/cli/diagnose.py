@@ -14,38 +14,60 @@ from ..diagnosis.result import Diagnosis
 from ..robot.session import robot_of
 from ..session import load_beside
 from .answer import answer, folder, told_anyway, written
+from .drafts import Opened, Stated, is_data, opened
 from .given import Whole
 from .interrupt import ending_soon, finished
 from .progress import progress
 from .robot import diagnose_arm
-from .sessions import loaded, mended, spared, spoken_of
+from .sessions import mended, spared, spoken_of
 
 __all__ = ["diagnose", "told"]
 
 
 def diagnose(
     session: Path,
-    *,
-    without: tuple[str, ...] = (),
+    *more: Path,
+    columns: Annotated[str, Parameter(name=["--columns", "-c"])] = "",
+    gain: float | None = None,
+    law: str = "",
+    joint: str = "",
+    header: str = "",
+    without: Annotated[tuple[str, ...], Parameter(negative="")] = (),
     laws: str = "",
     surrogates: Whole = SURROGATES,
     smallest: float = SMALLEST,
     seed: Whole = 0,
     threads: Whole | None = None,
-    add: tuple[Path, ...] = (),
+    add: Annotated[tuple[Path, ...], Parameter(negative="")] = (),
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """Find out what a simulation of the machine is missing, add it and measure the gain.
 
     Writes report.html, findings.json, the extended plant.toml, begins.toml with the state at the
-    start of each recording, and figures. Of a robot: its own page, robot.toml, and a folder with
-    all of that for each joint.
+    start of each recording, and figures. Of recordings in place of a session file the session is
+    drafted as stiction init does it: what was assumed is said, and kept in draft/ to go on from. Of
+    a robot: its own page, robot.toml, and a folder with all of that for each joint.
 
     Parameters
     ----------
     session
-        Session file: names the plant, the columns and the recordings.
+        Session file, which names plant, columns and recordings; or a recording, or a folder of
+        them.
+    more
+        More recordings with the same columns.
+    columns
+        Of recordings: columns that are something else than guessed, with units in brackets:
+        "input=vir [V], position=qm [mm]".
+    gain
+        Of recordings: effort per SI unit of the input, in N·m/A and the like. Without it every
+        effort is in the unit of the input.
+    law
+        Of recordings: friction law of the plant, coulomb without it.
+    joint
+        Of recordings of several joints the one that is wanted.
+    header
+        Of recordings without names of columns: the names, as for stiction init.
     without
         Effect that is not tried; may be given several times.
     laws
@@ -67,7 +89,7 @@ def diagnose(
         Print JSON.
     """
     names = [name.strip() for name in laws.split(",") if name.strip()]
-    robot = robot_of(session)
+    robot = None if is_data(session) else robot_of(session)
     if robot is not None:
         asked = {
             "without": without,
@@ -79,17 +101,18 @@ def diagnose(
         }
         diagnose_arm(session, robot, add, out, asked, as_json=json)
         return
+    told_of = Stated(columns, gain, law, joint, header)
     with progress():
-        recordings, plant = loaded(session, keep_faulty=True)
-        where = Path(f"{session.stem}-diagnosis") if out is None else out
+        at = opened([session, *more], out, "diagnosis", told_of)
+        recordings, plant, where = at.session, at.plant, at.where
         if add:
-            with spoken_of(session, recordings, plant), written(where):
-                found_anew = added(where, recordings, load_beside(session, add, plant))
+            with spoken_of(at.path, recordings, plant), written(where):
+                found_anew = added(where, recordings, load_beside(at.path, add, plant))
             answer(str(found_anew), found_anew.findings, as_json=json)
             return
         spared(plant, where)
         folder(where)
-        with ending_soon(), spoken_of(session, recordings, plant):
+        with ending_soon(), spoken_of(at.path, recordings, plant):
             found = run(
                 plant,
                 recordings,
@@ -100,14 +123,25 @@ def diagnose(
                 seed=seed,
                 threads=threads,
             )
+    content = found.to_dict()
+    if at.assumed:
+        content["draft"] = {"assumed": list(at.assumed), "files": [str(f) for f in at.drafted]}
     with finished(struck=not found.success):
-        with told_anyway(str(found), found.to_dict(), as_json=json), progress(), written(where):
+        with told_anyway(str(found), content, as_json=json), progress(), written(where):
             report = found.save(where)
         # The sentence comes first, whatever was mended before it could be said.
-        said = (str(found), "\n".join(mended(recordings)), told(found, report))
-        answer("\n\n".join(filter(None, said)), found.to_dict(), as_json=json)
+        mends = "\n".join(mended(recordings))
+        said = ("\n".join(at.assumed), str(found), mends, told(found, report), _onward(at))
+        answer("\n\n".join(filter(None, said)), content, as_json=json)
     if not found.success:
         raise KeyboardInterrupt
+
+
+def _onward(at: Opened) -> str:
+    """Where what was assumed can be corrected, in words."""
+    if not at.drafted:
+        return ""
+    return f"go on: correct {at.drafted[0]} and {at.path.name}, then stiction diagnose {at.path}"
 
 
 def told(found: Diagnosis, report: Path) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -11,23 +10,14 @@ from cyclopts import Parameter
 
 from .. import session as sessions
 from ..atomic_files import create_text
+from ..drafting import FILES, Draft, draft
 from ..errors import InputError
 from ..given import vacant
-from ..progress import phase
-from ..recording import Table
-from ..recording.guess import Guess, guess
-from ..recording.joints import joints_of
 from ..wording import counted, listed
 from .answer import answer, folder, written
-from .draft import plant_text, session_text
-from .logs import as_in_file, named, read_logs
 from .progress import progress
 
 __all__ = ["init"]
-
-_logger = logging.getLogger(__name__)
-
-_FILES = ("plant.toml", "session.toml")
 
 
 def init(
@@ -67,24 +57,15 @@ def init(
 
         draft_robot(data, more, header, joint, out, as_json=json)
         return
-    vacant(out, _FILES, "another folder with --out")
+    vacant(out, FILES, "another folder with --out")
     with progress():
-        tables, left_out, files_of = read_logs([data, *more])
-        phase(_logger, "guessing what each column is")
-        tables, calls = named(tables, header)
-        tables, joints = _one_joint(tables, joint)
-        found = as_in_file(guess(tables), calls)
+        made = draft([data, *more], joint=joint, header=header)
     where = folder(out)
-    files = [where / name for name in _FILES]
-    paths = [files_of[table.path] for table in tables]
-    headers = [table.header for table in tables]
-    texts = (plant_text(found), session_text(found, paths, left_out, where, joints, headers))
+    files = [where / name for name in FILES]
     with written(where):
-        for file, text in zip(files, texts, strict=True):
+        for file, text in zip(files, made.texts(where), strict=True):
             create_text(file, text)
-    todo = list(found.missing.values())
-    if found.counts_needed and not found.counts_per_rev:
-        todo.append("state the size of a sensor count under [sensor] of plant.toml")
+    todo = made.to_do
     # What the guess does not see (too many empty cells, a clock that jumps) is said at once.
     if not todo:
         try:
@@ -92,57 +73,30 @@ def init(
         except InputError as error:
             todo.append(str(error))
     result = {
-        **found.to_dict(),
-        "joints": joints,
-        "recordings": [str(table.path) for table in tables],
-        "left_out": {str(path): why for path, why in left_out},
+        **made.found.to_dict(),
+        "joints": list(made.joints),
+        "recordings": [str(table.path) for table in made.tables],
+        "left_out": {str(path): why for path, why in made.left_out},
         "to_do": todo,
         "files": [str(file) for file in files],
     }
-    answer(_text(found, tables, left_out, todo, files, joints), result, as_json=json)
+    answer(_text(made, todo, files), result, as_json=json)
 
 
-def _one_joint(tables: list[Table], wanted: str) -> tuple[list[Table], list[str]]:
-    """The columns of one joint, and what the joints are called, that one first.
-
-    Raises
-    ------
-    InputError
-        There is no such joint, or nothing tells several.
-    """
-    joints = joints_of(tables)
-    if joints is None:
-        if wanted:
-            raise InputError(
-                f"{tables[0].path}: --joint is {wanted}, and the columns are not those of several "
-                f"joints ({listed(tables[0].columns)}); leave it out"
-            )
-        return tables, []
-    joint = wanted or joints.moving(tables)
-    others = [label for label in joints.labels if label != joint]
-    return [joints.only(table, joint) for table in tables], [joint, *others]
-
-
-def _text(
-    found: Guess,
-    tables: Sequence[Table],
-    left_out: Sequence[tuple[Path, str]],
-    todo: Sequence[str],
-    files: Sequence[Path],
-    joints: Sequence[str],
-) -> str:
+def _text(made: Draft, todo: Sequence[str], files: Sequence[Path]) -> str:
+    found, joints = made.found, made.joints
     rows: list[tuple[Any, ...]] = [("column", "role", "unit", "why")]
     for one in found.columns:
         unit = "" if one.role is None else f"{one.scale:g}·{one.unit}".removeprefix("1·")
         rows.append((one.column, one.role or "-", unit, one.reason))
     widths = [max(len(row[k]) for row in rows) for k in range(3)]
-    lines = [f"guessed from {counted(len(tables), 'recording')}:", ""]
+    lines = [f"guessed from {counted(len(made.tables), 'recording')}:", ""]
     lines += ["  ".join([*(f"{row[k]:<{widths[k]}}" for k in range(3)), row[3]]) for row in rows]
     if joints:
         lines += ["", f"joint: {joints[0]} (others: {listed(joints[1:])}; --joint takes them)"]
     lines += ["", f"motion: {found.motion} ({found.motion_reason})"]
     lines += [f"drive: {found.drive or 'not known'} ({found.drive_reason})"]
-    lines += [f"left out: {path}: {why.removeprefix(f'{path}: ')}" for path, why in left_out]
+    lines += [f"left out: {path}: {why.removeprefix(f'{path}: ')}" for path, why in made.left_out]
     lines += ["", *(f"wrote {file}" for file in files)]
     lines += [f"to do: {sentence}" for sentence in todo]
     if not todo:

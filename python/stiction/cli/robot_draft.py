@@ -12,6 +12,8 @@ from typing import Any, Final
 import numpy as np
 
 from ..atomic_files import create_text
+from ..drafting.tables import as_in_file, named, read
+from ..drafting.text import column_value, comment, kinds_of, printable, quoted
 from ..errors import InputError
 from ..given import vacant
 from ..progress import phase
@@ -25,8 +27,6 @@ from ..robot.description import described
 from ..robot.extended import relative
 from ..wording import counted, listed
 from .answer import answer, folder, written
-from .draft import column_value, comment, kinds_of, printable, quoted
-from .logs import as_in_file, named, read_logs
 from .progress import progress
 
 __all__ = ["FILES", "draft_robot"]
@@ -90,7 +90,7 @@ def draft_robot(
     vacant(out, FILES, "another folder with --out")
     description = described(urdf)
     with progress():
-        tables, left_out, files_of = read_logs(data)
+        tables, left_out, files_of = read(data)
         phase(_logger, "guessing what each column is")
         tables, calls = named(tables, header)
         places, locked = _places(urdf, description.kinds, description.free, tables)

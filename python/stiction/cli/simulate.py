@@ -20,6 +20,7 @@ from ..recording import Recording
 from ..recording.checks import check, impulse_checks
 from ..recording.names import names_of
 from .answer import answer, folder, written
+from .columns import read_columns
 from .progress import progress
 from .trajectory_csv import save_trajectory
 
@@ -99,34 +100,6 @@ def _tell(results: list[dict[str, Any]], *, as_json: bool) -> None:
     """Prints the answers for some recordings."""
     text = "\n\n".join(result.pop("text") for result in results)
     answer(text, results[0] if len(results) == 1 else results, as_json=as_json)
-
-
-def read_columns(text: str) -> dict[str, Any]:
-    """Columns from "role=name [unit], role=name".
-
-    Raises
-    ------
-    InputError
-        An entry without "=", or one role twice.
-    """
-    columns: dict[str, Any] = {}
-    for entry in text.split(","):
-        role, equals, name = (part.strip() for part in entry.partition("="))
-        if not equals or not role or not name:
-            raise InputError(
-                f"--columns: '{entry.strip()}' is not role=name; write for instance "
-                '"time=t, input=u [V], position=x [mm]"'
-            )
-        if role in columns:
-            raise InputError(f"--columns: {role} is there twice; drop one")
-        bare, bracket, unit = name.partition("[")
-        if bracket:
-            if not unit.endswith("]"):
-                raise InputError(f"--columns: '{name}' lacks a closing bracket")
-            columns[role] = {"name": bare.strip(), "unit": unit[:-1].strip()}
-        else:
-            columns[role] = name
-    return columns
 
 
 def stems_of(recordings: Sequence[Recording]) -> list[str]:

@@ -25,7 +25,7 @@ from ..recording.names import names_of
 from ..recording.recording import recordings_of
 from ..recording.session_clock import remaining
 from ..recording.usable import checks_of, usable
-from ..session import Session
+from ..session import Session, both_of
 from ..trajectory import FloatArray
 from ..wording import counted
 from ..workers import with_workers
@@ -72,8 +72,8 @@ _logger = logging.getLogger(__name__)
 
 @on_one_thread
 def diagnose(
-    plant: Plant | None,
-    session: Session | Sequence[Recording] | Recording,
+    plant: Plant | Session | None,
+    session: Session | Sequence[Recording] | Recording | None = None,
     *,
     without: Sequence[str] = (),
     laws: Sequence[str] = (),
@@ -90,8 +90,8 @@ def diagnose(
 
     Parameters
     ----------
-    plant : Plant or None
-        Naming the law is enough; None takes that of the session.
+    plant : Plant, or Session, or None
+        Naming the law is enough; a session alone, or None, takes the plant of the session.
     session : Session, sequence of Recording, or Recording
     without : sequence of str
         Effects that are not tried.
@@ -120,10 +120,8 @@ def diagnose(
         Ctrl-C before there is anything, or for the second time.
     """
     began = time.perf_counter()
+    machine, session = both_of(plant, session, "diagnose")
     entire = _session(session)
-    machine = plant if plant is not None else entire.plant
-    if machine is None:
-        raise InputError('session: plant is missing; write plant = "plant.toml", or give one')
     instance(machine, Plant, "diagnose: plant", "a Plant, as Plant.load returns it")
     surrogates = whole(surrogates, "surrogates", least=4, most=MOST_SURROGATES)
     smallest = share(smallest, "smallest")

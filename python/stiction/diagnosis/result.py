@@ -515,4 +515,36 @@ class Diagnosis:
     __repr__ = __str__
 
     def _repr_html_(self) -> str:
-        return "".join(f"<p>{escape(line)}</p>" for line in str(self).splitlines() if line)
+        from ..notebook import friction_drawing, table
+
+        head = ("cause", "effect", "gain on held-out rows", "95 %")
+        rows = [(each.name, each.what, *_per_cent(each.gain)) for each in self.effects]
+        models = [("before", self.baseline), ("after", self.extended)]
+        errors = table(
+            ("model", "law and effects", "error held out"),
+            [
+                (
+                    name,
+                    " + ".join((model.law, *model.effects)),
+                    ""
+                    if model.heldout_rms is None
+                    else f"{model.heldout_rms:.4g} {model.unit}".removesuffix(" 1"),
+                )
+                for name, model in models
+                if model is not None
+            ],
+        )
+        assumed = () if self.baseline is None else self.baseline.assumed
+        curves = friction_drawing([(name, m.plant, m.unit) for name, m in models if m is not None])
+        return (
+            f"<p><b>{escape(self.sentence)}</b></p>"
+            f"{table(head, rows) if rows else ''}{errors}"
+            f"{''.join(f'<p>{escape(line)}</p>' for line in assumed)}{curves}"
+        )
+
+
+def _per_cent(gain: Gain | None) -> tuple[str, str]:
+    if gain is None:
+        return "", ""
+    low, high = gain.ci95
+    return f"{100.0 * gain.value:.1f} %", f"{100.0 * low:.1f} to {100.0 * high:.1f} %"

@@ -6,14 +6,20 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from html import escape
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from .. import given
+from ..atomic_files import write_text
 from ..compared import compared_by
 from ..frozen import ByPath, Frozen, freeze
 from ..json_text import json_of
 from ..plant import Plant
 from ..trajectory import FloatArray
 from .waves import amplitude_of, parts_of, phase_of, waves_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 __all__ = ["FitParameter", "FitResult"]
 
@@ -210,7 +216,55 @@ class FitResult:
         lines = "".join(f"<p>{escape(line)}</p>" for line in self._headline())
         remarks = "".join(f"<li>{escape(line.strip())}</li>" for line in self._remarks())
         head = "<tr><th>parameter</th><th>value</th><th>95 % interval</th><th>bound</th></tr>"
-        return f"{lines}<table>{head}{rows}</table><ul>{remarks}</ul>"
+        from ..notebook import friction_drawing
+
+        curve = friction_drawing([(self.plant.friction.law, self.plant, self.unit)])
+        return f"{lines}<table>{head}{rows}</table><ul>{remarks}</ul>{curve}"
+
+    def summary(self) -> str:
+        """What was fitted, as text: the same as printing the result."""
+        return str(self)
+
+    def save(self, path: str | Path) -> Path:
+        """Write fit.json, all that a fit tells.
+
+        Parameters
+        ----------
+        path : str or Path
+            Of the file; a file that is there is replaced. The plant has its own ``save``.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        InputError
+            No path, or a file that cannot be written.
+        """
+        path = given.path(path, "FitResult.save")
+        with given.written(path):
+            write_text(path, self.to_json() + "\n")
+        return path
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """The friction that was fitted, over speed.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            To draw into, one of a new figure without it.
+
+        Returns
+        -------
+        matplotlib Axes
+
+        Raises
+        ------
+        InputError
+            ``ax`` is something else than axes.
+        """
+        return self.plant.plot_friction(ax)
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain dicts and lists."""

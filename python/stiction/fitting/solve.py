@@ -24,6 +24,7 @@ from ..recording.recording import recordings_of
 from ..recording.session_clock import remaining
 from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
+from ..session import Session, both_of
 from ..trajectory import FloatArray
 from ..wording import counted
 from ..workers import with_workers
@@ -126,7 +127,9 @@ class _Seen:
 
 
 @on_one_thread
-def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) -> FitResult:
+def fit(
+    plant: Plant | Session | None, session: Any = None, *, max_evaluations: int = MOST_EVALUATIONS
+) -> FitResult:
     """Fit a plant to the recordings of a session.
 
     Minimises Σ w²·r² over all rows but those that test (see ``Split``), r the measured effort
@@ -140,10 +143,11 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
 
     Parameters
     ----------
-    plant : Plant
-        Stated numbers are starting values; what is not stated of the core of the law starts from
-        the data. Fixed parameters, optional terms that are not stated, and everything in [drive],
-        [sensor] and [controller] stay.
+    plant : Plant, or Session, or None
+        A session alone, or None, takes the plant of the session. Stated numbers are starting
+        values; what is not stated of the core of the law starts from the data. Fixed parameters,
+        optional terms that are not stated, and everything in [drive], [sensor] and [controller]
+        stay.
     session : Session, or sequence of Recording, or Recording
     max_evaluations : int
         Evaluations of the residual at most.
@@ -162,16 +166,17 @@ def fit(plant: Plant, session: Any, *, max_evaluations: int = MOST_EVALUATIONS) 
     KeyboardInterrupt
         Ctrl-C before there is anything, or for the second time.
     """
-    instance(plant, Plant, "fit: plant", "a Plant, as Plant.load returns it")
+    either, session = both_of(plant, session, "fit")
+    machine = instance(either, Plant, "fit: plant", "a Plant, as Plant.load returns it")
     recordings = list(recordings_of(session, "fit"))
     if not recordings:
         raise InputError("there are no recordings to fit; give at least one")
     max_evaluations = whole(max_evaluations, "max_evaluations", least=0)
     with with_workers(None):
-        found = _fitted(plant, recordings, max_evaluations)
+        found = _fitted(machine, recordings, max_evaluations)
         if not (found.success and found.train_relative > LEFT_WHERE_WRONG):
             return found
-        hint = turned_round(plant, recordings, left_by_fit)
+        hint = turned_round(machine, recordings, left_by_fit)
     return replace(found, split="\n".join(filter(None, (hint, found.split))))
 
 
@@ -375,7 +380,7 @@ def evaluate(
     begun = started(plant, others, nuisances)
     heldout = _errors(plant, held, begun) if held else None
     stated = as_stated(plant, given)
-    told = assumed_gain(given.drive, train[0].form.input_unit, given.effort_unit)
+    told = assumed_gain(given.drive, train[0].form.input_unit, given.si_effort_unit)
     return FitResult(
         plant=stated,
         parameters=parameters,

@@ -83,9 +83,10 @@ def unit_of(plant: Plant, path: str) -> str:
 def with_effort_in(measured: str, plant: Plant, path: str) -> str:
     """Unit of the parameter at a path where efforts were measured in another unit than a force's.
 
-    A stress, in Pa, or a friction coefficient, which has no unit, takes the place of N (or N·m).
+    A stress, in Pa, a friction coefficient, which has no unit, or an input whose gain is not known
+    takes the place of N (or N·m).
     """
-    unit, own = unit_of(plant, path), plant.effort_unit
+    unit, own = unit_of(plant, path), plant.si_effort_unit
     if measured == own:
         return unit
     if path == "body.inertia":

@@ -102,6 +102,33 @@ MOTION_OF_QUANTITY: Final[dict[str, Motion]] = {
 _LOOK_ALIKES = str.maketrans({"\N{GREEK SMALL LETTER MU}": "µ", "\N{DOT OPERATOR}": "·"})
 
 
+_WORDS: Final = {
+    "milliamp": "mA",
+    "amp": "A",
+    "millivolt": "mV",
+    "volt": "V",
+    "degrees c": "degC",
+    "celsius": "degC",
+    "degree": "deg",
+    "°": "deg",
+    "radian": "rad",
+    "turn": "rev",
+    "revol": "rev",
+    "newton m": "Nm",
+    "newtonm": "Nm",
+    "newton-m": "Nm",
+    "newton": "N",
+    "sec": "s",
+    "millisec": "ms",
+    "microsec": "us",
+    "millim": "mm",
+    "microm": "um",
+    "met": "m",
+    "tick": "count",
+}
+"""How people begin to write a unit in words; the longer of two comes first."""
+
+
 def known_unit(name: str) -> Unit | None:
     """The unit written ``name``, None where there is none."""
     return UNITS.get(name.strip().translate(_LOOK_ALIKES))
@@ -125,10 +152,19 @@ def find_unit(name: str, where: str) -> Unit:
     unit = known_unit(name)
     if unit is None:
         raise InputError(
-            f"{where}: the unit '{name}' is not known{did_you_mean(name, UNITS)}; "
+            f"{where}: the unit '{name}' is not known{_meant(name)}; "
             f"write one of {', '.join(UNITS)}"
         )
     return unit
+
+
+def _meant(name: str) -> str:
+    """Which unit somebody may have meant: by its word, else by its letters."""
+    word = name.strip().casefold()
+    for start, unit in _WORDS.items():
+        if word.startswith(start):
+            return f" (did you mean '{unit}'?)"
+    return did_you_mean(name, UNITS)
 
 
 def to_si(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
+from .overrule import overruled
 from .result import ColumnGuess, Guess
 from .roles import guess
 
-__all__ = ["ColumnGuess", "Guess", "guess"]
+__all__ = ["ColumnGuess", "Guess", "guess", "overruled"]

@@ -1,4 +1,4 @@
-"""The text of the files that ``stiction init`` writes: every guess with its reason."""
+"""The text of the files of a draft: every guess with its reason."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from ..recording.units import SI_UNIT, find_unit
 from ..wording import listed
 
 __all__ = [
+    "GAIN_UNIT",
     "column_value",
     "comment",
     "kinds_of",
@@ -29,7 +30,8 @@ __all__ = [
 
 _WIDTH = 98
 _MOST_STATED = 12
-_GAIN_UNIT = {"current_a": "A", "voltage_v": "V"}
+GAIN_UNIT = {"current_a": "A", "voltage_v": "V"}
+"""Inputs that are no effort: what their gain is per."""
 _EXAMPLES = {
     "time": 'time = { name = "…", unit = "s" }',
     "position": 'position = { name = "…", unit = "rad" }',
@@ -38,8 +40,8 @@ _EXAMPLES = {
 _ENDS = re.compile(r"[^A-Za-z]+")
 
 
-def plant_text(found: Guess) -> str:
-    """A plant.toml for what was guessed."""
+def plant_text(found: Guess, *, law: str = "coulomb", gain: float | None = None) -> str:
+    """A plant.toml for what was guessed, with a law and a gain that are stated."""
     effort, body, rate = ("N·m", "kg·m²", "rad") if found.motion == "rotary" else ("N", "kg", "m")
     measured = _measured_unit(found, effort)
     start = f"{measured}; " if measured else ""
@@ -56,12 +58,24 @@ def plant_text(found: Guess) -> str:
         f'kind = "{found.motion}"',
         "",
         "[drive]",
-        *_drive(found, effort),
+        *_drive(found, effort, gain),
         "",
         "[body]",
         *_body(found, body, effort),
         "",
         "[friction]",
+        *_law(law, damping, start),
+        "",
+        *_sensor(found),
+    ]
+    return "\n".join(lines).rstrip("\n") + "\n"
+
+
+def _law(law: str, damping: str, start: str) -> list[str]:
+    if law != "coulomb":
+        told = f"As stated. `stiction laws {law}` lists its parameters; naming it is enough."
+        return [*comment(told), f'law = "{law}"']
+    return [
         *comment(
             f"Dry friction with true stick, and viscous friction in {damping}: the "
             "plainest law. `stiction laws` lists the others, `stiction laws coulomb` the "
@@ -69,13 +83,10 @@ def plant_text(found: Guess) -> str:
         ),
         'law = "coulomb"',
         f"# coulomb = 0.1  # {start}a number here is where the fit starts",
-        "",
-        *_sensor(found),
     ]
-    return "\n".join(lines).rstrip("\n") + "\n"
 
 
-def _drive(found: Guess, effort: str) -> list[str]:
+def _drive(found: Guess, effort: str, gain: float | None) -> list[str]:
     if found.prescribed:
         return [
             *comment(
@@ -101,17 +112,19 @@ def _drive(found: Guess, effort: str) -> list[str]:
         *comment(f"{found.drive_reason}. The others are current_a, voltage_v and {own}."),
         f'input = "{found.drive}"',
     ]
-    unit = _GAIN_UNIT.get(found.drive)
+    unit = GAIN_UNIT.get(found.drive)
+    if gain is not None:
+        return [*lines, *comment(f"{effort}/{unit or effort}, as stated."), f"gain = {gain!r}"]
     if unit is None:
         return [*lines, *comment(f"The input is in {effort} already."), "gain = 1.0"]
     return [
         *lines,
         *comment(
             f"TO DO: state the gain in {effort}/{unit} (motor constant, transmission). Inertia and "
-            f"friction scale with it: with 1.0 they come out in {unit} instead of {effort}."
+            f"friction scale with it: without it they come out in {unit} instead of {effort}."
             + _numbers_beside(found)
         ),
-        "gain = 1.0",
+        "# gain = 1.0",
     ]
 
 

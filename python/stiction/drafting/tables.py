@@ -1,4 +1,4 @@
-"""Logs as ``stiction init`` reads them: named columns, files of a folder, what is left out."""
+"""Reading the files of a draft: the columns of one joint, those of a folder that go together."""
 
 from __future__ import annotations
 
@@ -15,24 +15,18 @@ from ..recording import Table, read_table
 from ..recording.columns import numbered
 from ..recording.formats import FORMATS
 from ..recording.guess import Guess
-from ..recording.joints import MOST
+from ..recording.joints import MOST, joints_of
 from ..recording.repair import FEWEST_ROWS
 from ..recording.signals import read_signals, runs_of_signals
 from ..wording import counted, listed
 
-__all__ = ["Logs", "as_in_file", "named", "read_logs"]
+__all__ = ["as_in_file", "named", "one_joint", "read", "recordings_in"]
 
 _logger = logging.getLogger(__name__)
 
 
 def named(tables: list[Table], header: str) -> tuple[list[Table], dict[str, str]]:
     """The tables under the names that were given, and what their columns are called in the file.
-
-    Parameters
-    ----------
-    tables : list of Table
-    header : str
-        As ``--header`` gives it, "" for none.
 
     Raises
     ------
@@ -65,6 +59,38 @@ def named(tables: list[Table], header: str) -> tuple[list[Table], dict[str, str]
     return [table.renamed(back) for table in tables], calls
 
 
+def one_joint(
+    tables: list[Table], wanted: str, columns: Sequence[str] = ()
+) -> tuple[list[Table], list[str]]:
+    """The columns of one joint, and what the joints are called, that one first.
+
+    Without one that is ``wanted`` it is the one that has all of some ``columns``, else one that
+    moves.
+
+    Raises
+    ------
+    InputError
+        There is no such joint, or nothing tells several.
+    """
+    joints = joints_of(tables)
+    if joints is None:
+        if wanted:
+            raise InputError(
+                f"{tables[0].path}: --joint is {wanted}, and the columns are not those of several "
+                f"joints ({listed(tables[0].columns)}); leave it out"
+            )
+        return tables, []
+    having = [
+        label
+        for label in joints.labels
+        if set(columns) <= joints.only(tables[0], label).columns.keys()
+    ]
+    told = having[0] if columns and len(having) == 1 else ""
+    joint = wanted or told or joints.moving(tables)
+    others = [label for label in joints.labels if label != joint]
+    return [joints.only(table, joint) for table in tables], [joint, *others]
+
+
 def as_in_file(found: Guess, calls: Mapping[str, str]) -> Guess:
     """The guess with the columns called as they are in the file."""
     columns = tuple(
@@ -76,23 +102,12 @@ def as_in_file(found: Guess, calls: Mapping[str, str]) -> Guess:
     return replace(found, columns=columns)
 
 
-Logs = tuple[list[Table], list[tuple[Path, str]], dict[Path, list[Path]]]
+_Read = tuple[list[Table], list[tuple[Path, str]], dict[Path, list[Path]]]
 
 
-def read_logs(paths: Sequence[Path]) -> Logs:
+def read(paths: Sequence[Path]) -> _Read:
     """The tables that are guessed about, files of a folder that are left out, with reasons, and the
-    files of each table.
-
-    Parameters
-    ----------
-    paths : sequence of Path
-        Files, or folders of them.
-
-    Raises
-    ------
-    InputError
-        A file that is named and cannot be read, or has other columns; a folder without any.
-    """
+    files of each table."""
     tables: list[Table] = []
     left_out: list[tuple[Path, str]] = []
     alone = len(paths) == 1
@@ -102,7 +117,7 @@ def read_logs(paths: Sequence[Path]) -> Logs:
         if not os.path.isdir(path):
             tables.append(_table(path))
             continue
-        inside = _files_in(path)
+        inside = recordings_in(path)
         alone = alone and len(inside) == 1
         for file in steps(inside, "file"):
             try:
@@ -124,7 +139,14 @@ def read_logs(paths: Sequence[Path]) -> Logs:
     return (*_same_columns(tables, left_out, chosen=chosen), files)
 
 
-def _files_in(path: Path) -> list[Path]:
+def recordings_in(path: Path) -> list[Path]:
+    """The files of a folder that are recordings by their endings, in order.
+
+    Raises
+    ------
+    InputError
+        There are none, or the folder cannot be read.
+    """
     endings = [suffix for known in FORMATS for suffix in known.suffixes]
     try:
         inside = sorted(

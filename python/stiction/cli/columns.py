@@ -1,0 +1,37 @@
+"""``--columns``: roles, names and units of columns on the command line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..errors import InputError
+
+__all__ = ["read_columns"]
+
+
+def read_columns(text: str) -> dict[str, Any]:
+    """Columns from "role=name [unit], role=name".
+
+    Raises
+    ------
+    InputError
+        An entry without "=", or one role twice.
+    """
+    columns: dict[str, Any] = {}
+    for entry in text.split(","):
+        role, equals, name = (part.strip() for part in entry.partition("="))
+        if not equals or not role or not name:
+            raise InputError(
+                f"--columns: '{entry.strip()}' is not role=name; write for instance "
+                '"time=t, input=u [V], position=x [mm]"'
+            )
+        if role in columns:
+            raise InputError(f"--columns: {role} is there twice; drop one")
+        bare, bracket, unit = name.partition("[")
+        if bracket:
+            if not unit.endswith("]"):
+                raise InputError(f"--columns: '{name}' lacks a closing bracket")
+            columns[role] = {"name": bare.strip(), "unit": unit[:-1].strip()}
+        else:
+            columns[role] = name
+    return columns
