@@ -386,6 +386,7 @@ impl<S: Scalar> Machine<S> {
     /// What reaches the contact of a bare machine.
     #[inline]
     pub(super) fn plain_channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
+        let load = load + self.body.level_gravity();
         Channels { effort, load, temperature: at.temperature, ..Channels::default() }
     }
 
