@@ -1,15 +1,14 @@
-//! One run of a motor loop for `instructions.py` to count: `count LAW PASSES`.
+//! One run of a motor loop for `instructions.py` to count: `count LAW[+EFFECT...] PASSES`.
 
-use stiction_benches::{DT, SAMPLES, efforts, motor};
-use stiction_core::friction::law_record;
-use stiction_core::integrate::Integrator;
+use stiction_benches::{DT, SAMPLES, efforts, motor_with};
 use stiction_core::motor::{Column, PerSample, Surroundings};
 
 fn main() {
     let mut words = std::env::args().skip(1);
-    let (law, passes) = (words.next().expect("a law"), words.next().expect("a number"));
+    let (plant, passes) = (words.next().expect("a law"), words.next().expect("a number"));
     let passes: usize = passes.parse().expect("a number");
-    let start = motor(law_record(&law).expect("a law"), Integrator::Fast);
+    let (law, effects) = plant.split_once('+').unwrap_or((&plant, ""));
+    let start = motor_with(law, effects).expect("a motor");
     let effort = efforts();
     let (mut x, mut v) = (vec![0.0; SAMPLES], vec![0.0; SAMPLES]);
     for _ in 0..passes {

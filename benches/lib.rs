@@ -1,7 +1,8 @@
 //! The workloads of the benches; that they do what the benches claim is tested in
 //! `crates/stiction-core/tests/bench_workloads.rs`.
 
-use stiction_core::friction::LawRecord;
+use stiction_core::effects::EffectSpec;
+use stiction_core::friction::{LawRecord, law_record};
 use stiction_core::integrate::Integrator;
 use stiction_core::model::{FrictionModel, LawSpec};
 use stiction_core::motor::{Motor, MotorSpec};
@@ -10,6 +11,9 @@ use stiction_core::motor::{Motor, MotorSpec};
 pub const SAMPLES: usize = 20_000;
 /// Duration of a sample in s.
 pub const DT: f64 = 1e-4;
+
+/// Of a typical gain: the motor still breaks away and sticks again.
+const TYPICAL_SHARE: f64 = 0.5;
 
 /// The law with break-away enabled and reachable where it has one, else with its defaults.
 pub fn law(record: &'static LawRecord) -> LawSpec {
@@ -47,4 +51,19 @@ pub fn model(record: &'static LawRecord) -> FrictionModel {
 pub fn motor(record: &'static LawRecord, integrator: Integrator) -> Motor {
     let spec = MotorSpec { integrator, ..MotorSpec::new(0.0076, 1.0, law(record)) };
     Motor::new(spec).expect("a sane motor")
+}
+
+/// A motor with this law and these effects, joined by `+`, whose gains are typical; nothing where one of
+/// them needs a servo.
+pub fn motor_with(law_name: &str, effects: &str) -> Option<Motor> {
+    let record = law_record(law_name).expect("a law");
+    let typical = |name: &str| {
+        let gains = EffectSpec::new(name, &[]).expect("an effect").record.parameters.iter();
+        let gains = gains.filter(|parameter| parameter.neutral.is_some());
+        let stated: Vec<_> =
+            gains.map(|gain| (gain.name.to_owned(), TYPICAL_SHARE * gain.typical)).collect();
+        EffectSpec::new(name, &stated).expect("typical values are allowed")
+    };
+    let effects = effects.split('+').filter(|name| !name.is_empty()).map(typical).collect();
+    Motor::new(MotorSpec { effects, ..MotorSpec::new(0.0076, 1.0, law(record)) }).ok()
 }

@@ -3,6 +3,7 @@
 
 // The bench crate itself is not built by `cargo test`, because criterion would be.
 #[path = "../../../benches/lib.rs"]
+#[allow(dead_code)] // motors with effects
 mod workload;
 
 use stiction_core::friction::{Channels, LAWS, Statistics};

@@ -183,11 +183,13 @@ fn neutral_effects_change_no_bit() {
         let spec = LawSpec::new(law.name, &[("breakaway".to_owned(), 0.5)], &[])
             .or_else(|_| LawSpec::new(law.name, &[], &[]))
             .unwrap();
-        let plain = positions(&mut motor(0.0076, spec.clone()), &inputs, 1e-3);
+        // A weight loads the contact, whatever else there is.
+        let alone = MotorSpec { weight: 0.05, ..MotorSpec::new(0.0076, 1.0, spec) };
+        let plain = positions(&mut Motor::new(alone.clone()).unwrap(), &inputs, 1e-3);
         for effect in EFFECTS {
             let with = MotorSpec {
                 effects: vec![EffectSpec { record: effect, values: neutral_values(effect) }],
-                ..MotorSpec::new(0.0076, 1.0, spec.clone())
+                ..alone.clone()
             };
             let with = positions(&mut Motor::new(with).unwrap(), &inputs, 1e-3);
             assert!(plain == with, "{} on {}", effect.name, law.name);

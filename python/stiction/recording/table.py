@@ -95,7 +95,7 @@ class Table:
         names : mapping of str to str
             The new name, by the present one.
         """
-        mapping(names, "Table.renamed: names", "a mapping of names")
+        names = mapping(names, "Table.renamed: names", "a mapping of names")
 
         def new(name: str) -> str:
             return names.get(name, name)

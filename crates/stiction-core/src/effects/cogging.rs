@@ -63,6 +63,10 @@ impl<S: Scalar> Effect<S> for Cogging<S> {
         self.0.at(at.position)
     }
 
+    fn effort_wave(&self) -> Option<Wave<S>> {
+        Some(self.0)
+    }
+
     fn stiffness(&self, _sliding: f64) -> f64 {
         self.0.steepest()
     }

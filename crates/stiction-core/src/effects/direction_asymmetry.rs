@@ -29,6 +29,7 @@ pub struct DirectionAsymmetry<S>(DirectionAsymmetryParameters<S>);
 impl<S: Scalar> Effect<S> for DirectionAsymmetry<S> {
     const PARAMETERS: &'static [ParameterSpec] = DirectionAsymmetryParameters::<f64>::SPECS;
     const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
+    const CHANGES_IN_TIME: bool = false;
     const FACTS: EffectFacts = EffectFacts {
         summary: "friction is higher in one direction than in the other",
         means: "a compensation with one friction level for both directions is wrong in each",

@@ -4,6 +4,7 @@ use super::{Effect, EffectFacts, Hook, Memory, Situation};
 use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
+use crate::wave::Wave;
 
 parameters! {
     /// Parameters of [`GravityUnbalance`].
@@ -59,6 +60,11 @@ impl<S: Scalar> Effect<S> for GravityUnbalance<S> {
     fn effort(&self, at: &Situation<S>, _memory: &Memory<S>) -> S {
         let (sine, cosine) = (at.position * self.order).sin_cos();
         self.amplitudes.cosine * cosine + self.amplitudes.sine * sine
+    }
+
+    fn effort_wave(&self) -> Option<Wave<S>> {
+        let (zero, order) = (S::constant(0.0), S::constant(self.order));
+        Some(Wave::new([self.amplitudes.cosine, self.amplitudes.sine, order], [zero; 3]))
     }
 
     fn stiffness(&self, _sliding: f64) -> f64 {

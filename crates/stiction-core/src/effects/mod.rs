@@ -16,6 +16,7 @@ pub use situation::{
 use crate::error::{Error, Result};
 use crate::parameter::{Default as DefaultValue, ParameterSpec};
 use crate::scalar::Scalar;
+use crate::wave::Wave;
 
 /// An effect: hooks that it does not use keep their neutral default.
 ///
@@ -30,6 +31,11 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     const FACTS: EffectFacts;
     /// Whether it depends on what happened before.
     const REMEMBERS: bool = false;
+
+    /// Whether its level goes by speed or load, and not by place, path, time and temperature alone.
+    const ASKS_SPEED: bool = true;
+    /// Whether its level changes while nothing moves: with time or load.
+    const CHANGES_IN_TIME: bool = true;
 
     /// The effect with these values.
     fn build(values: &[S]) -> Self;
@@ -50,6 +56,18 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     #[inline(always)]
     fn effort(&self, _at: &Situation<S>, _memory: &Memory<S>) -> S {
         S::constant(0.0)
+    }
+    /// The same where it is the same everywhere and always.
+    fn even_effort(&self) -> Option<S> {
+        None
+    }
+    /// The same where it is a wave over position: what loops ask for without a call.
+    fn effort_wave(&self) -> Option<Wave<S>> {
+        None
+    }
+    /// The share added to the level of dry friction where that is a wave over position and all there is.
+    fn level_wave(&self) -> Option<Wave<S>> {
+        None
     }
     /// What the input becomes.
     #[inline(always)]
@@ -88,7 +106,8 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn stiffness(&self, _sliding: f64) -> f64 {
         0.0
     }
-    /// ∂effort/∂velocity that it adds at this velocity, where it calms the motion.
+    /// ∂effort/∂velocity that it adds at this velocity, where it calms the motion: no less at a speed than
+    /// below it.
     fn damping(&self, _velocity: f64) -> f64 {
         0.0
     }
@@ -144,6 +163,18 @@ macro_rules! effects {
             fn remembers(&self) -> bool {
                 match self {
                     $(Self::$effect(_) => <$module::$effect<S> as Effect<S>>::REMEMBERS,)*
+                }
+            }
+
+            fn asks_speed(&self) -> bool {
+                match self {
+                    $(Self::$effect(_) => <$module::$effect<S> as Effect<S>>::ASKS_SPEED,)*
+                }
+            }
+
+            fn changes_in_time(&self) -> bool {
+                match self {
+                    $(Self::$effect(_) => <$module::$effect<S> as Effect<S>>::CHANGES_IN_TIME,)*
                 }
             }
 

@@ -34,6 +34,8 @@ pub struct PositionDependentFriction<S>(Wave<S>);
 impl<S: Scalar> Effect<S> for PositionDependentFriction<S> {
     const PARAMETERS: &'static [ParameterSpec] = PositionDependentFrictionParameters::<f64>::SPECS;
     const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
+    const ASKS_SPEED: bool = false;
+    const CHANGES_IN_TIME: bool = false;
     const FACTS: EffectFacts = EffectFacts {
         summary: "friction that repeats with position",
         means: "the machine runs tight and loose in turn, always at the same places",
@@ -60,5 +62,9 @@ impl<S: Scalar> Effect<S> for PositionDependentFriction<S> {
     #[inline(always)]
     fn level(&self, at: &Situation<S>, _memory: &Memory<S>) -> LevelChange<S> {
         LevelChange { friction: self.0.at(at.position), viscous: S::constant(0.0) }
+    }
+
+    fn level_wave(&self) -> Option<Wave<S>> {
+        Some(self.0)
     }
 }

@@ -27,6 +27,8 @@ pub struct RunIn<S>(RunInParameters<S>);
 impl<S: Scalar> Effect<S> for RunIn<S> {
     const PARAMETERS: &'static [ParameterSpec] = RunInParameters::<f64>::SPECS;
     const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
+    const ASKS_SPEED: bool = false;
+    const CHANGES_IN_TIME: bool = false;
     const FACTS: EffectFacts = EffectFacts {
         summary: "friction falls with the path travelled",
         means: "the machine eases with motion, not with time: new parts, fresh grease, or a long rest \

@@ -28,6 +28,7 @@ pub struct Stribeck<S>(StribeckParameters<S>);
 impl<S: Scalar> Effect<S> for Stribeck<S> {
     const PARAMETERS: &'static [ParameterSpec] = StribeckParameters::<f64>::SPECS;
     const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
+    const CHANGES_IN_TIME: bool = false;
     const FACTS: EffectFacts = EffectFacts {
         summary: "friction falls from a level at rest to a lower one as speed rises",
         means: "friction that falls with speed makes slow motion jerk: stick-slip and hunting",

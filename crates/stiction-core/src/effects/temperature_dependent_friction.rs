@@ -31,6 +31,8 @@ impl<S: Scalar> Effect<S> for TemperatureDependentFriction<S> {
     const PARAMETERS: &'static [ParameterSpec] =
         TemperatureDependentFrictionParameters::<f64>::SPECS;
     const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
+    const ASKS_SPEED: bool = false;
+    const CHANGES_IN_TIME: bool = false;
     const FACTS: EffectFacts = EffectFacts {
         summary: "friction changes with temperature",
         means: "what was tuned at one temperature is wrong at another",

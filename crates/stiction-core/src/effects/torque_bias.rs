@@ -49,4 +49,8 @@ impl<S: Scalar> Effect<S> for TorqueBias<S> {
     fn effort(&self, _at: &Situation<S>, _memory: &Memory<S>) -> S {
         self.0.bias
     }
+
+    fn even_effort(&self) -> Option<S> {
+        Some(self.0.bias)
+    }
 }

@@ -30,6 +30,7 @@ pub struct WarmUp<S>(WarmUpParameters<S>);
 impl<S: Scalar> Effect<S> for WarmUp<S> {
     const PARAMETERS: &'static [ParameterSpec] = WarmUpParameters::<f64>::SPECS;
     const HOOKS: &'static [Hook] = &[Hook::FrictionLevel];
+    const ASKS_SPEED: bool = false;
     const FACTS: EffectFacts = EffectFacts {
         summary: "friction falls with the time since the machine was switched on",
         means: "what was tuned on a cold machine is wrong on a warm one",

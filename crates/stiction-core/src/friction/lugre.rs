@@ -244,17 +244,20 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
         state: &mut BristleState<S>,
         glide: &mut Glide<S, E, V>,
     ) {
-        let (bristle, verlet, channels) = (&self.0, glide.verlet, Channels::default());
+        let (bristle, verlet) = (&self.0, glide.verlet);
         let duration = glide.verlet.span();
         // g at the end of a step is that at the start of the next.
         let (mut now, mut start_velocity) = (*state, glide.run.velocity);
         let mut from = self.level_within(start_velocity);
         while let Some(effort) = glide.next() {
             let slip = Self::slip(bristle.stiffness * now.deflection, start_velocity, &from);
+            let channels = glide.channels();
             let net = effort - bristle.force(now.deflection, &slip, start_velocity, &channels);
             let displacement = verlet.displacement(start_velocity, net);
             let velocity = verlet.predicted(start_velocity, net);
             let motion = Motion { displacement, duration, start_velocity, velocity };
+            let effort_then = glide.there(effort, displacement, || velocity);
+            let channels = glide.channels_there();
             let to = self.level_within(velocity);
             let bent = self.bend(&now, &motion, &from, &to);
             let slip = Self::slip(bent.force, velocity, &to);
@@ -262,12 +265,11 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
                 bristle.settled(&now, &bent, &slip, velocity, &channels);
             let Outcome { force, damping, .. } = outcome;
             let undamped = force - damping * velocity;
-            let effort_then = glide.there(effort, displacement, || velocity);
             let arrived = verlet.arrive(start_velocity, net + effort_then, damping, undamped);
             now = after;
-            start_velocity = arrived;
-            from = self.level_within(arrived);
-            glide.accept(displacement, arrived, undamped + damping * arrived, &now);
+            let friction = undamped + damping * arrived;
+            start_velocity = glide.accept(displacement, arrived, friction, &now);
+            from = self.level_within(start_velocity);
         }
         *state = now;
     }

@@ -67,22 +67,8 @@ impl<S: Scalar> Work<S> {
     pub fn count(&mut self, machine: &Machine<S>, run: &mut Run<S>) {
         let Self { acting, rough, from, effort: acted } = *self;
         let now = effort(machine, run, acting);
-        let half = machine.inertia * 0.5;
-        let before = half * from.velocity * from.velocity;
-        let after = half * run.velocity * run.velocity;
-        let done = (acted + now) * (run.position - from.position) * 0.5;
-        let counted = from.budget.taken + done - (after - before);
-        // What is beyond floats cannot be counted.
-        let taken = if counted.re().is_finite() { counted } else { S::constant(f64::INFINITY) };
-        let given = done.re().abs();
-        let swing = from.budget.swing.max(before.re()).max(given).min(f64::MAX);
-        let least = -rough * swing;
-        run.budget = Budget { taken, swing };
-        self.effort = now;
-        if taken.re() < least {
-            machine.brake(run, after, least);
-            self.effort = effort(machine, run, acting);
-        }
+        let braked = machine.settle(run, (from.position, from.velocity), (acted, now), rough);
+        self.effort = if braked { effort(machine, run, acting) } else { now };
         self.from = *run;
     }
 }
@@ -101,8 +87,36 @@ impl<S: Scalar> Machine<S> {
         self.effects.changes_levels() || self.relaxes()
     }
 
+    /// Counts the work of a step that took a run from this position and velocity under these efforts at its
+    /// start and its end; whether that was more than the contact had, and was taken off the velocity.
+    #[inline(always)]
+    pub(crate) fn settle(
+        &self,
+        run: &mut Run<S>,
+        (position, velocity): (S, S),
+        (acted, now): (S, S),
+        rough: f64,
+    ) -> bool {
+        let half = self.inertia * 0.5;
+        let before = half * velocity * velocity;
+        let after = half * run.velocity * run.velocity;
+        let done = (acted + now) * (run.position - position) * 0.5;
+        let counted = run.budget.taken + done - (after - before);
+        // What is beyond floats cannot be counted.
+        let taken = if counted.re().is_finite() { counted } else { S::constant(f64::INFINITY) };
+        let given = done.re().abs();
+        let swing = run.budget.swing.max(before.re()).max(given).min(f64::MAX);
+        let least = -rough * swing;
+        run.budget = Budget { taken, swing };
+        let short = taken.re() < least;
+        if short {
+            self.brake(run, after, least);
+        }
+        short
+    }
+
     /// How rough steps of this duration are on a contact of this stiffness.
-    pub(super) fn roughness(&self, friction: f64, span: f64) -> f64 {
+    pub(crate) fn roughness(&self, friction: f64, span: f64) -> f64 {
         (ROUGH * self.fastest_square(friction) * span * span).min(1.0) + ROUND_OFF
     }
 

@@ -55,7 +55,7 @@ pub fn through_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
 /// body where its velocity would turn round: what lies beyond is cut off, and drag there, of an overshoot of
 /// any size, must not lead back to where it seems that nothing happened.
 #[inline(always)]
-pub(super) fn not_beyond_a_stop<S: Scalar, L: FrictionLaw<S>>(before: S, velocity: S) -> S {
+pub(crate) fn not_beyond_a_stop<S: Scalar, L: FrictionLaw<S>>(before: S, velocity: S) -> S {
     let turned = L::RIGID && before.re() * velocity.re() < 0.0;
     if turned { S::constant(0.0) } else { velocity }
 }

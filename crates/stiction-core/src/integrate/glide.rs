@@ -1,4 +1,4 @@
-//! Plain steps in a row: a bare body whose contact neither turns round nor changes its mode.
+//! Plain steps in a row: a body whose contact neither turns round nor changes its mode.
 //!
 //! [`super::through_events`] takes any step of any machine. Nearly every step of nearly every motor
 //! needs little of that: a law that has [`FrictionLaw::glide`](crate::friction::FrictionLaw::glide)
@@ -205,28 +205,77 @@ impl<S: Scalar, T> Seen<S, T> for Places<'_, S> {
     }
 }
 
+/// What effects make of a moment: effort beside input and load, and levels of the contact.
+#[derive(Debug, Clone, Copy)]
+pub struct Acting<S> {
+    /// Gravity and added efforts.
+    pub ambient: S,
+    /// Multipliers of friction and of viscous friction.
+    pub levels: (S, S),
+}
+
+impl<S: Scalar> Acting<S> {
+    /// Levels of 1 beside this effort.
+    pub fn plain(ambient: S) -> Self {
+        Self { ambient, levels: (S::constant(1.0), S::constant(1.0)) }
+    }
+}
+
 /// All effort but friction, sample by sample. A trait, for a closure cannot ask to be part of the loop.
-pub trait Efforts<S> {
-    /// Whether they are the same all through a sample: else what acts where the body is comes to them.
+pub trait Efforts<S: Scalar> {
+    /// Whether they are the same all through a sample and levels are 1: else what acts where the body is
+    /// comes to them.
     const HELD: bool = true;
     /// During this sample.
     fn at(&self, sample: usize) -> S;
-    /// What acts beside them where a run will be after such a displacement, at such a velocity.
+    /// What acts beside them in a sample where a run will be after such a displacement, at such a velocity.
     #[inline(always)]
-    fn beside(&self, run: &Run<S>, _displacement: S, _velocity: S, _span: S) -> S
-    where
-        S: Scalar,
-    {
-        run.ambient
+    fn beside(
+        &self,
+        _sample: usize,
+        run: &Run<S>,
+        _displacement: S,
+        _velocity: S,
+        _span: S,
+    ) -> Acting<S> {
+        Acting::plain(run.ambient)
+    }
+    /// Levels where a run is; `arrived` is what was said of its place before its velocity was known, if
+    /// anything was.
+    #[inline(always)]
+    fn levels(&self, _sample: usize, _run: &Run<S>, _arrived: Option<&Acting<S>>) -> (S, S) {
+        (S::constant(1.0), S::constant(1.0))
+    }
+    /// Takes note of what a step did to a run, which began at this position and velocity, under these
+    /// efforts at its start and its end; the run may come out slower.
+    #[inline(always)]
+    fn settle(&self, _run: &mut Run<S>, _from: (S, S), _efforts: (S, S)) {}
+    /// Whether a sample that begins under these levels and this effort needs no finer steps.
+    #[inline(always)]
+    fn is_fine(&self, _speed: f64, _effort: f64, _levels: (S, S)) -> bool {
+        true
+    }
+    /// How a contact at rest stays as it is under efforts up to one.
+    #[inline(always)]
+    fn stillness(&self, _run: &Run<S>, _greatest: f64, _levels: (S, S)) -> Stillness {
+        Stillness::Whole
     }
     /// How many of these samples in a row have no effort above this.
     #[inline(always)]
-    fn within(&self, samples: Range<usize>, greatest: f64) -> usize
-    where
-        S: Scalar,
-    {
+    fn within(&self, samples: Range<usize>, greatest: f64) -> usize {
         samples.take_while(|k| self.at(*k).re().abs() <= greatest).count()
     }
+}
+
+/// What changes around a contact at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stillness {
+    /// Nothing: samples at rest are alike.
+    Whole,
+    /// Levels, from step to step.
+    Changing,
+    /// Something that plain steps do not go through.
+    Not,
 }
 
 /// Goes through all steps with a law that knows no events and asks for nothing but the motion: each
@@ -239,12 +288,11 @@ where
     E: Efforts<S>,
     V: Seen<S, L::State>,
 {
-    let channels = Channels::default();
     let duration = glide.verlet.span();
     // Copies that nobody else sees stay in registers.
     let (mut now, mut start_velocity) = (*state, glide.run.velocity);
     while let Some(effort) = glide.next() {
-        let (held, drag) = law.friction(&now, start_velocity, &channels);
+        let (held, drag) = law.friction(&now, start_velocity, &glide.channels());
         let push = effort - held;
         let (verlet, net) = match drag {
             None => (glide.verlet, push),
@@ -253,14 +301,13 @@ where
         let displacement = verlet.displacement(start_velocity, push);
         let velocity = verlet.predicted(start_velocity, net);
         let motion = Motion { displacement, duration, start_velocity, velocity };
-        let trial = law.advance(&now, &motion, &channels);
-        let (outcome, undamped) = (law.outcome(&trial), law.undamped(&trial, velocity));
         let effort_then = glide.there(effort, displacement, || velocity);
+        let trial = law.advance(&now, &motion, &glide.channels_there());
+        let (outcome, undamped) = (law.outcome(&trial), law.undamped(&trial, velocity));
         let arrived = verlet.arrive(start_velocity, push + effort_then, outcome.damping, undamped);
         law.commit(&mut now, &trial);
-        start_velocity = arrived;
         let friction = undamped + outcome.damping * arrived;
-        glide.accept(displacement, arrived, friction, &now);
+        start_velocity = glide.accept(displacement, arrived, friction, &now);
     }
     *state = now;
 }
@@ -282,8 +329,12 @@ pub struct Glide<S, E, V> {
     pub part: u32,
     /// Steps of a sample.
     pub parts: u32,
-    /// What acts beside the efforts at the end of the step that is looked at, where they are not held.
-    pub beside: S,
+    /// Levels at the start of the step that is looked at, where there are any.
+    pub levels: (S, S),
+    /// All effort but friction then, and at its end, and what acts there, likewise.
+    pub efforts_of_step: (S, S),
+    /// What acts at the end of it.
+    pub beside: Acting<S>,
 }
 
 impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
@@ -300,25 +351,57 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         if E::HELD { effort } else { effort + self.run.ambient }
     }
 
-    /// All effort but friction at the end of a step that began under `effort`, displaced the body so far and
-    /// is predicted to end at this velocity.
+    /// What reaches the contact at the start of the next step, but for its effort.
     #[inline(always)]
-    pub fn there(&mut self, effort: S, displacement: S, predicted: impl FnOnce() -> S) -> S {
+    pub fn channels(&self) -> Channels<S> {
+        Self::at_levels(self.levels)
+    }
+
+    /// The same at the end of the step that was asked of [`Self::there`].
+    #[inline(always)]
+    pub fn channels_there(&self) -> Channels<S> {
+        Self::at_levels(self.beside.levels)
+    }
+
+    #[inline(always)]
+    fn at_levels((level, viscous_level): (S, S)) -> Channels<S> {
+        if E::HELD {
+            return Channels::default();
+        }
+        Channels { level, viscous_level, ..Channels::default() }
+    }
+
+    /// All effort but friction at the end of a step that began under `effort`, displaced the body so far and
+    /// shows this velocity at its end.
+    #[inline(always)]
+    pub fn there(&mut self, effort: S, displacement: S, shown: impl FnOnce() -> S) -> S {
         if E::HELD {
             return effort;
         }
-        let span = self.verlet.span;
-        self.beside = self.efforts.beside(&self.run, displacement, predicted(), span);
-        self.efforts.at(self.samples.start) + self.beside
+        let (sample, span) = (self.samples.start, self.verlet.span);
+        self.beside = self.efforts.beside(sample, &self.run, displacement, shown(), span);
+        let then = self.efforts.at(sample) + self.beside.ambient;
+        self.efforts_of_step = (effort, then);
+        then
     }
 
-    /// Accepts samples at rest while the contact, which looks the same all the time, holds the effort;
-    /// friction at their end, where there are any.
+    /// Accepts samples at rest while the contact, which looks the same all the time, holds the effort, up to
+    /// one at level 1; friction at their end, where there are any.
     #[inline(always)]
-    pub fn hold<T>(&mut self, greatest: f64, contact: &T) -> Option<S>
+    pub fn hold<T>(&mut self, greatest: S, contact: &T) -> Option<S>
     where
         V: Seen<S, T>,
     {
+        let mut most = greatest.re();
+        if !E::HELD {
+            most = (greatest * self.levels.0).re();
+            match self.efforts.stillness(&self.run, most, self.levels) {
+                Stillness::Whole => (),
+                Stillness::Changing => return self.hold_each(greatest, contact),
+                Stillness::Not => return None,
+            }
+        }
+        let greatest = most;
         let Range { start, end } = self.samples;
         let held = if E::HELD {
             self.efforts.within(start..end, greatest)
@@ -350,24 +433,74 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         self.run.time = time;
         self.run.friction = here(samples.end - 1);
         (self.samples.start, self.part) = (samples.end, 0);
+        if !E::HELD && samples.end < self.samples.end {
+            self.levels = self.efforts.levels(samples.end, &self.run, None);
+        }
         Some(self.run.friction)
     }
 
-    /// Accepts a step.
+    /// The same step by step, where levels change meanwhile.
+    #[inline(never)]
+    fn hold_each<T>(&mut self, greatest: S, contact: &T) -> Option<S>
+    where
+        V: Seen<S, T>,
+    {
+        let mut held = None;
+        while let Some(effort) = self.next() {
+            let holds = effort.re().abs() <= (greatest * self.levels.0).re();
+            if !holds {
+                break;
+            }
+            self.run.time += self.verlet.span;
+            self.run.friction = effort;
+            held = Some(effort);
+            self.part += 1;
+            if self.part == self.parts {
+                self.part = 0;
+                self.seen.see(self.samples.start, &self.run, contact);
+                self.samples.start += 1;
+            }
+            self.go_on(None);
+        }
+        held
+    }
+
+    /// What a step begins with after another one.
+    #[inline(always)]
+    fn go_on(&mut self, arrived: Option<Acting<S>>) {
+        let Range { start, end } = self.samples;
+        if start < end {
+            self.levels = self.efforts.levels(start, &self.run, arrived.as_ref());
+            let effort = self.here(start).re();
+            let speed = self.run.velocity.re();
+            if self.part == 0 && !self.efforts.is_fine(speed, effort, self.levels) {
+                self.samples.end = start;
+            }
+        }
+    }
+
+    /// Accepts a step; the velocity to go on with, which is another one where the contact gave what it did
+    /// not have.
     #[inline(always)] // the body would leave its registers for a call
-    pub fn accept<T>(&mut self, displacement: S, velocity: S, friction: S, contact: &T)
+    pub fn accept<T>(&mut self, displacement: S, velocity: S, friction: S, contact: &T) -> S
     where
         V: Seen<S, T>,
     {
         let run = &mut self.run;
+        let from = (run.position, run.velocity);
         run.position += displacement;
-        // Nobody asks a bare body for derivatives of these, nor how far it has moved for its effects.
-        run.path.put(run.path.re() + displacement.re().abs());
-        run.time.put(run.time.re() + self.verlet.span.re());
         run.velocity = velocity;
         run.friction = friction;
-        if !E::HELD {
-            run.ambient = self.beside;
+        if E::HELD {
+            // Nobody asks a bare body for derivatives of these, nor how far it has moved for its effects.
+            run.path.put(run.path.re() + displacement.re().abs());
+            run.time.put(run.time.re() + self.verlet.span.re());
+        } else {
+            run.path += displacement.abs();
+            run.time += self.verlet.span;
+            run.moved += displacement;
+            run.ambient = self.beside.ambient;
+            self.efforts.settle(run, from, self.efforts_of_step);
         }
         self.part += 1;
         if self.part == self.parts {
@@ -375,6 +508,10 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
             self.seen.see(self.samples.start, run, contact);
             self.samples.start += 1;
         }
+        if !E::HELD {
+            self.go_on(Some(self.beside));
+        }
+        if E::HELD { velocity } else { self.run.velocity }
     }
 }
 

@@ -1,7 +1,8 @@
 //! Everything of a plant but its friction law, and the running state of its body.
 
 use super::budget::Budget;
-use super::glide::{Glide, Verlet};
+use super::glide::{Acting, Efforts, Glide, Stillness, Verlet};
+use super::levels_are_fine;
 use super::shaft::Shaft;
 use crate::body::Body;
 use crate::drive::Drive;
@@ -129,15 +130,15 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Whether nothing but drive, inertia, weight and friction is there: such a machine has efforts
-    /// that no motion changes, and levels of 1.
+    /// Whether nothing but drive, inertia, weight, a constant effort and friction is there: such a machine
+    /// has efforts that no motion changes, and levels of 1.
     pub fn is_bare(&self) -> bool {
         let alone = self.shaft.is_none() && !self.relaxes() && self.body.is_level();
-        alone && self.effects.nothing() && self.drive.servo.is_none()
+        alone && self.effects.even_effort().is_some() && self.drive.servo.is_none()
     }
 
-    /// Whether all that is there beside drive, inertia and friction acts on the body by where it is, and
-    /// nothing on input, contact or clock.
+    /// Whether all that is there beside drive, inertia and friction acts on the body and the contact by where
+    /// it is now, and nothing on the input.
     pub fn is_unchanged(&self) -> bool {
         let alone = self.shaft.is_none() && !self.relaxes() && self.drive.servo.is_none();
         alone && self.effects.only_push()
@@ -251,7 +252,11 @@ impl<S: Scalar> Machine<S> {
     /// Gravity and added efforts of a bare machine.
     #[inline(always)]
     pub(super) fn weight(&self) -> S {
-        self.body.level_gravity() + 0.0
+        let gravity = self.body.level_gravity();
+        match self.effects.even_effort() {
+            Some(effort) => gravity + effort,
+            None => gravity + 0.0,
+        }
     }
 
     /// Whether a run is as a step of this bare machine leaves it.
@@ -281,10 +286,71 @@ impl<S: Scalar> Machine<S> {
         self.drive.direct(input) + load
     }
 
-    /// What else acts on this unchanged machine after a step that displaces the body so far.
+    /// What else acts on this unchanged machine and its contact under a load after a step that displaces the
+    /// body so far.
     #[inline(always)]
-    pub fn beside(&self, run: &Run<S>, displacement: S, velocity: S, span: S) -> S {
-        self.surroundings(&run.situation().after(displacement, velocity, span))
+    pub fn beside(
+        &self,
+        run: &Run<S>,
+        load: impl FnOnce() -> S,
+        displacement: S,
+        velocity: S,
+        span: S,
+    ) -> Acting<S> {
+        let at = run.situation().after(displacement, velocity, span);
+        let ambient = self.surroundings(&at);
+        if !self.effects.changes_levels() {
+            return Acting::plain(ambient);
+        }
+        Acting { ambient, levels: self.effects.levels(&self.at_contact(&at, load())) }
+    }
+
+    /// Levels of the contact of this unchanged machine under a load where a run is; `arrived` is what was said
+    /// of the place before the velocity was known.
+    #[inline(always)]
+    pub fn levels_of(
+        &self,
+        run: &Run<S>,
+        load: impl FnOnce() -> S,
+        arrived: Option<&Acting<S>>,
+    ) -> (S, S) {
+        match arrived {
+            _ if !self.effects.changes_levels() => Acting::plain(run.ambient).levels,
+            Some(arrived) if !self.effects.asks_speed() => arrived.levels,
+            _ => self.effects.levels(&self.at_contact(&run.situation(), load())),
+        }
+    }
+
+    /// Whether a sample of this machine that begins under these levels, this effort and at this speed needs no
+    /// finer steps than `span`.
+    #[inline(always)]
+    pub fn is_fine(&self, speed: f64, effort: f64, levels: (S, S), span: f64) -> bool {
+        levels_are_fine(levels) && (!self.effects.damps() || self.is_calm(speed, effort, span))
+    }
+
+    /// The same of what damps.
+    #[inline(never)]
+    fn is_calm(&self, speed: f64, effort: f64, span: f64) -> bool {
+        let gained = effort.abs() * span / self.inertia.re();
+        let damping = self.effects.damping(gained + speed.abs());
+        // What `reached` says is no faster, and effects damp no less at a speed than below it.
+        damping * (span / self.inertia.re()) <= 0.999
+    }
+
+    /// What changes around a contact of this unchanged machine at rest, under efforts up to that.
+    pub fn stillness(&self, run: &Run<S>, greatest: f64, levels: (S, S), span: S) -> Stillness {
+        let mut settled = *run;
+        self.refresh(&mut settled);
+        let same = settled.ambient.re().to_bits() == run.ambient.re().to_bits();
+        let rough = || self.roughness(0.0, span.re());
+        let paid = !self.counts_work() || run.budget.taken.re() >= -rough() * run.budget.swing;
+        if !(same && paid && self.is_fine(0.0, greatest, levels, span.re())) {
+            Stillness::Not
+        } else if self.effects.changes_in_time() {
+            Stillness::Changing
+        } else {
+            Stillness::Whole
+        }
     }
 
     /// All effort but friction on this bare machine under an input and a load.
@@ -295,7 +361,7 @@ impl<S: Scalar> Machine<S> {
 
     /// A row of plain steps of this bare or unchanged machine from where a run is; `efforts` says all effort but
     /// friction in a sample, `parts` in how many steps of `span` it is divided.
-    pub fn glide<E, V>(
+    pub fn glide<E: Efforts<S>, V>(
         &self,
         run: Run<S>,
         efforts: E,
@@ -304,7 +370,20 @@ impl<S: Scalar> Machine<S> {
         (span, parts): (S, u32),
     ) -> Glide<S, E, V> {
         let verlet = self.verlet(span);
-        Glide { verlet, run, efforts, seen, samples, part: 0, parts, beside: run.ambient }
+        let levels = efforts.levels(samples.start, &run, None);
+        let (efforts_of_step, beside) = ((run.ambient, run.ambient), Acting::plain(run.ambient));
+        Glide {
+            verlet,
+            run,
+            efforts,
+            seen,
+            samples,
+            part: 0,
+            parts,
+            levels,
+            efforts_of_step,
+            beside,
+        }
     }
 
     /// Effort of the drive of a bare machine.
@@ -386,6 +465,7 @@ impl<S: Scalar> Machine<S> {
     /// What reaches the contact of a bare machine.
     #[inline]
     pub(super) fn plain_channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
+        let load = load + self.body.level_gravity();
         Channels { effort, load, temperature: at.temperature, ..Channels::default() }
     }
 

@@ -30,9 +30,10 @@ use budget::Work;
 pub use clock::after_steps;
 pub use contact::{Along, Held};
 pub use contact_effects::{ContactEffects, Reach};
+pub(crate) use events::not_beyond_a_stop;
 use events::through_likely_events;
 pub use events::{Stepper, quiet, through_events};
-pub use glide::{Efforts, Glide, Places, Plain, Seen, Verlet, glide_on};
+pub use glide::{Acting, Efforts, Glide, Places, Plain, Seen, Stillness, Verlet, glide_on};
 pub use machine::{Machine, Run};
 pub use shaft::Beyond;
 
@@ -130,6 +131,12 @@ pub fn parts<S: Scalar, L: FrictionLaw<S>>(
 /// Level of friction up to which a sample is divided as at level 1: ω·h and (C/J)·h may be larger than
 /// their limits by far before a step runs away, and most levels are near 1.
 const MOST_LEVEL: f64 = 4.0;
+
+/// Whether a machine that does not damp needs no finer steps at these levels, whatever else there is.
+#[inline(always)]
+fn levels_are_fine<S: Scalar>((level, viscous): (S, S)) -> bool {
+    level.re() <= MOST_LEVEL && viscous.re() <= MOST_LEVEL
+}
 
 /// How many times the parts of a sample that [`parts`] tells are to be, because of what effects make of
 /// the contact where a run is and within such a part, of duration `dt`.

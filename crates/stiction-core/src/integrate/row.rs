@@ -8,7 +8,7 @@ use std::cell::Cell;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use super::glide::{Efforts, Glide, Seen, Verlet};
+use super::glide::{Acting, Efforts, Glide, Seen, Verlet};
 use super::machine::Run;
 use super::swing::Swing;
 use crate::friction::FrictionLaw;
@@ -204,8 +204,18 @@ fn go<L: FrictionLaw<f64>>(
     let seen = Watch::from(&run, stiffness, damping, &foreseen);
     let efforts = Held { effort, foreseen: &foreseen };
     // Own places and a copy: nobody else can see them, so that they stay in registers.
-    let mut glide =
-        Glide { verlet, run, efforts, seen, samples: 0..steps, part: 0, parts: 1, beside: 0.0 };
+    let mut glide = Glide {
+        verlet,
+        run,
+        efforts,
+        seen,
+        samples: 0..steps,
+        part: 0,
+        parts: 1,
+        levels: (1.0, 1.0),
+        efforts_of_step: (0.0, 0.0),
+        beside: Acting::plain(0.0),
+    };
     law.clone().glide(state, &mut glide);
     let (mut run, steps, seen) = (glide.run, glide.samples.start, glide.seen);
     let slope = (seen.change + 0.5 * seen.bend) / span;

@@ -7,7 +7,8 @@ use crate::error::{Error, Result};
 use crate::follow::arriving;
 use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
 use crate::integrate::{
-    Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, finer, parts, sample,
+    Acting, Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, Stillness, finer,
+    parts, sample,
 };
 use crate::model::CHUNK;
 use crate::range::{Range, ordinary_motor};
@@ -313,6 +314,13 @@ impl<S: Scalar> Running<S> {
                         around,
                         added: &added,
                         ahead: &ahead,
+                        span,
+                        counts: !BARE && machine.counts_work(),
+                        rough: if BARE {
+                            0.0
+                        } else {
+                            machine.roughness(law.greatest_stiffness(), span.re())
+                        },
                     };
                     // Not to the end, which would be looked for anew after every event.
                     let end =
@@ -337,9 +345,10 @@ impl<S: Scalar> Running<S> {
                         S::run(Plain { law, state, glide })
                     };
                     room = 0; // what the glide has left of it nobody counted
-                    let passed = (index - begun) as u64 * u64::from(divided);
-                    meter.take(passed * work::in_a_row::<S>() * law.glide_cost())?;
-                    if index == end {
+                    let steps = (index - begun) as u64 * u64::from(divided);
+                    meter.take(steps * work::in_a_row::<S>() * law.glide_cost())?;
+                    // Also what needs other steps from here on.
+                    if index == end || (strains && index > begun && passed == 0) {
                         continue;
                     }
                 }
@@ -388,14 +397,57 @@ struct Applied<'a, S: Scalar, A, const BARE: bool> {
     around: Surroundings<'a>,
     added: &'a A,
     ahead: &'a Ahead,
+    /// Duration of a step.
+    span: S,
+    /// Whether the work of the contact is counted, in steps as rough as that.
+    counts: bool,
+    rough: f64,
+}
+
+impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Applied<'_, S, A, BARE> {
+    #[inline(always)]
+    fn load(&self, sample: usize) -> S {
+        (self.added)(sample) + self.around.load.at(sample)
+    }
 }
 
 impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, S, A, BARE> {
     const HELD: bool = BARE;
 
     #[inline(always)]
-    fn beside(&self, run: &Run<S>, displacement: S, velocity: S, span: S) -> S {
-        self.machine.beside(run, displacement, velocity, span)
+    fn beside(
+        &self,
+        sample: usize,
+        run: &Run<S>,
+        displacement: S,
+        velocity: S,
+        span: S,
+    ) -> Acting<S> {
+        self.machine.beside(run, || self.load(sample), displacement, velocity, span)
+    }
+
+    #[inline(always)]
+    fn levels(&self, sample: usize, run: &Run<S>, arrived: Option<&Acting<S>>) -> (S, S) {
+        if BARE {
+            return (S::constant(1.0), S::constant(1.0));
+        }
+        self.machine.levels_of(run, || self.load(sample), arrived)
+    }
+
+    #[inline(always)]
+    fn settle(&self, run: &mut Run<S>, from: (S, S), efforts: (S, S)) {
+        if self.counts {
+            self.machine.settle(run, from, efforts, self.rough);
+        }
+    }
+
+    #[inline(always)]
+    fn is_fine(&self, speed: f64, effort: f64, levels: (S, S)) -> bool {
+        self.machine.is_fine(speed, effort, levels, self.span.re())
+    }
+
+    fn stillness(&self, run: &Run<S>, greatest: f64, levels: (S, S)) -> Stillness {
+        self.machine.stillness(run, greatest, levels, self.span)
     }
 
     #[inline(always)]
@@ -403,7 +455,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
         if !S::CARRIES {
             return S::constant(self.ahead.at(sample));
         }
-        let load = (self.added)(sample) + self.around.load.at(sample);
+        let load = self.load(sample);
         if BARE {
             self.machine.bare_effort(self.inputs[sample], load)
         } else {

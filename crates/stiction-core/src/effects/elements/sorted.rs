@@ -2,11 +2,14 @@
 
 use stiction_dispatch::Task;
 
-use super::situation::{MEMORY, Memory, Passage, Reading, Relaxation, SecondMass, Situation};
+use super::situation::{
+    LevelChange, MEMORY, Memory, Passage, Reading, Relaxation, SecondMass, Situation,
+};
 use crate::effects::{AnyEffect, Effect, Hook};
 use crate::error::{Error, Result};
 use crate::friction::{Entry, EntryReader};
 use crate::scalar::Scalar;
+use crate::wave::Wave;
 
 /// An effect with what it remembers.
 #[derive(Debug, Clone)]
@@ -15,13 +18,25 @@ struct Kept<S: Scalar> {
     memory: Memory<S>,
 }
 
+/// What an effect adds, as a loop asks for it: what most plants have without a call.
+#[derive(Debug, Clone, Copy)]
+enum Term<S: Scalar> {
+    Even(S),
+    Wave(Wave<S>),
+    /// Of the effect at this index.
+    Other(usize),
+}
+
 /// The effects of a plant, sorted once by where they enter.
 #[derive(Debug, Clone)]
 pub struct Effects<S: Scalar> {
     kept: Vec<Kept<S>>,
-    /// Indices of those on the friction level, the effort, the input and the sensor.
-    levels: Vec<usize>,
-    efforts: Vec<usize>,
+    /// What they add to the friction level and to the effort; indices of those on the input and the sensor.
+    levels: Vec<Term<S>>,
+    efforts: Vec<Term<S>>,
+    /// Sum of the efforts, where all are the same everywhere and always and nothing else is changed but what
+    /// the sensor reads.
+    even_effort: Option<S>,
     inputs: Vec<usize>,
     sensors: Vec<usize>,
     delay: Option<S>,
@@ -31,6 +46,8 @@ pub struct Effects<S: Scalar> {
     second_masses: Vec<SecondMass<S>>,
     remembers: bool,
     damps: bool,
+    asks_speed: bool,
+    changes_in_time: bool,
     /// Levels and effort without any effect: 1, 1 and 0, seeded where derivatives by them are wanted.
     unit: (S, S, S),
 }
@@ -45,6 +62,7 @@ impl<S: Scalar> Effects<S> {
             kept: Vec::new(),
             levels: Vec::new(),
             efforts: Vec::new(),
+            even_effort: Some(S::constant(0.0)),
             inputs: Vec::new(),
             sensors: Vec::new(),
             delay: None,
@@ -54,14 +72,27 @@ impl<S: Scalar> Effects<S> {
             second_masses: Vec::new(),
             remembers: false,
             damps: false,
+            asks_speed: false,
+            changes_in_time: false,
             unit: (S::constant(1.0), S::constant(1.0), S::constant(0.0)),
         };
         for effect in effects {
             let place = sorted.kept.len();
             for hook in effect.hooks() {
                 match hook {
-                    Hook::FrictionLevel => sorted.levels.push(place),
-                    Hook::AddedEffort => sorted.efforts.push(place),
+                    Hook::FrictionLevel => {
+                        let wave = with_effect!(&effect, |e| e.level_wave());
+                        sorted.levels.push(wave.map_or(Term::Other(place), Term::Wave));
+                        sorted.asks_speed |= effect.asks_speed();
+                        sorted.changes_in_time |= effect.changes_in_time();
+                    }
+                    Hook::AddedEffort => {
+                        let even = with_effect!(&effect, |e| e.even_effort());
+                        let wave = with_effect!(&effect, |e| e.effort_wave());
+                        let wave = wave.map_or(Term::Other(place), Term::Wave);
+                        sorted.even_effort = sum_of_all(sorted.even_effort, even);
+                        sorted.efforts.push(even.map_or(wave, Term::Even));
+                    }
                     Hook::InputMap => sorted.inputs.push(place),
                     Hook::SensorMap => sorted.sensors.push(place),
                     Hook::InputDelay => {
@@ -85,6 +116,11 @@ impl<S: Scalar> Effects<S> {
             sorted.damps |= with_effect!(&effect, |e| e.damping(1.0)) != 0.0;
             let memory = with_effect!(&effect, |e| e.fresh());
             sorted.kept.push(Kept { effect, memory });
+        }
+        let hooks = sorted.kept.iter().flat_map(|kept| kept.effect.hooks());
+        let other = |hook: &&Hook| !matches!(hook, Hook::AddedEffort | Hook::SensorMap);
+        if sorted.remembers || hooks.filter(other).count() > 0 {
+            sorted.even_effort = None;
         }
         sorted
     }
@@ -112,26 +148,31 @@ impl<S: Scalar> Effects<S> {
     #[inline(always)]
     pub(crate) fn sums(&self, at: &Situation<S>) -> (S, S) {
         let (mut friction, mut viscous, _) = self.unit;
-        for place in &self.levels {
-            let Kept { effect, memory } = &self.kept[*place];
-            let change = with_effect!(effect, |e| e.level(at, memory));
-            friction += change.friction;
-            viscous += change.viscous;
+        for term in &self.levels {
+            match term {
+                Term::Even(share) => friction += *share,
+                Term::Wave(wave) => friction += wave.at(at.position),
+                Term::Other(place) => {
+                    let change = self.level_of(*place, at);
+                    friction += change.friction;
+                    viscous += change.viscous;
+                }
+            }
         }
         (friction, viscous)
+    }
+
+    /// Share that one of them adds to the friction levels.
+    #[inline(always)]
+    fn level_of(&self, place: usize, at: &Situation<S>) -> LevelChange<S> {
+        let kept = &self.kept[place];
+        if S::CARRIES { kept.level(at) } else { kept.level_apart(at) }
     }
 
     /// Seeds the levels of dry and viscous friction and an added effort of 0, to differentiate by
     /// them.
     pub fn seed(&mut self, friction: S, viscous: S, effort: S) {
         self.unit = (friction, viscous, effort);
-    }
-
-    /// Whether there is no effect, and nothing seeded.
-    pub fn nothing(&self) -> bool {
-        let (friction, viscous, effort) = self.unit;
-        self.kept.is_empty()
-            && ![friction, viscous, effort].iter().any(|seed| seed.derivative_is_nonzero())
     }
 
     /// Whether there is any effect.
@@ -215,11 +256,26 @@ impl<S: Scalar> Effects<S> {
     #[inline(always)]
     pub(crate) fn effort_within(&self, at: &Situation<S>) -> S {
         let (_, _, mut sum) = self.unit;
-        for place in &self.efforts {
-            let Kept { effect, memory } = &self.kept[*place];
-            sum += with_effect!(effect, |e| e.effort(at, memory));
+        for term in &self.efforts {
+            sum += match term {
+                Term::Even(effort) => *effort,
+                Term::Wave(wave) => wave.at(at.position),
+                Term::Other(place) => {
+                    let kept = &self.kept[*place];
+                    if S::CARRIES { kept.effort(at) } else { kept.effort_apart(at) }
+                }
+            };
         }
         sum
+    }
+
+    /// Sum of the added efforts, where it is the same everywhere and always and nothing else is changed but
+    /// what the sensor reads.
+    #[inline(always)]
+    pub fn even_effort(&self) -> Option<S> {
+        let (friction, viscous, effort) = self.unit;
+        let seeded = [friction, viscous, effort].iter().any(|seed| seed.derivative_is_nonzero());
+        if seeded { None } else { self.even_effort }
     }
 
     /// Whether any effect adds an effort.
@@ -233,12 +289,12 @@ impl<S: Scalar> Effects<S> {
         self.inputs.is_empty() && !self.adds_efforts() && !self.changes_levels()
     }
 
-    /// Whether effects do nothing but add efforts that go with the position, or misread it.
+    /// Whether effects do nothing but add efforts and change levels, without a memory, or misread the position.
     pub fn only_push(&self) -> bool {
         let kept = self.delay.is_none() && self.slowness.is_none() && self.lag.is_none();
         let (friction, viscous, effort) = self.unit;
         let seeded = [friction, viscous, effort].iter().any(|seed| seed.derivative_is_nonzero());
-        kept && self.inputs.is_empty() && !self.remembers && !self.strains() && !seeded
+        kept && self.inputs.is_empty() && !self.remembers && !seeded
     }
 
     /// What the input becomes.
@@ -313,9 +369,50 @@ impl<S: Scalar> Effects<S> {
         self.damps || self.changes_levels()
     }
 
+    /// Whether any effect damps.
+    #[inline]
+    pub fn damps(&self) -> bool {
+        self.damps
+    }
+
+    /// Whether levels go by speed or load, and not by where and when the contact is alone.
+    #[inline]
+    pub fn asks_speed(&self) -> bool {
+        self.asks_speed
+    }
+
+    /// Whether levels change while nothing moves, or with the load.
+    #[inline]
+    pub fn changes_in_time(&self) -> bool {
+        self.changes_in_time
+    }
+
     /// Sum of the dampings that effects add at this velocity.
     pub fn damping(&self, velocity: f64) -> f64 {
         self.kept.iter().map(|kept| with_effect!(&kept.effect, |e| e.damping(velocity))).sum()
+    }
+}
+
+impl<S: Scalar> Kept<S> {
+    #[inline(always)]
+    fn level(&self, at: &Situation<S>) -> LevelChange<S> {
+        with_effect!(&self.effect, |e| e.level(at, &self.memory))
+    }
+
+    #[inline(always)]
+    fn effort(&self, at: &Situation<S>) -> S {
+        with_effect!(&self.effect, |e| e.effort(at, &self.memory))
+    }
+
+    /// The same as a call: what all effects need is not compiled into every loop.
+    #[inline(never)]
+    fn level_apart(&self, at: &Situation<S>) -> LevelChange<S> {
+        self.level(at)
+    }
+
+    #[inline(never)]
+    fn effort_apart(&self, at: &Situation<S>) -> S {
+        self.effort(at)
     }
 }
 
@@ -340,6 +437,10 @@ impl<S: Scalar> Task for Remembering<'_, S> {
 #[inline(always)]
 fn never_driving<S: Scalar>(level: S) -> S {
     if level.re() < 0.0 { S::constant(0.0) } else { level }
+}
+
+fn sum_of_all<S: Scalar>(sum: Option<S>, more: Option<S>) -> Option<S> {
+    Some(sum? + more?)
 }
 
 fn sum<S: Scalar>(one: Option<S>, other: Option<S>) -> Option<S> {

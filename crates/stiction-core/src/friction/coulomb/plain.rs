@@ -3,7 +3,7 @@
 use super::{Coulomb, CoulombState};
 use crate::exponential::fading_within;
 use crate::friction::elements::stribeck::{fall_power, fall_slope};
-use crate::integrate::{Efforts, Glide, Seen};
+use crate::integrate::{Efforts, Glide, Seen, not_beyond_a_stop};
 use crate::scalar::{Scalar, sign};
 
 impl<S: Scalar> Coulomb<S> {
@@ -31,9 +31,10 @@ impl<S: Scalar> Coulomb<S> {
         if glide.run.velocity.re() != 0.0 {
             return false;
         }
-        if let Some(force) = glide.hold(greatest.re(), state) {
+        if let Some(force) = glide.hold(greatest, state) {
             state.0.force = force;
         }
+        let greatest = if E::HELD { greatest } else { greatest * glide.levels.0 };
         glide.next().is_some_and(|effort| !state.0.holds(effort, greatest))
     }
 
@@ -52,10 +53,13 @@ impl<S: Scalar> Coulomb<S> {
             return;
         }
         while let Some(effort) = glide.next() {
-            let net = effort - self.sliding_within(mode, velocity).0;
+            let net = effort - self.sliding_within::<E>(mode, velocity, glide.levels).0;
             let displacement = verlet.displacement(velocity, net);
             let predicted = verlet.predicted(velocity, net);
-            let (there, slope) = self.sliding_within(mode, predicted);
+            let shown = || not_beyond_a_stop::<S, Self>(velocity, predicted);
+            let effort_then = glide.there(effort, displacement, shown);
+            let (there, slope) =
+                self.sliding_within::<E>(mode, predicted, glide.beside.levels);
             // Mostly nothing damps: then nothing waits for what would, and for no division.
             let (damping, share, braking, undamped) = if slope.re() > 0.0 {
                 let share = verlet.share(slope);
@@ -63,37 +67,44 @@ impl<S: Scalar> Coulomb<S> {
             } else {
                 (S::constant(0.0), free, freely, there)
             };
-            let effort_then = glide.there(effort, displacement, || predicted);
             let arrived = verlet.unbraked(velocity, net + effort_then, share) - braking * undamped;
             if mode * arrived.re() <= 0.0 {
                 break;
             }
-            (force, velocity) = (there, arrived);
+            force = there;
             if looks {
                 state.0.force = force;
             }
-            glide.accept(displacement, velocity, undamped + damping * velocity, state);
+            let friction = undamped + damping * arrived;
+            velocity = glide.accept(displacement, arrived, friction, state);
         }
         state.0.force = force;
     }
 
-    /// As `sliding`, with nothing else to reach the contact and as part of the loop that asks.
+    /// As `sliding`, at these levels where there are any and as part of the loop that asks.
     #[inline(always)]
-    fn sliding_within(&self, mode: f64, velocity: S) -> (S, S) {
+    fn sliding_within<E: Efforts<S>>(
+        &self,
+        mode: f64,
+        velocity: S,
+        (level, viscous_level): (S, S),
+    ) -> (S, S) {
         let p = &self.parameters;
+        let raised = |force: S| if E::HELD { force } else { force * level };
+        let viscous = if E::HELD { p.viscous } else { p.viscous * viscous_level };
         if !self.falls {
-            return (p.coulomb * mode + p.viscous * velocity, p.viscous);
+            return (raised(p.coulomb) * mode + viscous * velocity, viscous);
         }
         let power = fall_power(velocity, p.stribeck_velocity, p.stribeck_exponent);
         let left = fading_within(-power);
         let excess = p.breakaway - p.coulomb;
-        let level = (p.coulomb + excess * left) * mode;
+        let level = raised(p.coulomb + excess * left) * mode;
         if !S::CARRIES && p.viscous.re() == 0.0 && mode * velocity.re() > 0.0 {
             // It falls, whatever its slope; and nothing waits for a sum with 0.
             return (level, S::constant(0.0));
         }
-        let force = level + p.viscous * velocity;
+        let force = level + viscous * velocity;
         let steepness = fall_slope(velocity, p.stribeck_exponent, power, left);
-        (force, excess * steepness * (mode * sign(velocity.re())) + p.viscous)
+        (force, raised(excess * steepness) * (mode * sign(velocity.re())) + viscous)
     }
 }

@@ -67,7 +67,13 @@ impl<S: Scalar> Plastic<S> {
             }
             return slope + self.beyond_square(size.re());
         }
-        self.exponent * self.limit(force) / size
+        self.slope_of(self.limit(force), size)
+    }
+
+    /// The same from the limit under a force of this magnitude, which may cost a power.
+    #[inline(always)]
+    fn slope_of(&self, limit: S, size: S) -> S {
+        self.exponent * limit / size
     }
 
     /// What a seeded exponent of 2 adds to that slope: a derivative, and the value is 0.
@@ -152,7 +158,7 @@ impl<S: Scalar> Plastic<S> {
             }
             (pacing.doubled * size.re() * stiffness.re(), pace)
         } else {
-            let gain = self.limit_slope(force) * stiffness;
+            let gain = self.slope_of(limit, force * s) * stiffness;
             (gain.re(), progress * gain)
         };
         // By how much the displacement raises the limit.

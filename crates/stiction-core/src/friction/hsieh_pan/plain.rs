@@ -4,7 +4,7 @@ use super::super::elements::branch::{Fading, Here};
 use super::super::elements::loading::{Curve, Loading};
 use super::super::elements::plastic::Creep;
 use super::super::elements::spring::SpringState;
-use super::super::{Channels, Motion, Outcome};
+use super::super::{Motion, Outcome};
 use super::HsiehPan;
 use super::state::HsiehPanState;
 use crate::integrate::{Efforts, Glide, Seen};
@@ -95,7 +95,7 @@ impl<S: Scalar> HsiehPan<S> {
         let mut velocity = glide.run.velocity;
         while let Some(effort) = glide.next() {
             let here = now.here;
-            let push = effort - here.force;
+            let push = effort - Self::raised::<E>(here.force, glide.levels.0);
             let displacement = verlet.displacement(velocity, push);
             let towards = |direction| {
                 if direction == here.direction { here.slope } else { after_reversal(curve) }
@@ -112,8 +112,9 @@ impl<S: Scalar> HsiehPan<S> {
             let unbraked = verlet.unbraked(velocity, push + effort_then, share);
             let plain = creep.and_then(|creep| Some((creep, here.onward(&branch, creep.left)?)));
             let arrived;
+            let level = glide.beside.levels.0;
             if let Some((creep, there)) = plain {
-                arrived = unbraked - braking * there.force;
+                arrived = unbraked - braking * Self::raised::<E>(there.force, level);
                 if breaks(there.force, greatest, arrived) {
                     break;
                 }
@@ -121,19 +122,26 @@ impl<S: Scalar> HsiehPan<S> {
             } else {
                 // A copy for the call: what it may look at could not stay in registers.
                 let begun = now.apart();
-                let rest = (unbraked, braking);
+                let level = if E::HELD { S::constant(1.0) } else { level };
+                let rest = (unbraked, braking, level);
                 let apart = self.step_apart(state, &begun, displacement, verlet.span(), rest);
                 let Some(apart) = apart else { break };
                 (now, branch, arrived) = apart;
             }
-            velocity = arrived;
             if looks {
                 now.keep(state);
             }
             glide.seen.pulled(displacement, now.here.force);
-            glide.accept(displacement, velocity, now.here.force + damping * velocity, state);
+            let friction = Self::raised::<E>(now.here.force, level) + damping * arrived;
+            velocity = glide.accept(displacement, arrived, friction, state);
         }
         now.apart().keep(state);
+    }
+
+    /// A force at a level, where there is one.
+    #[inline(always)]
+    fn raised<E: Efforts<S>>(force: S, level: S) -> S {
+        if E::HELD { force } else { force * level }
     }
 
     /// A step in which creep sets in or ends, or the spring gets through its reverse points or is
@@ -147,7 +155,7 @@ impl<S: Scalar> HsiehPan<S> {
         now: &Sticking<S>,
         displacement: S,
         duration: S,
-        (unbraked, braking): (S, S),
+        (unbraked, braking, level): (S, S, S),
     ) -> Option<(Sticking<S>, Fading<S>, S)> {
         now.keep(state);
         let spring = &mut state.spring;
@@ -155,7 +163,7 @@ impl<S: Scalar> HsiehPan<S> {
         let force = now.here.force;
         let creep = self.plastic.creep(now.hardening, force, towards, displacement, duration);
         let walk = spring.walk(&self.curve, creep.left);
-        let arrived = unbraked - braking * walk.end.force;
+        let arrived = unbraked - braking * (walk.end.force * level);
         let crowded = walk.added.is_some() && !spring.memory.has_room();
         if crowded || breaks(walk.end.force, self.parameters.breakaway.re(), arrived) {
             return None;
@@ -184,12 +192,13 @@ impl<S: Scalar> HsiehPan<S> {
             return;
         }
         while let Some(effort) = glide.next() {
-            let net = effort - series;
+            let net = effort - Self::raised::<E>(series, glide.levels.0);
             let displacement = verlet.displacement(velocity, net);
             let predicted = verlet.predicted(velocity, net);
             let motion =
                 Motion { displacement, duration, start_velocity: velocity, velocity: predicted };
-            let slide = self.slide(mode, latched, series, &motion, &Channels::default());
+            let effort_then = glide.there(effort, displacement, || predicted);
+            let slide = self.slide(mode, latched, series, &motion, &glide.channels_there());
             let Outcome { force, damping, .. } = slide.outcome;
             // Mostly nothing damps: then nothing waits for what would, and for no division.
             let (share, braking, undamped) = if damping.re() == 0.0 {
@@ -198,20 +207,19 @@ impl<S: Scalar> HsiehPan<S> {
                 let share = verlet.share(damping);
                 (share, verlet.braking(share), force - damping * predicted)
             };
-            let effort_then = glide.there(effort, displacement, || predicted);
             let arrived = verlet.unbraked(velocity, net + effort_then, share) - braking * undamped;
             // As `margin` says; what it has to solve for is not plain.
-            let held = (least - slide.pull).re() > 0.0 || greatest - force.re().abs() <= 0.0;
+            let held = (least - slide.pull).re() > 0.0 || greatest - slide.series.re().abs() <= 0.0;
             if !held || mode * arrived.re() <= 0.0 {
                 break;
             }
             series = slide.series;
-            velocity = arrived;
             if looks {
                 state.series = series;
                 state.spring.force = series;
             }
-            glide.accept(displacement, velocity, undamped + damping * velocity, state);
+            let friction = undamped + damping * arrived;
+            velocity = glide.accept(displacement, arrived, friction, state);
         }
         state.series = series;
         state.spring.force = series;

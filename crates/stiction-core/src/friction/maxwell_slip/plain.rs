@@ -15,16 +15,28 @@ impl<S: Scalar> MaxwellSlip<S> {
     ) {
         let (curve, damping) = (&self.curve, self.parameters.viscous);
         let looks = glide.seen.looks();
-        let verlet = glide.verlet.dragged(damping);
-        let share = verlet.share(damping);
-        let braking = verlet.braking(share);
+        let plainly = glide.verlet.dragged(damping);
+        let share = plainly.share(damping);
+        let braking = plainly.braking(share);
         let Some(mut course) = curve.course(&state.spring) else { return };
         let (mut here, mut velocity) = (state.spring.here(), glide.run.velocity);
         while let Some(effort) = glide.next() {
-            let push = effort - here.force;
+            let mut verlet = plainly;
+            let (mut push, mut dragging) = (effort - here.force, damping);
+            if !E::HELD {
+                push = effort - here.force * glide.levels.0;
+                dragging = damping * glide.levels.1;
+                verlet = glide.verlet.dragged(dragging);
+            }
             let displacement = verlet.displacement(velocity, push);
-            let predicted = || verlet.predicted(velocity, push - damping * velocity);
+            let predicted = || verlet.predicted(velocity, push - dragging * velocity);
             let effort_then = glide.there(effort, displacement, predicted);
+            let (mut share, mut braking, mut dragged_then) = (share, braking, damping);
+            if !E::HELD {
+                dragged_then = damping * glide.beside.levels.1;
+                share = verlet.share(dragged_then);
+                braking = verlet.braking(share);
+            }
             let unbraked = verlet.unbraked(velocity, push + effort_then, share);
             if let Some(there) = curve.along(&course, &here, displacement) {
                 here = there;
@@ -34,12 +46,13 @@ impl<S: Scalar> MaxwellSlip<S> {
                 course = turned;
                 here = state.spring.here();
             }
-            velocity = unbraked - braking * here.force;
+            let undamped = if E::HELD { here.force } else { here.force * glide.beside.levels.0 };
+            let arrived = unbraked - braking * undamped;
             if looks {
                 state.spring.slide(&here.apart());
             }
             glide.seen.pulled(displacement, here.force);
-            glide.accept(displacement, velocity, here.force + damping * velocity, state);
+            velocity = glide.accept(displacement, arrived, undamped + dragged_then * arrived, state);
         }
         state.spring.slide(&here.apart());
     }
