@@ -48,7 +48,7 @@ REFUSED = {
     "fit the wrong way round": (lambda: st.fit(recording(), plant()), "plant is a Recording"),
     "evaluations": (lambda: st.fit(plant(), recording(), max_evaluations="a"), "max_evaluations ="),
     "diagnosis of a word": (lambda: st.diagnose("x", recording()), "plant is 'x'; give a Plant"),
-    "diagnosis of nothing": (lambda: st.diagnose(None, None), "a recording is None"),
+    "diagnosis of nothing": (lambda: st.diagnose(None, None), "there are no recordings"),
     "session of a word": (lambda: st.Session("abc"), "a recording is 'abc'"),
     "session of a number": (lambda: st.Session([1]), "a recording is 1"),
     "session's plant": (lambda: st.Session([recording()], plant="x"), "plant is 'x'; give a Plant"),

@@ -69,3 +69,13 @@ def test_names_are_counted_by_how_they_were_told() -> None:
     assert several == {"told": 1, "first": 0, "listed": 1}
     beside = found[manner(decided=False, several=False, unexplained=True)]
     assert beside == {"told": 1, "first": 1, "listed": 1}
+
+
+def test_it_is_said_in_words() -> None:
+    held = Reliability(told=19, first=9, listed=17)
+    several = "of names told like these one was right 17 of 19 times where the truth was known"
+    assert cause("frictional_lag", held=held).counted == f"{several}, the first one 9"
+    told = "names told like this one were right 9 of 19 times where the truth was known"
+    assert cause(held=held).counted == told
+    assert cause(held=Reliability(0, 0, 0)).counted == ""
+    assert cause().counted == ""

@@ -8,6 +8,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
+from ..wording import counted
+
 __all__ = ["COUNTS", "Reliability", "manner", "reliability_of"]
 
 COUNTS: Final = Path(__file__).with_name("reliability.toml")
@@ -43,6 +45,16 @@ class Reliability:
     def covered(self) -> float:
         """That it or one of its look-alikes is."""
         return (self.listed + _JEFFREYS) / (self.told + 1.0)
+
+    def words(self, *, several: bool) -> str:
+        """That in words, of a name with look-alikes or of one without."""
+        known = f"of {counted(self.told, 'time')} where the truth was known"
+        if several:
+            return (
+                f"of names told like these one was right {self.listed} {known}, the first one "
+                f"{self.first}"
+            )
+        return f"names told like this one were right {self.first} {known}"
 
     def to_dict(self) -> dict[str, Any]:
         """As ``reliability`` of an entry of ``effects``."""

@@ -150,6 +150,14 @@ class Cause(_Gained):
             **self._likely(),
         }
 
+    @property
+    def counted(self) -> str:
+        """What names told like this one came to, in words; "" where none was counted."""
+        held = self.reliability
+        if held is None or not held.told:
+            return ""
+        return held.words(several=bool(self.look_alikes))
+
     def _likely(self) -> dict[str, Any]:
         """How probable it is, and how its look-alikes are."""
         held = self.reliability

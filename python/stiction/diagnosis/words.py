@@ -19,7 +19,6 @@ from ..stated import Effect
 from ..wording import counted
 from .directions import found
 from .orders import order_words
-from .reliability import Reliability
 
 if TYPE_CHECKING:
     from ..recording import Check
@@ -395,14 +394,6 @@ def shown_rows(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def _reliability_words(cause: Cause, held: Reliability) -> str:
-    """What names told like this one came to."""
-    known = f"of {counted(held.told, 'time')} where the truth was known"
-    if cause.look_alikes:
-        return f"told like this one of them was right {held.listed} {known}, the first {held.first}"
-    return f"names told like this one were right {held.first} {known}"
-
-
 def loop_words(diagnosis: Diagnosis) -> str:
     """The position error in closed loop, "" where no loop was replayed."""
     after = diagnosis.extended
@@ -472,8 +463,8 @@ def summary(diagnosis: Diagnosis) -> str:
         lines.append(f"  gain: {gain_words(cause.gain)}")
         if cause.doubtful:
             lines.append(f"  care: {DOUBTFUL}")
-        if cause.reliability is not None and cause.reliability.told:
-            lines.append(f"  counted: {_reliability_words(cause, cause.reliability)}")
+        if cause.counted:
+            lines.append(f"  counted: {cause.counted}")
     before, after = diagnosis.baseline, diagnosis.extended
     if before is not None and before.heldout_relative is not None and after is not None:
         by = compared_by(diagnosis.plant)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from .. import given
-from ..diagnosis.result import SCHEMA, Diagnosis, Verdict
+from ..diagnosis.result import SCHEMA, Cause, Diagnosis, Verdict
 from ..wording import counted, listed
 from .agreement import Agreement
 from .fit import RobotFit
@@ -126,10 +126,7 @@ class RobotDiagnosis:
         untested = [
             j.name for j in self.joints if j.diagnosis.verdict in ("not_testable", "data_fault")
         ]
-        said = [
-            f"{joint.name} lacks {listed(cause.name for cause in joint.diagnosis.effects)}"
-            for joint in lacking
-        ]
+        said = [f"{joint.name} lacks {_names_of(joint.diagnosis.effects)}" for joint in lacking]
         if not lacking and not unsaid:
             said = ["Nothing is missing in any joint that could be tested"]
         if unsaid:
@@ -253,7 +250,7 @@ def folder_names(joints: Sequence[str]) -> Mapping[str, str]:
 
 def _told(joint: JointFindings) -> str:
     words = joint.diagnosis.verdict.replace("_", " ")
-    names = listed(cause.name for cause in joint.diagnosis.effects)
+    names = _names_of(joint.diagnosis.effects)
     errors, reduction = joint.errors, joint.reduction
     told = f"{words}: {names}" if names else words
     if errors is None or reduction is None:
@@ -272,3 +269,8 @@ def _agreed(number: int, apart: Sequence[Agreement]) -> str:
         f"Of {counted(number, 'parameter')} {len(apart)} differ between recordings; for {unknown} "
         "of these the data show no reason."
     )
+
+
+def _names_of(causes: Sequence[Cause]) -> str:
+    """Names, and which of them the data leave open."""
+    return listed(f"{'' if cause.decided else 'perhaps '}{cause.name}" for cause in causes)

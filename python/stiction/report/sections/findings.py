@@ -90,6 +90,7 @@ def _cause(cause: Cause, record: EffectRecord | None, diagnosis: Diagnosis) -> d
         "decided": cause.decided,
         "doubt": cause.doubt,
         "doubtful": cause.doubtful,
+        "counted": cause.counted,
         "look_alikes": [plain(name) for name in cause.look_alikes],
         "what": f"{summary}{_how_often(effect, plant, cause)}",
         "means": cause.means,
