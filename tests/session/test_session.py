@@ -224,4 +224,4 @@ def test_a_session_shows_itself_as_a_table(tmp_path: Path) -> None:
     html = st.load(written(tmp_path, *entries))._repr_html_()
     assert html.count("<tr>") == 3
     assert "a &lt; b" in html
-    assert html.count("a.csv") == 2
+    assert html.partition("</table>")[0].count("a.csv") == 2
