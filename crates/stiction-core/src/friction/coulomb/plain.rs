@@ -58,8 +58,7 @@ impl<S: Scalar> Coulomb<S> {
             let predicted = verlet.predicted(velocity, net);
             let shown = || not_beyond_a_stop::<S, Self>(velocity, predicted);
             let effort_then = glide.there(effort, displacement, shown);
-            let (there, slope) =
-                self.sliding_within::<E>(mode, predicted, glide.beside.levels);
+            let (there, slope) = self.sliding_within::<E>(mode, predicted, glide.beside.levels);
             // Mostly nothing damps: then nothing waits for what would, and for no division.
             let (damping, share, braking, undamped) = if slope.re() > 0.0 {
                 let share = verlet.share(slope);

@@ -52,7 +52,8 @@ impl<S: Scalar> MaxwellSlip<S> {
                 state.spring.slide(&here.apart());
             }
             glide.seen.pulled(displacement, here.force);
-            velocity = glide.accept(displacement, arrived, undamped + dragged_then * arrived, state);
+            velocity =
+                glide.accept(displacement, arrived, undamped + dragged_then * arrived, state);
         }
         state.spring.slide(&here.apart());
     }
