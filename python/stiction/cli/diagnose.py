@@ -15,7 +15,7 @@ from ..robot.session import robot_of
 from ..session import load_beside
 from .answer import answer, folder, told_anyway, written
 from .drafts import Opened, Stated, is_data, opened
-from .given import Whole
+from .given import Quiet, Whole
 from .interrupt import ending_soon, finished
 from .progress import progress
 from .robot import diagnose_arm
@@ -41,6 +41,7 @@ def diagnose(
     add: Annotated[tuple[Path, ...], Parameter(negative="")] = (),
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Find out what a simulation of the machine is missing, add it and measure the gain.
 
@@ -99,10 +100,10 @@ def diagnose(
             "seed": seed,
             "threads": threads,
         }
-        diagnose_arm(session, robot, add, out, asked, as_json=json)
+        diagnose_arm(session, robot, add, out, asked, as_json=json, quiet=quiet)
         return
     told_of = Stated(columns, gain, law, joint, header)
-    with progress():
+    with progress(quiet):
         at = opened([session, *more], out, "diagnosis", told_of)
         recordings, plant, where = at.session, at.plant, at.where
         if add:
@@ -127,7 +128,7 @@ def diagnose(
     if at.assumed:
         content["draft"] = {"assumed": list(at.assumed), "files": [str(f) for f in at.drafted]}
     with finished(struck=not found.success):
-        with told_anyway(str(found), content, as_json=json), progress(), written(where):
+        with told_anyway(str(found), content, as_json=json), progress(quiet), written(where):
             report = found.save(where)
         # The sentence comes first, whatever was mended before it could be said.
         mends = "\n".join(mended(recordings))

@@ -17,6 +17,7 @@ from ..progress import phase
 from ..robot.robot import describes_robot
 from ..session import Session
 from .answer import answer, folder, written
+from .given import Quiet
 from .progress import progress
 from .robot import export_arm
 from .sessions import spoken_of
@@ -35,6 +36,7 @@ def export(
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     list: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Write a plant for a simulator, a controller or firmware, and say what is lost on the way.
 
@@ -82,7 +84,7 @@ def export(
     texts = [f"{each}\n  folder: {where / each.target}" for each in made]
     data = [each.to_dict() for each in made]
     if check is not None and loaded is not None:
-        with progress():
+        with progress(quiet):
             found = _checked(read, made, check, loaded)
         texts += [text for text, _ in found]
         data = [{**own, "check": told} for own, (_, told) in zip(data, found, strict=True)]

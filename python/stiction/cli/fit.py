@@ -16,6 +16,7 @@ from ..fitting import FitResult
 from ..fitting import fit as run
 from ..session import Session
 from .answer import answer, folder, told_anyway, written
+from .given import Quiet
 from .interrupt import ending_soon, finished
 from .progress import progress
 from .sessions import loaded, mended, spared, spoken_of
@@ -28,6 +29,7 @@ def fit(
     *,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Fit the plant of a session to its recordings.
 
@@ -44,7 +46,7 @@ def fit(
     json
         Print JSON.
     """
-    with progress():
+    with progress(quiet):
         recordings, plant = loaded(session)
         where = Path(f"{session.stem}-fit") if out is None else out
         spared(plant, where)
