@@ -72,8 +72,7 @@ VERBS: tuple[Verb, ...] = (
     Verb(
         "fit",
         "fit:fit",
-        "Fit the plant of a session to its recordings, or a friction law to a table of speed and "
-        "friction.",
+        "Fit the plant of a session to its recordings, or a law to a table of speed and friction.",
         (
             (
                 "fit session.toml",

@@ -27,7 +27,7 @@ FOLDER: Final = "draft"
 """In the folder for the results: plant.toml there is what was assumed, not what was found."""
 _SUM: Final = "# Drafted again from the recordings as long as this fits: "
 _SUM_LINE: Final = re.compile(rf"\n{_SUM}([0-9a-f]{{8}})\n\Z")
-_VERBS: Final = {"diagnosis": "diagnose"}
+_VERBS: Final = {"diagnosis": "diagnose", "fit": "fit"}
 """What a folder for results ends in, and the verb that writes it."""
 _EXAMPLE: Final = {"time": "NAME [s]", "input": "NAME [A]", "position": "NAME [rad]"}
 _OPTIONS: Final = ("columns", "gain", "law", "joint", "header")
