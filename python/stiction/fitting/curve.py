@@ -35,6 +35,8 @@ FEWEST: Final = 6
 """Points, beyond which two parameters and their errors can be told."""
 TOLERANCE: Final = 1e-9
 MOST: Final = 200
+ROUNDING: Final = 1e-6
+"""Share of the greatest friction to which tables are printed at best."""
 STEP: Final = 1e-5
 """Share of a parameter by which its slope is measured."""
 SPEEDS_TRIED: Final = 5
@@ -100,7 +102,7 @@ class CurveFit:
         remarks = list(self.notes)
         if self.untold:
             remarks.append(
-                f"not fitted to a curve of steady friction, at default values: {listed(self.untold)}"
+                f"not fitted to a curve of steady friction, at defaults: {listed(self.untold)}"
             )
         return ["", *remarks] if remarks else []
 
@@ -286,6 +288,7 @@ class _Fitted:
     begin: FloatArray
     x: FloatArray
     left: FloatArray
+    curve: FloatArray
     slopes: FloatArray
     bounds: tuple[FloatArray, FloatArray]
 
@@ -417,15 +420,17 @@ def _fitted(
             best = (found.cost, found.x, start)
     assert best is not None
     _, x, start = best
-    return _Fitted(at(x), names, start, x, residual(x), jacobian(x), (low, high))
+    left = residual(x)
+    return _Fitted(at(x), names, start, x, left, left + up, jacobian(x), (low, high))
 
 
 def _bic(found: _Fitted) -> float:
     """Schwarz's criterion, Ann. Statist. 6 (1978), of independent points of one variance."""
     n = len(found.left)
-    return n * math.log(max(float(found.left @ found.left) / n, 1e-300)) + len(found.x) * math.log(
-        n
-    )
+    # What rounding leaves is no misfit that a parameter could explain.
+    least = (ROUNDING * float(np.max(np.abs(found.curve)))) ** 2
+    variance = max(float(found.left @ found.left) / n, least)
+    return n * math.log(variance) + len(found.x) * math.log(n)
 
 
 def _directions(across: FloatArray, left: FloatArray, unit: str) -> list[str]:
