@@ -34,8 +34,8 @@ class Fixed(dict[K, V]):
         name = f"{given[0]} " if given and isinstance(given[0], str) else ""
         raise InputError(f"{name}cannot be set in place: {self._remedy}")
 
-    __setitem__ = __delitem__ = __ior__ = _refuse  # type: ignore[assignment]
-    clear = pop = popitem = setdefault = update = _refuse  # type: ignore[assignment]
+    __setitem__ = __delitem__ = __ior__ = _refuse
+    clear = pop = popitem = setdefault = update = _refuse
 
     def __reduce__(self) -> tuple[Any, ...]:
         return dict, (dict(self),)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -93,6 +93,11 @@ def draw(plant: Plant, ax: Axes | None, kind: str, label: str) -> Axes:
         from .compare.properties.sliding import greatest_friction
 
         subject = _subject(plant)
+        if not subject.scale.slides:
+            raise InputError(
+                f"plot_friction: {plant.friction.law} with these numbers never slides, so that it has "
+                "no break-away; state its breakaway, or draw kind = 'hysteresis'"
+            )
         peaks = [greatest_friction(subject, float(rate)) for rate in _RATES]
         panel.plot(_RATES * subject.scale.level, peaks, label=told, linewidth=1.2, marker=".")
         panel.set_xscale("log")
@@ -108,6 +113,9 @@ def _subject(plant: Plant) -> Subject:
     from .compare.subject import Subject
 
     model = plant.friction_model()
-    own = {name: value for name, value in model.parameters.items() if "." not in name}
-    effects = {"effects": model.effects} if model.effects else {}
-    return Subject(model.law, "", {**own, **model.options, **effects})
+    keywords: dict[str, Any] = {
+        name: value for name, value in model.parameters.items() if "." not in name
+    }
+    if model.effects:
+        keywords["effects"] = model.effects
+    return Subject(model.law, "", {**keywords, **model.options})

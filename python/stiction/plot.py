@@ -271,8 +271,8 @@ def trajectory(
         raise InputError("the trajectory has no columns to draw; simulate with outputs")
     panels = panels_for(ax, shown)
     if panels is None:
-        size = {"height": 1.0 + 1.45 * len(shown)}
-        drawn, panels = figure(len(shown), title=title, sharex=True, **size)
+        tall = 1.0 + 1.45 * len(shown)
+        drawn, panels = figure(len(shown), height=tall, title=title, sharex=True)
         drawn.align_ylabels()
     time = trajectory.time
     for panel, name in zip(panels, shown, strict=False):
@@ -394,7 +394,7 @@ def save(fig: Figure | Panels | Axes, path: str | Path) -> Path:
         raise InputError(f"{path}: there is no folder {path.parent}; make it first")
     if path.suffix not in _FORMATS:
         raise InputError(f"{path}: ending '{path.suffix}' is not known; use .svg or .png")
-    data = _encoded(Panels([fig]).figure if hasattr(fig, "get_xlabel") else fig, path.suffix)
+    data = _encoded(_figure_of(fig), path.suffix)
     with given.written(path), replacing(path) as file:
         file.write(data)
     return path
@@ -438,7 +438,15 @@ def save_or_say(what: str, make: Callable[[], Figure], *paths: Path) -> str:
     return ""
 
 
-def _encoded(fig: Figure | Panels, suffix: str) -> bytes:
+def _figure_of(drawn: Figure | Panels | Axes) -> Figure:
+    if isinstance(drawn, Panels):
+        return drawn.figure
+    from matplotlib.axes import Axes
+
+    return Panels([drawn]).figure if isinstance(drawn, Axes) else drawn
+
+
+def _encoded(fig: Figure, suffix: str) -> bytes:
     import matplotlib
 
     # Dates, versions and random identifiers would make each file differ from the last.

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from . import given
 from .errors import InputError, UnknownName
 from .frozen import Frozen
+from .keys import choice
 from .table_file import save_table
 
 if TYPE_CHECKING:
@@ -50,6 +51,8 @@ class Trajectory:
         Seconds since the motor's last reset; computed on access.
     position, velocity, friction, measured, … : numpy.ndarray, shape (n,)
         The same: rad or m, rad/s or m/s, N·m or N; the law's own states under their names.
+    units : Mapping of str to str
+        Of position, velocity, friction and measured; of a motor alone both that they may have.
     statistics : Mapping of str to int
         How often each branch was taken since the last reset.
     success : bool
@@ -75,9 +78,18 @@ class Trajectory:
         _keep(self, (columns, dt, length, start, statistics, motion))
 
     def of_motion(self, motion: str) -> Trajectory:
-        """The same of a machine of this kind, which a motor does not know, ``"rotary"`` or
-        ``"linear"``: what it draws has units."""
-        return Trajectory(*self._own[:5], motion)
+        """The same of a machine of this kind, which a motor does not know: it then has units.
+
+        Parameters
+        ----------
+        motion : {"rotary", "linear"}
+
+        Raises
+        ------
+        InputError
+            Another word.
+        """
+        return Trajectory(*self._own[:5], choice(motion, ("rotary", "linear"), "motion"))
 
     @property
     def _columns(self) -> dict[str, FloatArray]:

@@ -199,6 +199,12 @@ def _robot_table(draw: Draw) -> str:
 OF_TARGET: dict[str, Drawer] = {
     "Motion.position": lambda d: d.array(-6.0, -1.0, n=d.n + 1),
     "Plant.motion": lambda d: d.text(("rotary", "linear")),
+    "fit_curve.motion": lambda d: d.text(("rotary", "linear")),
+    "fit_curve.speed": lambda d: "np.linspace(0.1, 3.0, 12)" if not d.odd() else d.array(),
+    "fit_curve.friction": lambda d: "np.linspace(0.3, 0.5, 12)" if not d.odd() else d.array(),
+    "Trajectory.of_motion.motion": lambda d: d.text(("rotary", "linear")),
+    "Plant.plot_friction.kind": lambda d: d.text(("speed", "hysteresis", "breakaway")),
+    "called.given": lambda d: d.text(("sigma0", "F_s")),
     "Recording.load.motion": lambda d: d.text(("rotary", "linear")),
     "Plant.friction": lambda d: f"Friction({d.text(['coulomb'])})",
     "Plant.effects": lambda d: f"(Effect({d.text(sorted(EFFECTS))}),)" if d.odd() else "()",
