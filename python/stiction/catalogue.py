@@ -240,9 +240,9 @@ class Catalogue(tuple[Record, ...]):
         for record in self:
             if record.name == key:
                 return record
-        names = self.names
+        names, what = self.names, "law" if isinstance(self[0], LawRecord) else "effect"
         raise UnknownName(
-            f"'{key}' is not in the catalogue{did_you_mean(key, names)}; known are {listed(names)}"
+            f"there is no {what} '{key}'{did_you_mean(key, names)}; there are {listed(names)}"
         )
 
     def __contains__(self, key: object) -> bool:

@@ -95,8 +95,8 @@ def draw(plant: Plant, ax: Axes | None, kind: str, label: str) -> Axes:
         subject = _subject(plant)
         if not subject.scale.slides:
             raise InputError(
-                f"plot_friction: {plant.friction.law} with these numbers never slides, so that it has "
-                "no break-away; state its breakaway, or draw kind = 'hysteresis'"
+                f"plot_friction: {plant.friction.law} with these numbers never slides, so that it "
+                "has no break-away; state its breakaway, or draw kind = 'hysteresis'"
             )
         peaks = [greatest_friction(subject, float(rate)) for rate in _RATES]
         panel.plot(_RATES * subject.scale.level, peaks, label=told, linewidth=1.2, marker=".")

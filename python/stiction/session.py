@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import given
 from .errors import InputError
+from .file_kinds import kind_of_table
 from .frozen import Frozen, freeze
 from .keys import known
 from .plant import Plant
@@ -251,6 +252,10 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         given.instance(plant, Plant, "load: plant", "a Plant, as Plant.load returns it")
     table = read_toml(path, least='plant = "…" and one [[recordings]]')
     source = str(path)
+    if kind_of_table(table) == "plant file":
+        raise InputError(
+            f"{source}: is a plant file, and a recording or a session file is wanted here"
+        )
     known(table, _TABLES, source)
     if plant is None and "plant" in table:
         named = table["plant"]

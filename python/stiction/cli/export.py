@@ -16,6 +16,7 @@ from ..plant import Plant
 from ..progress import phase
 from ..robot.robot import describes_robot
 from ..session import Session
+from ..wording import listed
 from .answer import answer, folder, written
 from .given import Quiet
 from .progress import progress
@@ -67,7 +68,9 @@ def export(
     if plant is None:
         raise InputError("stiction export: no plant file is given; name one, or ask with --list")
     if not to:
-        raise InputError(f"stiction export: no target is given; write --to {next(iter(known))}")
+        raise InputError(
+            f"stiction export: no target is given; write --to and one of {listed(known)}"
+        )
     if describes_robot(plant):
         where = Path(f"{plant.stem}-export") if out is None else out
         export_arm(plant, to, speed, check, where, as_json=json)

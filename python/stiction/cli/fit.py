@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -90,7 +91,7 @@ def fit(
 
 def _curve(path: Path, columns: str, law: str, out: Path | None, *, as_json: bool) -> bool:
     """Fit a law to a friction curve and say so, where the file is one."""
-    if not is_data(path) or path.is_dir():
+    if not is_data(path) or os.path.isdir(path):
         return False
     from ..fitting.curve_file import curve_table, fit_curve_file
 
