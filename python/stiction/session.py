@@ -338,6 +338,10 @@ def both_of(plant: Any, session: Any, where: str) -> tuple[Any, Any]:
     """
     if session is None and isinstance(plant, Session):
         plant, session = None, plant
+    if session is None and isinstance(plant, str | Path):
+        raise InputError(
+            f"{where}: '{plant}' is the name of a file; give what stiction.load('{plant}') returns"
+        )
     if session is None:
         raise InputError(
             f"{where}: there are no recordings; give a session, or a plant and recordings"

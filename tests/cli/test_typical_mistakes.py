@@ -150,7 +150,7 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
     "no time step": (lambda: motor().simulate(np.ones(5), 0.0), "a positive number of seconds"),
     "words for numbers": (lambda: motor().simulate(["a", "b"], 1e-3), "is not an array of numbers"),
     "swapped": (lambda: st.fit(recording(), st.Session([recording()])), "give a Plant"),
-    "path for a session": (lambda: st.diagnose("session.toml"), "session.toml"),
+    "path for a session": (lambda: st.diagnose("session.toml"), "give what stiction.load("),
     "session without a plant": (lambda: st.fit(st.Session([recording()])), "plant"),
     "findings": (lambda: st.load("findings.json"), "holds what a diagnosis found"),
     "unequal lengths": (lambda: st.Recording([0.0, 1.0], [1.0], [0.0, 0.0]), "1"),

@@ -188,7 +188,7 @@ def test_canonical_columns_of_the_other_motion_are_left_out_and_told(archive: Ar
 @pytest.mark.parametrize(
     ("names", "columns", "message"),
     [
-        (("t", "current_a"), {}, "no column is known to be the time; the columns here are t, "),
+        (("k", "current_a"), {}, "no column is known to be the time; the columns here are k, "),
         (("time_s", "x"), {}, "no column is known to be the input"),
         (("time_s", "current_a"), {"position": "tme_s"}, r"no column 'tme_s'.*mean 'time_s'"),
         (("time_s", "f"), {"effort": "f"}, "no column is known to be the position"),

@@ -63,7 +63,7 @@ VERBS: tuple[Verb, ...] = (
         (
             ("simulate plant.toml run.csv", "trajectory, free run and effort residual"),
             (
-                'simulate plant.toml run.csv --columns "input=vir [V], position=qm [mm]"',
+                'simulate plant.toml run.csv --columns "input=vir [V]"',
                 "columns that have other names",
             ),
             ("simulate found/plant.toml session.toml --json", "what a diagnosis has found"),

@@ -12,6 +12,7 @@ from ..atomic_files import write_text
 from ..errors import InputError
 from ..wording import counted
 from .answer import answer, folder, told_anyway, written
+from .app import VERBS
 from .given import Quiet, Whole
 from .progress import progress
 
@@ -21,6 +22,7 @@ bench = cyclopts.App(
     name="bench",
     help="Lay out sessions whose truth is hidden, and score anybody's answers to them.",
     help_format="plaintext",
+    help_epilogue=next(verb.epilogue for verb in VERBS if verb.name == "bench"),
     version_flags=(),
 )
 

@@ -104,7 +104,7 @@ def diagnose(
         return
     told_of = Stated(columns, gain, law, joint, header)
     with progress(quiet):
-        at = opened([session, *more], out, "diagnosis", told_of)
+        at = opened([session, *more], out, "diagnosis", told_of, keep_faulty=True)
         recordings, plant, where = at.session, at.plant, at.where
         if add:
             with spoken_of(at.path, recordings, plant), written(where):

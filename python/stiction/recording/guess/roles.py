@@ -326,6 +326,12 @@ class _Guesser:
         if velocity is not None:
             own = units.velocity_unit(velocity, motion, position, unit.factor, self.clock)
             others = [c for c in self._free("velocity") if c is not velocity]
+            if own.disagrees and MOTION_OF_QUANTITY.get(UNITS[own.unit].quantity) == motion:
+                self.refused[velocity.name] = (
+                    f"{self._by_name(velocity)}; {own.reason}: give it as velocity with the unit "
+                    "or the scale that holds, or leave it out"
+                )
+                return unit.factor
             self._give_moving(velocity, "velocity", own, self._by_name(velocity), motion, others)
         return unit.factor
 
