@@ -389,6 +389,8 @@ class Diagnosis:
         Friction law that alone explains clearly more than what was named, "" where none does.
     smallest : float
         Share of the friction that an effect has to contribute (rms) to be worth a name.
+    alpha : float
+        Level of the screening for the whole session.
     evidence : Bets
         What each recording held out says of all causes together.
     pictures : Pictures or None
@@ -416,6 +418,7 @@ class Diagnosis:
     ceiling: Ceiling | None = None
     better_law: str = ""
     smallest: float = 0.0
+    alpha: float = 0.0
     evidence: Bets = field(default_factory=Bets)
     pictures: Pictures | None = field(default=None, repr=False, compare=False)
 
@@ -467,6 +470,7 @@ class Diagnosis:
             "version": self.version,
             "seed": self.seed,
             "smallest": self.smallest,
+            "alpha": self.alpha,
             "seconds": self.seconds,
         }
 
