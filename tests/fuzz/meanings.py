@@ -147,6 +147,7 @@ BY_NAME: dict[str, Drawer] = {
     "without": lambda d: d.texts(sorted(EFFECTS)),
     "surrogates": lambda d: d.whole(4, 6),
     "smallest": lambda d: d.size(-4.0, -0.5),
+    "alpha": lambda d: d.size(-4.0, -0.5),
     "seed": lambda d: d.whole(0, 9),
     "columns": mapped,
     "max_evaluations": lambda d: d.whole(1, 5),

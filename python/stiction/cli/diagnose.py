@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from ..diagnosis import SMALLEST, SURROGATES
+from ..diagnosis import ALPHA, SMALLEST, SURROGATES
 from ..diagnosis import diagnose as run
 from ..diagnosis.added import add as added
 from ..diagnosis.result import Diagnosis
@@ -36,6 +36,7 @@ def diagnose(
     laws: str = "",
     surrogates: Whole = SURROGATES,
     smallest: float = SMALLEST,
+    alpha: float = ALPHA,
     seed: Whole = 0,
     threads: Whole | None = None,
     add: Annotated[tuple[Path, ...], Parameter(negative="")] = (),
@@ -77,6 +78,9 @@ def diagnose(
         Replays of the fitted plant with noise alone, which thresholds come from.
     smallest
         Share of the friction: what contributes less gets no name.
+    alpha
+        Level of the screening: the probability that noise passes it in a session that lacks
+        nothing.
     seed
         Of everything random.
     threads
@@ -97,6 +101,7 @@ def diagnose(
             "laws": names,
             "surrogates": surrogates,
             "smallest": smallest,
+            "alpha": alpha,
             "seed": seed,
             "threads": threads,
         }
@@ -121,6 +126,7 @@ def diagnose(
                 laws=names,
                 surrogates=surrogates,
                 smallest=smallest,
+                alpha=alpha,
                 seed=seed,
                 threads=threads,
             )

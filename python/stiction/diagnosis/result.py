@@ -390,6 +390,8 @@ class Diagnosis:
         Friction law that alone explains clearly more than what was named, "" where none does.
     smallest : float
         Share of the friction that an effect has to contribute (rms) to be worth a name.
+    alpha : float
+        Level of the screening for the whole session.
     evidence : Bets
         What each recording held out says of all causes together.
     pictures : Pictures or None
@@ -417,6 +419,7 @@ class Diagnosis:
     ceiling: Ceiling | None = None
     better_law: str = ""
     smallest: float = 0.0
+    alpha: float = 0.0
     evidence: Bets = field(default_factory=Bets)
     pictures: Pictures | None = field(default=None, repr=False, compare=False)
 
@@ -468,6 +471,7 @@ class Diagnosis:
             "version": self.version,
             "seed": self.seed,
             "smallest": self.smallest,
+            "alpha": self.alpha,
             "seconds": self.seconds,
         }
 
