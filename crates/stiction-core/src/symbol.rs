@@ -99,7 +99,8 @@ mod tests {
     #[test]
     fn no_law_has_one_symbol_for_two_parameters() {
         for law in LAWS {
-            let mut seen: Vec<_> = law.parameters.iter().filter_map(ParameterSpec::symbol).collect();
+            let mut seen: Vec<_> =
+                law.parameters.iter().filter_map(ParameterSpec::symbol).collect();
             let found = seen.len();
             seen.sort_unstable();
             seen.dedup();

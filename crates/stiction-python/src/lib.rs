@@ -54,7 +54,10 @@ mod _native {
         let friction_model = module.getattr("FrictionModel")?;
         let doc: String = friction_model.getattr("__doc__")?.extract()?;
         let laws = super::catalogue::list_of_laws();
-        friction_model.setattr("__doc__", format!("{doc}\n\nLaws (``stiction laws NAME`` shows one):\n\n{laws}"))?;
+        friction_model.setattr(
+            "__doc__",
+            format!("{doc}\n\nLaws (``stiction laws NAME`` shows one):\n\n{laws}"),
+        )?;
         super::shared::count_forks(module)
     }
 
