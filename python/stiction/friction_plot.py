@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -112,7 +113,9 @@ def _subject(plant: Plant) -> Subject:
     """The contact of a plant as the experiments of a comparison take it."""
     from .compare.subject import Subject
 
-    model = plant.friction_model()
+    # A contact has no inertia, and nothing has to drive it.
+    still = replace(plant, drive={"kind": "prescribed_motion"}, body={})
+    model = still.friction_model()
     keywords: dict[str, Any] = {
         name: value for name, value in model.parameters.items() if "." not in name
     }
