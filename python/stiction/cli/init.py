@@ -100,6 +100,12 @@ def _text(made: Draft, todo: Sequence[str], files: Sequence[Path]) -> str:
     lines += [f"drive: {found.drive or 'not known'} ({found.drive_reason})"]
     lines += [f"left out: {path}: {why.removeprefix(f'{path}: ')}" for path, why in made.left_out]
     lines += ["", *(f"wrote {file}" for file in files)]
+    if found.input_unknown:
+        name = found.by_role["input"].column
+        lines.append(
+            f"to do: state what '{name}' is measured in: its unit in session.toml is a guess, and "
+            "so is that of every effort"
+        )
     lines += [f"to do: {sentence}" for sentence in todo]
     if not todo:
         lines.append(f"next: read both files, then stiction fit {files[1]}")

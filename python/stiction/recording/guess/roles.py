@@ -93,6 +93,7 @@ class _Guesser:
             missing=self.missing,
             counts_per_rev=per_rev,
             counts_needed=any(guess.unit == "count" for guess in self.given.values()),
+            input_unknown=drive.unknown,
         )
 
     # What is still free ------------------------------------------------------------------
