@@ -78,6 +78,7 @@ def _plant(law: str | Plant) -> Plant:
 def draw(plant: Plant, ax: Axes | None, kind: str, label: str) -> Axes:
     """See ``Plant.plot_friction``."""
     choice(kind, KINDS, "plot_friction: kind")
+    label = given.word(label, "plot_friction: label")
     panel = plot.panel_for(ax)
     told = label or " + ".join((plant.friction.law, *(e.name for e in plant.effects)))
     effort, place = plant.effort_unit, plant.position_unit

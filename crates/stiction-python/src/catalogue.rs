@@ -6,6 +6,8 @@ use stiction_core::effects::EFFECTS;
 use stiction_core::friction::{LAWS, law_record};
 use stiction_core::parameter::{Default, MotionKind, ParameterSpec};
 
+use crate::arguments::Text;
+
 fn parameters<'py>(
     py: Python<'py>,
     specs: &[ParameterSpec],
@@ -63,8 +65,9 @@ pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
 
 /// The parameter of a law that somebody means by a symbol of the literature, or None.
 #[pyfunction]
-pub fn called(law: &str, given: &str) -> Option<&'static str> {
-    law_record(law).ok()?.called(given).map(|spec| spec.name)
+pub fn called(law: Text, given: Text) -> Option<&'static str> {
+    let (Text(law), Text(given)) = (law, given);
+    law_record(&law).ok()?.called(&given).map(|spec| spec.name)
 }
 
 /// The laws with what each is, for whoever asks for help.
