@@ -154,3 +154,9 @@ def test_lugre_breaks_away_earlier_where_it_is_loaded_faster() -> None:
     (line,) = plot_laws(["lugre"], kind="breakaway").lines
     peaks = line.get_ydata()
     assert peaks[0] > 1.1 * peaks[-1]
+
+
+def test_text_that_no_encoding_has_is_a_symbol_that_nobody_knows() -> None:
+    table = {"friction": {"law": "coulomb", "\ud800": 1.0}}
+    with pytest.raises(st.InputError, match="is unknown"):
+        st.Plant.from_dict(table)
