@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .catalogue import effects, laws
     from .diagnosis import Diagnosis, diagnose
     from .ensemble import Ensemble, EnsembleRun, simulate_ensemble
-    from .fitting import FitResult, fit
+    from .fitting import CurveFit, FitResult, fit, fit_curve
     from .loading import load
     from .motor import Motor
     from .plant import Plant
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 __all__ = [
+    "CurveFit",
     "Diagnosis",
     "Ensemble",
     "EnsembleRun",
@@ -43,6 +44,7 @@ __all__ = [
     "diagnose",
     "effects",
     "fit",
+    "fit_curve",
     "laws",
     "load",
     "simulate_ensemble",
@@ -51,6 +53,7 @@ __all__ = [
 
 # Imported on first use: the command line hears Ctrl-C before numpy is there.
 _LAZY = {
+    "CurveFit": "fitting",
     "Diagnosis": "diagnosis",
     "Ensemble": "ensemble",
     "EnsembleRun": "ensemble",
@@ -66,6 +69,7 @@ _LAZY = {
     "diagnose": "diagnosis",
     "effects": "catalogue",
     "fit": "fitting",
+    "fit_curve": "fitting",
     "laws": "catalogue",
     "load": "loading",
     "simulate_ensemble": "ensemble",

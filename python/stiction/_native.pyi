@@ -6,6 +6,8 @@ from typing import Any, Final, Self, TypeVar, final, overload
 import numpy as np
 import numpy.typing as npt
 
+from .fixed import Fixed
+
 _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
 _Floats = npt.NDArray[np.float64]
@@ -18,15 +20,19 @@ __all__ = [
     "Motor",
     "Nothing",
     "RowKernel",
+    "__profile__",
     "__version__",
     "adaptively_smoothed",
+    "called",
     "effects",
     "laws",
     "played",
 ]
 
 __version__: Final[str]
+__profile__: Final[str]
 
+def called(law: str, given: str) -> str | None: ...
 def laws() -> list[dict[str, Any]]: ...
 def effects() -> list[dict[str, Any]]: ...
 def adaptively_smoothed(
@@ -97,11 +103,12 @@ class FrictionModel:
     @property
     def law(self) -> str: ...
     @property
-    def parameters(self) -> dict[str, float]: ...
+    def parameters(self) -> Fixed[str, float]: ...
     @property
     def effects(self) -> dict[str, dict[str, float]]: ...
     @property
-    def options(self) -> dict[str, str]: ...
+    def options(self) -> Fixed[str, str]: ...
+    def _repr_html_(self) -> str: ...
     @property
     def passive(self) -> bool: ...
     @property
@@ -302,7 +309,7 @@ class Motor:
         path: float = 0.0,
     ) -> None: ...
     @property
-    def parameters(self) -> dict[str, float]: ...
+    def parameters(self) -> Fixed[str, float]: ...
     @property
     def output_names(self) -> list[str]: ...
     @property

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import cache
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from . import _native
+from .errors import UnknownName
+from .wording import did_you_mean, listed
 
 __all__ = [
+    "Catalogue",
     "EffectRecord",
     "LawRecord",
     "OptionRecord",
@@ -26,7 +29,7 @@ _AT_CONTACT: Final = frozenset({"friction level", "added effort", "state relaxat
 
 @dataclass(frozen=True)
 class ParameterRecord:
-    """One parameter: name, meaning, units (rotary and linear), default, bounds.
+    """One parameter: name, symbol, meaning, units (rotary and linear), default, bounds.
 
     ``follows`` is another parameter and a factor: where that one is stated and this one is not,
     this one is the factor times it. ``neutral`` is the value at which the parameter does nothing,
@@ -34,6 +37,7 @@ class ParameterRecord:
     """
 
     name: str
+    symbol: str | None
     meaning: str
     unit: str
     linear_unit: str
@@ -190,6 +194,9 @@ class EffectRecord:
         return asdict(self)
 
 
+Record = TypeVar("Record", LawRecord, EffectRecord)
+
+
 def _parameters(entries: list[dict[str, Any]]) -> tuple[ParameterRecord, ...]:
     return tuple(ParameterRecord(**entry) for entry in entries)
 
@@ -212,16 +219,63 @@ def _laws() -> Iterator[LawRecord]:
         )
 
 
-@cache
-def laws() -> tuple[LawRecord, ...]:
-    """Every friction law of the catalogue."""
-    return tuple(_laws())
+class Catalogue(tuple[Record, ...]):
+    """Records in their order; one of them by its name, ``laws()["lugre"]``.
+
+    ``"lugre" in laws()`` asks for a name, iteration gives records.
+    """
+
+    __slots__ = ()
+
+    def __getitem__(self, key: Any) -> Any:
+        """A record by name or place, or several by a slice.
+
+        Raises
+        ------
+        UnknownName
+            An ``InputError`` and a ``KeyError``: the catalogue has no such name.
+        """
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        for record in self:
+            if record.name == key:
+                return record
+        names, what = self.names, "law" if isinstance(self[0], LawRecord) else "effect"
+        raise UnknownName(
+            f"there is no {what} '{key}'{did_you_mean(key, names)}; there are {listed(names)}"
+        )
+
+    def __contains__(self, key: object) -> bool:
+        return key in self.names if isinstance(key, str) else super().__contains__(key)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names in order."""
+        return tuple(record.name for record in self)
+
+    def __repr__(self) -> str:
+        wide = max(map(len, self.names), default=0)
+        return "\n".join(f"{record.name:<{wide}}  {record.summary}" for record in self)
+
+    def _repr_html_(self) -> str:
+        from .notebook import table
+
+        return table(("name", "what it is"), [(one.name, one.summary) for one in self])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Catalogue, (tuple(self),)
 
 
 @cache
-def effects() -> tuple[EffectRecord, ...]:
-    """Every effect of the catalogue."""
-    return tuple(
+def laws() -> Catalogue[LawRecord]:
+    """Every friction law of the catalogue; ``laws()["lugre"]`` is one of them."""
+    return Catalogue(_laws())
+
+
+@cache
+def effects() -> Catalogue[EffectRecord]:
+    """Every effect of the catalogue; ``effects()["cogging"]`` is one of them."""
+    return Catalogue(
         EffectRecord(
             name=entry["name"],
             summary=entry["summary"],

@@ -150,6 +150,9 @@ class Ensemble(_Ensemble):
     [True, True, False]
     """
 
+    _law: str
+    _varied: dict[str, tuple[float, float]]
+
     def __new__(
         cls,
         motor: Motor,
@@ -173,7 +176,21 @@ class Ensemble(_Ensemble):
         count = members if members is not None else sizes.pop()
         given.memory_for(float(count) * MEMBER_SIZE, f"{count} machines; give fewer at a time")
         table = np.concatenate(list(rows.values())) if rows else None
-        return super().__new__(cls, motor, count, list(rows), table)
+        made = super().__new__(cls, motor, count, list(rows), table)
+        made._law = motor.friction.law
+        made._varied = {path: (float(row.min()), float(row.max())) for path, row in rows.items()}
+        return made
+
+    def __repr__(self) -> str:
+        varied = [f"{path} {low:.6g} to {high:.6g}" for path, (low, high) in self._varied.items()]
+        return f"<{'; '.join([f'{len(self)} machines with {self._law}', *varied])}>"
+
+    def _repr_html_(self) -> str:
+        from .notebook import table
+
+        rows = [(path, f"{low:.6g}", f"{high:.6g}") for path, (low, high) in self._varied.items()]
+        told = f"<p>{len(self)} machines with {escape(self._law)}</p>"
+        return told + (table(("varied", "least", "greatest"), rows) if rows else "")
 
     def simulate(
         self,

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from . import given, session
 from .errors import InputError
+from .file_kinds import kind_of, kind_of_table
 from .plant import Plant
 from .plant_file import read_toml
-from .recording.formats import FORMATS
 
 __all__ = ["load"]
 
@@ -58,8 +57,7 @@ def load(
             f"{path}: holds what a diagnosis found; read it as JSON, or load plant.toml beside "
             "it, the plant with what was found"
         )
-    endings = [suffix for known in FORMATS for suffix in known.suffixes]
-    if path.suffix.casefold() in endings and not os.path.isdir(path):
+    if kind_of(path):
         return _recording(path, columns)
     if columns is not None:
         raise InputError(f"{path}: columns are for a recording; a session file states its own")
@@ -70,11 +68,10 @@ def load(
 
 def _is_plant(path: Path) -> bool:
     try:
-        keys = read_toml(path).keys()
+        return kind_of_table(read_toml(path)) == "plant file"
     except InputError:
         # What is wrong with it is told where it is read.
         return False
-    return bool({"drive", "friction"} & keys) and not {"plant", "columns", "recordings"} & keys
 
 
 def _recording(path: Path, columns: Mapping[str, Any] | None) -> Any:

@@ -256,6 +256,11 @@ class Motor(_native.Motor):
 
     __hash__ = None  # type: ignore[assignment]
 
+    def _repr_html_(self) -> str:
+        from .notebook import motor
+
+        return motor(self)
+
     def __repr__(self) -> str:
         neutral = {
             "effects": {},

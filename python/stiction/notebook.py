@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from ._native import FrictionModel
+from .catalogue import laws
 from .errors import InputError
 from .plant import Plant
 from .plot import ACCENT, CYCLE, FAINT, thinned
 
-__all__ = ["Line", "drawing", "friction_drawing", "table"]
+if TYPE_CHECKING:
+    from .motor import Motor
+
+__all__ = ["Line", "drawing", "friction_drawing", "friction_model", "motor", "table"]
 
 WIDTH: Final = 560
 """Pixels, which are units of the drawing."""
@@ -80,6 +85,40 @@ def drawing(lines: Sequence[Line], x: str, y: str) -> str:
         f"{escape(y)}</text></svg>",
     ]
     return "".join(parts)
+
+
+def friction_model(model: FrictionModel) -> str:
+    """Law and effects, parameters with their units and meaning, options."""
+    record = laws()[model.law]
+    rows = [
+        (
+            each.name,
+            f"{model.parameters[each.name]:.6g}",
+            each.unit if each.unit == each.linear_unit else f"{each.unit} or {each.linear_unit}",
+            each.meaning,
+        )
+        for each in record.parameters
+    ]
+    rows += [
+        (path, f"{value:.6g}", "", "") for path, value in model.parameters.items() if "." in path
+    ]
+    rows += [(name, word, "", "option") for name, word in model.options.items()]
+    title = f"<p><b>{escape(model.law)}</b>: {escape(record.summary)}</p>"
+    return title + table(("parameter", "value", "unit", "meaning"), rows)
+
+
+def motor(motor: Motor) -> str:
+    """Body, drive and effects of a motor, its friction, and where it is."""
+    given = ((name, value) for name, value in motor.settings().items() if value not in ({}, None))
+    rows = [
+        (name, f"{value:.6g}" if isinstance(value, float) else str(value)) for name, value in given
+    ]
+    state = motor.state
+    rows += [
+        (f"{name} now", f"{state[name]:.6g} {unit}")
+        for name, unit in (("position", "rad or m"), ("velocity", "rad/s or m/s"), ("time", "s"))
+    ]
+    return table(("motor", ""), rows) + friction_model(motor.friction)
 
 
 def friction_drawing(models: Sequence[tuple[str, Plant, str]]) -> str:

@@ -92,6 +92,14 @@ class Parameter:
         return cls(value, low, high, fixed or low == high == value)
 
 
+def _is_number(given: Any) -> bool:
+    """Whether a word is a number in quotes."""
+    try:
+        return isinstance(given, str) and math.isfinite(float(given))
+    except ValueError:
+        return False
+
+
 def number(given: Any, where: str) -> float:
     """Take a number that is not NaN, numpy's too.
 
@@ -106,7 +114,8 @@ def number(given: Any, where: str) -> float:
         kind = type(given).__name__
         told = shown(given)
         what = "" if told == f"a {kind}" else f"{told} "
-        raise InputError(f"{where}: {what}is a {kind}; allowed is a number")
+        quoted = "; leave out the quotes" if _is_number(given) else ""
+        raise InputError(f"{where}: {what}is a {kind}; allowed is a number{quoted}")
     try:
         converted = float(given)
     except OverflowError:  # TOML has no largest integer

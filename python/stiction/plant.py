@@ -564,9 +564,10 @@ class Plant:
             )
         motor = self.motor()
         motor.reset(position, velocity)
-        return motor.simulate(
+        run = motor.simulate(
             input, dt, load=load, temperature=temperature, enabled=enabled, outputs=outputs
         )
+        return run.of_motion(self.motion)
 
     def friction_curve(self, speeds: npt.ArrayLike) -> FloatArray:
         """Effort that friction takes in steady motion, with the effects that go with the speed.
@@ -602,8 +603,10 @@ class Plant:
         one_way = np.geomspace(1e-4 * most, most, 120)
         return np.concatenate([-one_way[::-1], one_way])
 
-    def plot_friction(self, ax: Axes | None = None, *, label: str = "") -> Axes:
-        """Friction in steady motion over speed, with the effects that go with the speed.
+    def plot_friction(
+        self, ax: Axes | None = None, *, label: str = "", kind: str = "speed"
+    ) -> Axes:
+        """Friction of the plant as a curve, with the effects at its contact.
 
         Parameters
         ----------
@@ -611,21 +614,23 @@ class Plant:
             To draw into, one of a new figure without it: several plants into one compare laws.
         label : str
             In the legend, law and effects without it.
+        kind : {"speed", "hysteresis", "breakaway"}
+            Steady friction over speed; friction over displacement through a loop and a minor loop
+            of a few pre-sliding distances; greatest friction over the rate at which a soft spring
+            loads the contact.
 
         Returns
         -------
         matplotlib Axes
-        """
-        from . import plot
 
-        panel = plot.panel_for(ax)
-        speeds = self.curve_speeds()
-        told = label or " + ".join((self.friction.law, *(e.name for e in self.effects)))
-        panel.plot(speeds, self.friction_curve(speeds), label=told, linewidth=1.2)
-        panel.set_xlabel(f"speed ({self.position_unit}/s)")
-        panel.set_ylabel(f"friction ({self.effort_unit})")
-        plot.legend(panel)
-        return panel
+        Raises
+        ------
+        InputError
+            ``ax`` is something else than axes; another kind.
+        """
+        from .friction_plot import draw
+
+        return draw(self, ax, kind, label)
 
     def position_effort(self, positions: npt.ArrayLike) -> FloatArray:
         """Effort that the machine needs beside friction to stand at some places.

@@ -12,11 +12,12 @@ from typing import Any, Final
 
 from .drive import read_drive
 from .errors import InputError
+from .file_kinds import kind_of, kind_of_table
 from .given import regular
 from .keys import choice, known
 from .parameter import Parameter, number
 from .recording.units import Motion
-from .wording import listed
+from .wording import did_you_mean, listed
 
 __all__ = ["Parts", "check_payload", "parse", "read", "read_toml", "render"]
 
@@ -85,7 +86,7 @@ def read_toml(path: Path, *, least: str = "[friction] law") -> dict[str, Any]:
         _check_plain(path, text)
         table = tomllib.loads(text)
     except FileNotFoundError:
-        raise InputError(f"{path}: there is no such file; check the path") from None
+        raise InputError(f"{path}: there is no such file{_near(path)}; check the path") from None
     except IsADirectoryError:
         raise InputError(f"{path}: is a directory; give the file in it") from None
     except OSError as error:
@@ -95,7 +96,12 @@ def read_toml(path: Path, *, least: str = "[friction] law") -> dict[str, Any]:
     except UnicodeDecodeError:
         raise InputError(f"{path}: is not text in UTF-8; save it as UTF-8") from None
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{path}: is not TOML: {error}; mend that line") from None
+        if kind := kind_of(path):
+            raise InputError(
+                f"{path}: is a {kind}, and a plant or session file (TOML) is wanted here; stiction "
+                "init writes both"
+            ) from None
+        raise InputError(f"{path}: is not TOML: {error}; {_mend(text, str(error))}") from None
     except InputError:
         raise
     except ValueError:
@@ -105,6 +111,31 @@ def read_toml(path: Path, *, least: str = "[friction] law") -> dict[str, Any]:
     if not table:
         raise InputError(f"{path}: is empty; state at least {least}")
     return table
+
+
+def _near(path: Path) -> str:
+    """A file beside it that may be meant."""
+    try:
+        names = [each.name for each in path.parent.iterdir() if each.suffix == ".toml"]
+    except OSError:
+        return ""
+    return did_you_mean(path.name, names)
+
+
+_LINE: Final = re.compile(r"at line (\d+)")
+_BARE_TEXT: Final = re.compile(r"^\s*\w+\s*=\s*[A-Za-z./]")
+_COMMA: Final = re.compile(r"=\s*-?\d+,\d+\s*(#.*)?$")
+
+
+def _mend(text: str, error: str) -> str:
+    """What to do about a line that is no TOML."""
+    found, lines = _LINE.search(error), text.splitlines()
+    line = lines[int(found[1]) - 1] if found and int(found[1]) <= len(lines) else ""
+    if _COMMA.search(line):
+        return f"write a decimal point in place of the comma in {line.strip()}"
+    if _BARE_TEXT.search(line) and '"' not in line:
+        return f"put the text behind = into quotes in {line.strip()}"
+    return "mend that line"
 
 
 def _check_plain(path: Path, text: str) -> None:
@@ -138,6 +169,10 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
     InputError
         Unknown or missing keys, wrong types, values out of bounds.
     """
+    if kind_of_table(table) == "session file":
+        raise InputError(
+            f"{source}: is a session file, and a plant file is wanted; give the one that it names"
+        )
     known(table, _TABLES, source)
     motion_table = section(table, "motion", source)
     known(motion_table, ("kind",), f"{source}: [motion]")
@@ -176,6 +211,11 @@ def section(table: Mapping[str, Any], name: str, source: str) -> Mapping[str, An
 
 def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Parameter]:
     where = f"{source}: [body]"
+    for key in {"mass", "m", "J", "I"} & set(given):
+        raise InputError(
+            f"{where}: '{key}' is unknown; it is called inertia here, kg·m² of a rotary machine "
+            "and kg of a linear one"
+        )
     known(given, _BODY, where)
     body = {name: Parameter.read(value, f"{where} {name}") for name, value in given.items()}
     if "inertia" in body and not 0.0 <= body["inertia"].value < math.inf:
@@ -252,6 +292,7 @@ def _check_scale(
 def _friction(
     given: Mapping[str, Any], source: str
 ) -> tuple[str, dict[str, Parameter], dict[str, str]]:
+    from ._native import called
     from .catalogue import laws
 
     where = f"{source}: [friction]"
@@ -262,6 +303,10 @@ def _friction(
     record = next(record for record in laws() if record.name == law)
     options = {option.name: option for option in record.options}
     names = [parameter.name for parameter in record.parameters]
+    for key in given:
+        meant = None if key in (*names, *options) else called(law, key)
+        if meant is not None:
+            raise InputError(f"{where}: '{key}' is unknown; it is called '{meant}' here")
     known(given, ["law", *names, *options], where)
     words = {
         name: choice(given[name], (w for w, _ in option.choices), f"{where} {name}")

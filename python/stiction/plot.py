@@ -141,6 +141,66 @@ def panel_for(ax: Axes | None) -> Axes:
     return given.instance(ax, Axes, "plot: ax", "axes, as matplotlib's subplots returns them")
 
 
+class Panels(tuple["Axes", ...]):
+    """The axes that were drawn into, row by row; a notebook shows their figure."""
+
+    __slots__ = ()
+
+    @property
+    def figure(self) -> Figure:
+        """The figure of the first of them."""
+        from matplotlib.figure import Figure
+
+        return given.instance(self[0].get_figure(root=True), Figure, "plot", "axes of a figure")
+
+    @property
+    def axes(self) -> list[Axes]:
+        """The axes, as a figure has them."""
+        return list(self)
+
+    def _repr_png_(self) -> bytes:
+        return _encoded(self.figure, ".png")
+
+
+def panels_for(ax: Axes | Sequence[Axes] | None, names: Sequence[str]) -> list[Axes] | None:
+    """The axes that a caller gave for these panels, the first ones where there are fewer.
+
+    Parameters
+    ----------
+    ax : Axes or sequence of Axes, optional
+    names : sequence of str
+        What is drawn, a panel each.
+
+    Returns
+    -------
+    list of Axes, or None
+        None where no axes were given.
+
+    Raises
+    ------
+    InputError
+        Something else than axes, none, or more than there is to draw.
+    """
+    if ax is None:
+        return None
+    from matplotlib.axes import Axes
+
+    if isinstance(ax, Axes):
+        return [ax]
+    remedy = "axes, or a sequence of them, as matplotlib's subplots returns them"
+    found = [given.instance(each, Axes, "plot: ax", remedy) for each in _flat(ax, remedy)]
+    if not 0 < len(found) <= len(names):
+        raise InputError(
+            f"plot: ax holds {len(found)} axes, and there are {len(names)} panels to draw "
+            f"({', '.join(names)}); give that many or fewer"
+        )
+    return found
+
+
+def _flat(ax: object, remedy: str) -> list[object]:
+    return list(np.ravel(np.asarray(list(given.each_of(ax, "plot: ax", remedy)), dtype=object)))
+
+
 def legend(panel: Axes, **keywords: Any) -> None:
     """A legend without a frame, in the style of the package."""
     panel.legend(**{"frameon": False, "fontsize": SMALL, "handlelength": 1.6, **keywords})
@@ -182,41 +242,47 @@ def thinned(
     return along[kept], up[kept]
 
 
-def trajectory(trajectory: Trajectory, *, title: str = "") -> Figure:
+def trajectory(
+    trajectory: Trajectory, ax: Axes | Sequence[Axes] | None = None, *, title: str = ""
+) -> Panels:
     """Position, velocity and friction of a simulation over time, as far as it has them.
 
     Parameters
     ----------
     trajectory : Trajectory
+    ax : matplotlib Axes, or a sequence of them, optional
+        To draw into, one a column; those of a new figure without it.
     title : str
+        Of a new figure.
 
     Returns
     -------
-    Figure
+    Panels
+        The axes, one a column.
 
     Raises
     ------
     InputError
-        A trajectory without any column.
+        A trajectory without any column; something else than axes, or too many.
     """
-    labels = {
-        "position": "position\n(rad or m)",
-        "velocity": "velocity\n(rad/s or m/s)",
-        "friction": "friction\n(N·m or N)",
-    }
-    shown = [name for name in labels if name in trajectory] or list(trajectory)[:3]
+    shown = [name for name in ("position", "velocity", "friction") if name in trajectory]
+    shown = shown or list(trajectory)[:3]
     if not shown:
         raise InputError("the trajectory has no columns to draw; simulate with outputs")
-    drawn, panels = figure(len(shown), height=1.0 + 1.45 * len(shown), title=title, sharex=True)
+    panels = panels_for(ax, shown)
+    if panels is None:
+        tall = 1.0 + 1.45 * len(shown)
+        drawn, panels = figure(len(shown), height=tall, title=title, sharex=True)
+        drawn.align_ylabels()
     time = trajectory.time
-    for panel, name in zip(panels, shown, strict=True):
-        panel.plot(*thinned(time, trajectory[name]), color=SIMULATED, linewidth=1.1)
-        panel.set_ylabel(labels.get(name, name))
+    for panel, name in zip(panels, shown, strict=False):
+        panel.plot(*thinned(time, trajectory[name]), label=name, color=SIMULATED, linewidth=1.1)
+        unit = trajectory.units.get(name, "")
+        panel.set_ylabel(f"{name}\n({unit})" if unit else name)
         panel.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=True)
         panel.yaxis.get_offset_text().set_fontsize(SMALL)
     panels[-1].set_xlabel("time (s)")
-    drawn.align_ylabels()
-    return drawn
+    return Panels(panels)
 
 
 def overlay(
@@ -303,12 +369,13 @@ def residual(
     return _compared(time, measured_effort, model_effort, names, unit, title, quantity)
 
 
-def save(fig: Figure, path: str | Path) -> Path:
+def save(fig: Figure | Panels | Axes, path: str | Path) -> Path:
     """Write a figure as SVG or PNG, by the name's ending; the same figure gives the same bytes.
 
     Parameters
     ----------
-    fig : Figure
+    fig : Figure, Panels or matplotlib Axes
+        Of axes the figure they are in.
     path : str or Path
         Ending .svg or .png.
 
@@ -327,7 +394,7 @@ def save(fig: Figure, path: str | Path) -> Path:
         raise InputError(f"{path}: there is no folder {path.parent}; make it first")
     if path.suffix not in _FORMATS:
         raise InputError(f"{path}: ending '{path.suffix}' is not known; use .svg or .png")
-    data = _encoded(fig, path.suffix)
+    data = _encoded(_figure_of(fig), path.suffix)
     with given.written(path), replacing(path) as file:
         file.write(data)
     return path
@@ -369,6 +436,14 @@ def save_or_say(what: str, make: Callable[[], Figure], *paths: Path) -> str:
         with replacing(path) as file:
             file.write(data)
     return ""
+
+
+def _figure_of(drawn: Figure | Panels | Axes) -> Figure:
+    if isinstance(drawn, Panels):
+        return drawn.figure
+    from matplotlib.axes import Axes
+
+    return Panels([drawn]).figure if isinstance(drawn, Axes) else drawn
 
 
 def _encoded(fig: Figure, suffix: str) -> bytes:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import given
 from .errors import InputError
+from .file_kinds import kind_of_table
 from .frozen import Frozen, freeze
 from .keys import known
 from .plant import Plant
@@ -251,6 +252,10 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         given.instance(plant, Plant, "load: plant", "a Plant, as Plant.load returns it")
     table = read_toml(path, least='plant = "…" and one [[recordings]]')
     source = str(path)
+    if kind_of_table(table) == "plant file":
+        raise InputError(
+            f"{source}: is a plant file, and a recording or a session file is wanted here"
+        )
     known(table, _TABLES, source)
     if plant is None and "plant" in table:
         named = table["plant"]
@@ -333,6 +338,10 @@ def both_of(plant: Any, session: Any, where: str) -> tuple[Any, Any]:
     """
     if session is None and isinstance(plant, Session):
         plant, session = None, plant
+    if session is None and isinstance(plant, str | Path):
+        raise InputError(
+            f"{where}: '{plant}' is the name of a file; give what stiction.load('{plant}') returns"
+        )
     if session is None:
         raise InputError(
             f"{where}: there are no recordings; give a session, or a plant and recordings"

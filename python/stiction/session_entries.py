@@ -155,8 +155,23 @@ def _matching(path: Path, named: str, where: str) -> list[Path]:
     return sorted(set(found))
 
 
+_MEANT: Final = {
+    "training": "train",
+    "fit": "train",
+    "validation": "select",
+    "validate": "select",
+    "val": "select",
+    "testing": "test",
+    "holdout": "test",
+}
+"""What others call the roles."""
+
+
 def _labels(table: Mapping[str, Any], where: str) -> dict[str, Any]:
-    role = choice(table["role"], SPLIT_ROLES, f"{where} role") if "role" in table else None
+    stated = table.get("role")
+    if isinstance(stated, str) and (meant := _MEANT.get(stated.casefold())):
+        raise InputError(f"{where} role = '{stated}' is unknown; it is called '{meant}' here")
+    role = choice(stated, SPLIT_ROLES, f"{where} role") if stated is not None else None
     kind = table.get("kind", "")
     if not isinstance(kind, str):
         raise InputError(f'{where} kind = {kind!r} is not text; write kind = "…"')

@@ -27,6 +27,12 @@ RESPONSE_PARTS: Final = 16
 """Parts of a window whose efforts are told apart for screening: four to a knot of the kernel."""
 READ_AGAIN: Final = 11
 """Seed of the noise with which a motion is read again: always the same."""
+STARTED: Final = 8
+"""Readings of one motion from which its windows are begun, to see what errors of the start do."""
+DECIDED: Final = 3.0
+"""Times the usual size that errors of the start may come to in a window before it counts less."""
+GAUSSIAN: Final = 1.4826
+"""Standard deviations of a Gaussian to a median of its size."""
 MOST_LED: Final = 2
 """Plants by whose motion windows begin at a time, beside the first one: each holds its motion."""
 MOVES_TIMES: Final = 2.0
@@ -76,8 +82,9 @@ class ShootingForm(WeakForm):
         Windows in which the machine was seen to move.
     white : float
         Noise of the readings beside their rounding, rad or m.
-    unit : float
-        Inertia J₀ by which accelerations count as efforts; 1 as long as no plant states one.
+    unit : float or numpy.ndarray, shape (n,)
+        Inertia J₀ by which accelerations count as efforts; 1 as long as no plant states one. Less
+        in windows that the errors of their starts decide.
 
     Raises
     ------
@@ -91,14 +98,40 @@ class ShootingForm(WeakForm):
         self, plant: Plant, recording: Recording, *, horizon: float, overlap: float = MOST_OVERLAP
     ) -> None:
         self._leader: Plant | None = None
+        self.unit: float | FloatArray = 1.0
         super().__init__(plant, recording, support=horizon, every=horizon / overlap)
-        self.go_by(plant)
+        self._begin_with(plant)
         self.white = float(np.sqrt(max(self.noise**2 - self.count**2 / 12.0, 0.0)))
         least = MOVES_TIMES * max(self.count, 4.0 * self.white)
         self.moves = np.abs(self.velocity) * self.kernel.support > least
 
     def go_by(self, plant: Plant) -> None:
-        """Counts accelerations by the inertia of a plant, and starts windows from its runs."""
+        """Counts accelerations by the inertia of a plant, and starts windows from its runs.
+
+        A contact near the effort at which it breaks away does so in a window, or not, as the
+        readings at its start fall: what is left there says nothing of the plant, and may be a
+        thousand times what is left elsewhere. Such windows count less, by as much as readings
+        alone leave more of them than usual.
+        """
+        self._begin_with(plant)
+        if self.leads:
+            self.unit = self.unit * self._weights(plant)
+
+    def _weights(self, plant: Plant) -> FloatArray:
+        """Weight of every window, 1 of most, by what errors of its start come to; shape (n,)."""
+        left = self.residual(plant)
+        alone = self.from_readings_alone(plant, number=STARTED)
+        sizes = np.sqrt(np.mean(np.square(alone), axis=0))
+        if not (self.moves.any() and np.isfinite(sizes).all() and np.isfinite(left).all()):
+            return np.ones(len(self))
+        readings, rest = sizes[self.moves], np.abs(left[self.moves])
+        usual = max(float(np.median(readings)), GAUSSIAN * float(np.median(rest)))
+        most = max(DECIDED * usual, np.finfo(float).tiny)
+        weights: FloatArray = most / np.maximum(sizes, most)
+        return weights
+
+    def _begin_with(self, plant: Plant) -> None:
+        """Leader and inertia, all windows alike."""
         stated = "inertia" in plant.body
         self.unit = self.own(plant).inertia if stated else 1.0
         if stated and self._is_rigid(plant):
@@ -197,7 +230,7 @@ class ShootingForm(WeakForm):
             )
         except InputError:
             return np.zeros((len(self), len(wanted)))
-        columns: FloatArray = self.unit * moved.T
+        columns: FloatArray = (self.unit * moved).T
         return columns
 
     def signatures(
@@ -221,7 +254,7 @@ class ShootingForm(WeakForm):
         found = self.begun(plant, self.position).shoot_signatures(
             self.motion, weights, self.stride, list(candidates), number, start=start, strict=False
         )
-        columns: FloatArray = self.unit * found.T
+        columns: FloatArray = (self.unit * found).T
         return columns if kept is None else columns[kept]
 
     def missed(
@@ -243,14 +276,24 @@ class ShootingForm(WeakForm):
         missed: FloatArray = self.unit * (got - self.accelerations(readings))
         return missed
 
-    def from_readings_alone(self, plant: Plant, start: Start = None) -> FloatArray:
-        """Residual that noise and rounding of the position leave a right plant; shape (n,)."""
+    def from_readings_alone(
+        self, plant: Plant, start: Start = None, *, number: int = 1
+    ) -> list[FloatArray]:
+        """Residuals that noise and rounding of the position leave a right plant; shape (n,) each.
+
+        Of one motion that is read ``number`` times, after the first time with counts that stand
+        elsewhere.
+        """
         motion, load = accompanied(self, plant, start)
         source = np.random.default_rng(READ_AGAIN)
-        readings = motion + self.white * source.standard_normal(len(motion))
-        if self.count > 0.0:
-            readings = np.round(readings / self.count) * self.count
-        return self.missed(plant, start, readings, load)
+        found = []
+        for k in range(number):
+            readings = motion + self.white * source.standard_normal(len(motion))
+            if self.count > 0.0:
+                phase = self.count * source.uniform() if k else 0.0
+                readings = np.round((readings + phase) / self.count) * self.count - phase
+            found.append(self.missed(plant, start, readings, load))
+        return found
 
     def _missed(self, plant: Plant, start: Start) -> FloatArray:
         """Acceleration of the simulated motion beyond the measured one, through the kernel."""

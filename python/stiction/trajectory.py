@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -12,16 +12,27 @@ import numpy.typing as npt
 from . import given
 from .errors import InputError, UnknownName
 from .frozen import Frozen
+from .keys import choice
 from .table_file import save_table
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
+
+    from .plot import Panels
 
 __all__ = ["FloatArray", "Trajectory"]
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 _MOTION = ("position", "velocity", "friction", "measured")
+_UNITS: Final = {
+    motion: dict(zip(_MOTION, units, strict=True))
+    for motion, units in (
+        ("rotary", ("rad", "rad/s", "N·m", "rad")),
+        ("linear", ("m", "m/s", "N", "m")),
+        ("", ("rad or m", "rad/s or m/s", "N·m or N", "rad or m")),
+    )
+}
 
 
 class Trajectory:
@@ -40,6 +51,8 @@ class Trajectory:
         Seconds since the motor's last reset; computed on access.
     position, velocity, friction, measured, … : numpy.ndarray, shape (n,)
         The same: rad or m, rad/s or m/s, N·m or N; the law's own states under their names.
+    units : Mapping of str to str
+        Of position, velocity, friction and measured; of a motor alone both that they may have.
     statistics : Mapping of str to int
         How often each branch was taken since the last reset.
     success : bool
@@ -51,7 +64,7 @@ class Trajectory:
     # In one tuple that is kept once: a call of `simulate` that other work has pushed out of the
     # cache takes as long as what it looks up. What is given is the trajectory's own from now on.
     __slots__ = ("__weakref__", "_own")
-    _own: tuple[dict[str, FloatArray], float | FloatArray, int, float, dict[str, int]]
+    _own: tuple[dict[str, FloatArray], float | FloatArray, int, float, dict[str, int], str]
 
     def __init__(
         self,
@@ -60,8 +73,23 @@ class Trajectory:
         length: int,
         start: float,
         statistics: dict[str, int],
+        motion: str = "",
     ) -> None:
-        _keep(self, (columns, dt, length, start, statistics))
+        _keep(self, (columns, dt, length, start, statistics, motion))
+
+    def of_motion(self, motion: str) -> Trajectory:
+        """The same of a machine of this kind, which a motor does not know: it then has units.
+
+        Parameters
+        ----------
+        motion : {"rotary", "linear"}
+
+        Raises
+        ------
+        InputError
+            Another word.
+        """
+        return Trajectory(*self._own[:5], choice(motion, ("rotary", "linear"), "motion"))
 
     @property
     def _columns(self) -> dict[str, FloatArray]:
@@ -86,6 +114,15 @@ class Trajectory:
     def statistics(self) -> Mapping[str, int]:
         """How often each branch was taken since the last reset."""
         return Frozen(self._own[4])
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Units of position, velocity, friction and measured position, as far as it has them.
+
+        Both where nobody said whether it turns; of a simulation of a ``Plant`` that is known.
+        """
+        units = {name: each for name, each in _UNITS[self._own[5]].items() if name in self._columns}
+        return Frozen(units)
 
     @property
     def columns(self) -> Mapping[str, FloatArray]:
@@ -163,6 +200,7 @@ class Trajectory:
             "length": self._length,
             "start": self._start,
             "statistics": dict(self.statistics),
+            "motion": self._own[5],
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -173,15 +211,17 @@ class Trajectory:
         return f"Trajectory({self._length} samples, {span:.6g} s: {', '.join(self._columns)})"
 
     def _repr_html_(self) -> str:
+        units = self.units
         rows = "".join(
-            f"<tr><th>{name}</th><td>{values[0]:.6g}</td><td>{values.min():.6g}</td>"
+            f"<tr><th>{name}</th><td>{units.get(name, '')}</td><td>{values[0]:.6g}</td>"
+            f"<td>{values.min():.6g}</td>"
             f"<td>{values.max():.6g}</td><td>{values[-1]:.6g}</td></tr>"
             for name, values in self._columns.items()
             # A chunk of a stream may be shorter than what it keeps a row of.
             if values.size
         )
         return (
-            f"<p>{self.message}</p>{self._drawing()}<table><tr><th>column</th><th>first</th><th>least</th>"
+            f"<p>{self.message}</p>{self._drawing()}<table><tr><th>column</th><th>unit</th><th>first</th><th>least</th>"
             f"<th>greatest</th><th>last</th></tr>{rows}</table>"
         )
 
@@ -190,7 +230,10 @@ class Trajectory:
         from .notebook import drawing
 
         name = "position" if "position" in self._columns else next(iter(self._columns), "")
-        return drawing([(name, self.time, self._columns[name])], "time (s)", name) if name else ""
+        if not name:
+            return ""
+        label = f"{name} ({self.units[name]})" if name in self.units else name
+        return drawing([(name, self.time, self._columns[name])], "time (s)", label)
 
     def to_frame(self) -> Any:
         """A pandas DataFrame indexed by time (pandas is an extra: ``stiction[pandas]``).
@@ -232,17 +275,27 @@ class Trajectory:
         path = given.path(path, "Trajectory.save")
         return save_table(path, {"time_s": self.time, **self._columns})
 
-    def plot(self) -> Figure:
-        """A figure of position, velocity and friction over time.
+    def plot(self, ax: Axes | Sequence[Axes] | None = None) -> Panels:
+        """Position, velocity and friction over time, with their units.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, or a sequence of them, optional
+            To draw into, one a column in this order; those of a new figure without it.
+
+        Returns
+        -------
+        Panels
+            The axes, a tuple that a notebook shows as a figure; ``.figure`` is that.
 
         Raises
         ------
         InputError
-            There are no columns to draw.
+            There are no columns to draw; ``ax`` is something else than axes, or too many.
         """
         from . import plot
 
-        return plot.trajectory(self)
+        return plot.trajectory(self, ax)
 
 
 def _read_only(values: FloatArray) -> FloatArray:

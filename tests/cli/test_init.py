@@ -351,3 +351,21 @@ def test_a_line_of_units_below_the_header_is_taken_at_its_word(
     assert len(recording) == ROWS
     assert recording.input == pytest.approx(1e-3 * channels()["drive"])
     assert recording.position == pytest.approx(np.radians(channels()["position"]))
+
+
+def test_an_input_that_nothing_tells_the_unit_of_stays_to_do(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    time = 1e-3 * np.arange(4000)
+    table = np.column_stack([time, np.sin(5.0 * time), 0.2 * np.sin(3.0 * time)])
+    for name in ("effort", "pwm"):
+        path = tmp_path / f"{name}.csv"
+        np.savetxt(path, table, delimiter=",", header=f"time,{name},position", comments="")
+        assert run(["init", str(path), "-o", str(tmp_path / f"draft-{name}")]) == 0
+        assert f"to do: state what '{name}' is measured in" in capsys.readouterr().out
+        fit = ["fit", str(path), "-o", str(tmp_path / f"fit-{name}")]
+        assert run(fit) == 0
+        told = f"input = {name} [V is a guess: nothing tells what it is measured in]"
+        assert told in capsys.readouterr().out
+        assert run([*fit, "--columns", f"input={name} [V]"]) == 0
+        assert "is a guess" not in capsys.readouterr().out.splitlines()[0]

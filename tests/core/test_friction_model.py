@@ -383,7 +383,8 @@ def test_attributes_cannot_be_overwritten():
     for name in ("parameters", "options", "law", "anything"):
         with pytest.raises(AttributeError):
             setattr(model, name, 1.0)
-    model.parameters["breakaway"] = 3.0
+    with pytest.raises(st.InputError, match="cannot be set in place"):
+        model.parameters["breakaway"] = 3.0
     assert model.parameters["breakaway"] == 0.5
 
 

@@ -175,11 +175,12 @@ def test_a_second_name_of_the_curve_over_speed_may_be_the_form_of_the_first(
     assert left_open.of_one_curve(selection) == doubted
 
 
-@pytest.mark.parametrize("smallest", [0.0, 1.0, -0.1, True, "1", float("nan")])
-def test_what_is_no_share_is_refused(smallest: Any, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["smallest", "alpha"])
+@pytest.mark.parametrize("given", [0.0, 1.0, -0.1, True, "1", float("nan")])
+def test_what_is_no_share_is_refused(name: str, given: Any, tmp_path: Path) -> None:
     recordings = session(tmp_path, Spec(11, law="coulomb", contact="dry", **SHORT))
-    with pytest.raises(st.InputError, match="is out of bounds: give a share"):
-        st.diagnose(None, recordings, smallest=smallest)
+    with pytest.raises(st.InputError, match=f"^{name} = .* is out of bounds: give a share"):
+        st.diagnose(None, recordings, **{name: given})
 
 
 def test_what_is_smaller_than_was_asked_for_gets_no_name(tmp_path: Path) -> None:

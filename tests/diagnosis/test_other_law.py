@@ -62,7 +62,10 @@ def test_a_name_that_took_less_than_twice_what_is_left_is_not_decided(
     assert left_open.outweighed(selection, []) == set()
 
 
-def test_a_further_name_of_which_no_number_is_known_is_not_decided() -> None:
+@pytest.mark.parametrize(("strength", "sure"), [(60.0, True), (5.0, False)])
+def test_a_name_of_which_no_number_is_known_is_decided_by_its_strength_alone(
+    strength: float, sure: bool
+) -> None:
     def cause(name: str, *intervals: tuple[float, float]) -> Cause:
         numbers: Any = {
             f"effects.{name}.{k}": SimpleNamespace(ci95=ci95) for k, ci95 in enumerate(intervals)
@@ -75,12 +78,12 @@ def test_a_further_name_of_which_no_number_is_known_is_not_decided() -> None:
     third = cause("drive_deadband", open_)
     fourth = cause("cogging", open_, known)
     causes = [first, second, third, fourth, cause("warm_up", open_, open_)]
-    strengths = {"drive_deadband": 5.0, "warm_up": 60.0}
+    strengths = {"creep_hardening": strength, "drive_deadband": 5.0, "warm_up": 60.0}
     model = SimpleNamespace(strength=lambda candidate: strengths[candidate])
     choices = [SimpleNamespace(winner=SimpleNamespace(candidate=each.name)) for each in causes]
     selection: Any = SimpleNamespace(models=[model], choices=choices)
     found = left_open.known_by_themselves(selection, causes)
-    assert [each.decided for each in found] == [True, True, False, True, True]
+    assert [each.decided for each in found] == [sure, True, False, True, True]
 
 
 def test_a_known_speed_says_nothing_of_the_strength() -> None:

@@ -573,7 +573,7 @@ def test_findings_hold_every_field_that_others_build_on() -> None:
     assert list(found) == [
         "schema", "verdict", "sentence", "effects", "gain", "gap_closed", "evidence", "candidates",
         "laws", "better_law", "baseline", "extended", "unexplained", "advice", "data", "version",
-        "seed", "smallest", "seconds",
+        "seed", "smallest", "alpha", "seconds",
     ]  # fmt: skip
     assert found["schema"] == 1
     assert {row["name"] for row in found["candidates"]} == {e.name for e in st.effects()}

@@ -9,7 +9,7 @@ import stiction as st
 from stiction.diagnosis.candidates import Candidate, Scales, candidates
 from stiction.diagnosis.evidence import Plan
 from stiction.diagnosis.regression import project
-from stiction.diagnosis.screen import Problem, Score, screen
+from stiction.diagnosis.screen import ALPHA, Problem, Score, _quantile, screen
 from stiction.diagnosis.signatures import Signatures
 from stiction.parameter import Parameter
 from stiction.stated import Effect
@@ -54,7 +54,9 @@ def tried() -> tuple[Candidate, ...]:
     return tuple(each for name in NAMES for each in candidates(records[name], scales))
 
 
-def screened(columns: np.ndarray, base: np.ndarray, residual: np.ndarray) -> dict[str, Score]:
+def screened(
+    columns: np.ndarray, base: np.ndarray, residual: np.ndarray, alpha: float = ALPHA
+) -> dict[str, Score]:
     """Scores of all candidates, of which each has as many of the columns as it has gains."""
     every = tried()
     gains = sum(len(each.gains) for each in every)
@@ -63,7 +65,26 @@ def screened(columns: np.ndarray, base: np.ndarray, residual: np.ndarray) -> dic
     block = np.arange(ROWS) // 20
     problem = Problem(residual, base, null[fit], block, fit, [Plan(fit, ~fit)])
     signatures = Signatures.given(every, columns[:, :gains], fit)
-    return {score.candidate.name: score for score in screen(problem, signatures, 1.0)}
+    return {score.candidate.name: score for score in screen(problem, signatures, 1.0, alpha)}
+
+
+def test_noise_passes_as_often_as_the_level_says() -> None:
+    # The greatest of a grid of a dozen squares of noise; a hundred replays, as many judged.
+    rng = np.random.default_rng(8)
+    for level in (0.2, 0.05, 0.01):
+        passed = 0
+        for _ in range(400):
+            replays, others = rng.chisquare(1.0, (2, 12, 100))
+            passed += int(np.sum(np.max(others, axis=0) > _quantile(replays, level)))
+        assert passed / 40_000 == pytest.approx(level, rel=0.4)
+
+
+def test_a_stricter_level_asks_for_more() -> None:
+    rng = np.random.default_rng(9)
+    columns, base = rng.standard_normal((ROWS, 40)), rng.standard_normal((ROWS, 3))
+    residual = rng.standard_normal(ROWS)
+    strict, loose = (screened(columns, base, residual, alpha) for alpha in (1e-4, 0.1))
+    assert all(strict[name].threshold > loose[name].threshold for name in strict)
 
 
 def explained(columns: np.ndarray, base: np.ndarray, residual: np.ndarray) -> float:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import stiction as st
+from stiction.bench.ordinary.draw import Spec, ordinary
+from stiction.bench.ordinary.files import write
 from stiction.diagnosis.evidence import Evidence
 from stiction.diagnosis.model import Model, fitted
 from stiction.diagnosis.replay import noise_of, surrogate_residuals
@@ -178,3 +181,42 @@ def test_a_hidden_effort_is_found_through_a_coarse_encoder() -> None:
     assert len(found.effects) == 1
     assert found.gain is not None
     assert found.gain.ci95[0] > 0.5
+
+
+KICKED = {"law": "coulomb", "contact": "dry", "recordings": 4, "seconds": 60.0, "linear": False}
+
+
+def test_a_window_that_its_start_decides_bends_no_fit(tmp_path: Path) -> None:
+    # The controller's derivative kicks a contact that barely breaks away, or does not, as the
+    # counts fall: weighing as much as all others these windows bent the inertia by 5 %.
+    made = ordinary(Spec(701022, loop="pd", **KICKED))
+    found = st.fit(st.load(write(made, tmp_path))).parameters
+    assert found["body.inertia"].value == pytest.approx(made.machine.inertia, rel=0.03)
+    assert found["friction.coulomb"].value == pytest.approx(made.machine.coulomb, rel=0.005)
+
+
+def test_windows_that_their_starts_decide_count_less(tmp_path: Path) -> None:
+    session = st.load(write(ordinary(Spec(701022, loop="pd", **KICKED)), tmp_path))
+    fit = st.fit(session)
+    low = 0
+    for recording in session:
+        form = ShootingForm(fit.plant, recording, horizon=0.12)
+        whole = form.residual(fit.plant)
+        form.go_by(fit.plant)
+        weights = form.unit / fit.plant.inertia
+        assert np.all((weights > 0.0) & (weights <= 1.0))
+        assert np.mean(weights < 1.0) < 0.2
+        assert np.allclose(form.residual(fit.plant), weights * whole, rtol=1e-9, atol=1e-15)
+        paths = ["body.inertia", "friction.coulomb"]
+        slopes = form.jacobian(fit.plant, paths)
+        bare = ShootingForm(fit.plant, recording, horizon=0.12).jacobian(fit.plant, paths)
+        assert np.allclose(slopes, weights[:, None] * bare, rtol=1e-9, atol=1e-15)
+        low += int(np.sum(weights < 1.0))
+    assert low > 0
+
+
+@pytest.mark.slow
+def test_a_dead_band_is_found_where_a_start_decides_single_windows(tmp_path: Path) -> None:
+    spec = Spec(701004, hidden="drive_deadband", size=0.18, loop="pd", **KICKED)
+    found = st.diagnose(st.load(write(ordinary(spec), tmp_path)))
+    assert [cause.name for cause in found.effects] == ["drive_deadband"]

@@ -22,6 +22,8 @@ from pathlib import Path
 
 from tests.cli.desk import Desk
 
+from stiction.cli import app as cli
+
 PROGRESS = re.compile(r"\d[\d a-z]*: ")
 """A line of what a long run is doing begins with the time that has gone."""
 COLUMNS = "time=t, input=u [Nm], position=q [rad]"
@@ -40,6 +42,7 @@ VERBS: dict[str, tuple[str, ...]] = {
     "bench": ("bench", "score", "bench", "bench/answers"),
     "laws": ("laws",),
     "effects": ("effects",),
+    "completion": ("completion", "man"),
     "paper": ("paper",),
     "demo": ("demo",),
 }
@@ -112,7 +115,9 @@ def forks() -> multiprocessing.context.ForkServerContext:
     context = multiprocessing.get_context("forkserver")
     # The server imports before it is told where from.
     os.environ["PYTHONPATH"] = os.pathsep.join(path for path in sys.path if path)
-    context.set_forkserver_preload(["tests.faults.verbs", "stiction.cli.app"])
+    # What a verb needs is imported when it is asked for.
+    verbs = sorted({f"stiction.cli.{verb.where.partition(':')[0]}" for verb in cli.VERBS})
+    context.set_forkserver_preload(["tests.faults.verbs", *verbs])
     return context
 
 

@@ -26,6 +26,7 @@ EXCLUDED = {
     "stiction.InputError": "takes a sentence, as every exception does",
     "stiction.Trajectory": "made by simulations alone",
     "stiction.EnsembleRun": "made by simulations alone",
+    "stiction.CurveFit": "made by fits alone",
     "stiction.FitResult": "made by fits alone",
     "stiction.Diagnosis": "made by diagnoses alone",
     "stiction.plan.Plan": "made by plans alone",

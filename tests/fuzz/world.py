@@ -157,6 +157,9 @@ PRODUCERS: dict[str, Callable[[], Any]] = {
     "Trajectory": lambda: motor().simulate(wave(50), 1e-3),
     "EnsembleRun": lambda: st.simulate_ensemble(motor(), np.ones((2, 5)), 1e-3),
     "Ensemble": lambda: st.Ensemble(motor(), 3),
+    "CurveFit": lambda: st.fit_curve(
+        [0.1, 0.2, 0.5, 1.0, 2.0, 4.0], [0.3, 0.31, 0.3, 0.34, 0.4, 0.5]
+    ),
     "FitResult": lambda: st.fit(plant(), session(), max_evaluations=3),
     "Diagnosis": lambda: st.diagnose(plant(), session(), surrogates=4),
     "Split": lambda: session().split(),

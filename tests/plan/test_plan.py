@@ -320,3 +320,17 @@ def test_a_linear_machine_must_say_how_far_it_may_go(
     told = json.loads(capsys.readouterr().out)
     assert [s["name"] for s in told["signals"]] == ["turns-train", "turns-select", "turns-test"]
     assert any("loops are left out" in note for note in told["notes"])
+
+
+def test_a_plant_without_inertia_gets_references_and_is_told_what_was_assumed() -> None:
+    table = {"drive": {"input": "current_a"}, "friction": {"law": "coulomb"}}
+    made = plan(st.Plant.from_dict(table), position=3.0, speed=5.0)
+    assert {signal.kind for signal in made.signals} == {"reference"}
+    told = " ".join(made.notes)
+    assert "states no inertia: signals are sized as if it were" in told
+    assert "pulses, loops, chirp are left out" in told
+    assert "inertia" not in made.plant.body
+    assert all(signal.greatest["speed"] <= 1.02 * 5.0 for signal in made.signals)
+    # Stated, nothing is assumed, and the drive alone is planned for as well.
+    stated = plan(st.Plant.from_dict({**table, "body": {"inertia": 0.004}}), only=("pulses",))
+    assert "inertia" not in " ".join(stated.notes)

@@ -188,7 +188,7 @@ def test_canonical_columns_of_the_other_motion_are_left_out_and_told(archive: Ar
 @pytest.mark.parametrize(
     ("names", "columns", "message"),
     [
-        (("t", "current_a"), {}, "no column is known to be the time; the columns here are t, "),
+        (("k", "current_a"), {}, "no column is known to be the time; the columns here are k, "),
         (("time_s", "x"), {}, "no column is known to be the input"),
         (("time_s", "current_a"), {"position": "tme_s"}, r"no column 'tme_s'.*mean 'time_s'"),
         (("time_s", "f"), {"effort": "f"}, "no column is known to be the position"),
@@ -258,3 +258,18 @@ def test_a_line_of_units_that_says_something_else_is_refused(
 def test_a_line_of_units_may_say_the_same_in_other_letters(tmp_path: Path) -> None:
     path = with_units(tmp_path, "time_s,torque_nm,position_rad", "s,N·m,[rad]")
     assert Recording.load(path).notes == ()
+
+
+def test_a_clock_is_known_by_its_name_and_by_how_it_goes(archive: Archive) -> None:
+    clock = 1e-3 * np.arange(len(RAMP))
+    for name, factor in (("time", 1.0), ("t", 1.0), ("time [ms]", 1e3)):
+        recording = Recording.load(archive("current_a", "position_rad", **{name: factor * clock}))
+        np.testing.assert_allclose(recording.time, clock, atol=1e-12)
+        assert any(f"'{name}' was taken by its name" in note for note in recording.notes)
+    columns = {"input": {"name": "u", "unit": "A"}, "position": {"name": "q", "unit": "rad"}}
+    path = archive("u", "q", time=clock)
+    assert len(Recording.load(path, columns).time) == len(clock)
+    # What does not rise is no clock, and of two nobody knows which.
+    for columns in ({"time": clock[::-1].copy()}, {"time": clock, "t": clock}):
+        with pytest.raises(InputError, match="no column is known to be the time"):
+            Recording.load(archive("current_a", "position_rad", **columns))

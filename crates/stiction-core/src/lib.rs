@@ -35,6 +35,7 @@ pub mod servo;
 pub mod shoot;
 pub mod signatures;
 pub mod smoothing;
+pub mod symbol;
 mod traces;
 mod track;
 pub mod trig;

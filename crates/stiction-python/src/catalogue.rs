@@ -3,8 +3,10 @@
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use stiction_core::effects::EFFECTS;
-use stiction_core::friction::LAWS;
+use stiction_core::friction::{LAWS, law_record};
 use stiction_core::parameter::{Default, MotionKind, ParameterSpec};
+
+use crate::arguments::Text;
 
 fn parameters<'py>(
     py: Python<'py>,
@@ -15,6 +17,7 @@ fn parameters<'py>(
     for spec in specs {
         let dict = PyDict::new(py);
         dict.set_item("name", spec.name)?;
+        dict.set_item("symbol", spec.symbol())?;
         dict.set_item("meaning", spec.meaning)?;
         dict.set_item("unit", spec.quantity.unit(MotionKind::Rotary))?;
         dict.set_item("linear_unit", spec.quantity.unit(MotionKind::Linear))?;
@@ -58,6 +61,19 @@ pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         list.append(dict)?;
     }
     Ok(list)
+}
+
+/// The parameter of a law that somebody means by a symbol of the literature, or None.
+#[pyfunction]
+pub fn called(law: Text, given: Text) -> Option<&'static str> {
+    let (Text(law), Text(given)) = (law, given);
+    law_record(&law).ok()?.called(&given).map(|spec| spec.name)
+}
+
+/// The laws with what each is, for whoever asks for help.
+pub fn list_of_laws() -> String {
+    let wide = LAWS.iter().map(|law| law.name.len()).max().unwrap_or(0);
+    LAWS.iter().map(|law| format!("{:<wide$}  {}\n", law.name, law.summary)).collect()
 }
 
 /// Every effect of the catalogue.

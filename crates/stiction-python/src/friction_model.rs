@@ -7,7 +7,8 @@ use std::sync::MutexGuard;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::pyclass::CompareOp;
-use pyo3::types::{PyBool, PyDict, PyTuple};
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyBool, PyDict, PyString, PyTuple, PyType};
 use stiction_core::effects::EffectSpec;
 use stiction_core::friction::{Channels, Entry};
 use stiction_core::model::{FrictionModel as Core, LawSpec};
@@ -102,6 +103,34 @@ pub fn effects_dict<'py>(py: Python<'py>, effects: &[EffectSpec]) -> PyResult<Bo
     Ok(dict)
 }
 
+/// How a parameter of a model is changed, in words.
+pub const PARAMETERS: &str = "a model has the parameters and options that it was made with; make \
+     another one, as in FrictionModel(f.law, **{**f.parameters, 'coulomb': 3.0})";
+
+/// A dict that refuses to be changed in place, and says how it is done.
+pub fn fixed<'py>(dict: Bound<'py, PyDict>, remedy: &str) -> PyResult<Bound<'py, PyAny>> {
+    static FIXED: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    FIXED.import(dict.py(), "stiction.fixed", "Fixed")?.call1((dict, remedy))
+}
+
+/// A velocity of one contact: many at once are told where they belong.
+#[inline]
+fn one(value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    real(value).map_err(|error| {
+        if value.is_none() || value.is_instance_of::<PyString>() || value.len().is_err() {
+            return error;
+        }
+        input_error(
+            value.py(),
+            format!(
+                "velocity holds {} numbers, and a step takes one: simulate(velocity, dt) takes the \
+                 samples of one contact, and Ensemble(motor, n).step_many those of many machines",
+                value.len().unwrap_or(0)
+            ),
+        )
+    })
+}
+
 /// A number as Python reads it.
 fn literal(value: f64) -> String {
     if value.is_finite() { format!("{value:?}") } else { format!("float('{value}')") }
@@ -169,7 +198,7 @@ impl FrictionModel {
     fn step(
         &self,
         py: Python<'_>,
-        #[pyo3(from_py_with = real)] velocity: f64,
+        #[pyo3(from_py_with = one)] velocity: f64,
         #[pyo3(from_py_with = real)] dt: f64,
         #[pyo3(from_py_with = real)] load: f64,
         #[pyo3(from_py_with = real)] effort: f64,
@@ -399,13 +428,15 @@ impl FrictionModel {
 
     /// Every parameter as a new dict: those of the law by name, those of effects by path, as
     /// ``effects.cogging.cosine``.
+    ///
+    /// It cannot be changed in place: a model has the parameters it was made with.
     #[getter]
-    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let dict = PyDict::new(py);
         for (path, value) in self.core(py)?.parameters() {
             dict.set_item(path, value)?;
         }
-        Ok(dict)
+        fixed(dict, PARAMETERS)
     }
 
     /// Effects by name with their parameters, as they are given, as a new dict.
@@ -415,14 +446,18 @@ impl FrictionModel {
         effects_dict(py, &effects)
     }
 
-    /// Every option by name, as a new dict.
+    /// Every option by name, as a new dict that cannot be changed in place.
     #[getter]
-    fn options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let dict = PyDict::new(py);
         for (name, word) in self.core(py)?.spec().options() {
             dict.set_item(name, word)?;
         }
-        Ok(dict)
+        fixed(dict, PARAMETERS)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("stiction.notebook")?.call_method1("friction_model", (slf,))
     }
 
     /// Whether the contact never gives back more work than it took; some laws do under a condition. With

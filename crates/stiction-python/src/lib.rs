@@ -23,7 +23,7 @@ mod _native {
     #[pymodule_export]
     use super::cancel::CancelToken;
     #[pymodule_export]
-    use super::catalogue::{effects, laws};
+    use super::catalogue::{called, effects, laws};
     #[pymodule_export]
     use super::ensemble::Ensemble;
     #[pymodule_export]
@@ -40,6 +40,9 @@ mod _native {
     #[pymodule_export]
     #[allow(non_upper_case_globals)] // Python's own name for it
     const __version__: &str = env!("CARGO_PKG_VERSION");
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)] // likewise
+    const __profile__: &str = env!("STICTION_PROFILE");
 
     use pyo3::prelude::*;
 
@@ -47,6 +50,14 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // The list of laws is the catalogue's, and not written down twice.
+        let friction_model = module.getattr("FrictionModel")?;
+        let doc: String = friction_model.getattr("__doc__")?.extract()?;
+        let laws = super::catalogue::list_of_laws();
+        friction_model.setattr(
+            "__doc__",
+            format!("{doc}\n\nLaws (``stiction laws NAME`` shows one):\n\n{laws}"),
+        )?;
         super::shared::count_forks(module)
     }
 

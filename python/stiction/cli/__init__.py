@@ -55,7 +55,7 @@ def _run(arguments: Sequence[str]) -> int:
     from .refusal import refusal
 
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="%(message)s")
-    app = build()
+    app = build(next((word for word in arguments if not word.startswith("-")), ""))
     for given in arguments:
         if not given or (given.startswith("-") and given.endswith("=")):
             return _refuse(f"{given or 'an argument'} is empty; write a value, or leave it out")

@@ -12,7 +12,8 @@ from ..atomic_files import write_text
 from ..errors import InputError
 from ..wording import counted
 from .answer import answer, folder, told_anyway, written
-from .given import Whole
+from .app import VERBS
+from .given import Quiet, Whole
 from .progress import progress
 
 __all__ = ["bench"]
@@ -21,6 +22,7 @@ bench = cyclopts.App(
     name="bench",
     help="Lay out sessions whose truth is hidden, and score anybody's answers to them.",
     help_format="plaintext",
+    help_epilogue=next(verb.epilogue for verb in VERBS if verb.name == "bench"),
     version_flags=(),
 )
 
@@ -35,6 +37,7 @@ def make(
     seconds: str = "40,120",
     cases: str = "null,hidden",
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Lay out sessions of a simulated machine, and their truth in a folder of its own.
 
@@ -60,7 +63,7 @@ def make(
     from ..bench import make as lay_out
 
     kinds = [case.strip() for case in cases.split(",") if case.strip()]
-    with progress():
+    with progress(quiet):
         given = _bounds(seconds)
         try:
             path = lay_out(where, number=number, seed=seed, seconds=given, cases=kinds)
@@ -83,6 +86,7 @@ def run(
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     threads: Whole | None = None,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Answer every session of a bench as stiction diagnose does; goes on where it was interrupted.
 
@@ -100,7 +104,7 @@ def run(
     from ..bench import run as diagnosed
 
     answers = folder(Path(f"{where.name}-answers") if out is None else out)
-    with progress():
+    with progress(quiet):
         try:
             said = diagnosed(where, answers, threads=threads)
         except OSError as error:
@@ -118,6 +122,7 @@ def score(
     *,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Compare answers with the truth: how often names are right, wrong and sure, or missing.
 
@@ -137,7 +142,7 @@ def score(
     # Better said before the work than after it.
     if out is not None:
         folder(out)
-    with progress():
+    with progress(quiet):
         found = scored(where, answers)
     text = str(found)
     if out is not None:

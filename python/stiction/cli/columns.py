@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..errors import InputError
+from ..recording.columns import ROLES
 
 __all__ = ["read_columns"]
 
@@ -27,6 +28,15 @@ def read_columns(text: str) -> dict[str, Any]:
             )
         if role in columns:
             raise InputError(f"--columns: {role} is there twice; drop one")
+        if "=" in name:
+            raise InputError(
+                f"--columns: '{entry.strip()}' holds two columns; put a comma between them, as in "
+                '"input=u [V], position=x [mm]"'
+            )
+        if name in ROLES and role not in ROLES:
+            raise InputError(
+                f"--columns: '{entry.strip()}' is the wrong way round; write {name}={role}"
+            )
         bare, bracket, unit = name.partition("[")
         if bracket:
             if not unit.endswith("]"):

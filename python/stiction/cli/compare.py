@@ -12,7 +12,7 @@ from ..compare import compare as run
 from ..compare.draws import DRAWS
 from ..compare.properties.passivity import PASSIVE_STEPS
 from .answer import answer, folder, json_of, written
-from .given import Whole
+from .given import Quiet, Whole
 from .progress import progress
 
 __all__ = ["compare"]
@@ -24,6 +24,7 @@ def compare(
     draws: Whole = DRAWS,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Compare friction laws by experiment: fifteen properties of each, computed.
 
@@ -42,14 +43,14 @@ def compare(
     """
     if out is not None:
         folder(out)
-    with progress():
+    with progress(quiet):
         made = run(laws, steps=steps, draws=draws)
     text = repr(made)
     if out is not None:
         from ..compare.page import page
         from ..compare.text import as_markdown
 
-        with progress(), written(out):
+        with progress(quiet), written(out):
             # The numbers first: no figure can cost them.
             write_text(out / "compare.json", json_of(made.to_dict()) + "\n")
             write_text(out / "compare.md", as_markdown(made) + "\n")

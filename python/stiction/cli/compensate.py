@@ -21,6 +21,7 @@ from ..plant import Plant
 from ..progress import phase
 from ..recording.names import names_of
 from .answer import answer, folder, told_anyway, written
+from .given import Quiet
 from .progress import progress
 from .simulate import begin_for, stems_of
 
@@ -35,6 +36,7 @@ def compensate(
     session: Path,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("stiction-compensation"),
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Simulate the machine under its controller with a feed-forward of friction, and without.
 
@@ -55,7 +57,7 @@ def compensate(
     """
     machine = Plant.load(plant)
     told = load_begins(plant, machine)
-    with progress():
+    with progress(quiet):
         every = list(sessions.load(session, plant=machine))
         chosen = [each for each in every if "reference" in each.channels]
         if not chosen:

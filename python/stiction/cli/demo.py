@@ -15,6 +15,7 @@ from ..session import Session
 from ..wording import counted
 from .answer import answer, folder, told_anyway, written
 from .diagnose import told
+from .given import Quiet
 from .interrupt import ending_soon, finished
 from .progress import progress
 
@@ -26,6 +27,7 @@ def demo(
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("stiction-demo"),
     copy: Path | None = None,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Diagnose recordings of a simulated motor in which one physical effect is hidden.
 
@@ -46,19 +48,19 @@ def demo(
         _copied(copy, as_json=json)
         return
     where = folder(out)
-    with progress():
+    with progress(quiet):
         session = demo_session.load()
         with ending_soon():
             found = run(None, session)
     with finished(struck=not found.success):
-        _told(session, found, where, as_json=json)
+        _told(session, found, where, as_json=json, quiet=quiet)
     if not found.success:
         raise KeyboardInterrupt
 
 
-def _told(session: Session, found: Diagnosis, where: Path, *, as_json: bool) -> None:
+def _told(session: Session, found: Diagnosis, where: Path, *, as_json: bool, quiet: bool) -> None:
     """Write the report and say what was found, and what was hidden."""
-    with told_anyway(str(found), found.to_dict(), as_json=as_json), progress(), written(where):
+    with told_anyway(str(found), found.to_dict(), as_json=as_json), progress(quiet), written(where):
         report = found.save(where)
     seconds = sum(recording.duration for recording in session)
     text = (

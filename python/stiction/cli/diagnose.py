@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from ..diagnosis import SMALLEST, SURROGATES
+from ..diagnosis import ALPHA, SMALLEST, SURROGATES
 from ..diagnosis import diagnose as run
 from ..diagnosis.added import add as added
 from ..diagnosis.result import Diagnosis
@@ -15,7 +15,7 @@ from ..robot.session import robot_of
 from ..session import load_beside
 from .answer import answer, folder, told_anyway, written
 from .drafts import Opened, Stated, is_data, opened
-from .given import Whole
+from .given import Quiet, Whole
 from .interrupt import ending_soon, finished
 from .progress import progress
 from .robot import diagnose_arm
@@ -36,11 +36,13 @@ def diagnose(
     laws: str = "",
     surrogates: Whole = SURROGATES,
     smallest: float = SMALLEST,
+    alpha: float = ALPHA,
     seed: Whole = 0,
     threads: Whole | None = None,
     add: Annotated[tuple[Path, ...], Parameter(negative="")] = (),
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Find out what a simulation of the machine is missing, add it and measure the gain.
 
@@ -76,6 +78,9 @@ def diagnose(
         Replays of the fitted plant with noise alone, which thresholds come from.
     smallest
         Share of the friction: what contributes less gets no name.
+    alpha
+        Level of the screening: the probability that noise passes it in a session that lacks
+        nothing.
     seed
         Of everything random.
     threads
@@ -96,14 +101,15 @@ def diagnose(
             "laws": names,
             "surrogates": surrogates,
             "smallest": smallest,
+            "alpha": alpha,
             "seed": seed,
             "threads": threads,
         }
-        diagnose_arm(session, robot, add, out, asked, as_json=json)
+        diagnose_arm(session, robot, add, out, asked, as_json=json, quiet=quiet)
         return
     told_of = Stated(columns, gain, law, joint, header)
-    with progress():
-        at = opened([session, *more], out, "diagnosis", told_of)
+    with progress(quiet):
+        at = opened([session, *more], out, "diagnosis", told_of, keep_faulty=True)
         recordings, plant, where = at.session, at.plant, at.where
         if add:
             with spoken_of(at.path, recordings, plant), written(where):
@@ -120,6 +126,7 @@ def diagnose(
                 laws=names,
                 surrogates=surrogates,
                 smallest=smallest,
+                alpha=alpha,
                 seed=seed,
                 threads=threads,
             )
@@ -127,7 +134,7 @@ def diagnose(
     if at.assumed:
         content["draft"] = {"assumed": list(at.assumed), "files": [str(f) for f in at.drafted]}
     with finished(struck=not found.success):
-        with told_anyway(str(found), content, as_json=json), progress(), written(where):
+        with told_anyway(str(found), content, as_json=json), progress(quiet), written(where):
             report = found.save(where)
         # The sentence comes first, whatever was mended before it could be said.
         mends = "\n".join(mended(recordings))

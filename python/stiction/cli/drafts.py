@@ -27,7 +27,7 @@ FOLDER: Final = "draft"
 """In the folder for the results: plant.toml there is what was assumed, not what was found."""
 _SUM: Final = "# Drafted again from the recordings as long as this fits: "
 _SUM_LINE: Final = re.compile(rf"\n{_SUM}([0-9a-f]{{8}})\n\Z")
-_VERBS: Final = {"diagnosis": "diagnose"}
+_VERBS: Final = {"diagnosis": "diagnose", "fit": "fit"}
 """What a folder for results ends in, and the verb that writes it."""
 _EXAMPLE: Final = {"time": "NAME [s]", "input": "NAME [A]", "position": "NAME [rad]"}
 _OPTIONS: Final = ("columns", "gain", "law", "joint", "header")
@@ -76,7 +76,14 @@ class Opened:
     drafted: tuple[Path, ...] = field(default=())
 
 
-def opened(paths: Sequence[Path], out: Path | None, verb: str, stated: Stated) -> Opened:
+def opened(
+    paths: Sequence[Path],
+    out: Path | None,
+    verb: str,
+    stated: Stated,
+    *,
+    keep_faulty: bool = False,
+) -> Opened:
     """A session file, or the session that is drafted of recordings.
 
     Parameters
@@ -88,6 +95,8 @@ def opened(paths: Sequence[Path], out: Path | None, verb: str, stated: Stated) -
     verb : str
         What the folder for the results ends in without ``out``.
     stated : Stated
+    keep_faulty : bool
+        As for ``stiction.load``.
 
     Raises
     ------
@@ -97,7 +106,7 @@ def opened(paths: Sequence[Path], out: Path | None, verb: str, stated: Stated) -
     """
     first = paths[0]
     if not all(map(is_data, paths)):
-        return _of_session(paths, out, verb, stated)
+        return _of_session(paths, out, verb, stated, keep_faulty)
     resolved = [path.resolve() for path in paths]
     for place, path in enumerate(paths):
         if resolved[place] in resolved[:place]:
@@ -123,7 +132,7 @@ def opened(paths: Sequence[Path], out: Path | None, verb: str, stated: Stated) -
         for file, text in zip(files, made.texts(inside), strict=True):
             _keep_what_was_changed(file)
             write_text(file, _summed(text))
-    session, plant = loaded(files[1], keep_faulty=True)
+    session, plant = loaded(files[1], keep_faulty=keep_faulty)
     return Opened(files[1], session, plant, where, assumptions(made, session, plant), files)
 
 
@@ -134,7 +143,9 @@ def is_data(path: Path) -> bool:
     return ending in endings or (os.path.isdir(path) and ending != ".toml")
 
 
-def _of_session(paths: Sequence[Path], out: Path | None, verb: str, stated: Stated) -> Opened:
+def _of_session(
+    paths: Sequence[Path], out: Path | None, verb: str, stated: Stated, keep_faulty: bool
+) -> Opened:
     path = paths[0]
     if len(paths) > 1:
         other = next(each for each in reversed(paths) if not is_data(each))
@@ -148,7 +159,7 @@ def _of_session(paths: Sequence[Path], out: Path | None, verb: str, stated: Stat
             "itself; leave it out and write it there"
         )
     try:
-        session, plant = loaded(path, keep_faulty=True)
+        session, plant = loaded(path, keep_faulty=keep_faulty)
     except InputError:
         if path.suffix.casefold() == ".toml" or not os.path.isfile(path):
             raise

@@ -16,7 +16,9 @@ from ..plant import Plant
 from ..progress import phase
 from ..robot.robot import describes_robot
 from ..session import Session
+from ..wording import listed
 from .answer import answer, folder, written
+from .given import Quiet
 from .progress import progress
 from .robot import export_arm
 from .sessions import spoken_of
@@ -35,6 +37,7 @@ def export(
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     list: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Write a plant for a simulator, a controller or firmware, and say what is lost on the way.
 
@@ -65,7 +68,9 @@ def export(
     if plant is None:
         raise InputError("stiction export: no plant file is given; name one, or ask with --list")
     if not to:
-        raise InputError(f"stiction export: no target is given; write --to {next(iter(known))}")
+        raise InputError(
+            f"stiction export: no target is given; write --to and one of {listed(known)}"
+        )
     if describes_robot(plant):
         where = Path(f"{plant.stem}-export") if out is None else out
         export_arm(plant, to, speed, check, where, as_json=json)
@@ -82,7 +87,7 @@ def export(
     texts = [f"{each}\n  folder: {where / each.target}" for each in made]
     data = [each.to_dict() for each in made]
     if check is not None and loaded is not None:
-        with progress():
+        with progress(quiet):
             found = _checked(read, made, check, loaded)
         texts += [text for text, _ in found]
         data = [{**own, "check": told} for own, (_, told) in zip(data, found, strict=True)]

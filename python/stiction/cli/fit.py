@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -14,42 +15,68 @@ from ..begins import save_begins
 from ..errors import InputError
 from ..fitting import FitResult
 from ..fitting import fit as run
-from ..session import Session
 from .answer import answer, folder, told_anyway, written
+from .columns import read_columns
+from .drafts import Opened, Stated, is_data, opened
+from .given import Quiet
 from .interrupt import ending_soon, finished
 from .progress import progress
-from .sessions import loaded, mended, spared, spoken_of
+from .sessions import mended, spared, spoken_of
 
 __all__ = ["fit"]
 
 
 def fit(
     session: Path,
-    *,
+    *more: Path,
+    columns: Annotated[str, Parameter(name=["--columns", "-c"])] = "",
+    gain: float | None = None,
+    law: str = "",
+    joint: str = "",
+    header: str = "",
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
-    """Fit the plant of a session to its recordings.
+    """Fit the plant of a session to its recordings, or a law to a table of speed and friction.
 
     Writes the fitted plant.toml, begins.toml with the state at the start of each recording,
     fit.json and fit.html, and prints parameters with standard errors, the error where fitted and
-    the error held out.
+    the error held out. Of recordings in place of a session file the session is drafted as stiction
+    diagnose does it. A file with speed and friction and no time is a friction curve: the law is
+    fitted to its points, and plant.toml and curve.json are written.
 
     Parameters
     ----------
     session
-        Session file: names the plant, the columns and the recordings.
+        Session file: names the plant, the columns and the recordings. Or a recording, a folder of
+        them, or a table of speed and friction.
+    more
+        More recordings with the same columns.
+    columns
+        Of recordings: columns that are something else than guessed, with units in brackets:
+        "input=vir [V], position=qm [mm]"; of a friction curve "velocity=w [rpm], effort=T [Nm]".
+    gain
+        Of recordings: effort per SI unit of the input.
+    law
+        Of recordings and friction curves: friction law, coulomb without it.
+    joint
+        Of recordings of several joints the one that is wanted.
+    header
+        Of recordings without names of columns: the names, as for stiction init.
     out
         Folder for the results, ./<session>-fit/ without it.
     json
         Print JSON.
     """
-    with progress():
-        recordings, plant = loaded(session)
-        where = Path(f"{session.stem}-fit") if out is None else out
+    if not more and _curve(session, columns, law, out, as_json=json):
+        return
+    with progress(quiet):
+        at = opened([session, *more], out, "fit", Stated(columns, gain, law, joint, header))
+        recordings, plant, where = at.session, at.plant, at.where
         spared(plant, where)
         folder(where)
-        with ending_soon(), spoken_of(session, recordings, plant):
+        with ending_soon(), spoken_of(at.path, recordings, plant):
             result = run(plant, recordings)
             if not math.isfinite(result.train_rms):
                 raise InputError(
@@ -57,15 +84,36 @@ def fit(
                     "beyond what the machine can do"
                 )
     with finished(struck=result.interrupted):
-        _told(recordings, result, where, session.name, as_json=json)
+        _told(at, result, session.name, as_json=json)
     if result.interrupted:
         raise KeyboardInterrupt
 
 
-def _told(recordings: Session, result: FitResult, where: Path, name: str, *, as_json: bool) -> None:
+def _curve(path: Path, columns: str, law: str, out: Path | None, *, as_json: bool) -> bool:
+    """Fit a law to a friction curve and say so, where the file is one."""
+    if not is_data(path) or os.path.isdir(path):
+        return False
+    from ..fitting.curve_file import curve_table, fit_curve_file
+
+    stated = read_columns(columns) if columns else None
+    table = curve_table(path, stated)
+    if table is None:
+        return False
+    found, notes = fit_curve_file(path, law or "coulomb", stated, table)
+    where = folder(Path(f"{path.stem}-fit") if out is None else out)
+    text, data = "\n".join([str(found), *notes]), {**found.to_dict(), "assumed": list(notes)}
+    with told_anyway(text, data, as_json=as_json), written(where):
+        files = found.save(where)
+    wrote = "\n".join(f"wrote {file}" for file in files)
+    answer(f"{text}\n\n{wrote}", data, as_json=as_json)
+    return True
+
+
+def _told(at: Opened, result: FitResult, name: str, *, as_json: bool) -> None:
     """Write plant, numbers and page, and say what was fitted."""
     from ..report.fit_page import fit_page
 
+    recordings, where = at.session, at.where
     files = [where / "plant.toml", where / BEGINS, where / "fit.json", where / "fit.html"]
     with told_anyway(str(result), result.to_dict(), as_json=as_json), written(where):
         # The numbers first: no figure can cost them.
@@ -75,5 +123,8 @@ def _told(recordings: Session, result: FitResult, where: Path, name: str, *, as_
         write_text(files[3], fit_page(result, list(recordings), f"Fit of {name}"))
     wrote = "\n".join(f"wrote {file}" for file in files)
     repairs = mended(recordings)
-    told = "\n".join([*repairs, str(result)])
-    answer(f"{told}\n\n{wrote}", {**result.to_dict(), "repairs": repairs}, as_json=as_json)
+    told = "\n".join([*at.assumed, *repairs, str(result)])
+    data = {**result.to_dict(), "repairs": repairs}
+    if at.assumed:
+        data["draft"] = {"assumed": list(at.assumed), "files": [str(f) for f in at.drafted]}
+    answer(f"{told}\n\n{wrote}", data, as_json=as_json)

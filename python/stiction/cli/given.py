@@ -1,4 +1,4 @@
-"""Options that are whole numbers."""
+"""Options that several verbs have."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter, Token
 
-__all__ = ["Whole"]
+__all__ = ["Quiet", "Whole"]
 
 
 def _read(_: object, tokens: Sequence[Token]) -> int:
@@ -16,3 +16,5 @@ def _read(_: object, tokens: Sequence[Token]) -> int:
 
 
 Whole = Annotated[int, Parameter(converter=_read)]
+
+Quiet = Annotated[bool, Parameter(name=["--quiet", "-q"], negative="", help="Show no progress.")]

@@ -15,6 +15,7 @@ from ..errors import InputError
 from ..given import vacant
 from ..wording import counted, listed
 from .answer import answer, folder, written
+from .given import Quiet
 from .progress import progress
 
 __all__ = ["init"]
@@ -27,6 +28,7 @@ def init(
     header: str = "",
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path(),
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Guess columns and units of recordings; write a commented plant.toml and session.toml.
 
@@ -55,10 +57,10 @@ def init(
     if data.suffix.casefold() == ".urdf":
         from .robot_draft import draft_robot
 
-        draft_robot(data, more, header, joint, out, as_json=json)
+        draft_robot(data, more, header, joint, out, as_json=json, quiet=quiet)
         return
     vacant(out, FILES, "another folder with --out")
-    with progress():
+    with progress(quiet):
         made = draft([data, *more], joint=joint, header=header)
     where = folder(out)
     files = [where / name for name in FILES]
@@ -98,6 +100,12 @@ def _text(made: Draft, todo: Sequence[str], files: Sequence[Path]) -> str:
     lines += [f"drive: {found.drive or 'not known'} ({found.drive_reason})"]
     lines += [f"left out: {path}: {why.removeprefix(f'{path}: ')}" for path, why in made.left_out]
     lines += ["", *(f"wrote {file}" for file in files)]
+    if found.input_unknown:
+        name = found.by_role["input"].column
+        lines.append(
+            f"to do: state what '{name}' is measured in: its unit in session.toml is a guess, and "
+            "so is that of every effort"
+        )
     lines += [f"to do: {sentence}" for sentence in todo]
     if not todo:
         lines.append(f"next: read both files, then stiction fit {files[1]}")

@@ -15,6 +15,7 @@ from ..library import Entry, UnitComparison, compare, entries, entry
 from ..plant_file import read_toml
 from ..session import Session
 from .answer import answer, folder, told_anyway, written
+from .given import Quiet
 from .interrupt import ending_soon, finished
 from .progress import progress
 from .sessions import mended, spoken_of
@@ -31,6 +32,7 @@ def library(
     session: Path | None = None,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """List machines whose friction is known, show one, or compare a unit of yours with it.
 
@@ -64,7 +66,7 @@ def library(
             text = f"{text}\n\nwrote {where / 'plant.toml'}"
         answer(text, found.to_dict(), as_json=json)
         return
-    _compared(found, session, out, as_json=json)
+    _compared(found, session, out, as_json=json, quiet=quiet)
 
 
 def _listed(out: Path | None, *, as_json: bool) -> None:
@@ -93,8 +95,8 @@ def _lines(each: Entry) -> list[str]:
     return [f"{each.name:<16}  {each.machine}", f"{indent}{law}", *source]
 
 
-def _compared(found: Entry, path: Path, out: Path | None, *, as_json: bool) -> None:
-    with progress():
+def _compared(found: Entry, path: Path, out: Path | None, *, as_json: bool, quiet: bool) -> None:
+    with progress(quiet):
         # A session need not name a plant: that of the entry then says how it is driven.
         own = None if "plant" in read_toml(path) else found.plant
         recordings = sessions.load(path, plant=own)

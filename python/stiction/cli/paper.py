@@ -32,6 +32,7 @@ from ..paper import (
 )
 from ..progress import phase
 from .answer import answer, folder, json_of, written
+from .given import Quiet
 from .progress import progress
 
 if TYPE_CHECKING:
@@ -79,6 +80,7 @@ def paper(
     *,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("stiction-paper"),
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Run and draw every experiment of the paper on the illustrative rig, and stick-slip.
 
@@ -89,7 +91,7 @@ def paper(
     json
         Print JSON.
     """
-    with progress():
+    with progress(quiet):
         sections = paper_command(out)
     slow = next(s.result for s in sections if isinstance(s.result, StickSlip))
     smooth = stick_slip(FAST, duration=2.0)

@@ -12,7 +12,7 @@ from ..plan import plan as run
 from ..plan.result import FILLED_IN
 from ..plant import Plant
 from .answer import answer, folder, told_anyway, written
-from .given import Whole
+from .given import Quiet, Whole
 from .progress import progress
 
 __all__ = ["plan"]
@@ -29,6 +29,7 @@ def plan(
     seed: Whole = 0,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Write input and reference signals with which to record a machine, a figure of each.
 
@@ -58,7 +59,7 @@ def plan(
     where = Path(f"{plant.stem}-plan") if out is None else out
     # Better said before the work than after it.
     vacant(where, FILLED_IN, "another folder with --out")
-    with progress():
+    with progress(quiet):
         made = run(
             Plant.load(plant),
             position=position,

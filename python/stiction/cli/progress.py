@@ -21,12 +21,20 @@ SELDOM: Final = 5.0
 
 
 @contextmanager
-def progress() -> Iterator[None]:
+def progress(quiet: bool = False) -> Iterator[None]:
     """Shows on stderr what is being done in here.
 
     A terminal has one line that is written again and again, and is empty at the end. Elsewhere a
     line comes every few seconds.
+
+    Parameters
+    ----------
+    quiet : bool
+        Show nothing.
     """
+    if quiet:
+        yield
+        return
     with watched() as state:
         shown = _Line(sys.stderr) if sys.stderr.isatty() else _Log(sys.stderr)
         ended = threading.Event()

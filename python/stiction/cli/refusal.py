@@ -39,7 +39,11 @@ def _what(error: cyclopts.CycloptsError, app: cyclopts.App, command: str) -> str
         if error.keyword:
             return f"{error.keyword} is there without a value; write one behind it"
         word = name.lstrip("-").upper()
-        return f"{word} is missing; write {command} {word}"
+        words = _positional(app, error.command_chain or ())
+        if argument.index is None:
+            words += [name, word]
+            word = name
+        return f"{word} is missing; write {' '.join([command, *words])}"
     if isinstance(error, exceptions.CoercionError) and error.token is not None:
         kind = KINDS.get(error.target_type or object)
         kind = "a whole number" if kind is None and error.msg is not None else kind
@@ -48,6 +52,15 @@ def _what(error: cyclopts.CycloptsError, app: cyclopts.App, command: str) -> str
     if isinstance(error, exceptions.RepeatArgumentError):
         return f"{error.token.keyword} is there twice; drop one"
     return " ".join(str(error).split()).rstrip(".")
+
+
+def _positional(app: cyclopts.App, chain: Iterable[str]) -> list[str]:
+    """What must stand in a row behind a verb."""
+    for word in chain:
+        app = app[word]
+    known = [each for each in app.assemble_argument_collection() if each.index is not None]
+    known.sort(key=lambda each: each.index or 0)
+    return [each.name.lstrip("-").upper() for each in known if each.required]
 
 
 def _no_verb(given: str, app: cyclopts.App) -> str:

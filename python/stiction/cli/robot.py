@@ -24,6 +24,7 @@ def diagnose_arm(
     asked: Mapping[str, Any],
     *,
     as_json: bool,
+    quiet: bool = False,
 ) -> None:
     """``stiction diagnose`` of a robot.
 
@@ -39,6 +40,8 @@ def diagnose_arm(
         What ``diagnose_robot`` takes.
     as_json : bool
         Print JSON.
+    quiet : bool
+        Show no progress.
 
     Raises
     ------
@@ -53,13 +56,17 @@ def diagnose_arm(
         )
     where = Path(f"{session.stem}-diagnosis") if out is None else out
     _spared(robot, where)
-    with progress():
+    with progress(quiet):
         recordings = load_session(session)
         folder(where)
         with ending_soon():
             found = diagnose_robot(recordings, **asked)
     with finished(struck=not found.success):
-        with told_anyway(str(found), found.to_dict(), as_json=as_json), progress(), written(where):
+        with (
+            told_anyway(str(found), found.to_dict(), as_json=as_json),
+            progress(quiet),
+            written(where),
+        ):
             report = found.save(where)
         left_out = [f"left out: {fault}" for fault in recordings.left_out]
         said = (str(found), "\n".join(left_out), f"report: {report}")

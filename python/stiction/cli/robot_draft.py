@@ -62,7 +62,14 @@ _ROLES: Final = ("position", "velocity", "input")
 
 
 def draft_robot(
-    urdf: Path, data: Sequence[Path], header: str, joint: str, out: Path, *, as_json: bool
+    urdf: Path,
+    data: Sequence[Path],
+    header: str,
+    joint: str,
+    out: Path,
+    *,
+    as_json: bool,
+    quiet: bool = False,
 ) -> None:
     """Write robot.toml and session.toml for the robot of a URDF and its logs.
 
@@ -77,6 +84,8 @@ def draft_robot(
         Folder to write into.
     as_json : bool
         Print JSON.
+    quiet : bool
+        Show no progress.
 
     Raises
     ------
@@ -89,7 +98,7 @@ def draft_robot(
         raise InputError(f"{urdf}: no logs are given; name files or a folder behind the URDF")
     vacant(out, FILES, "another folder with --out")
     description = described(urdf)
-    with progress():
+    with progress(quiet):
         tables, left_out, files_of = read(data)
         phase(_logger, "guessing what each column is")
         tables, calls = named(tables, header)

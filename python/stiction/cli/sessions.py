@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,9 +10,9 @@ import numpy as np
 
 from .. import session as sessions
 from ..errors import InputError
+from ..file_kinds import kind_of, kind_of_table
 from ..plant import Plant
 from ..plant_file import read_toml
-from ..recording.formats import FORMATS
 from ..recording.names import names_of
 from ..session import Session
 
@@ -41,16 +40,14 @@ def loaded(path: Path, *, keep_faulty: bool = False) -> tuple[Session, Plant]:
 
 def _kind_of(path: Path) -> str:
     """What a file is that is taken for a session by mistake, "" where it may be one."""
-    endings = [suffix for known in FORMATS for suffix in known.suffixes]
-    if path.suffix.casefold() in endings and os.path.isfile(path):
-        return "recording"
+    if kind := kind_of(path):
+        return kind
     try:
-        keys = read_toml(path).keys()
+        kind = kind_of_table(read_toml(path))
     except InputError:
         # What is wrong with it is told where it is read.
         return ""
-    plant = {"drive", "friction"} & keys and not {"plant", "columns", "recordings"} & keys
-    return "plant file" if plant else ""
+    return "" if kind == "session file" else kind
 
 
 @contextmanager

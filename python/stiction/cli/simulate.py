@@ -21,6 +21,7 @@ from ..recording.checks import check, impulse_checks
 from ..recording.names import names_of
 from .answer import answer, folder, written
 from .columns import read_columns
+from .given import Quiet
 from .progress import progress
 from .trajectory_csv import save_trajectory
 
@@ -42,6 +43,7 @@ def simulate(
     support: float | None = None,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("stiction-simulation"),
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Simulate the recorded input; where the motion was measured too, show what is wrong.
 
@@ -70,7 +72,7 @@ def simulate(
     """
     machine = Plant.load(plant)
     told = load_begins(plant, machine)
-    with progress():
+    with progress(quiet):
         if recording.suffix.lower() == ".toml":
             if columns is not None:
                 raise InputError("--columns belongs to a single file; the session states its own")

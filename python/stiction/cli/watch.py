@@ -17,7 +17,7 @@ from ..drafting import FILES, recordings_in
 from ..errors import InputError
 from .diagnose import diagnose
 from .drafts import FOLDER
-from .given import Whole
+from .given import Quiet, Whole
 
 __all__ = ["watch"]
 
@@ -40,6 +40,7 @@ def watch(
     surrogates: Whole = SURROGATES,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     json: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Diagnose the recordings of a folder, and go on when one is added or changed.
 
@@ -84,7 +85,7 @@ def watch(
     stated: dict[str, Any] = {
         "columns": columns, "gain": gain, "law": law, "joint": joint, "header": header
     }  # fmt: skip
-    whole = {**stated, "surrogates": surrogates}
+    whole = {**stated, "surrogates": surrogates, "quiet": quiet}
     if once:
         _look(directory, where, whole, as_json=json)
         return
@@ -135,7 +136,7 @@ def _look(directory: Path, where: Path, whole: dict[str, Any], *, as_json: bool)
         return
     new = tuple(files[file] for file in sorted(files.keys() - known))
     if new:
-        diagnose(where / FOLDER / FILES[1], add=new, out=where, json=as_json)
+        diagnose(where / FOLDER / FILES[1], add=new, out=where, json=as_json, quiet=whole["quiet"])
 
 
 def _known(where: Path) -> set[Path] | None:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from ..catalogue import LawRecord
 
-__all__ = ["law_figure", "law_figures", "name_of"]
+__all__ = ["law_figure", "law_figures", "name_of", "walk"]
 
 _WIDTH, _HEIGHT = 5.6, 2.25
 """Inches."""
@@ -91,7 +91,7 @@ def _small(drawn: Figure, path: Path) -> Path:
 
 
 def _loop(panel: Axes, subject: Subject) -> None:
-    position, force = _walk(subject)
+    position, force = walk(subject)
     panel.axhline(0.0, color=FAINT, linewidth=0.6)
     panel.plot(1e6 * position, force, color=SIMULATED, linewidth=1.1)
     panel.set_xlabel("displacement (µrad or µm)", fontsize=SMALL)
@@ -99,7 +99,8 @@ def _loop(panel: Axes, subject: Subject) -> None:
     panel.set_title("turning round, defaults", fontsize=SMALL, loc="left")
 
 
-def _walk(subject: Subject) -> tuple[FloatArray, FloatArray]:
+def walk(subject: Subject) -> tuple[FloatArray, FloatArray]:
+    """Displacement, rad or m, and friction through a loop and one within it; (n,) each."""
     at, moves = 0.0, []
     for turn in _TURNS:
         moves.append(np.full(_LEG, (turn - at) * subject.length / _LEG))

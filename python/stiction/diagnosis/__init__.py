@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .pipeline import SMALLEST, SURROGATES, diagnose
+from .pipeline import ALPHA, SMALLEST, SURROGATES, diagnose
 from .result import Diagnosis
 
-__all__ = ["SMALLEST", "SURROGATES", "Diagnosis", "diagnose"]
+__all__ = ["ALPHA", "SMALLEST", "SURROGATES", "Diagnosis", "diagnose"]

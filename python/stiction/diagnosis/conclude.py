@@ -368,7 +368,8 @@ class Conclusion:
             replaced = {name for each in self.held for name in each.instead}
             unsure = unconfirmed(causes, test, found.seed)
             causes = left_open(selection, causes, unexplained, of_names, replaced, unsure)
-            causes = beside_another_law(causes) if self.restated else causes
+            if self.restated or any(rival.as_good for rival in self.rivals):
+                causes = beside_another_law(causes)
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
             stands = 0.0 if causes or left else lost_in_motion(evidence, final, null)

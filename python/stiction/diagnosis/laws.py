@@ -48,9 +48,14 @@ __all__ = [
 
 YIELDING: Final = "maxwell_slip"
 RIGID: Final = "coulomb"
-"""Laws that are tried unasked where a plant lacks something, each where the plant's own law is of
-the other kind: a contact that yields under a law that does not, and one that sticks under a law
-that yields, imitate many effects, a dead band of the drive first of all."""
+DAMPED: Final = "lugre"
+"""Laws that are tried unasked where a plant lacks something, the first two each where the plant's
+own law is of the other kind: a contact that yields under a law that does not, and one that sticks
+under a law that yields, imitate many effects, a dead band of the drive first of all. The third
+where the own law yields and has no damping: what bristles damp goes with speed and with reversals,
+as effects of memory and of lag do."""
+DAMPING: Final = "damping"
+"""What such a term is called in every law."""
 WORTH_A_TERM: Final = 0.95
 """Share of the power that an optional term of a law may leave at most to stay in a comparison."""
 FALL: Final = ("breakaway", "stribeck_velocity")
@@ -121,6 +126,11 @@ class Rival:
         return self.beside > WORTH_MORE and self.z > DECIDED_Z
 
     @property
+    def as_good(self) -> bool:
+        """Whether rows that decide do not tell it from what was named, all effects included."""
+        return self.model is not None and self.z > -DECIDED_Z
+
+    @property
     def parameters(self) -> int:
         """How many numbers of its own were fitted."""
         paths = () if self.model is None else self.model.solution.variables.paths
@@ -184,8 +194,8 @@ def rivals_of(selection: Search, wanted: Sequence[str], *, lacking: bool) -> lis
     lacking : bool
         Whether the plant lacks something, named or not.
     """
-    other_kind = RIGID if selection.models[0].plant.friction.springy else YIELDING
-    names = list(dict.fromkeys([*wanted, *([other_kind] if lacking else [])]))
+    unasked = _representatives(selection.models[0].plant.friction) if lacking else ()
+    names = list(dict.fromkeys([*wanted, *unasked]))
     rivals = []
     for law in steps(names, "law"):
         made = attempt(f"the comparison with {law}", partial(_rival, selection, law, law in wanted))
@@ -198,6 +208,14 @@ def rivals_of(selection: Search, wanted: Sequence[str], *, lacking: bool) -> lis
             break
         rivals.append(rival)
     return rivals
+
+
+def _representatives(own: Friction) -> tuple[str, ...]:
+    """Laws of the kinds that a law is none of."""
+    if not own.springy:
+        return (YIELDING,)
+    damps = any(each.name == DAMPING for each in own.record.parameters)
+    return (RIGID,) if damps else (RIGID, DAMPED)
 
 
 def _rival(selection: Search, law: str, asked: bool) -> Rival:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
@@ -14,8 +14,9 @@ from .omnibus import Rest
 from .view import View
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
 
+    from ..plot import Panels
     from .result import Diagnosis
 
 __all__ = ["ROLES", "Pictures", "Stretch", "Trace", "Tracking", "before_and_after"]
@@ -157,17 +158,26 @@ class Pictures:
     traces: tuple[Trace, ...] = ()
 
 
-def before_and_after(diagnosis: Diagnosis) -> Figure:
+def before_and_after(diagnosis: Diagnosis, ax: Axes | Sequence[Axes] | None = None) -> Panels:
     """The residual before and after, on a recording held out, and in its own coordinate.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    ax : matplotlib Axes, or a sequence of them, optional
+        To draw into, a panel each; those of a new figure without it.
 
     Raises
     ------
     InputError
-        There are no pictures: nothing could be fitted.
+        There are no pictures: nothing could be fitted. ``ax`` is something else than axes.
     """
-    from ..report.chart_figure import make_figure
+    from ..plot import Panels, panels_for
+    from ..report.chart_figure import draw_panels, make_figure
     from ..report.figures import headline
 
     if diagnosis.pictures is None:
         raise InputError(f"there is nothing to draw: {diagnosis.sentence}")
-    return make_figure(headline(diagnosis))
+    chart = headline(diagnosis)
+    given = panels_for(ax, [panel.title for panel in chart.panels])
+    return Panels(make_figure(chart).axes if given is None else draw_panels(chart, given))

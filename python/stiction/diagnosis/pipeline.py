@@ -40,11 +40,12 @@ from .model import Known, Model, fitted
 from .noise import Noise
 from .result import Diagnosis, Unexplained
 from .rounds import search
+from .screen import ALPHA
 from .seconds import acts_for_seconds, asked_before, holds_more, with_rows_of
 from .selection import Search
 from .verdict import all_blind
 
-__all__ = ["SMALLEST", "SURROGATES", "diagnose"]
+__all__ = ["ALPHA", "SMALLEST", "SURROGATES", "diagnose"]
 
 SURROGATES: Final = 24
 """Replays of the base with noise; more make thresholds smoother and cost in proportion."""
@@ -79,6 +80,7 @@ def diagnose(
     laws: Sequence[str] = (),
     surrogates: int = SURROGATES,
     smallest: float = SMALLEST,
+    alpha: float = ALPHA,
     seed: int = 0,
     threads: int | None = None,
 ) -> Diagnosis:
@@ -101,6 +103,9 @@ def diagnose(
         Replays of the base with noise alone, from 4 to 1000.
     smallest : float
         Share of the friction, above 0 and below 1: what contributes less (rms) gets no name.
+    alpha : float
+        Level of the screening, above 0 and below 1: the probability that noise passes it in any
+        form in a session that lacks nothing. Rows held out decide after it.
     seed : int
         Same data and seed, same findings, at any number of threads.
     threads : int, optional
@@ -125,6 +130,7 @@ def diagnose(
     instance(machine, Plant, "diagnose: plant", "a Plant, as Plant.load returns it")
     surrogates = whole(surrogates, "surrogates", least=4, most=MOST_SURROGATES)
     smallest = share(smallest, "smallest")
+    alpha = share(alpha, "alpha")
     seed = whole(seed, "seed", least=0)
     threads = None if threads is None else whole(threads, "threads", least=1)
     asked = _Asked(
@@ -132,6 +138,7 @@ def diagnose(
         laws=law_names(_names("laws", laws), machine.friction.law),
         surrogates=surrogates,
         smallest=smallest,
+        alpha=alpha,
     )
     checks = checks_of(entire.recordings)
     data: dict[str, Any] = {
@@ -153,6 +160,7 @@ def diagnose(
         version=__version__,
         seed=seed,
         smallest=smallest,
+        alpha=alpha,
     )
     usable, fault = _usable(checks, entire, machine)
     # What is missing, and whether anything is, hangs on it.
@@ -445,6 +453,7 @@ class _Asked(NamedTuple):
     """Others to compare."""
     surrogates: int
     smallest: float
+    alpha: float
 
     def search(
         self,
@@ -461,6 +470,7 @@ class _Asked(NamedTuple):
             null,
             without=self.without,
             smallest=self.smallest,
+            alpha=self.alpha,
             earlier=earlier,
             stops=stops,
         )

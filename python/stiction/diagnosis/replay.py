@@ -165,7 +165,7 @@ class _Replay:
             return Noise(position_noise(form), form.count, 0.0)
         if isinstance(form, ShootingForm):
             start = self.nuisances.start(self.rows.index)
-            alone = [form.from_readings_alone(self.plant, start)]
+            alone = form.from_readings_alone(self.plant, start)
             return self._as_seen(measure_noise(self.rows, self.plant, self.nuisances, alone), alone)
         return measure_noise(self.rows, self.plant, self.nuisances, self.alone())
 

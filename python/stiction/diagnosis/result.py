@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
@@ -19,8 +19,9 @@ from .loop import Replay
 from .reliability import Reliability
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
 
+    from ..plot import Panels
     from .ceiling import Ceiling
     from .pictures import Pictures
 
@@ -389,6 +390,8 @@ class Diagnosis:
         Friction law that alone explains clearly more than what was named, "" where none does.
     smallest : float
         Share of the friction that an effect has to contribute (rms) to be worth a name.
+    alpha : float
+        Level of the screening for the whole session.
     evidence : Bets
         What each recording held out says of all causes together.
     pictures : Pictures or None
@@ -416,6 +419,7 @@ class Diagnosis:
     ceiling: Ceiling | None = None
     better_law: str = ""
     smallest: float = 0.0
+    alpha: float = 0.0
     evidence: Bets = field(default_factory=Bets)
     pictures: Pictures | None = field(default=None, repr=False, compare=False)
 
@@ -467,6 +471,7 @@ class Diagnosis:
             "version": self.version,
             "seed": self.seed,
             "smallest": self.smallest,
+            "alpha": self.alpha,
             "seconds": self.seconds,
         }
 
@@ -503,17 +508,28 @@ class Diagnosis:
 
         return write(self, given.path(folder, "Diagnosis.save"))
 
-    def plot(self) -> Figure:
-        """The residual before and after, on rows held out.
+    def plot(self, ax: Axes | Sequence[Axes] | None = None) -> Panels:
+        """Measured effort and the residual before and after, on rows held out.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, or a sequence of them, optional
+            To draw into, a panel each in this order; those of a new figure without it.
+
+        Returns
+        -------
+        Panels
+            The axes, a tuple that a notebook shows as a figure; ``.figure`` is that.
 
         Raises
         ------
         InputError
-            Nothing could be fitted, so there is nothing to draw.
+            Nothing could be fitted, so there is nothing to draw. ``ax`` is something else than
+            axes, or too many.
         """
         from .pictures import before_and_after
 
-        return before_and_after(self)
+        return before_and_after(self, ax)
 
     def __str__(self) -> str:
         from .words import summary

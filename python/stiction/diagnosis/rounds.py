@@ -25,7 +25,7 @@ from .model import Known, Model, without_effect
 from .replay import centre, read_alone, shared
 from .restarts import from_before, from_the_first
 from .result import CandidateRow
-from .screen import Score
+from .screen import ALPHA, Score
 from .selection import Search
 from .sharpen import beside_a_second, is_sharpened, sharpened
 from .signatures import Signatures
@@ -75,6 +75,7 @@ def search(
     *,
     without: Sequence[str] = (),
     smallest: float = SMALLEST,
+    alpha: float = ALPHA,
     earlier: Sequence[Known | Model] = (),
     stops: Callable[[Search], bool] | None = None,
 ) -> Search:
@@ -90,6 +91,8 @@ def search(
         Effects that are not tried.
     smallest : float
         Share of the friction that an effect has to contribute to be worth a name.
+    alpha : float
+        Level of the screening for the whole session.
     earlier : sequence of Known or Model
         Fitted to the same rows: whence effects are begun as well, likelier ones first.
     stops : callable, optional
@@ -107,7 +110,7 @@ def search(
         signatures = Signatures.of(evidence, base.plant, base.nuisances, tried)
         friction = friction_of(evidence, base)
         screening = Screening(
-            evidence, signatures, centred, bias, friction, smallest, earlier=earlier
+            evidence, signatures, centred, bias, friction, smallest, alpha, earlier=earlier
         )
         if not evidence.simulated:
             evidence.floor = read_alone(evidence, base.plant, base.nuisances)

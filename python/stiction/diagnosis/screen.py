@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -16,18 +17,19 @@ from .regression import bounded, project
 from .signatures import Alike, Signatures
 
 __all__ = [
-    "NULL_DEVIATIONS",
-    "NULL_TIMES",
+    "ALPHA",
     "Problem",
     "Score",
     "likelier",
     "screen",
 ]
 
-NULL_TIMES: Final = 1.3
-"""A score counts above this many times the greatest one that the surrogates reach."""
-NULL_DEVIATIONS: Final = 5.0
-"""And above the surrogates' mean by this many standard deviations."""
+ALPHA: Final = 0.01
+"""Level of the screening for a whole session."""
+FORMS: Final = 11.0
+"""Independent forms as which the 25 or so that are screened count: what their contributions have in
+common leaves 11 to 14 (effective number of tests; Li and Ji, Heredity 95 (2005))."""
+EULER: Final = 0.5772156649015329
 FLIPS: Final = 7
 """Seed of the signs by which blocks are turned round: always the same."""
 DEPENDENT: Final = 1e-12
@@ -119,14 +121,17 @@ def _stands(score: Score) -> tuple[bool, bool, float]:
     return score.testable, score.score > score.threshold, score.score
 
 
-def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Score]:
+def screen(
+    problem: Problem, signatures: Signatures, friction: float, alpha: float = ALPHA
+) -> list[Score]:
     """The score of every form of every effect at its best shape, highest first.
 
     With S⊥ = S − QQᵀS (Q spans the base): η = (S⊥ᵀS⊥)⁻¹·S⊥ᵀr, ΔR² = ηᵀS⊥ᵀr/(r⊥ᵀr⊥). The same is
     computed for every surrogate, with its maximum over the grid: shapes mean nothing where the
     effect is absent (Davies, Biometrika 64 (1977)), so no table of chi-square applies.
 
-    ``friction`` is the weighted rms of the friction, against which sizes are measured.
+    ``friction`` is the weighted rms of the friction, against which sizes are measured, and
+    ``alpha`` the probability that any form passes in a session in which nothing is missing.
     """
     base = project(problem.base, Plan(problem.fitted, problem.fitted))
     fitted = problem.fitted
@@ -161,7 +166,7 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
     turn = _Turned(signatures, base.directions, within, problem.block[fitted], null.shape[1])
     turned = scan.explained(turn.products(unexplained)) / power
     own = {form: np.array(forms) == form for form in best}
-    thresholds = {form: _threshold(noise[rows], turned[rows]) for form, rows in own.items()}
+    thresholds = {form: _threshold(noise[rows], turned[rows], alpha) for form, rows in own.items()}
     most = max(best.values(), key=lambda index: explained[index])
     if most != strongest:
         # What acts in a few seconds explains them whichever way they are turned: for it alone what
@@ -169,7 +174,9 @@ def screen(problem: Problem, signatures: Signatures, friction: float) -> list[Sc
         rest = residual - base.off(signatures.over_fitted(most)) @ gains[most]
         rows = own[forms[most]]
         again = scan.explained(turn.products(rest))[rows] / power
-        thresholds[forms[most]] = min(thresholds[forms[most]], _threshold(noise[rows], again))
+        thresholds[forms[most]] = min(
+            thresholds[forms[most]], _threshold(noise[rows], again, alpha)
+        )
     scores = []
     for form, index in best.items():
         column = signatures.over_fitted(index)
@@ -311,18 +318,25 @@ class _Turned:
         return found
 
 
-def _threshold(noise: FloatArray, turned: FloatArray) -> float:
-    """What neither surrogates nor turned blocks reach, over the whole grid, with a margin.
+def _threshold(noise: FloatArray, turned: FloatArray, alpha: float) -> float:
+    """What neither surrogates nor turned blocks reach over the grid; shapes (grid, residuals).
 
-    Shapes (grid, residuals).
+    Noise passes in any form with a probability of ``alpha``. Turned blocks are what the law misses
+    as well, alike in every form: each form is held against them at that level.
     """
-    null, flips = np.max(noise, axis=0), np.max(turned, axis=0)
-    spread = float(np.std(null, ddof=1)) if len(null) > 1 else 0.0
-    return max(
-        NULL_TIMES * float(np.max(null)),
-        float(np.mean(null)) + NULL_DEVIATIONS * spread,
-        NULL_TIMES * float(np.max(flips)),
-    )
+    return max(_quantile(noise, alpha / FORMS), _quantile(turned, alpha))
+
+
+def _quantile(values: FloatArray, level: float) -> float:
+    """What the greatest over a grid goes beyond with a small probability; shape (grid, residuals).
+
+    Few residuals reach no such level, so that their greatest ones are taken as Gumbel's, by moments
+    (the limit of a maximum of chi-squares; Davies, Biometrika 74 (1987), bounds it alike).
+    """
+    greatest = np.max(values, axis=0)
+    spread = float(np.std(greatest, ddof=1)) if len(greatest) > 1 else 0.0
+    scale = math.sqrt(6.0) / math.pi * spread
+    return float(np.mean(greatest)) + scale * (-math.log(-math.log1p(-level)) - EULER)
 
 
 def _measured(

@@ -30,7 +30,7 @@ from .model import (
     without_effect,
 )
 from .noisy_motion import told_by_noise
-from .screen import Problem, Score, likelier, screen
+from .screen import ALPHA, Problem, Score, likelier, screen
 from .signatures import Signatures, gain_at
 
 __all__ = [
@@ -109,6 +109,8 @@ class Screening:
         Weighted rms of what the base needs beside inertia.
     smallest : float
         Share of it that an effect has to contribute to be worth a name.
+    alpha : float
+        Level of the screening for the whole session.
     earlier : sequence of Known or Model
         From which to begin as well: fitted to the same rows, likelier ones first.
     kept : list of (Model, list of Score)
@@ -121,6 +123,7 @@ class Screening:
     bias: FloatArray
     friction: float
     smallest: float = SMALLEST
+    alpha: float = ALPHA
     earlier: Sequence[Known | Model] = ()
     kept: list[tuple[Model, list[Score]]] = field(default_factory=list)
 
@@ -133,7 +136,7 @@ class Screening:
         for known, scores in self.kept:
             if known is model:
                 return scores
-        scores = screen(self._left_by(model), self.signatures, self.friction)
+        scores = screen(self._left_by(model), self.signatures, self.friction, self.alpha)
         self.kept.append((model, scores))
         del self.kept[:-MOST_KEPT]
         return scores

@@ -34,7 +34,10 @@ def _columns(draft: Draft) -> str:
     told = []
     for role, one in draft.found.by_role.items():
         scale = "" if one.scale == 1.0 else f", times {one.scale:g}"
-        told.append(f"{role} = {' '.join(one.column.split())} [{one.unit or '1'}{scale}]")
+        unit = one.unit or "1"
+        if role == "input" and draft.found.input_unknown:
+            unit = f"{unit} is a guess: nothing tells what it is measured in"
+        told.append(f"{role} = {' '.join(one.column.split())} [{unit}{scale}]")
     joint = f"; joint {draft.joints[0]} of {len(draft.joints)} (--joint)" if draft.joints else ""
     return f"columns: {', '.join(told)}{joint} (--columns states others)"
 

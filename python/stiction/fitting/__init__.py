@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
+from .curve import CurveFit, fit_curve
 from .result import FitParameter, FitResult
 from .solve import fit
 
-__all__ = ["FitParameter", "FitResult", "fit"]
+__all__ = ["CurveFit", "FitParameter", "FitResult", "fit", "fit_curve"]

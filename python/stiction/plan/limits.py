@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from ..errors import InputError
-from ..parameter import number
+from ..parameter import Parameter, number
 from ..plant import Plant
 from ..presliding import presliding
 from ..wording import listed
 
-__all__ = ["Limits", "Sizes", "sizes_of"]
+__all__ = ["Limits", "Sizes", "sizes_of", "with_inertia"]
 
 MARGIN: Final = 0.85
 """Share of every limit that is planned for: a controller overshoots."""
@@ -87,22 +87,65 @@ class Sizes:
     inertia: float
 
 
-def sizes_of(plant: Plant, limits: Limits) -> Sizes:
-    """Sizes of the signals for a plant.
+@dataclass(frozen=True)
+class _Efforts:
+    """What the drive gives and what friction and gravity take of it, without any inertia."""
+
+    reach: float
+    most: float
+    friction: float
+    weight: float
+
+    @property
+    def spare(self) -> float:
+        """Share of the effort beyond friction that is planned for."""
+        return SHARE_TO_ACCELERATE * (self.most - self.friction - self.weight)
+
+    @property
+    def to_accelerate(self) -> float:
+        """Effort that accelerates, however little is spare."""
+        return max(self.spare, 0.05 * self.most)
+
+
+def with_inertia(plant: Plant, limits: Limits) -> tuple[Plant, str]:
+    """A plant that can be planned for, and what had to be assumed of its inertia, "" for nothing.
+
+    Before anything was recorded nobody may know it. Assumed is one with which the effort beyond
+    friction reaches the greatest speed (without a limit a usual one) in the least time that is
+    planned for: references are as fast then as such a machine would be moved. Of what the drive
+    alone does to a lighter one nothing is known.
+
+    Parameters
+    ----------
+    plant : Plant
+    limits : Limits
 
     Raises
     ------
     InputError
-        No inertia; a linear plant without a limit of position; an effort that moves nothing; a
-        plant of prescribed motion.
+        As for ``sizes_of``.
     """
-    if plant.prescribed_motion:
-        raise InputError(
-            f"{plant.source}: [drive] kind = 'prescribed_motion' has no input to plan; signals are "
-            "planned for machines that are driven"
-        )
-    plant.motor()  # refuses a plant that cannot be simulated
-    inertia = plant.inertia
+    if "inertia" in plant.body or plant.prescribed_motion:
+        return plant, ""
+    usual = float(plant.curve_speeds().max())
+    speed = MARGIN * limits.speed if limits.speed is not None else usual
+    inertia = _efforts(plant, limits).to_accelerate * BLEND_S / (0.5 * math.pi * speed)
+    unit = f"{plant.effort_unit} per {plant.position_unit}/s²"
+    assumed = replace(plant, body={**plant.body, "inertia": Parameter(inertia)})
+    return assumed, (
+        f"{plant.source} states no inertia: signals are sized as if it were {inertia:.2g} {unit}; "
+        "record one of them, fit the plant to it, and plan again with the inertia that comes out"
+    )
+
+
+def _efforts(plant: Plant, limits: Limits) -> _Efforts:
+    """Efforts and the range of a plant.
+
+    Raises
+    ------
+    InputError
+        A linear plant without a limit of position; an effort that moves nothing.
+    """
     reach = limits.position
     if reach is None and plant.motion == "linear":
         raise InputError(
@@ -111,7 +154,6 @@ def sizes_of(plant: Plant, limits: Limits) -> Sizes:
         )
     reach = MARGIN * (2.0 * math.pi if reach is None else reach)
     friction = _level(plant, reach)
-    yields = presliding(plant.friction, friction) if plant.friction.springy else 0.0
     own = _greatest(plant)
     weight = _steady(plant)
     given = math.inf if limits.effort is None else limits.effort
@@ -128,9 +170,30 @@ def sizes_of(plant: Plant, limits: Limits) -> Sizes:
             f"{plant.source}: an effort of {most:.3g} {plant.effort_unit} {moves}: {taken} "
             f"takes {'it' if still else 'most of it'}; give {least:.3g} or more"
         )
-    most *= MARGIN
-    spare = SHARE_TO_ACCELERATE * (most - friction - weight)
-    acceleration = max(spare, 0.05 * most) / inertia
+    return _Efforts(reach, MARGIN * most, friction, weight)
+
+
+def sizes_of(plant: Plant, limits: Limits) -> Sizes:
+    """Sizes of the signals for a plant.
+
+    Raises
+    ------
+    InputError
+        No inertia; a linear plant without a limit of position; an effort that moves nothing; a
+        plant of prescribed motion.
+    """
+    if plant.prescribed_motion:
+        raise InputError(
+            f"{plant.source}: [drive] kind = 'prescribed_motion' has no input to plan; signals are "
+            "planned for machines that are driven"
+        )
+    plant.motor()  # refuses a plant that cannot be simulated
+    efforts = _efforts(plant, limits)
+    most, friction, reach = efforts.most, efforts.friction, efforts.reach
+    yields = presliding(plant.friction, friction) if plant.friction.springy else 0.0
+    inertia = plant.inertia
+    spare = efforts.spare
+    acceleration = efforts.to_accelerate / inertia
     speed = math.sqrt(acceleration * reach)
     if plant.servo:
         speed = min(speed, OF_NO_LOAD * _no_load(plant))

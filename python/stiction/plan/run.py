@@ -19,7 +19,7 @@ from ..recording.recording import SPLIT_ROLES
 from ..trajectory import FloatArray
 from ..wording import did_you_mean, listed
 from .experiments import EXPERIMENTS, Experiment
-from .limits import Limits, Sizes, sizes_of
+from .limits import Limits, Sizes, sizes_of, with_inertia
 from .result import Plan, Signal
 
 __all__ = ["plan"]
@@ -52,7 +52,8 @@ def plan(
     Parameters
     ----------
     plant : Plant
-        As far as it is known: what its file leaves out takes the catalogue's defaults.
+        As far as it is known: what its file leaves out takes the catalogue's defaults, and an
+        inertia that it does not state is assumed, which a note says.
     position, speed, effort : float, optional
         Limits, see `Limits`.
     rate : float
@@ -84,18 +85,23 @@ def plan(
                 f"{listed(known)}"
             )
     limits = Limits(position, speed, effort)
+    stated = plant
+    plant, assumed = with_inertia(plant, limits)
     sizes = sizes_of(plant, limits)
-    signals, notes = [], _guessed(plant)
-    if plant.servo:
+    signals, notes = [], [*([assumed] if assumed else []), *_guessed(plant)]
+    if plant.servo or assumed:
         inputs = [e.name for e in EXPERIMENTS if e.kind == "input" and e.name in (only or known)]
         if inputs:
-            notes.append(
-                f"{listed(inputs)} are left out: a servo is told where to go, not what to push with"
+            why = (
+                "a servo is told where to go, not what to push with"
+                if plant.servo
+                else "how far the drive alone moves a machine hangs on its inertia"
             )
+            notes.append(f"{listed(inputs)} are left out: {why}")
     for experiment in EXPERIMENTS:
         if only and experiment.name not in only:
             continue
-        if plant.servo and experiment.kind == "input":
+        if (plant.servo or assumed) and experiment.kind == "input":
             continue
         if experiment.name == "loops" and sizes.presliding == 0.0:
             notes.append(
@@ -121,7 +127,7 @@ def plan(
         signals += kept
     if not signals:
         raise InputError(f"{plant.source}: no signal stays within these limits; widen one of them")
-    return Plan(plant, tuple(signals), tuple(notes), True, f"{len(signals)} signals")
+    return Plan(stated, tuple(signals), tuple(notes), True, f"{len(signals)} signals")
 
 
 def _guessed(plant: Plant) -> list[str]:

@@ -234,7 +234,13 @@ def _rebuilt(by_role: dict[str, Column], where: str) -> Columns:
 def _role_meant(key: str) -> str:
     if key in CANONICAL:
         return f" (did you mean '{CANONICAL[key][0]}'?)"
-    return did_you_mean(key, ROLES)
+    from .column_words import what_it_says
+
+    # A quantity in place of a role: what it is called as a column tells which.
+    meant = {"drive": "input", "velocity": "velocity", "position": "position"}
+    kinds = what_it_says(key).kinds
+    role = meant.get(kinds[0], "") if kinds and len(key) > 1 else ""
+    return f" (did you mean '{role}'?)" if role else did_you_mean(key, ROLES)
 
 
 def _given(value: object) -> str:

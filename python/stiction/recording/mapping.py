@@ -49,6 +49,10 @@ _QUANTITIES_OF_MOTION: Final[dict[Motion, tuple[str, ...]]] = {
 }
 
 
+_WHOLE_NAME: Final = 2
+"""Strength of a word that is the whole name of a column."""
+
+
 @dataclass(frozen=True)
 class Channels:
     """SI values by role, the units they have, what was decided, and the row of the file that
@@ -111,6 +115,8 @@ def read_channels(
     for role, name in _canonical(table, columns, drive, known, notes).items():
         chosen[role] = _choose(table, role, Column(name), role, drive, motion, notes)
     motion = _motion_of(chosen, motion)
+    if "time" not in chosen and (clock := _clock(table, chosen, notes)) is not None:
+        chosen["time"] = _choose(table, "time", clock, "time", drive, motion, notes)
     _check_complete(table, chosen, drive)
     values: dict[str, FloatArray] = {}
     units: dict[str, str] = {}
@@ -348,6 +354,30 @@ def _is_taken(role: str, columns: Columns) -> bool:
 
 def _told_by_name(role: str, name: str) -> Motion | None:
     return _motion_told(role, find_unit(CANONICAL[name][1], name))
+
+
+def _clock(table: Table, chosen: Mapping[str, _Chosen], notes: list[str]) -> Column | None:
+    """The one column that is called as a clock is (``time``, ``t``) and goes as one does."""
+    from .guess.evidence import columns_of
+    from .guess.kinds import kinds_of
+    from .guess.units import stated, time_unit
+
+    taken = {choice.column.name for choice in chosen.values()}
+    clocks = [
+        column
+        for column in columns_of([table])
+        if column.name not in taken
+        and not column.trouble
+        and column.said.strength >= _WHOLE_NAME
+        and kinds_of(column)[:1] == ("time",)
+        and column.rises
+    ]
+    if len(clocks) != 1:
+        return None
+    (clock,) = clocks
+    unit = stated(clock, ROLES["time"]) or time_unit(clock)
+    notes.append(f"time: column '{clock.name}' was taken by its name ({unit.reason})")
+    return Column(clock.name, unit.unit, unit.scale)
 
 
 def _check_complete(table: Table, chosen: Mapping[str, _Chosen], drive: str | None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from ..plot import INK, MEASURED, SMALL, figure, legend
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from .axis import Axis
     from .chart import Panel
 
-__all__ = ["make_figure"]
+__all__ = ["draw_panels", "make_figure"]
 
 INCH: Final = 72.0
 AROUND: Final = 0.45
@@ -42,6 +43,13 @@ def make_figure(chart: Chart) -> Figure:
         legend(places[0], loc="lower left", bbox_to_anchor=(0.0, 1.2), ncols=3)
     drawn.align_ylabels()
     return drawn
+
+
+def draw_panels(chart: Chart, places: Sequence[Axes]) -> Sequence[Axes]:
+    """Draw the panels of a chart into axes that are there, as many as there are."""
+    for panel, place in zip(chart.panels, places, strict=False):
+        _draw(panel, place)
+    return places
 
 
 def _draw(panel: Panel, place: Axes) -> None:

@@ -9,7 +9,7 @@ from typing import Final
 
 from .. import __version__
 from ..best_effort import Failure, attempt
-from ..diagnosis import SMALLEST, SURROGATES, diagnose
+from ..diagnosis import ALPHA, SMALLEST, SURROGATES, diagnose
 from ..diagnosis.result import Diagnosis
 from ..errors import NotEnoughData
 from ..given import instance
@@ -35,6 +35,7 @@ def diagnose_robot(
     laws: Sequence[str] = (),
     surrogates: int = SURROGATES,
     smallest: float = SMALLEST,
+    alpha: float = ALPHA,
     seed: int = 0,
     threads: int | None = None,
 ) -> RobotDiagnosis:
@@ -47,7 +48,7 @@ def diagnose_robot(
     Parameters
     ----------
     session : RobotSession
-    without, laws, surrogates, smallest, seed, threads
+    without, laws, surrogates, smallest, alpha, seed, threads
         As for ``stiction.diagnose``.
 
     Returns
@@ -85,6 +86,7 @@ def diagnose_robot(
             laws=laws,
             surrogates=surrogates,
             smallest=smallest,
+            alpha=alpha,
             seed=seed,
             threads=threads,
         )

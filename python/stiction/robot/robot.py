@@ -90,7 +90,7 @@ class Joint:
         table = {
             "motion": {"kind": self.motion},
             "drive": {"input": self.input, "gain": self.effort_per_input},
-            "body": {"inertia": float(inertia)},
+            "body": {"inertia": _inertia(inertia, f"{source}: inertia")},
             "friction": dict(self.friction),
             "effects": [dict(e) for e in self.effects] + ([] if plain else [dict(BIAS)]),
         }
@@ -165,7 +165,7 @@ class Robot:
         named = own.get("urdf")
         if not isinstance(named, str) or not named or "\0" in named:
             raise InputError(f'{where} urdf = {given.shown(named)}; write urdf = "arm.urdf"')
-        urdf = folder / named
+        urdf = given.path(folder, "Robot.from_dict: folder") / named
         kinds = described(urdf).kinds
         entries = own.get("joints", [])
         if not isinstance(entries, list) or not entries:

@@ -83,6 +83,18 @@ impl LawSpec {
                 });
             }
         }
+        for (given, _) in stated {
+            if record.parameters.iter().all(|known| known.name != given)
+                && let Some(meant) = record.called(given)
+            {
+                return Err(Error::UnknownName {
+                    kind: format!("parameter of {name}"),
+                    given: given.clone(),
+                    near: format!("; it is called '{}' here", meant.name),
+                    known: record.parameters.iter().map(|p| p.name).collect::<Vec<_>>().join(", "),
+                });
+            }
+        }
         let values = resolve(name, record.parameters, stated)?;
         Law::<f64>::check(name, &values)?;
         Ok(Self { record, values, choices })

@@ -155,7 +155,7 @@ impl Motor {
             integrator=Text::fast(),
         ),
         text_signature = "(inertia, torque_constant=1.0, friction=None, *, effects=None, \
-            gravity_amplitude=0.0, gravity_zero=0.0, weight=0.0, input_limit=..., servo=None, \
+            gravity_amplitude=0.0, gravity_zero=0.0, weight=0.0, input_limit=1e999, servo=None, \
             count=0.0, integrator='fast')",
     )]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class

@@ -10,7 +10,7 @@ use stiction_core::servo::Servo;
 
 use super::Motor;
 use crate::error::{IntoPython, finite};
-use crate::friction_model::{FrictionModel, effects_dict};
+use crate::friction_model::{FrictionModel, effects_dict, fixed};
 use crate::real::real;
 use crate::state::{from_dict, to_dict};
 
@@ -24,14 +24,14 @@ fn servo_settings<'py>(py: Python<'py>, servo: &Servo) -> PyResult<Bound<'py, Py
 
 #[pymethods]
 impl Motor {
-    /// Paths and values of all parameters.
+    /// Paths and values of all parameters, as a new dict that cannot be changed in place.
     #[getter]
-    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let dict = PyDict::new(py);
         for (path, value) in self.core(py)?.spec().parameters() {
             dict.set_item(path, value)?;
         }
-        Ok(dict)
+        fixed(dict, "a motor has the parameters it was made with; make another Motor")
     }
 
     /// Keywords that rebuild the motor, but for friction.

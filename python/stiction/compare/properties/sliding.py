@@ -31,7 +31,7 @@ def rate(subject: Subject) -> Measured:
     """The greatest friction while a soft spring pulls the contact, at four rates of loading."""
     if not subject.scale.slides:
         return Measured(None, {}, "never slides")
-    peaks = [_peak(subject, rate) for rate in _RATES]
+    peaks = [greatest_friction(subject, rate) for rate in _RATES]
     fall = 1.0 - min(peaks[1:]) / peaks[0]
     return Measured(
         fall > _FALLS + _CHANCE * subject.scatter,
@@ -40,7 +40,8 @@ def rate(subject: Subject) -> Measured:
     )  # fmt: skip
 
 
-def _peak(subject: Subject, rate: float) -> float:
+def greatest_friction(subject: Subject, rate: float) -> float:
+    """Greatest friction while a soft spring pulls, at a rate of loading in levels a second."""
     """The greatest friction on 100 lengths of way, the far end moving at an even speed."""
     level = subject.scale.level
     stiffness = _SOFT * subject.stiffness

@@ -36,7 +36,10 @@ _RANK: Final = ("torque", "force", "current", "voltage", "")
 
 @dataclass(frozen=True)
 class Drive:
-    """What drives: ``[drive]`` input or kind, why, by which column, and those that do not."""
+    """What drives: ``[drive]`` input or kind, why, by which column, and those that do not.
+
+    ``unknown`` where nothing tells what it is measured in.
+    """
 
     name: str | None
     reason: str
@@ -44,6 +47,7 @@ class Drive:
     quantity: str = ""
     others: tuple[Column, ...] = ()
     refused: Mapping[str, str] = field(default_factory=dict)
+    unknown: bool = False
 
 
 def choose_drive(
@@ -80,11 +84,12 @@ def choose_drive(
     chosen = (inputs or fit)[0]
     quantity = quantity_of(chosen)
     why = f"by column '{chosen.name}'"
-    if not quantity:
+    unknown = not quantity
+    if unknown:
         quantity = "voltage"
         why += "; nothing tells what it is measured in, and volts are a guess"
     others = tuple(c for c in fit if c is not chosen)
-    return Drive(DRIVE_OF[quantity], why, chosen, quantity, others, refused)
+    return Drive(DRIVE_OF[quantity], why, chosen, quantity, others, refused, unknown)
 
 
 def quantity_of(column: Column) -> str:

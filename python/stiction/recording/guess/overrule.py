@@ -69,7 +69,18 @@ def overruled(found: Guess, columns: Columns) -> Guess:
         drive_reason=why,
         missing=missing,
         counts_needed=any(each.unit == "count" for each in by_role.values()),
+        input_unknown=found.input_unknown and not _told_unit(found, columns),
     )
+
+
+def _told_unit(found: Guess, columns: Columns) -> bool:
+    """Whether what is stated leaves no input whose unit was a guess."""
+    if "effort" in columns:
+        return True
+    stated, guessed = columns.get("input"), found.by_role.get("input")
+    if stated is None:
+        return False
+    return stated.unit is not None or guessed is None or stated.name != guessed.column
 
 
 def _instead(role: str | None, columns: Mapping[str, Column]) -> bool:

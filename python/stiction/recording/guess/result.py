@@ -80,6 +80,8 @@ class Guess:
         Sensor counts in a turn, 0 where the readings do not tell.
     counts_needed : bool
         A column is in counts, so the size of a count has to be stated.
+    input_unknown : bool
+        Nothing tells what the input is measured in, and its unit is none.
     """
 
     columns: tuple[ColumnGuess, ...]
@@ -90,6 +92,7 @@ class Guess:
     missing: Mapping[str, str] = field(default_factory=dict)
     counts_per_rev: int = 0
     counts_needed: bool = False
+    input_unknown: bool = False
 
     @property
     def complete(self) -> bool:

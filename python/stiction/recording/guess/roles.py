@@ -93,6 +93,7 @@ class _Guesser:
             missing=self.missing,
             counts_per_rev=per_rev,
             counts_needed=any(guess.unit == "count" for guess in self.given.values()),
+            input_unknown=drive.unknown,
         )
 
     # What is still free ------------------------------------------------------------------
@@ -326,6 +327,12 @@ class _Guesser:
         if velocity is not None:
             own = units.velocity_unit(velocity, motion, position, unit.factor, self.clock)
             others = [c for c in self._free("velocity") if c is not velocity]
+            if own.disagrees and MOTION_OF_QUANTITY.get(UNITS[own.unit].quantity) == motion:
+                self.refused[velocity.name] = (
+                    f"{self._by_name(velocity)}; {own.reason}: give it as velocity with the unit "
+                    "or the scale that holds, or leave it out"
+                )
+                return unit.factor
             self._give_moving(velocity, "velocity", own, self._by_name(velocity), motion, others)
         return unit.factor
 

@@ -21,6 +21,8 @@ LONGEST_M: Final = 5.0
 LONGEST_MM: Final = 2e4
 AGREES: Final = 1.35
 """A velocity agrees with the motion up to this factor: speeds that drives report are filtered."""
+DISAGREES: Final = 3.0
+"""Beyond this factor no filter explains it: the unit is another one, or a gear lies between."""
 
 _ANGLE_UNITS: Final = ("rad", "deg", "rev")
 _RATE_UNITS: Final[dict[Motion, tuple[str, ...]]] = {
@@ -31,12 +33,13 @@ _RATE_UNITS: Final[dict[Motion, tuple[str, ...]]] = {
 
 @dataclass(frozen=True)
 class UnitGuess:
-    """A unit, the factor on top, why, and what else it could be."""
+    """A unit, the factor on top, why, what else it could be, whether the motion contradicts it."""
 
     unit: str
     scale: float = 1.0
     reason: str = ""
     alternatives: tuple[str, ...] = ()
+    disagrees: bool = False
 
     @property
     def factor(self) -> float:
@@ -144,7 +147,8 @@ def velocity_unit(
     if told is not None:
         off = told.factor * per_si
         seen = "" if 1.0 / AGREES < off < AGREES else f"; it is {off:.3g} times the motion's rate"
-        return UnitGuess(told.unit, sign * told.scale, told.reason + seen + flipped)
+        reason = told.reason + seen + flipped
+        return UnitGuess(told.unit, sign * told.scale, reason, disagrees=_far(off))
     unit = min(units, key=lambda name: abs(math.log((UNITS[name].factor or 1.0) * per_si)))
     off = (UNITS[unit].factor or 1.0) * per_si
     others = tuple(name for name in units if name != unit)
@@ -152,7 +156,11 @@ def velocity_unit(
     seen = "so it agrees with the changes of position" if agrees else (
         f"the nearest; it is {off:.3g} times the rate of the position"
     )  # fmt: skip
-    return UnitGuess(unit, sign, f"{unit}: {seen}{flipped}", others)
+    return UnitGuess(unit, sign, f"{unit}: {seen}{flipped}", others, disagrees=_far(off))
+
+
+def _far(off: float) -> bool:
+    return not 1.0 / DISAGREES < off < DISAGREES
 
 
 def drive_unit(column: Column, quantity: str) -> UnitGuess:

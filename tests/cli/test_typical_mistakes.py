@@ -1,0 +1,171 @@
+"""What new users mistype and mistake: each is one sentence that says what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.cli.desk import Desk
+
+import stiction as st
+from stiction.cli import run
+
+# Name: file to edit ("" for none), old text, new text, words of the command, what it says.
+COMMANDS: dict[str, tuple[str, str, str, list[str], str]] = {
+    "no file": ("", "", "", ["diagnose"], "SESSION is missing; write stiction diagnose SESSION"),
+    "file mistyped": ("", "", "", ["diagnose", "rum.csv"], "did you mean 'run.csv'?"),
+    "session mistyped": ("", "", "", ["fit", "sesion.toml"], "did you mean 'session.toml'?"),
+    "verb mistyped": ("", "", "", ["diagnos", "run.csv"], "did you mean 'diagnose'?"),
+    "option mistyped": ("", "", "", ["diagnose", "run.csv", "--gian", "1"], "mean '--gain'?"),
+    "a spreadsheet": ("", "", "", ["diagnose", "notes.xlsx"], "save a spreadsheet or a log as CSV"),
+    "plant for session": ("", "", "", ["fit", "plant.toml"], "is a plant file, and a session file"),
+    "swapped": ("", "", "", ["simulate", "run.csv", "plant.toml"], "is a recording, and a plant"),
+    "session for plant": (
+        "", "", "", ["export", "session.toml", "--to", "urdf"], "is a session file, and a plant",
+    ),
+    "plant for recording": (
+        "", "", "", ["simulate", "plant.toml", "plant.toml"], "is a plant file, and a recording",
+    ),
+    "recording for plant": ("", "", "", ["plan", "run.csv"], "is a recording, and a plant"),
+    "one of two": (
+        "", "", "", ["simulate", "plant.toml"], "write stiction simulate PLANT RECORDING",
+    ),
+    "a folder to watch": ("", "", "", ["watch", "run.csv"], "is no folder"),
+    "no target": ("", "", "", ["export", "plant.toml"], "write --to and one of bam, c, fmu"),
+    "unknown law": ("", "", "", ["diagnose", "run.csv", "--law", "LuGre"], "mean 'lugre'?"),
+    "option of another": (
+        "", "", "", ["diagnose", "session.toml", "--law", "dahl"], "write it there",
+    ),
+    "gain with a unit": (
+        "", "", "", ["diagnose", "run.csv", "--gain", "0.1Nm/A"], "is not a number",
+    ),
+    "no such column": (
+        "", "", "", ["diagnose", "run.csv", "--columns", "input=current"], "it has t, u, q",
+    ),
+    "columns turned round": (
+        "", "", "", ["diagnose", "run.csv", "--columns", "u=input"], "write input=u",
+    ),
+    "quantity for role": (
+        "", "", "", ["diagnose", "run.csv", "--columns", "torque=u"], "did you mean 'input'?",
+    ),
+    "no comma": (
+        "", "", "", ["diagnose", "run.csv", "-c", "input=u [Nm] position=q [rad]"], "put a comma",
+    ),
+    "unknown unit": (
+        "", "", "", ["diagnose", "run.csv", "--columns", "input=u [Amp]"], "did you mean 'A'?",
+    ),
+    "recording, singular": (
+        "session.toml", "[[recordings]]", "[[recording]]", ["fit", "session.toml"],
+        "did you mean 'recordings'?",
+    ),
+    "wrong file": (
+        "session.toml", "run.csv", "rum.csv", ["fit", "session.toml"], "did you mean 'run.csv'?",
+    ),
+    "wrong plant": (
+        "session.toml", '"plant.toml"', '"plants.toml"', ["fit", "session.toml"],
+        "did you mean 'plant.toml'?",
+    ),
+    "no quotes": (
+        "session.toml", '"plant.toml"', "plant.toml", ["fit", "session.toml"], "into quotes",
+    ),
+    "wrong unit": (
+        "session.toml", '"Nm"', '"A"', ["fit", "session.toml"], "no unit of input",
+    ),
+    "unit in words": (
+        "session.toml", '"rad"', '"degrees"', ["fit", "session.toml"], "did you mean 'deg'?",
+    ),
+    "wrong column": (
+        "session.toml", '"q"', '"angle"', ["fit", "session.toml"], "the columns here are t, u, q",
+    ),
+    "validation": (
+        "session.toml", "kind =", 'role = "validation"\nkind =', ["fit", "session.toml"],
+        "it is called 'select' here",
+    ),
+    "decimal comma": (
+        "plant.toml", "inertia = 0.01", "inertia = 0,01", ["plan", "plant.toml"], "decimal point",
+    ),
+    "number in quotes": (
+        "plant.toml", "inertia = 0.01", 'inertia = "0.01"', ["plan", "plant.toml"],
+        "leave out the quotes",
+    ),
+    "mass": (
+        "plant.toml", "inertia = 0.01", "mass = 0.01", ["plan", "plant.toml"],
+        "it is called inertia here",
+    ),
+    "symbol": (
+        "plant.toml", "viscous = 0.05", "sigma2 = 0.05", ["plan", "plant.toml"],
+        "it is called 'viscous' here",
+    ),
+    "input by quantity": (
+        "plant.toml", '"torque_nm"', '"torque"', ["plan", "plant.toml"], "mean 'torque_nm'?",
+    ),
+    "below 0": (
+        "plant.toml", "coulomb = 0.2", "coulomb = -0.2", ["plan", "plant.toml"], "out of bounds",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_mistake_on_the_command_line_is_one_helpful_sentence(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, old, new, words, told = COMMANDS[name]
+    desk = Desk(tmp_path)
+    (tmp_path / "notes.xlsx").write_bytes(b"PK")
+    if file:
+        desk.edit(tmp_path / file, old, new)
+    monkeypatch.chdir(tmp_path)
+    assert run(words) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.count("\n") == 1
+    assert told in said.err, said.err
+
+
+def motor() -> st.Motor:
+    return st.Motor(0.0076, friction=st.FrictionModel("coulomb", coulomb=0.2))
+
+
+def recording() -> st.Recording:
+    rows = np.arange(300.0)
+    return st.Recording(1e-3 * rows, np.sin(rows), np.cos(rows))
+
+
+CALLS: dict[str, tuple[Callable[[], object], str]] = {
+    "symbol": (lambda: st.FrictionModel("lugre", sigma0=1e5), "called 'initial_stiffness' here"),
+    "torque for force": (lambda: st.FrictionModel("coulomb", Tc=0.2), "called 'coulomb' here"),
+    "law mistyped": (lambda: st.FrictionModel("lugree"), "did you mean 'lugre'?"),
+    "law by name": (lambda: st.laws()["Lugre"], "did you mean 'lugre'?"),
+    "set in place": (
+        lambda: motor().friction.parameters.update(coulomb=3.0), "make another one, as in",
+    ),
+    "array to a step": (
+        lambda: motor().friction.step(np.ones(3), 1e-3), "simulate(velocity, dt) takes the samples",
+    ),
+    "no friction": (lambda: st.Motor(0.0076), "friction is missing; give a FrictionModel"),
+    "law for friction": (lambda: st.Motor(0.0076, friction="coulomb"), "no FrictionModel; give"),
+    "milliseconds": (lambda: motor().simulate(np.ones(5), 1e7), "at most 1e6"),
+    "no time step": (lambda: motor().simulate(np.ones(5), 0.0), "a positive number of seconds"),
+    "words for numbers": (lambda: motor().simulate(["a", "b"], 1e-3), "is not an array of numbers"),
+    "swapped": (lambda: st.fit(recording(), st.Session([recording()])), "give a Plant"),
+    "path for a session": (lambda: st.diagnose("session.toml"), "give what stiction.load("),
+    "session without a plant": (lambda: st.fit(st.Session([recording()])), "plant"),
+    "findings": (lambda: st.load("findings.json"), "holds what a diagnosis found"),
+    "unequal lengths": (lambda: st.Recording([0.0, 1.0], [1.0], [0.0, 0.0]), "1"),
+    "figure for axes": (lambda: motor().simulate(np.ones(5), 1e-3).plot(3), "plot: ax"),
+    "speed and friction apart": (lambda: st.fit_curve([1.0, 2.0], [1.0]), "of one length"),
+    "friction that drives": (
+        lambda: st.fit_curve(np.arange(1.0, 9.0), -np.ones(8)), "turn one of the two signs round",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_a_mistake_in_python_is_one_helpful_sentence(name: str) -> None:
+    call, told = CALLS[name]
+    with pytest.raises(st.InputError) as refused:
+        call()
+    assert told in str(refused.value), str(refused.value)
+    assert "\n" not in str(refused.value)
