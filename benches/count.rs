@@ -1,4 +1,4 @@
-//! One run of a motor loop for `instructions.py` to count: `count LAW[+EFFECT...] PASSES`.
+//! One run of a motor loop for `instructions.py` to count: `count LAW[:NAME=VALUE][+EFFECT...] PASSES`.
 
 use stiction_benches::{DT, SAMPLES, efforts, motor_with};
 use stiction_core::motor::{Column, PerSample, Surroundings};

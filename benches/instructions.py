@@ -16,13 +16,15 @@ ROOT = Path(__file__).parents[1]
 PLANTS = (
     "coulomb",
     "hsieh_pan",
+    "hsieh_pan:breakaway=100",
+    "hsieh_pan:hardening_exponent=2.5",
     "maxwell_slip",
     "coulomb+position_dependent_friction",
     "hsieh_pan+cogging",
     "hsieh_pan+direction_asymmetry",
     "lugre+cogging+position_dependent_friction+torque_bias",
 )
-"""A law, and effects behind it."""
+"""A law, maybe with a parameter of it, and effects behind it."""
 SAMPLES = 20_000
 
 

@@ -178,3 +178,19 @@ def test_a_number_that_is_not_finite_is_named_and_moves_nothing(law: str, n: int
             st.simulate_ensemble(base, given["current"], DT, load=given["load"])
     after = machines.simulate(currents, DT, load=load)
     np.testing.assert_array_equal(after.position, once.position)
+
+
+@pytest.mark.parametrize("breakaway", [5.0, 40.0])
+@pytest.mark.parametrize("dt", [1e-4, 1e-3])
+def test_a_fall_behind_break_away_is_divided_alike_whoever_asks(breakaway, dt):
+    friction = st.FrictionModel("hsieh_pan", breakaway=breakaway, viscous=breakaway / 50.0)
+    motor = st.Motor(0.0076, friction=friction)
+    sizes = np.linspace(0.7, 1.3, 11)[:, None]
+    currents = 1.2 * breakaway * sizes * np.sin(np.linspace(0.0, 30.0, 1200))
+    together = st.simulate_ensemble(motor, currents, dt, outputs=("position",), threads=2)
+    for current, position in zip(currents, together.position, strict=True):
+        alone, stepped = motor.copy(), motor.copy()
+        chunks = [alone.simulate(part, dt).position for part in np.array_split(current, 7)]
+        np.testing.assert_array_equal(position, np.concatenate(chunks))
+        np.testing.assert_array_equal(position, [stepped.step(i, dt)[0] for i in current])
+    assert alone.state["breakaways"] > 1

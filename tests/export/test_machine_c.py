@@ -90,10 +90,10 @@ class Machine:
         return found
 
 
-def off(plant, folder, *, dt=DT, load=0.0):
+def off(plant, folder, *, dt=DT, load=0.0, size=1.0):
     """How far C and the core are apart in position and velocity, and how often both rest."""
-    position, velocity, _ = Machine(plant, folder).run(INPUT, dt, load)
-    own = plant.motor().simulate(INPUT, dt, load=load, temperature=30.0)
+    position, velocity, _ = Machine(plant, folder).run(size * INPUT, dt, load)
+    own = plant.motor().simulate(size * INPUT, dt, load=load, temperature=30.0)
     assert np.ptp(own.velocity) > 0.05
     rests = np.mean((velocity == 0.0) == (own.velocity == 0.0))
     assert rests > 0.999
@@ -199,3 +199,9 @@ def test_a_sample_that_is_too_long_is_refused(tmp_path):
     own = Machine(machine({"law": "dahl", "coulomb": 0.3}), tmp_path)
     with pytest.raises(AssertionError):
         own.run(np.zeros(1), dt=1e3)
+
+
+@pytest.mark.parametrize("dt", [1e-4, 1e-3])
+def test_a_step_goes_in_pieces_where_friction_falls_as_in_the_core(dt, tmp_path):
+    own = machine({"law": "hsieh_pan", "breakaway": 20.0, "viscous": 0.4})
+    assert off(own, tmp_path, size=40.0, dt=dt) < 1e-4

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::error::{Error, Result};
 use crate::finite;
 use crate::friction::{Law, Statistics};
-use crate::integrate::{Integrator, LONGEST_PHASE, parts};
+use crate::integrate::Integrator;
 use crate::interrupt::{self, Pace};
 use crate::lanes::{self, Job, Width};
 use crate::model::LawSpec;
@@ -334,10 +334,9 @@ impl Ensemble {
 
     /// Steps of a sample of all members, if they are like the first.
     fn steps_of(&self, dt: f64) -> f64 {
-        self.members.first().map_or(0.0, |first| {
-            let each = with_law!(&first.law, |law| parts(&first.machine, law, dt, LONGEST_PHASE));
-            each * self.members.len() as f64
-        })
+        self.members
+            .first()
+            .map_or(0.0, |first| first.division(dt).steps * self.members.len() as f64)
     }
 
     /// Runs all members on. Each of `columns` is filled one member after the other, with

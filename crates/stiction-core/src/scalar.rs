@@ -119,7 +119,7 @@ pub trait Scalar:
         } else if a == 1.0 {
             (m, x.signum())
         } else {
-            let value = m.powf(a);
+            let value = any_power(m, a);
             (value, a * value / x)
         };
         let in_base = self.chain(value, slope);
@@ -202,11 +202,24 @@ impl Scalar for f64 {
     }
 }
 
+/// m^a for m > 0. A half is a root, and so much sooner there than by the library; each of these is good to
+/// one unit in the last place.
+#[inline(always)]
+fn any_power(m: f64, exponent: f64) -> f64 {
+    if exponent == 1.5 {
+        m * m.sqrt()
+    } else if exponent == 0.5 {
+        m.sqrt()
+    } else {
+        power_of_the_library(m, exponent)
+    }
+}
+
 /// A power as the library has it. Cold, although some laws have nothing else: around a call all that a
 /// loop has in registers goes to memory, and that is to be done where the call is.
 #[cold]
 #[inline(never)]
-fn any_power(m: f64, exponent: f64) -> f64 {
+fn power_of_the_library(m: f64, exponent: f64) -> f64 {
     m.powf(exponent)
 }
 

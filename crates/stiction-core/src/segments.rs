@@ -164,8 +164,7 @@ impl Running<f64> {
                 let until = rows[k];
                 let samples = ((until - passed) / SAMPLE).ceil().max(1.0);
                 let dt = (until - passed) / samples;
-                let divided =
-                    with_law!(&self.law, |law| parts(&self.machine, law, dt, self.longest_phase));
+                let divided = self.division(dt).steps;
                 meter.foresee(samples * self.cost(dt)).map_err(|error| error.until(until))?;
                 for _ in 0..samples as u64 {
                     let done = self.step_within(input, load, dt, &mut meter);

@@ -122,10 +122,11 @@ macro_rules! laws {
                         let Some(walk) = law.abreast() else { return };
                         let members = motors.into_iter().filter_map(|motor| {
                             let (number, own) = (motor.number, motor.own);
+                            let pieces = motor.running.division(job.dt).pieces;
                             let $crate::motor::Running { machine, law, state, run, .. } = motor.running;
                             match (&*law, state) {
                                 (Self::$law(law), AnyState::$law(state)) => {
-                                    Some($crate::lanes::Member { number, machine, law, state, run, own })
+                                    Some($crate::lanes::Member { number, machine, law, state, run, pieces, own })
                                 }
                                 #[allow(unreachable_patterns)] // a catalogue of one law has no other
                                 _ => unreachable!("motors of an ensemble have one law"),

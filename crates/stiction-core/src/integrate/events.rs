@@ -18,6 +18,11 @@ pub trait Stepper<S: Scalar, L: FrictionLaw<S>> {
 
     /// Attempts a step of this duration in the present contact mode.
     fn attempt(&self, law: &L, state: &L::State, span: S) -> Self::Attempt;
+    /// In how many pieces what is left of a step is to be gone through in the present mode, a whole number.
+    #[inline(always)]
+    fn pieces(&self, _law: &L, _state: &L::State, _span: S) -> f64 {
+        1.0
+    }
     /// What the law makes of it, and the motion at the contact.
     fn contact<'a>(&self, attempt: &'a Self::Attempt) -> (&'a L::Trial, &'a Motion<S>);
     /// Accepts it; `stopped` when it ended where the velocity reached zero.
@@ -97,16 +102,22 @@ pub(super) fn pass_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
             passed += 1;
             continue;
         }
-        let attempt = apart(stepper, law, state, left);
+        let pieces = stepper.pieces(law, state, left);
+        let next = if pieces > 1.0 { left / pieces } else { left };
+        let attempt = apart(stepper, law, state, next);
         let (trial, motion) = stepper.contact(&attempt);
         let event = if passed < MOST_EVENTS { law.event(state, trial, motion) } else { None };
         let Some(event) = event else {
             stepper.accept(law, state, &attempt, false);
+            if pieces > 1.0 {
+                left -= next;
+                continue;
+            }
             return;
         };
         passed += 1;
         // Also where the event is due at once: a velocity that jumped has changed the force.
-        let (event, at, shortened) = earliest(stepper, law, state, event, (left, attempt));
+        let (event, at, shortened) = earliest(stepper, law, state, event, (next, attempt));
         stepper.accept(law, state, &shortened, event == Event::Reversal && at.re() > 0.0);
         left -= at;
         // What is left below round-off of the step still asks for the force after the event.

@@ -16,6 +16,8 @@ pub(super) struct Fast<'a, S: Scalar, const BARE: bool> {
     pub run: &'a mut Run<S>,
     pub input: S,
     pub load: S,
+    /// Duration of the pieces of a step in which friction comes to fall with speed.
+    pub piece: f64,
 }
 
 impl<S: Scalar, const BARE: bool> Fast<'_, S, BARE> {
@@ -102,6 +104,15 @@ impl<S: Scalar, L: FrictionLaw<S>, const BARE: bool> Stepper<S, L> for Fast<'_, 
         next.friction = undamped + outcome.damping * next.velocity;
         motion.velocity = next.velocity;
         Attempt { run: next, trial, motion }
+    }
+
+    #[inline(always)]
+    fn pieces(&self, law: &L, state: &L::State, span: S) -> f64 {
+        if !L::FALLS_AT_TIMES || span.re() <= self.piece || !law.falls(state) {
+            return 1.0;
+        }
+        // What is round-off beyond so many is no piece.
+        (span.re() / self.piece * (1.0 - 1e-9)).ceil()
     }
 
     #[inline]

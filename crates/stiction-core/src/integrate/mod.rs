@@ -121,11 +121,85 @@ pub fn parts<S: Scalar, L: FrictionLaw<S>>(
     dt: f64,
     longest: f64,
 ) -> f64 {
+    let (smooth, falling) = asked_for(machine, law, dt, longest);
+    smooth.max(falling).ceil().max(1.0)
+}
+
+/// Into how many parts a sample of this duration is to be divided for what swings and is damped, and for
+/// the fall of friction with speed.
+fn asked_for<S: Scalar, L: FrictionLaw<S>>(
+    machine: &Machine<S>,
+    law: &L,
+    dt: f64,
+    longest: f64,
+) -> (f64, f64) {
     let lightest = machine.inertia.re();
     let phase = dt * machine.fastest_square(law.greatest_stiffness()).sqrt() / longest;
     let calming = dt * (law.greatest_damping() + machine.servo().1) / lightest / LONGEST_DAMPING;
     let falling = dt * law.steepest_fall() / lightest / LONGEST_DAMPING;
-    phase.max(calming).max(falling.min(MOST_PARTS_FOR_A_FALL)).ceil().max(1.0)
+    (phase.max(calming), falling.min(MOST_PARTS_FOR_A_FALL))
+}
+
+/// How a sample is divided: into steps, and those while friction falls with speed into pieces.
+#[derive(Debug, Clone, Copy)]
+pub struct Division {
+    /// Equal steps of a sample, a whole number.
+    pub steps: f64,
+    /// Equal pieces of a step that begins where friction falls, and the shortest of one in which it comes
+    /// to that.
+    pub pieces: u32,
+}
+
+impl Division {
+    /// That of a sample of this duration, so that ω·h stays below `longest`.
+    ///
+    /// What falls with speed at times alone, a contact that has broken away, is followed at those times: while
+    /// it holds, a fall that is not there asks for nothing.
+    pub fn of<S: Scalar, L: FrictionLaw<S>>(
+        machine: &Machine<S>,
+        law: &L,
+        dt: f64,
+        longest: f64,
+        integrator: Integrator,
+    ) -> Self {
+        if !L::FALLS_AT_TIMES || integrator == Integrator::Reference {
+            return Self { steps: parts(machine, law, dt, longest), pieces: 1 };
+        }
+        let (smooth, falling) = asked_for(machine, law, dt, longest);
+        let steps = smooth.ceil().max(1.0);
+        Self { steps, pieces: (falling / steps).ceil().max(1.0) as u32 }
+    }
+}
+
+/// The steps of a sample, as numbers.
+#[derive(Debug, Clone, Copy)]
+pub struct Steps<S> {
+    /// Duration of a step.
+    pub span: S,
+    /// Pieces of one, and how long they last.
+    pub pieces: u32,
+    /// Duration of a piece.
+    pub piece: S,
+}
+
+impl<S: Scalar> Steps<S> {
+    /// Those of a sample of this duration, divided so.
+    #[inline(always)]
+    pub fn of(dt: f64, steps: u32, pieces: u32) -> Self {
+        let span = S::constant(dt / f64::from(steps));
+        let piece = if pieces == 1 {
+            span
+        } else {
+            S::constant(dt / (f64::from(steps) * f64::from(pieces)))
+        };
+        Self { span, pieces, piece }
+    }
+
+    /// Whether a step from here is made in pieces.
+    #[inline(always)]
+    pub fn goes_in_pieces<L: FrictionLaw<S>>(&self, law: &L, state: &L::State) -> bool {
+        L::FALLS_AT_TIMES && self.pieces > 1 && law.falls(state)
+    }
 }
 
 /// Level of friction up to which a sample is divided as at level 1: ω·h and (C/J)·h may be larger than
@@ -173,15 +247,19 @@ pub fn step<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
     run: &mut Run<S>,
     input: S,
     load: S,
-    span: S,
+    steps: Steps<S>,
 ) {
-    let mut stepper = fast::Fast::<S, BARE> { machine, run, input, load };
-    through_likely_events(&mut stepper, law, state, span);
+    let whole = !steps.goes_in_pieces(law, state);
+    let mut stepper = fast::Fast::<S, BARE> { machine, run, input, load, piece: steps.piece.re() };
+    let (number, span) = if whole { (1, steps.span) } else { (steps.pieces, steps.piece) };
+    for _ in 0..number {
+        through_likely_events(&mut stepper, law, state, span);
+    }
 }
 
-/// Advances body and friction by these of the equal steps of a sample whose input and load are held
-/// (the reference integrator by all of it, in steps of its own); where that is too much work, it ends in
-/// the middle. `BARE` promises
+/// Advances body and friction by these pieces of the equal steps of a sample whose input and load are held
+/// (the reference integrator by all of it, in steps of its own); a step is one piece where `pieces` is 1.
+/// Where that is too much work, it ends in the middle. `BARE` promises
 /// [`Machine::is_bare`]: the same to the bit, without asking at every step for what is not there.
 #[inline]
 #[allow(clippy::too_many_arguments)] // the parts of a motor, borrowed apart
@@ -193,29 +271,33 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
     input: S,
     load: S,
     dt: f64,
-    steps: Range<u32>,
+    (steps, pieces): (Range<u32>, u32),
     integrator: Integrator,
     meter: &mut Meter,
 ) -> Result<()> {
-    let parts = steps.end;
+    let parts = steps.end / pieces;
     let cost = integrator.of_step::<S>(L::STEEP);
     match integrator {
         Integrator::Fast => {
-            let span = S::constant(dt / f64::from(parts));
-            let mut stepper = fast::Fast::<S, BARE> { machine, run, input, load };
-            if BARE || !machine.counts_work() {
-                for _ in steps {
-                    through_events(&mut stepper, law, state, span);
-                    meter.take(cost)?;
-                }
-            } else {
-                let rough = machine.roughness(law.greatest_stiffness(), span.re());
-                let mut work = Work::begin(machine, stepper.run, (input, load), rough);
-                for _ in steps {
-                    through_events(&mut stepper, law, state, span);
+            let each = Steps::<S>::of(dt, parts, pieces);
+            let piece = each.piece.re();
+            let mut stepper = fast::Fast::<S, BARE> { machine, run, input, load, piece };
+            let counts = !BARE && machine.counts_work();
+            let rough = |span: S| machine.roughness(law.greatest_stiffness(), span.re());
+            let mut work = counts.then(|| Work::begin(machine, stepper.run, (input, load), 0.0));
+            let mut passed = steps.start;
+            while passed < steps.end {
+                // A step that was begun in pieces is ended so.
+                let begun = L::FALLS_AT_TIMES && passed % pieces != 0;
+                let whole = !begun && !each.goes_in_pieces(law, state);
+                let (span, taken) = if whole { (each.span, pieces) } else { (each.piece, 1) };
+                through_events(&mut stepper, law, state, span);
+                if let Some(work) = &mut work {
+                    work.rough = rough(span);
                     work.count(machine, stepper.run);
-                    meter.take(cost)?;
                 }
+                meter.take(cost)?;
+                passed += taken;
             }
         }
         Integrator::Reference => {
@@ -299,7 +381,7 @@ mod tests {
                     input,
                     0.0,
                     dt,
-                    0..parts,
+                    (0..parts, 1),
                     integrator,
                     &mut Meter::of_a_sample(),
                 )

@@ -108,6 +108,9 @@ pub struct Bodies {
     pub missed: [u64; WIDTH],
     /// A bit for each lane where there is a body.
     pub present: u8,
+    /// A bit for each lane whose steps are made in pieces while friction falls with speed: then none of
+    /// them is plain.
+    pub in_pieces: u8,
 }
 
 impl Bodies {
@@ -130,6 +133,7 @@ impl Bodies {
             lever: zero,
             missed: [0; WIDTH],
             present: 0,
+            in_pieces: 0,
         }
     }
 

@@ -11,7 +11,7 @@ use super::supply::{Ahead, Supply, load_of};
 use super::tally::Tally;
 use crate::ensemble::{Keep, Plan};
 use crate::friction::{FrictionLaw, LawState};
-use crate::integrate::{Integrator, MOST_PARTS, Machine, Run, parts, step};
+use crate::integrate::{Integrator, MOST_PARTS, Machine, Run, Steps, step};
 use crate::interrupt;
 use crate::model::CHUNK;
 use crate::motor::{Column, PerSample, Running};
@@ -48,6 +48,8 @@ pub struct Member<'a, S: Scalar, L: FrictionLaw<S>> {
     pub state: &'a mut L::State,
     /// Body.
     pub run: &'a mut Run<S>,
+    /// Pieces of a step while its friction falls with speed.
+    pub pieces: u32,
     /// Where its columns go.
     pub own: Vec<&'a mut [f64]>,
 }
@@ -110,9 +112,8 @@ impl<'a> Job<'a> {
         if !shown || !plain || !motor.machine.glides(&motor.run) || !motor.law.goes_abreast() {
             return None;
         }
-        let parts =
-            with_law!(&motor.law, |law| parts(&motor.machine, law, dt, motor.longest_phase));
-        (parts <= MOST_PARTS).then_some(parts as u32)
+        let steps = motor.division(dt).steps;
+        (steps <= MOST_PARTS).then_some(steps as u32)
     }
 
     /// Members of a team where so many motors are shared among so many threads.
@@ -284,6 +285,7 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
             let lane = k % WIDTH;
             bodies.fit(lane, &member.machine.verlet(S::constant(self.job.span())));
             bodies.load(lane, member.run);
+            bodies.in_pieces |= u8::from(member.pieces > 1) << lane;
             contacts.fit(lane, member.law, bodies);
             contacts.load(lane, member.law, member.state);
         }
@@ -306,8 +308,9 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
         member.make_room(&mut room[k]);
         let (input, load) = applied(self.job.plan, member.number, sample);
         let (input, load) = (S::constant(input), S::constant(load));
-        let span = S::constant(self.job.span());
-        step::<_, _, true>(member.machine, member.law, member.state, member.run, input, load, span);
+        let steps = Steps::of(self.job.dt, self.job.parts, member.pieces);
+        let Member { machine, law, state, run, .. } = member;
+        step::<_, _, true>(machine, *law, state, run, input, load, steps);
         block.bodies.load(lane, member.run);
         block.contacts.load(lane, member.law, member.state);
     }

@@ -7,8 +7,8 @@ use crate::error::{Error, Result};
 use crate::follow::arriving;
 use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
 use crate::integrate::{
-    Acting, Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, Stillness, finer,
-    parts, sample,
+    Acting, Division, Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, Steps,
+    Stillness, finer, parts, sample,
 };
 use crate::model::CHUNK;
 use crate::range::{Range, ordinary_motor};
@@ -97,8 +97,7 @@ impl<S: Scalar> Running<S> {
 
     /// Refuses a sample that is too long.
     pub(crate) fn check_step(&self, dt: f64) -> Result<()> {
-        let parts = with_law!(&self.law, |law| parts(&self.machine, law, dt, self.longest_phase));
-        whole_parts(parts, self.most_parts, dt).map(|_| ())
+        whole_parts(self.parts(dt), self.most_parts, dt).map(|_| ())
     }
 
     /// What a sample of this duration costs at least, see [`crate::work`].
@@ -108,16 +107,16 @@ impl<S: Scalar> Running<S> {
 
     /// The same where this run is under that load.
     pub(crate) fn cost_here(&self, load: f64, dt: f64) -> f64 {
+        let Division { steps, .. } = self.division(dt);
         with_law_and_state!(&self.law, &self.state, |law, state| {
-            let plainly = parts(&self.machine, law, dt, self.longest_phase);
             let finer = finer(
                 &self.machine,
                 law,
                 &self.run,
                 (S::constant(0.0), S::constant(load)),
-                dt / plainly,
+                dt / steps,
             );
-            let whole = (plainly * finer).max(self.integrator.inner(law, state, dt));
+            let whole = (steps * finer).max(self.integrator.inner(law, state, dt));
             whole * self.of_step() as f64
         })
     }
@@ -127,8 +126,15 @@ impl<S: Scalar> Running<S> {
         with_law!(&self.law, |law| self.integrator.of_step::<S>(steep(law)))
     }
 
+    /// Steps of a sample of this duration.
     fn parts(&self, dt: f64) -> f64 {
-        with_law!(&self.law, |law| parts(&self.machine, law, dt, self.longest_phase))
+        self.division(dt).steps
+    }
+
+    /// How a sample of this duration is divided, but for what effects make of it.
+    pub fn division(&self, dt: f64) -> Division {
+        let (machine, longest) = (&self.machine, self.longest_phase);
+        with_law!(&self.law, |law| Division::of(machine, law, dt, longest, self.integrator))
     }
 
     /// One sample, at the temperature of the run.
@@ -147,15 +153,16 @@ impl<S: Scalar> Running<S> {
         meter: &mut Meter,
     ) -> Result<()> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
-            let parts = parts(&self.machine, law, dt, self.longest_phase);
+            let Division { steps, pieces } =
+                Division::of(&self.machine, law, dt, self.longest_phase, self.integrator);
             let finer = finer(
                 &self.machine,
                 law,
                 &self.run,
                 (S::constant(input), S::constant(load)),
-                dt / parts,
+                dt / steps,
             );
-            let parts = whole_parts(parts * finer, self.most_parts, dt)?;
+            let parts = pieces * whole_parts(steps * finer, self.most_parts, dt)?;
             state.make_room(parts as usize + CHUNK / 4);
             let before = self.run;
             let arrived = arriving(&mut self.way.as_mut(), input, dt);
@@ -169,7 +176,7 @@ impl<S: Scalar> Running<S> {
                 arrived,
                 S::constant(load),
                 dt,
-                0..parts,
+                (0..parts, pieces),
                 self.integrator,
                 meter,
             )?;
@@ -269,14 +276,16 @@ impl<S: Scalar> Running<S> {
             let glides = plain && law.glides();
             let strains = !BARE && self.machine.effects.strains();
             let mut known = f64::NAN;
-            let (mut plainly, mut divided) = (1.0, 1);
+            let (mut plainly, mut divided, mut pieces) = (1.0, 1, 1);
+            let (longest, integrator) = (self.longest_phase, self.integrator);
             let mut room = 0;
             let mut ahead = Ahead::default();
             let mut index = 0;
             while index < inputs.len() {
                 let dt_now = dt.at(index);
                 if dt_now != known {
-                    plainly = parts(&self.machine, law, dt_now, self.longest_phase);
+                    let division = Division::of(&self.machine, law, dt_now, longest, integrator);
+                    (plainly, pieces) = (division.steps, division.pieces);
                     divided = whole_parts(plainly, self.most_parts, dt_now)?;
                     known = dt_now;
                 }
@@ -295,7 +304,13 @@ impl<S: Scalar> Running<S> {
                 }
                 let mut passed = 0;
                 if glides && (!BARE || self.machine.glides(&self.run)) {
-                    let span = S::constant(dt_now / f64::from(divided));
+                    let steps = Steps::of(dt_now, divided, pieces);
+                    let finely = steps.goes_in_pieces(law, state);
+                    let (span, parts) = if finely {
+                        (steps.piece, divided * pieces)
+                    } else {
+                        (steps.span, divided)
+                    };
                     let machine = &self.machine;
                     if !S::CARRIES {
                         ahead.reach(index, inputs, around.load, |k, input, load| {
@@ -327,10 +342,10 @@ impl<S: Scalar> Running<S> {
                         if S::CARRIES { inputs.len().min(index + AHEAD) } else { ahead.end() };
                     let end = dt.same_until(index, end);
                     let most = if S::CARRIES { MOST_AT_ONCE / 8 } else { MOST_AT_ONCE };
-                    let end = end.min(index + 1 + most / divided as usize);
+                    let end = end.min(index + 1 + most / parts as usize);
                     let begun = index;
                     let (samples, state) = (index..end, &mut *state);
-                    let step = (span, divided);
+                    let step = (span, parts);
                     (self.run, index, passed) = if S::CARRIES {
                         let seen = Showing { machine, rows: &mut rows };
                         let mut glide = machine.glide(self.run, efforts, seen, samples, step);
@@ -345,7 +360,10 @@ impl<S: Scalar> Running<S> {
                         S::run(Plain { law, state, glide })
                     };
                     room = 0; // what the glide has left of it nobody counted
-                    let steps = (index - begun) as u64 * u64::from(divided);
+                    if !finely {
+                        passed *= pieces;
+                    }
+                    let steps = (index - begun) as u64 * u64::from(parts);
                     meter.take(steps * work::in_a_row::<S>() * law.glide_cost())?;
                     // Also what needs other steps from here on.
                     if index == end || (strains && index > begun && passed == 0) {
@@ -358,7 +376,7 @@ impl<S: Scalar> Running<S> {
                     index += 1;
                     continue;
                 }
-                let left = divided - passed;
+                let left = divided * pieces - passed;
                 if room < left {
                     // Once a chunk where samples are not divided, never inside a step.
                     room = (CHUNK as u32).max(left);
@@ -375,8 +393,8 @@ impl<S: Scalar> Running<S> {
                     arrived,
                     added(index) + around.load.at(index),
                     dt_now,
-                    passed..divided,
-                    self.integrator,
+                    (passed..divided * pieces, pieces),
+                    integrator,
                     meter,
                 )?;
                 self.machine.wind(&mut self.run, arrived, dt_now);

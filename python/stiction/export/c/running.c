@@ -31,15 +31,22 @@ static int happens(const stiction_machine *a, const stiction_machine *end)
 #endif
 }
 
-/* A step with every event within it. */
-static void step_through(stiction_machine *a, const acting *by, real span)
+/* A step with every event within it; where friction falls with speed, what is left of it goes in
+ * pieces of this length. */
+static void step_through(stiction_machine *a, const acting *by, real span, real piece)
 {
     real left = span;
     int events;
+    (void)piece;
     for (events = 0;; ++events) {
         stiction_machine end, before = *a, beyond;
         real low = R(0), high = left;
         int what, k;
+#ifdef FALLS_IN_SLIDES
+        if (a->contact.law.mode != 0 && left > piece) {
+            high = left / r_ceil(left / piece * (R(1) - R(8) * EPSILON));
+        }
+#endif
 #ifdef RIGID
         if ((real)a->mode * a->velocity < R(0)) {
             a->mode = 0;
@@ -49,11 +56,16 @@ static void step_through(stiction_machine *a, const acting *by, real span)
         }
         before = *a;
 #endif
-        end = attempt(a, by, left);
+        end = attempt(a, by, high);
         what = events < 16 ? happens(a, &end) : NOTHING;
         if (what == NOTHING) {
             *a = end;
-            return;
+            left -= high;
+            if (left <= EPSILON * span) {
+                return;
+            }
+            --events;
+            continue;
         }
         beyond = end;
         for (k = 0; k < 60 && high - low > R(1e-14) * span; ++k) {
@@ -102,11 +114,25 @@ static void step_through(stiction_machine *a, const acting *by, real span)
 static long parts_of(real dt)
 {
     const real phase = dt * FASTEST / R(0.065), calming = dt * CALMING / R(0.25);
-    const real falling = dt * FALLING / R(0.25);
-    real parts = phase > calming ? phase : calming, some = falling < R(16) ? falling : R(16);
+#ifdef FALLS_IN_SLIDES
+    const real some = R(0);
+#else
+    const real falling = dt * FALLING / R(0.25), some = falling < R(16) ? falling : R(16);
+#endif
+    real parts = phase > calming ? phase : calming;
     parts = r_ceil(parts > some ? parts : some);
     return parts > R(1e4) ? 0 : parts < R(1) ? 1 : (long)parts;
 }
+#ifdef FALLS_IN_SLIDES
+
+/* In how many pieces a step goes while friction falls with speed. */
+static long pieces_of(real dt, long parts)
+{
+    const real falling = dt * FALLING / R(0.25);
+    const real pieces = r_ceil((falling < R(16) ? falling : R(16)) / (real)parts);
+    return pieces < R(1) ? 1 : (long)pieces;
+}
+#endif
 #ifdef STRAINS
 
 /* How many times as many they are to be because of what effects make of the contact here. */
@@ -184,10 +210,13 @@ static void remember(stiction_machine *a, const stiction_state *before, real dt)
 static int machine_step(stiction_machine *a, const acting *by, real dt)
 {
     const stiction_state before = a->contact;
-    long parts = parts_of(dt), k;
+    long parts = parts_of(dt), pieces = 1, k;
     if (parts == 0) {
         return 0;
     }
+#ifdef FALLS_IN_SLIDES
+    pieces = pieces_of(dt, parts);
+#endif
 #ifdef STRAINS
     parts *= finer(a, by, dt / (real)parts);
     if (parts > 10000) {
@@ -195,7 +224,17 @@ static int machine_step(stiction_machine *a, const acting *by, real dt)
     }
 #endif
     for (k = 0; k < parts; ++k) {
-        step_through(a, by, dt / (real)parts);
+        const real piece = dt / ((real)parts * (real)pieces);
+#ifdef FALLS_IN_SLIDES
+        if (pieces > 1 && a->contact.law.mode != 0) {
+            long j;
+            for (j = 0; j < pieces; ++j) {
+                step_through(a, by, piece, piece);
+            }
+            continue;
+        }
+#endif
+        step_through(a, by, dt / (real)parts, piece);
     }
 #if SERVO
 #if SERVO_INTEGRAL != 0

@@ -90,6 +90,14 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn steepest_fall(&self) -> f64 {
         0.0
     }
+    /// Whether friction falls with speed in some modes of the contact alone, which [`FrictionLaw::falls`]
+    /// tells: in the others a sample is not divided for the fall.
+    const FALLS_AT_TIMES: bool = false;
+    /// Whether friction may fall with speed in the present mode.
+    #[inline(always)]
+    fn falls(&self, _state: &Self::State) -> bool {
+        true
+    }
     /// Fastest rate at which internal variables decay at this state: an explicit step of the reference
     /// integrator that is longer runs away.
     fn decay_rate(&self, _state: &Self::State) -> f64 {

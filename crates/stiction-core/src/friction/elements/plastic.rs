@@ -49,7 +49,14 @@ impl<S: Scalar> Plastic<S> {
     /// Greatest hardening that a force of this magnitude can cause.
     #[inline(always)]
     pub fn limit(&self, force: S) -> S {
-        self.coefficient * force.power_of_magnitude(self.exponent)
+        self.limit_and_power(force).0
+    }
+
+    /// The same, and |σ|^(n−1), of which its slope is a multiple: a quotient would be waited for.
+    #[inline(always)]
+    fn limit_and_power(&self, force: S) -> (S, S) {
+        let power = force.power_of_magnitude(self.exponent - 1.0);
+        (self.coefficient * (power * force.abs()), power)
     }
 
     /// Slope of that limit by the magnitude of the force; 0 at no force, as f'(0) = 0.
@@ -67,13 +74,13 @@ impl<S: Scalar> Plastic<S> {
             }
             return slope + self.beyond_square(size.re());
         }
-        self.slope_of(self.limit(force), size)
+        self.slope_of(self.limit_and_power(force).1)
     }
 
-    /// The same from the limit under a force of this magnitude, which may cost a power.
+    /// The same from |σ|^(n−1), which may cost a power.
     #[inline(always)]
-    fn slope_of(&self, limit: S, size: S) -> S {
-        self.exponent * limit / size
+    fn slope_of(&self, power: S) -> S {
+        self.exponent * self.coefficient * power
     }
 
     /// What a seeded exponent of 2 adds to that slope: a derivative, and the value is 0.
@@ -140,7 +147,11 @@ impl<S: Scalar> Plastic<S> {
             return Some(none);
         }
         let s = 1.0_f64.copysign(force.re());
-        let limit = if SQUARE { self.coefficient * (force * force) } else { self.limit(force) };
+        let (limit, power) = if SQUARE {
+            (self.coefficient * (force * force), zero)
+        } else {
+            self.limit_and_power(force)
+        };
         let margin = limit - hardening;
         let starts = self.sign_of(margin) > 0.0;
         let progress = pacing.progress;
@@ -158,7 +169,7 @@ impl<S: Scalar> Plastic<S> {
             }
             (pacing.doubled * size.re() * stiffness.re(), pace)
         } else {
-            let gain = self.slope_of(limit, force * s) * stiffness;
+            let gain = self.slope_of(power) * stiffness;
             (gain.re(), progress * gain)
         };
         // By how much the displacement raises the limit.

@@ -116,6 +116,7 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
     const OPTIONS: &'static [OptionSpec] = OPTIONS;
     const REMEMBERS: bool = true;
     const SPRINGS: bool = true;
+    const FALLS_AT_TIMES: bool = true;
     const SUMMARY: &'static str =
         "pre-sliding with creep, work hardening and reverse-point memory; breaks away and slides";
     const SOURCE: &'static str = "Hsieh, Pan, Wear 242 (2000) 1-17; partly reconstructed";
@@ -238,6 +239,11 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         }
         let excess = p.breakaway.re() - p.coulomb.re();
         steepest(excess, p.stribeck_velocity.re(), p.stribeck_exponent.re())
+    }
+
+    #[inline(always)]
+    fn falls(&self, state: &HsiehPanState<S>) -> bool {
+        state.mode != 0.0
     }
 
     fn decay_rate(&self, state: &HsiehPanState<S>) -> f64 {

@@ -13,6 +13,9 @@
 #let STIFFEST = INITIAL_STIFFNESS
 #let CALMS = max(DAMPING, VISCOUS)
 #let FALLS_BY = (BREAKAWAY - COULOMB if SLIPS else 0)
+#if SLIPS
+#define FALLS_IN_SLIDES
+#endif
 #define OWN_VISCOUS
 
 /* Force of a branch at a distance from its reverse point. */

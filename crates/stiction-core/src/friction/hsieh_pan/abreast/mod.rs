@@ -275,7 +275,9 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
     fn step<V: Vector, const N: usize>(blocks: &mut [Block<Self>; N]) -> Option<[Rest; N]> {
         let onwards =
             |Block { contacts, .. }: &Block<Self>| contacts.slides == 0 && contacts.wild == 0;
-        let forwards = |block: &Block<Self>| block.contacts.sticks == 0 && block.contacts.falls;
+        let forwards = |block: &Block<Self>| {
+            block.contacts.sticks == 0 && block.contacts.falls && in_pieces(block) == 0
+        };
         let odds = if blocks.iter().all(onwards) {
             onward::<V, N>(blocks)
         } else if blocks.iter().all(forwards) {
@@ -306,11 +308,19 @@ impl<S: Scalar> Contacts<S, HsiehPan<S>> for Lanes {
         let mut rests = [Rest::default(); N];
         for k in 0..N {
             if odds[k] != 0 {
-                rests[k] = any::<V>(&mut blocks[k], odds[k]);
+                let missed = odds[k] & in_pieces(&blocks[k]);
+                rests[k] = any::<V>(&mut blocks[k], odds[k] & !missed);
+                rests[k].missed |= missed;
             }
         }
         Some(rests)
     }
+}
+
+/// A bit for each lane of which this step is made in pieces.
+#[inline(always)]
+fn in_pieces(block: &Block<Lanes>) -> u8 {
+    block.contacts.slides & block.bodies.in_pieces
 }
 
 /// Of each row, a bit for each lane that has missed its step.
@@ -323,7 +333,7 @@ fn mixed<V: Vector>(row: &mut [Block<Lanes>; 1]) -> Odds<1> {
     let Lanes { wild, falls, sticks, slides, .. } = row[0].contacts;
     row[0].contacts.known.lanes = 0;
     let stuck = (wild == 0 && sticks != 0).then(|| onward::found::<V, 1>(row));
-    let slid = (falls && slides != 0).then(|| {
+    let slid = (falls && slides != 0 && in_pieces(&row[0]) == 0).then(|| {
         let coasted = coast::found::<V>(row);
         if coasted.1[0] & slides == 0 { coasted } else { forward::found::<V, 1>(row) }
     });
