@@ -10,6 +10,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed
 READY := $(VENV)/ready
+SITE_READY := $(VENV)/site-ready
+SITE ?= target/site
 OUT ?= stiction-demo
 BLIND ?= target/blind
 GATE ?= target/gate
@@ -29,7 +31,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # Fuzzing takes a fresh seed where none is given.
 GIVEN_SEED = $(if $(filter-out file,$(origin SEED)),--seed $(SEED))
 
-.PHONY: demo test test-slow lint rust-tests python-tests gate blind ordinary fuzz wheel install-c bench format audit clean toolchain
+.PHONY: demo test test-slow site lint rust-tests python-tests gate blind ordinary fuzz wheel install-c bench format audit clean toolchain
 
 demo: $(INSTALLED)
 	$(BIN)/stiction demo --out $(OUT)
@@ -66,8 +68,8 @@ lint: $(READY)
 		echo "rustfmt or clippy is missing; run: rustup component add rustfmt clippy" >&2; exit 1; }
 	rustfmt --edition $(EDITION) --check $(RUST)
 	cargo clippy --quiet --workspace --all-targets -- -D warnings
-	$(BIN)/ruff format --check python tests examples benches
-	$(BIN)/ruff check python tests examples benches
+	$(BIN)/ruff format --check python tests examples benches docs/site docs/walkthroughs
+	$(BIN)/ruff check python tests examples benches docs/site docs/walkthroughs
 	$(BIN)/mypy
 	$(BIN)/stubtest stiction._native --ignore-disjoint-bases
 
@@ -82,11 +84,21 @@ python-tests: $(READY)
 	$(PYTEST) -m 'not slow'
 
 # What takes long and guards what changes seldom: Rust's tests with checks of overflow, the simulators that tests
-# use, the longest diagnoses, the table of properties, a wheel, the law of the page; then the gate.
+# use, the longest diagnoses, the table of properties, a wheel, the law of the page; then the site and the gate.
 test-slow: $(READY)
 	cargo test --quiet
 	$(PYTEST) -m slow
+	$(MAKE) site
 	$(MAKE) gate
+
+# The documentation as a site, built and checked: pages, executed walkthroughs, gallery, reference.
+site: $(SITE_READY)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m docs.site -o $(SITE)
+
+# Apart from the tools of development, for nobody who changes code has to wait for them.
+$(SITE_READY): $(READY)
+	$(BIN)/python -m pip install --quiet --editable '.[docs]'
+	touch $@
 
 # Fresh sessions of every family and all real recordings, the way that a user goes: none may be lost.
 gate: $(READY)
@@ -122,8 +134,8 @@ bench: $(READY)
 
 format: $(READY)
 	rustfmt --edition $(EDITION) $(RUST)
-	$(BIN)/ruff format python tests examples benches
-	$(BIN)/ruff check --fix python tests examples benches
+	$(BIN)/ruff format python tests examples benches docs/site docs/walkthroughs
+	$(BIN)/ruff check --fix python tests examples benches docs/site docs/walkthroughs
 
 # No part of `make test`: the answer changes while the code does not, and asks the network.
 audit: $(READY)

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from . import given
 from .errors import InputError
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Session", "both_of", "load", "load_beside", "load_recording"]
 
+MOST_WITHIN: Final = 8
+"""Recordings whose names stand within a figure of the session."""
+
 _TABLES = ("plant", "columns", "recordings")
 _FAULTS_TOLD = 8
 
@@ -54,6 +57,7 @@ class Session:
     recordings : tuple of Recording
     plant : Plant or None
     replicates : mapping of int to int
+        Index of a recording to the index of the one whose motion it repeats.
     starts : tuple of float
         When each recording starts on the session clock, s: its ``start_s``, or, where none is
         stated, the end of the one before it.
@@ -168,7 +172,12 @@ class Session:
                 panel.plot(*line, label=name, linewidth=1.0)
         panel.set_xlabel("session clock (s)")
         panel.set_ylabel(f"position ({self._position_unit})")
-        if panel.get_legend_handles_labels()[0]:
+        lines = len(panel.get_legend_handles_labels()[0])
+        if lines > MOST_WITHIN:  # beside the panel, where they cover nothing
+            plot.legend(
+                panel, loc="upper left", bbox_to_anchor=(1.0, 1.05), fontsize=plot.SMALL - 2
+            )
+        elif lines:
             plot.legend(panel)
         return panel
 

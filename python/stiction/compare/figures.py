@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from ..catalogue import LawRecord
 
-__all__ = ["law_figure", "law_figures", "name_of", "walk"]
+__all__ = ["law_figure", "law_figures", "name_of", "small", "walk"]
 
 _WIDTH, _HEIGHT = 5.6, 2.25
 """Inches."""
@@ -68,7 +68,7 @@ def law_figures(folder: Path) -> list[Path]:
         The files.
     """
     return [
-        _small(law_figure(record), folder / name_of(record.name)) for record in catalogue.laws()
+        small(law_figure(record), folder / name_of(record.name)) for record in catalogue.laws()
     ]
 
 
@@ -77,8 +77,19 @@ def name_of(law: str) -> str:
     return f"law-{law.replace('_', '-')}.png"
 
 
-def _small(drawn: Figure, path: Path) -> Path:
-    """A PNG of few colours: the lines need no more, and a page with many figures stays light."""
+def small(drawn: Figure, path: Path) -> Path:
+    """A PNG of few colours: the lines need no more, and a page with many figures stays light.
+
+    Parameters
+    ----------
+    drawn : Figure
+    path : Path
+
+    Returns
+    -------
+    Path
+        The file.
+    """
     from PIL import Image
 
     target = BytesIO()

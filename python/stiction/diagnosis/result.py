@@ -362,11 +362,15 @@ class Diagnosis:
     gain : Gain or None
         All of them beside the baseline, over rows that nobody looked at before.
     candidates : tuple of CandidateRow
+        Every effect that was tried, with its score, what noise reaches, and the outcome.
     laws : tuple of LawRow
+        Other laws in place of the plant's own, where they were asked for.
     baseline, extended : ModelSummary or None
         None where nothing could be fitted.
     unexplained : tuple of Unexplained
+        Coordinates in which more is left than noise explains, largest share first.
     advice : tuple of Advice
+        What to record next, and what that tells apart.
     data : Mapping
         ``checks``, ``split``, ``hashes``, ``noise``, ``replicates``, and in a sentence which
         ``residual`` was used and why.

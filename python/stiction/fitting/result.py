@@ -36,6 +36,7 @@ class FitParameter:
         value ± t·stderr, t of Student with as many degrees as there are blocks of 1 s, less one.
     unit : str
     at_bound : {"", "lower", "upper"}
+        Which bound the fit ended at, "" where at none.
     start : float
         Where the fit started.
     """
@@ -81,6 +82,7 @@ class FitResult:
     interrupted : bool
         Whether Ctrl-C ended it: this is the best so far.
     evaluations : int
+        Times that the residual was computed.
     timing_offset : float
         By how much the input was taken to be stamped early, s; bounded by half a sample.
     starts : Mapping of str to Mapping

@@ -47,11 +47,11 @@ class RampAndCut(MotionResult):
     ----------
     target : float
         Position at which the torque is cut, rad.
-    cut_time, cut_torque : numpy.ndarray
+    cut_time, cut_torque : numpy.ndarray, shape (ramps,)
         s and N·m.
-    rest_time, rest_position : numpy.ndarray
+    rest_time, rest_position : numpy.ndarray, shape (rests,)
         End of each complete pause (s), and the position read there (rad).
-    ring_time, ring_position : numpy.ndarray
+    ring_time, ring_position : numpy.ndarray, shape (extremes,)
         Extremes of the position in the ring after the first cut, s and rad.
     ring_centre : float
         Position at the end of the first pause, rad.
@@ -88,7 +88,7 @@ class RampAndHold(MotionResult):
         Position at which the ramp stops, rad.
     hold_time, held_torque : float
         Instant from which the torque is held (s), and that torque (N·m).
-    read_time, read_position : numpy.ndarray
+    read_time, read_position : numpy.ndarray, shape (readings,)
         Instants at which the position is read (s), and the readings (rad); the first is one
         period of the controller after the hold starts.
     """
@@ -110,11 +110,11 @@ class PulseTrains(MotionResult):
         Torque of the pulses of each train, N·m.
     pulses : int
         Pulses in a train.
-    pulse_torque : numpy.ndarray
+    pulse_torque : numpy.ndarray, shape (periods,)
         N·m.
-    rest_time, rest_position : numpy.ndarray
+    rest_time, rest_position : numpy.ndarray, shape (periods,)
         End of each period (s), and the position read there (rad).
-    rest_hardening : numpy.ndarray
+    rest_hardening : numpy.ndarray, shape (periods,)
         Work hardening at the end of each period, rad; empty where the law has none.
     """
 

@@ -100,7 +100,7 @@ class Estimate(Result):
         ``inertia`` and the parameters of ``hsieh_pan``.
     steps : Steps
         What was read off before the joint fit.
-    distance, branch, branch_low, branch_high : numpy.ndarray
+    distance, branch, branch_low, branch_high : numpy.ndarray, shape (n,)
         G over the distance from a reverse point (rad, N·m), with its 95 % interval: the curve is
         determined better than its parameters.
     undetermined : tuple of str

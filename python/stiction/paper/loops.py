@@ -28,11 +28,11 @@ class LoopAreas(Result):
 
     Attributes
     ----------
-    distance : numpy.ndarray
+    distance : numpy.ndarray, shape (loops,)
         Between the two reverse points, rad.
-    area, formula : numpy.ndarray
+    area, formula : numpy.ndarray, shape (loops,)
         Work lost in a loop by integration, and 2·∫₀ᴰG − D·G(D), J.
-    loops : tuple of (numpy.ndarray, numpy.ndarray)
+    loops : tuple of (numpy.ndarray, numpy.ndarray), each of shape (n,)
         Displacement from the lower reverse point (rad) and force (N·m) along each loop.
     """
 

@@ -45,7 +45,7 @@ class Curve:
     label : str
     effort, position : numpy.ndarray, shape (n,)
         N·m and rad, or N and m.
-    settled : numpy.ndarray
+    settled : numpy.ndarray, shape (levels,)
         Position at each level.
     """
 
@@ -63,7 +63,7 @@ class LoopStudy(Result):
     ----------
     letters : tuple of str
         Names of the turning points.
-    level : numpy.ndarray
+    level : numpy.ndarray, shape (levels,)
         Force at them.
     curves : tuple of Curve
     unit : float

@@ -141,13 +141,13 @@ class MotionResult(Result):
 
     Attributes
     ----------
-    time : numpy.ndarray
+    time : numpy.ndarray, shape (n,)
         s; entry k is the end of sample k.
-    effort : numpy.ndarray
+    effort : numpy.ndarray, shape (n,)
         Torque that was applied during sample k, N·m.
-    position, velocity : numpy.ndarray
+    position, velocity : numpy.ndarray, shape (n,)
         Of the rotor, rad and rad/s.
-    measured : numpy.ndarray
+    measured : numpy.ndarray, shape (n,)
         Position as the encoder reads it, rad; equals ``position`` without an encoder.
     states : Mapping of str to numpy.ndarray
         States of the friction law over time (``plastic``, ``hardening``, …).

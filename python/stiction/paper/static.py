@@ -94,13 +94,14 @@ class StaticTest(MotionResult):
     case : int or None
         1, 2 or 3; None where the levels were given.
     driven : {"force", "ramp", "staircase"}
+        How each level was reached.
     letters : tuple of str
         Names of the points.
-    level : numpy.ndarray
+    level : numpy.ndarray, shape (levels,)
         N·m.
-    settled_at : numpy.ndarray of int
+    settled_at : numpy.ndarray of int, shape (levels,)
         Entry of the record at the end of each hold.
-    settled : numpy.ndarray
+    settled : numpy.ndarray, shape (levels,)
         Position read there, rad.
     """
 
@@ -120,9 +121,9 @@ class HardeningCycles(MotionResult):
     ----------
     amplitude : float
         N·m.
-    settled_at : numpy.ndarray of int
+    settled_at : numpy.ndarray of int, shape (half cycles,)
         Entry of the record at the end of each half cycle.
-    permanent : numpy.ndarray
+    permanent : numpy.ndarray, shape (half cycles,)
         Permanent displacement that the half cycle added, rad.
     """
 
@@ -138,11 +139,12 @@ class NestedLoops(MotionResult):
     Attributes
     ----------
     letters : tuple of str
-    level : numpy.ndarray
+        Names of the points.
+    level : numpy.ndarray, shape (levels,)
         N·m.
-    settled_at : numpy.ndarray of int
+    settled_at : numpy.ndarray of int, shape (levels,)
         Entry of the record at which each level is reached.
-    settled : numpy.ndarray
+    settled : numpy.ndarray, shape (levels,)
         Displacement of the spring there, rad.
     reverse_points : numpy.ndarray of int, shape (n,)
         Reverse points that the memory holds after each sample of the record.
@@ -162,9 +164,10 @@ class DahlTest(Result):
     Attributes
     ----------
     letters : tuple of str
-    level, settled : numpy.ndarray
+        Names of the points.
+    level, settled : numpy.ndarray, shape (levels,)
         N·m and rad, one entry a level.
-    effort, position : numpy.ndarray
+    effort, position : numpy.ndarray, shape (n,)
         The path through them, N·m and rad.
     """
 
@@ -205,6 +208,7 @@ def static_test(
     Parameters
     ----------
     case : {1, 2, 3}
+        Which of the paper's three sequences of levels.
     driven : {"force", "ramp", "staircase"}
         How a level is reached. "force": the friction follows a ramp exactly, without inertia and
         damper, as an implicit host would use the law (``FrictionModel.trial`` and ``commit``

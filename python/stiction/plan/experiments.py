@@ -63,7 +63,9 @@ class Experiment:
     kind : {"reference", "input"}
         Whether a controller follows it or the drive gets it.
     purpose : str
+        What it shows, in words.
     build : callable
+        From plant, sizes, sample time, source of chance and share of the size to the signal.
     """
 
     name: str

@@ -40,6 +40,7 @@ class Signal:
     experiment : str
     kind : {"reference", "input"}
     purpose : str
+        What it shows, in words.
     role : str
         Of the recording that it makes.
     time, values : numpy.ndarray, shape (n,)

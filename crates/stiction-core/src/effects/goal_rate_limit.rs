@@ -13,6 +13,8 @@ parameters! {
     }
 }
 
+/// g' = sgn(u − g)/s until g = u, the goal g instead of the goal u that was asked for.
+///
 /// The goal of a servo comes nearer to what was asked for at a constant speed, 1/slowness, and stays
 /// there: the profile velocity (goal speed) of the servo's own firmware.
 ///

@@ -17,7 +17,7 @@ parameters! {
     }
 }
 
-/// Dry friction grows by c·|Q|, Q the load: the external one and gravity.
+/// Level 1 + c·|Q|/F_c: dry friction grows by c·|Q|, Q the load: the external one and gravity.
 ///
 /// c is c_d where the machine moves against the load and c_b where the load moves the machine: teeth and
 /// screws lose more in the one than in the other. Both go over into each other within a small speed,

@@ -13,7 +13,7 @@ parameters! {
     }
 }
 
-/// Constant effort b along +x: amplifier offset, cable pull, a tilted axis.
+/// Effort b along +x, constant: amplifier offset, cable pull, a tilted axis.
 ///
 /// Neutral: b = 0.
 /// Source: Janot, Gautier, Brunot, nonlinear benchmark EMPS (2019), the offset of its model.
