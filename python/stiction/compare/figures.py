@@ -67,9 +67,7 @@ def law_figures(folder: Path) -> list[Path]:
     list of Path
         The files.
     """
-    return [
-        small(law_figure(record), folder / name_of(record.name)) for record in catalogue.laws()
-    ]
+    return [small(law_figure(record), folder / name_of(record.name)) for record in catalogue.laws()]
 
 
 def name_of(law: str) -> str:
