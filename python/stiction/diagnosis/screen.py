@@ -29,6 +29,8 @@ ALPHA: Final = 0.01
 FORMS: Final = 11.0
 """Independent forms as which the 25 or so that are screened count: what their contributions have in
 common leaves 11 to 14 (effective number of tests; Li and Ji, Heredity 95 (2005))."""
+MOST_LEVEL: Final = 0.2
+"""Of a form by itself: what noise reaches more often is no limit."""
 EULER: Final = 0.5772156649015329
 FLIPS: Final = 7
 """Seed of the signs by which blocks are turned round: always the same."""
@@ -331,11 +333,17 @@ def _quantile(values: FloatArray, level: float) -> float:
     """What the greatest over a grid goes beyond with a small probability; shape (grid, residuals).
 
     Few residuals reach no such level, so that their greatest ones are taken as Gumbel's, by moments
-    (the limit of a maximum of chi-squares; Davies, Biometrika 74 (1987), bounds it alike).
+    (the limit of a maximum of chi-squares; Davies, Biometrika 74 (1987), bounds it alike). Mean and
+    spread of few are uncertain themselves, by what a prediction by Student's distribution is wider.
     """
-    greatest = np.max(values, axis=0)
-    spread = float(np.std(greatest, ddof=1)) if len(greatest) > 1 else 0.0
-    scale = math.sqrt(6.0) / math.pi * spread
+    from scipy.special import ndtri, stdtrit
+
+    greatest, level = np.max(values, axis=0), min(level, MOST_LEVEL)
+    number = len(greatest)
+    if number < 2:
+        return float(greatest[0])
+    wider = math.sqrt(1.0 + 1.0 / number) * stdtrit(number - 1, 1.0 - level) / ndtri(1.0 - level)
+    scale = math.sqrt(6.0) / math.pi * float(np.std(greatest, ddof=1)) * float(wider)
     return float(np.mean(greatest)) + scale * (-math.log(-math.log1p(-level)) - EULER)
 
 
