@@ -11,6 +11,7 @@ from ..catalogue import effects
 from .gains import heldout_gain
 from .model import Model, fitted
 from .replay import hangs_on_load
+from .screen import NULL_TIMES
 
 __all__ = ["told_by_noise"]
 
@@ -22,9 +23,6 @@ LAG: Final = "frictional_lag"
 LATE_SHARE: Final = 0.5
 """Of the kernel's support: by less than that may a turn be wrong that noise hides."""
 LATE: Final = "lies within what noise of the position makes friction late by"
-
-NULL_TIMES: Final = 1.3
-"""A gain counts above this many times the greatest one that the replays reach."""
 
 _logger = logging.getLogger(__name__)
 

@@ -105,7 +105,8 @@ def diagnose(
         Share of the friction, above 0 and below 1: what contributes less (rms) gets no name.
     alpha : float
         Level of the screening, above 0 and below 1: the probability that noise passes it in any
-        form in a session that lacks nothing. Rows held out decide after it.
+        form in a session that lacks nothing, within a few times as long as ``surrogates`` are a few
+        dozen. Rows held out decide after it.
     seed : int
         Same data and seed, same findings, at any number of threads.
     threads : int, optional

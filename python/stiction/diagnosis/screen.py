@@ -18,12 +18,15 @@ from .signatures import Alike, Signatures
 
 __all__ = [
     "ALPHA",
+    "NULL_TIMES",
     "Problem",
     "Score",
     "likelier",
     "screen",
 ]
 
+NULL_TIMES: Final = 1.3
+"""A score counts above this many times the greatest one that the surrogates reach."""
 ALPHA: Final = 0.01
 """Level of the screening for a whole session."""
 FORMS: Final = 11.0
@@ -323,28 +326,19 @@ class _Turned:
 def _threshold(noise: FloatArray, turned: FloatArray, alpha: float) -> float:
     """What neither surrogates nor turned blocks reach over the grid; shapes (grid, residuals).
 
-    Noise passes in any form with a probability of ``alpha``. Turned blocks are what the law misses
-    as well, alike in every form: each form is held against them at that level.
+    Noise passes in any form with a probability of ``alpha``, as far as the greatest of a grid are
+    Gumbel's, taken by moments (the limit of a maximum of chi-squares; Davies, Biometrika 74 (1987),
+    bounds it alike). Mean and spread of few are uncertain: a margin over the greatest of them all
+    is asked for as well.
     """
-    return max(_quantile(noise, alpha / FORMS), _quantile(turned, alpha))
-
-
-def _quantile(values: FloatArray, level: float) -> float:
-    """What the greatest over a grid goes beyond with a small probability; shape (grid, residuals).
-
-    Few residuals reach no such level, so that their greatest ones are taken as Gumbel's, by moments
-    (the limit of a maximum of chi-squares; Davies, Biometrika 74 (1987), bounds it alike). Mean and
-    spread of few are uncertain themselves, by what a prediction by Student's distribution is wider.
-    """
-    from scipy.special import ndtri, stdtrit
-
-    greatest, level = np.max(values, axis=0), min(level, MOST_LEVEL)
-    number = len(greatest)
-    if number < 2:
-        return float(greatest[0])
-    wider = math.sqrt(1.0 + 1.0 / number) * stdtrit(number - 1, 1.0 - level) / ndtri(1.0 - level)
-    scale = math.sqrt(6.0) / math.pi * float(np.std(greatest, ddof=1)) * float(wider)
-    return float(np.mean(greatest)) + scale * (-math.log(-math.log1p(-level)) - EULER)
+    null, flips = np.max(noise, axis=0), np.max(turned, axis=0)
+    spread = float(np.std(null, ddof=1)) if len(null) > 1 else 0.0
+    rare = -math.log(-math.log1p(-min(alpha / FORMS, MOST_LEVEL)))
+    return max(
+        NULL_TIMES * float(np.max(null)),
+        float(np.mean(null)) + math.sqrt(6.0) / math.pi * spread * (rare - EULER),
+        NULL_TIMES * float(np.max(flips)),
+    )
 
 
 def _measured(
