@@ -46,7 +46,7 @@ def draw(folder: Path) -> list[Path]:
     drawn = {
         "init-columns": _columns(),
         "tutorial-recordings": session.plot().figure,
-        "tutorial-before-and-after": found.plot(),
+        "tutorial-before-and-after": found.plot().figure,
         "fit-friction": fitted.plot().figure,
         "report-cause": make_figure(cause(found, 0)),
         "report-candidates": make_figure(candidates(found)),

@@ -30,9 +30,12 @@ def saved(block: tuple[Any, ...], variables: dict[str, Any], settings: dict[str,
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from stiction.plot import Panels
+
     names = variables["example_globals"]
     shown = names.setdefault(_SHOWN, set())
-    found = [value.figure if isinstance(value, Axes) else value for value in names.values()]
+    held = (Axes, Panels)
+    found = [value.figure if isinstance(value, held) else value for value in names.values()]
     new = {id(each): each for each in found if isinstance(each, Figure) and id(each) not in shown}
     paths = []
     for key, each in new.items():

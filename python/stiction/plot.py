@@ -158,6 +158,10 @@ class Panels(tuple["Axes", ...]):
         """The axes, as a figure has them."""
         return list(self)
 
+    def savefig(self, *args: Any, **kwargs: Any) -> None:
+        """Write their figure, as ``matplotlib.figure.Figure.savefig`` does."""
+        self.figure.savefig(*args, **kwargs)
+
     def _repr_png_(self) -> bytes:
         return _encoded(self.figure, ".png")
 

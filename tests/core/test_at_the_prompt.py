@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import inspect
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -160,3 +161,9 @@ def test_text_that_no_encoding_has_is_a_symbol_that_nobody_knows() -> None:
     table = {"friction": {"law": "coulomb", "\ud800": 1.0}}
     with pytest.raises(st.InputError, match="is unknown"):
         st.Plant.from_dict(table)
+
+
+def test_panels_are_saved_as_their_figure_is(tmp_path: Path) -> None:
+    panels = motor().simulate([0.5] * 100, 1e-3).plot()
+    panels.savefig(tmp_path / "run.png")
+    assert (tmp_path / "run.png").stat().st_size > 1000
