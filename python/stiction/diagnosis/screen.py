@@ -32,9 +32,8 @@ ALPHA: Final = 0.01
 FORMS: Final = 11.0
 """Independent forms as which the 25 or so that are screened count: what their contributions have in
 common leaves 11 to 14 (effective number of tests; Li and Ji, Heredity 95 (2005))."""
-MOST_LEVEL: Final = 0.2
-"""Of a form by itself: what noise reaches more often is no limit."""
 EULER: Final = 0.5772156649015329
+"""Mean of Gumbel's distribution of scale 1."""
 FLIPS: Final = 7
 """Seed of the signs by which blocks are turned round: always the same."""
 DEPENDENT: Final = 1e-12
@@ -333,7 +332,7 @@ def _threshold(noise: FloatArray, turned: FloatArray, alpha: float) -> float:
     """
     null, flips = np.max(noise, axis=0), np.max(turned, axis=0)
     spread = float(np.std(null, ddof=1)) if len(null) > 1 else 0.0
-    rare = -math.log(-math.log1p(-min(alpha / FORMS, MOST_LEVEL)))
+    rare = -math.log(-math.log1p(-alpha / FORMS))
     return max(
         NULL_TIMES * float(np.max(null)),
         float(np.mean(null)) + math.sqrt(6.0) / math.pi * spread * (rare - EULER),
