@@ -11,7 +11,7 @@ import numpy as np
 
 from .catalogue import EffectRecord, effects
 from .errors import InputError
-from .motion import evenly, smooth
+from .motion import GAUSSIAN, evenly, smooth
 from .parameter import Parameter
 from .plant import Plant
 from .residual import started, starting_velocity
@@ -29,8 +29,6 @@ EVEN: Final = 1e-6
 """Steps that differ by less, as a share of the usual one, are alike."""
 RAN_AWAY: Final = 1e12
 """Positions and their derivatives beyond this are those of a loop that runs away."""
-GAUSSIAN: Final = 1.4826
-"""Standard deviation over median magnitude."""
 TRIED: Final = frozenset({"second mass", "input rate"})
 """Hooks of effects whose slope at their neutral point tells nothing of them: of a second mass there
 is none, and a goal that is barely held back differs for one sample after a step."""

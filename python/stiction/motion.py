@@ -12,6 +12,7 @@ from .errors import InputError
 from .trajectory import FloatArray
 
 __all__ = [
+    "GAUSSIAN",
     "Kernel",
     "count_of",
     "evenly",
@@ -23,6 +24,8 @@ __all__ = [
     "stirs",
 ]
 
+GAUSSIAN: Final = 1.4826
+"""Standard deviation over the median magnitude of a normal distribution."""
 WIDEST: Final = 1e6
 """Samples; a wider kernel is a slip of the units."""
 SUPPORTS_S: Final = (0.030, 0.300)

@@ -11,6 +11,7 @@ import numpy as np
 
 from .accompanied import accompanied
 from .errors import InputError
+from .motion import GAUSSIAN
 from .trajectory import FloatArray
 from .weak_form import Candidate, Places, Start, WeakForm
 
@@ -31,8 +32,6 @@ STARTED: Final = 8
 """Readings of one motion from which its windows are begun, to see what errors of the start do."""
 DECIDED: Final = 3.0
 """Times the usual size that errors of the start may come to in a window before it counts less."""
-GAUSSIAN: Final = 1.4826
-"""Standard deviations of a Gaussian to a median of its size."""
 MOST_LED: Final = 2
 """Plants by whose motion windows begin at a time, beside the first one: each holds its motion."""
 MOVES_TIMES: Final = 2.0

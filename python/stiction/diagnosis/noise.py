@@ -8,8 +8,9 @@ from typing import Final
 
 import numpy as np
 
-from ..fitting.readings import GAUSSIAN, position_noise
+from ..fitting.readings import position_noise
 from ..fitting.rows import Mask, Nuisances, Rows
+from ..motion import GAUSSIAN
 from ..plant import Plant
 from ..trajectory import FloatArray
 

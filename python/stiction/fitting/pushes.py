@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from ..motion import GAUSSIAN
 from ..plant import Plant
 from ..recording import Check, Part, Recording
 from ..trajectory import FloatArray
@@ -274,7 +275,7 @@ def _robust(columns: FloatArray, effort: FloatArray) -> FloatArray:
         weights /= float(np.max(weights))
     for _ in range(TRIMS):
         left = np.abs(effort - scaled @ solved)
-        near = left <= OUTLYING * 1.4826 * float(np.median(left)) + 1e-300
+        near = left <= OUTLYING * GAUSSIAN * float(np.median(left)) + 1e-300
         solved = np.linalg.lstsq(scaled[near], effort[near], rcond=1e-10)[0]
     found: FloatArray = solved / size
     return found

@@ -10,13 +10,12 @@ import numpy as np
 
 from ..accompanied import accompanied
 from ..errors import InputError
-from ..motion import smooth
+from ..motion import GAUSSIAN, smooth
 from ..plant import Plant
 from ..trajectory import FloatArray
 from ..weak_form import Start, WeakForm
 
 __all__ = [
-    "GAUSSIAN",
     "Residual",
     "as_read",
     "made_by_readings",
@@ -26,9 +25,6 @@ __all__ = [
 ]
 
 _logger = logging.getLogger(__name__)
-
-GAUSSIAN: Final = 1.4826
-"""Standard deviation over the median magnitude of a normal distribution."""
 
 SMOOTHING_SHARE: Final = 1.0 / 3.0
 """Support over which the measured motion is smoothed to stand for the true one, as a share of the
