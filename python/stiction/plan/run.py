@@ -211,8 +211,8 @@ def _needed(plant: Plant, path: FloatArray, dt: float) -> FloatArray:
 def _reached(plant: Plant, given: FloatArray, dt: float, sizes: Sizes) -> FloatArray:
     """Position that the plant comes to with samples of its input, from rest at 0; shape (n,).
 
-    It ends where the machine is beyond what is allowed, so that a signal that cannot be used costs no
-    more than its beginning.
+    It ends where the machine is beyond what is allowed, so that a signal that cannot be used costs
+    no more than its beginning.
     """
     motor = plant.motor()
     motor.reset(0.0, 0.0)
