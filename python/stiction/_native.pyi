@@ -352,6 +352,7 @@ class RowKernel:
         inertia: float = 0.0,
         *,
         held: bool = False,
+        smooth: bool = False,
     ) -> RowKernel: ...
 
 @final

@@ -395,7 +395,10 @@ class WeakForm:
         # one is the mean of what held before and after, or it is half a sample late.
         measured = self.effort[1:] if self.prescribed else _centred(drive)
         measured = measured + _centred(self.load[:-1])
-        inertial = self.own(plant).inertia * (self.acceleration + self._bent(ahead))
+        own = self.own(plant)
+        if own.friction.springy and not self.prescribed:
+            needed = needed + np.diff(needed, 2, prepend=needed[:1], append=needed[-1:]) / 12.0
+        inertial = own.inertia * (self.acceleration + self._bent(ahead))
         return self._mean(measured), inertial + self._mean(needed)
 
     def residual(self, plant: Plant, start: Start = None) -> FloatArray:
@@ -533,6 +536,7 @@ class WeakForm:
             self.stride,
             self.own(plant).inertia,
             held=driven and not self.prescribed,
+            smooth=not self.prescribed and self.own(plant).friction.springy,
         )
 
     def _bent(self, ahead: FloatArray) -> FloatArray:

@@ -195,6 +195,7 @@ where
         let Self { samples, motion, row, .. } = self;
         let MeasuredMotion { inputs, around, dt, averaged, .. } = *motion;
         let located = L::RIGID && averaged;
+        let bends = !L::RIGID && averaged;
         let zero = S::constant(0.0);
         let misreads = machine.effects.misreads();
         let remembers = machine.effects.remembers();
@@ -275,6 +276,9 @@ where
                 Some(Stop { left, .. }) if left < 1.0 => {
                     stopping(&step, left, &channels, contact, friction, mean);
                 }
+                _ if bends && step.start_velocity.re() * step.velocity.re() < 0.0 => {
+                    turning(&step, &channels, contact, friction);
+                }
                 _ => Along::through_events(&step, &channels, contact, friction, mean),
             }
             if relaxes {
@@ -333,6 +337,51 @@ fn stopping<S: Scalar, L: FrictionLaw<S>>(
         *mean = moved * share + rested * (1.0 - share);
     }
 }
+
+/// A sample in which a contact that yields turns back: it goes as far as the machine does, and from there
+/// to where the sample ends. Straight to its end it would not have been where it turned, and what
+/// remembers turns would be short of a·h²/8 each time, whose force grows with the square of the sample.
+///
+/// In between the motion is the cubic with the positions and velocities of both ends.
+#[cold]
+#[inline(never)]
+fn turning<S: Scalar, L: FrictionLaw<S>>(
+    step: &Motion<S>,
+    channels: &Channels<S>,
+    (law, state): (&L, &mut L::State),
+    force: &mut S,
+) {
+    let (start, end) = (step.start_velocity * step.duration, step.velocity * step.duration);
+    let Some(share) = turn(start.re(), step.displacement.re(), end.re()) else {
+        return Along::through_events(step, channels, (law, state), force, None);
+    };
+    let (left, square) = (1.0 - share, share * share);
+    // Where it turns it does not move: that a parameter makes it turn sooner changes nothing.
+    let out = start * (share * left * left) + step.displacement * (square * (3.0 - 2.0 * share))
+        - end * (square * left);
+    let zero = S::constant(0.0);
+    let there =
+        Motion { displacement: out, duration: step.duration * share, velocity: zero, ..*step };
+    Along::through_events(&there, channels, (law, &mut *state), force, None);
+    let back = Motion {
+        displacement: step.displacement - out,
+        duration: step.duration * left,
+        start_velocity: zero,
+        ..*step
+    };
+    Along::through_events(&back, channels, (law, state), force, None);
+}
+
+/// The share of a sample after which a cubic turns that starts and ends with these velocities, of
+/// opposite signs and times the duration, and makes this way; `None` at its very ends.
+fn turn(start: f64, way: f64, end: f64) -> Option<f64> {
+    let (a, b) = (3.0 * (start + end) - 6.0 * way, 6.0 * way - 4.0 * start - 2.0 * end);
+    let half = -0.5 * (b + (b * b - 4.0 * a * start).max(0.0).sqrt().copysign(b));
+    [half / a, start / half].into_iter().find(|share| (ENDS..=1.0 - ENDS).contains(share))
+}
+
+/// Share of a sample from whose ends a turn lies no further than round-off.
+const ENDS: f64 = 1e-6;
 
 impl<S: Scalar> Run<S> {
     /// Where a motion that is given has come to.

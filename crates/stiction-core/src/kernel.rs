@@ -17,6 +17,9 @@ pub struct RowKernel<'a> {
     pub inertia: f64,
     /// Whether the drive holds its effort between samples and counts as measured.
     pub held: bool,
+    /// Whether what is needed goes on between samples without jumps: it counts as a second difference of
+    /// positions weighs it, by how near it is to the stamp.
+    pub smooth: bool,
 }
 
 impl RowKernel<'_> {
@@ -64,7 +67,9 @@ impl<P: Iterator<Item = usize> + Clone> Task for Seen<'_, P> {
     #[inline(always)]
     fn run(self) {
         let Self { kernel, needed, driven, ahead, places, column } = self;
-        let RowKernel { mean, second, every, inertia, held } = *kernel;
+        let RowKernel { mean, second, every, inertia, held, smooth } = *kernel;
+        let weighed = if smooth { about(needed) } else { Vec::new() };
+        let needed = if smooth { &weighed } else { needed };
         let mut short = Vec::new();
         if held && any(driven) {
             // What is held counts half a sample later.
@@ -84,6 +89,17 @@ impl<P: Iterator<Item = usize> + Clone> Task for Seen<'_, P> {
             }
         }
     }
+}
+
+/// Means of values about each of them that fall off to 0 at both neighbours, of the parabola through the
+/// three: x(t+h) − 2·x(t) + x(t−h) is h² times that mean of the acceleration, exactly.
+#[inline(always)]
+fn about(values: &[f64]) -> Vec<f64> {
+    let mut means = values.to_vec();
+    for (mean, near) in means.iter_mut().skip(1).zip(values.array_windows::<3>()) {
+        *mean += (near[0] - 2.0 * near[1] + near[2]) / 12.0;
+    }
+    means
 }
 
 /// Whether any value is not 0.
@@ -122,7 +138,14 @@ mod tests {
     #[test]
     fn a_column_is_the_mean_of_what_is_measured_less_what_is_needed() {
         let (mean, second) = ([0.25, 0.5, 0.25], [0.25, 0.0, -0.5, 0.0, 0.25]);
-        let kernel = RowKernel { mean: &mean, second: &second, every: 2, inertia: 3.0, held: true };
+        let kernel = RowKernel {
+            mean: &mean,
+            second: &second,
+            every: 2,
+            inertia: 3.0,
+            held: true,
+            smooth: false,
+        };
         let ramp: Vec<f64> = (0..12).map(f64::from).collect();
         let square: Vec<f64> = ramp.iter().map(|x| x * x).collect();
         let zeros = vec![0.0; 12];
@@ -137,5 +160,24 @@ mod tests {
         assert_eq!(column, [-6.0; 4]);
         kernel.column_of([&ramp, &zeros, &zeros], [1, 3].into_iter(), &mut column[..2]);
         assert_eq!(column[..2], [-4.0, -8.0]);
+    }
+
+    #[test]
+    fn what_goes_on_smoothly_counts_as_a_second_difference_weighs_it() {
+        let (mean, second) = ([1.0], [1.0, -2.0, 1.0]);
+        let kernel = RowKernel {
+            mean: &mean,
+            second: &second,
+            every: 1,
+            inertia: 1.0,
+            held: false,
+            smooth: true,
+        };
+        // Acceleration 12·t² of t⁴, whose second difference at t is 12·t² + 2.
+        let (accelerations, zeros): (Vec<f64>, Vec<f64>) =
+            (0..6).map(|t| (12.0 * f64::from(t * t), 0.0)).unzip();
+        let mut column = vec![0.0; kernel.rows(6)];
+        kernel.column([&accelerations, &zeros, &zeros], &mut column);
+        assert_eq!(column, [-14.0, -50.0, -110.0, -194.0]);
     }
 }

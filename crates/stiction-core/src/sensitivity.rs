@@ -187,7 +187,8 @@ pub struct MeasuredMotion<'a> {
     /// Durations.
     pub dt: PerSample<'a>,
     /// Whether friction of a rigid contact is its mean about each stamp (see
-    /// [`Running::follow_about`]), not its value there.
+    /// [`Running::follow_about`]), not its value there, and whether a contact that yields goes through
+    /// where the motion turns between two stamps.
     pub averaged: bool,
 }
 

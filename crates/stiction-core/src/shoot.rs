@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use crate::error::{Error, Result};
 use crate::friction::FrictionLaw;
+use crate::integrate::LONGEST_PHASE;
 use crate::interrupt;
 use crate::motor::{MotorSpec, PerSample, Running};
 use crate::scalar::{COLUMNS, Dual, Scalar};
@@ -11,13 +12,15 @@ use crate::sensitivity::{MeasuredMotion, Start, passes, seeded};
 use crate::track::Track;
 use crate::work::{self, Meter};
 
-/// ω·h above which a sample of a window is divided: the phase error of the ring is then 0.4 % of the
-/// phase, and of a ring that fast the weights of a window keep nothing.
+/// ω·h above which a sample of a window is divided where the ring is too fast for the weights of the
+/// window to keep any of it: its phase error is 0.4 % of the phase.
 const COARSE_PHASE: f64 = 0.3;
-/// The same at most: of what rings faster than samples show only where it comes to rest is seen, so it
-/// is followed no more finely than the fastest ring that they do show, as far as its steps stay well
-/// within what is stable (ω·h < 2).
+/// The same at most: of what rings faster than samples show only where it comes to rest is seen, as far
+/// as its steps stay well within what is stable (ω·h < 2).
 const COARSEST_PHASE: f64 = 0.6;
+/// ω·T of a ring in a window of duration T from which on its weights keep less of it the faster it is:
+/// three periods.
+const KEPT_PHASE: f64 = 6.0 * PI;
 /// Parts of a sample above which a window is refused: what swings a hundred times between two samples,
 /// or calms down in the five hundredth part of one, no reading can tell from what is rigid, and a trial
 /// of a fit that strays there would take minutes.
@@ -55,10 +58,19 @@ impl<S: Scalar> Running<S> {
         self.shoot_under(motion, windows, |_| S::constant(0.0), land)
     }
 
-    /// ω·h above which a sample of a window is divided, where samples are no longer than this.
-    fn coarse_phase(&self, dt: f64) -> f64 {
+    /// ω·h above which a sample is divided along a measured motion: as always where samples show the
+    /// ring, and less finely the faster it is for them.
+    fn phase_of_samples(&self, dt: f64) -> f64 {
         let phase = with_law!(&self.law, |law| self.machine.phase(law.greatest_stiffness(), dt));
-        (COARSE_PHASE * phase / PI).clamp(COARSE_PHASE, COARSEST_PHASE)
+        (LONGEST_PHASE * phase.powi(2)).clamp(LONGEST_PHASE, COARSEST_PHASE)
+    }
+
+    /// The same in a window of so many samples, where its weights keep less of a ring than samples show.
+    fn phase_of_window(&self, dt: f64, samples: usize) -> f64 {
+        let span = dt * samples as f64;
+        let phase = with_law!(&self.law, |law| self.machine.phase(law.greatest_stiffness(), span));
+        let kept = LONGEST_PHASE * (phase / KEPT_PHASE).powi(2);
+        kept.clamp(LONGEST_PHASE, COARSE_PHASE).max(self.phase_of_samples(dt))
     }
 
     /// As [`Self::shoot`], with an effort added to each sample of every window.
@@ -87,7 +99,8 @@ impl<S: Scalar> Running<S> {
         let all = work::allowed(motion.samples());
         let mut left = all;
         let mut reached = 0;
-        let longest_phase = self.longest_phase.max(self.coarse_phase(dt.greatest()));
+        let phase = self.phase_of_window(dt.greatest(), length);
+        let longest_phase = self.longest_phase.max(phase);
         for window in 0..windows.number(motion.samples()) {
             interrupt::check()?;
             let start = window * windows.stride.max(1);
@@ -144,8 +157,7 @@ impl Running<f64> {
         let actual: Option<&dyn Fn(f64) -> f64> =
             if sensor.misreads() { Some(&actual) } else { None };
         let mut meter = Meter::new(work::allowed(motion.samples()));
-        // What windows begin with is followed as finely as they are.
-        self.longest_phase = self.longest_phase.max(self.coarse_phase(dt.greatest()));
+        self.longest_phase = self.longest_phase.max(self.phase_of_samples(dt.greatest()));
         for k in 0..motion.samples() {
             let track = Track::new(positions, actual, k);
             let behind = track.position() - self.run.position;

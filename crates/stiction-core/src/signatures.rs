@@ -75,7 +75,14 @@ pub fn shoot_signatures(
     let marks = marks(windows, &response, parts, width);
     let Windows { stride, weights } = *windows;
     let mean = &weights[weights.len().min(2)..];
-    let kernel = RowKernel { mean, second: weights, every: stride, inertia: 1.0, held: false };
+    let kernel = RowKernel {
+        mean,
+        second: weights,
+        every: stride,
+        inertia: 1.0,
+        held: false,
+        smooth: false,
+    };
     let mut values = vec![0.0; number * width];
     let targets = values.chunks_mut(width.max(1)).map(|values| Answer {
         marks: &marks,

@@ -216,6 +216,7 @@ mod tests {
             every: 7,
             inertia: 0.0,
             held: true,
+            smooth: false,
         };
         for (samples, kernel) in
             [(0, None), (1, None), (5000, None), (5000, Some(&kernel)), (30, Some(&kernel))]

@@ -21,6 +21,9 @@ use crate::real::real;
 ///     kg·m² or kg; makes an effort of that derivative.
 /// held : bool
 ///     Whether the drive holds its effort from sample to sample: it counts half a sample later.
+/// smooth : bool
+///     Whether what is needed goes on between samples without jumps: it counts as a second difference
+///     of positions weighs it.
 ///
 /// Raises
 /// ------
@@ -33,6 +36,7 @@ pub struct RowKernel {
     every: usize,
     inertia: f64,
     held: bool,
+    smooth: bool,
 }
 
 impl RowKernel {
@@ -43,6 +47,7 @@ impl RowKernel {
             every: self.every,
             inertia: self.inertia,
             held: self.held,
+            smooth: self.smooth,
         }
     }
 }
@@ -50,7 +55,7 @@ impl RowKernel {
 #[pymethods]
 impl RowKernel {
     #[new]
-    #[pyo3(signature = (weights, second, every, inertia=0.0, *, held=false))]
+    #[pyo3(signature = (weights, second, every, inertia=0.0, *, held=false, smooth=false))]
     fn new(
         py: Python<'_>,
         weights: &Bound<'_, PyAny>,
@@ -58,6 +63,7 @@ impl RowKernel {
         every: i64,
         #[pyo3(from_py_with = real)] inertia: f64,
         held: bool,
+        smooth: bool,
     ) -> PyResult<Self> {
         let numbers =
             |name, value| -> PyResult<Vec<f64>> { Ok(one_row(name, value)?.as_slice()?.to_vec()) };
@@ -67,6 +73,7 @@ impl RowKernel {
             every: usize::try_from(every).unwrap_or(0),
             inertia: finite(py, "inertia", inertia)?,
             held,
+            smooth,
         };
         kernel.core().check().or_input_error(py)?;
         Ok(kernel)

@@ -48,8 +48,9 @@ impl Numbers {
 ///     Whether the drive is on, 0 where it is off.
 /// averaged : bool
 ///     Whether the friction of a rigid contact, which jumps inside samples, is its mean over the sample
-///     before each stamp and the one after, to be compared with inputs that are held; otherwise
-///     it is what it is at the stamp.
+///     before each stamp and the one after, to be compared with inputs that are held, and a contact
+///     that yields goes through where the motion turns between two stamps; otherwise friction is what
+///     it is at the stamp, of a motion that is straight in between.
 ///
 /// Raises
 /// ------

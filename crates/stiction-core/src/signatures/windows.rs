@@ -113,6 +113,7 @@ mod tests {
             every: windows.stride,
             inertia: 1.0,
             held: false,
+            smooth: false,
         };
         let mut values = vec![0.0; number];
         let mut answer = Answer {
