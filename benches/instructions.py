@@ -19,12 +19,17 @@ PLANTS = (
     "hsieh_pan:breakaway=100",
     "hsieh_pan:hardening_exponent=2.5",
     "maxwell_slip",
+    "maxwell_slip:weight_1=10",
+    "bristle",
+    "bristle:coulomb=3.5e-4",
+    "elasto_plastic",
+    "elasto_plastic:breakaway=2.3e-3",
     "coulomb+position_dependent_friction",
     "hsieh_pan+cogging",
     "hsieh_pan+direction_asymmetry",
     "lugre+cogging+position_dependent_friction+torque_bias",
 )
-"""A law, maybe with a parameter of it, and effects behind it."""
+"""A law, maybe with a parameter of it at which a sample is dear, and effects behind it."""
 SAMPLES = 20_000
 
 

@@ -13,8 +13,10 @@ use crate::work;
 /// Bristles of [`Bristle`].
 pub const BRISTLES: usize = 20;
 const SHARE: f64 = 1.0 / BRISTLES as f64;
-/// Sites of one bristle in a step that are summed one by one; of more their mean is taken.
-const MOST_SITES: f64 = 64.0;
+/// Sites of one bristle in a step that are summed one by one; of more their mean is taken. Twenty bristles
+/// pass so many more that what scatters about the mean is a hundredth of the force in that step, and of
+/// either sign.
+const MOST_SITES: f64 = 8.0;
 /// Sites of which the sum takes as long as a step in a row, see [`crate::work`].
 const SITES_OF_A_STEP: f64 = 6.0;
 /// Breaks are counted as far as a float is a whole number.

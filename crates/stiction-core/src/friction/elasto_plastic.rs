@@ -1,6 +1,6 @@
 //! Bristles with an elastic region: LuGre that does not drift.
 
-use super::elements::approach::approach;
+use super::elements::approach::approach_bending;
 use super::elements::bristle::{self, Bent, Bristle, BristleState, BristleTrial, Slip};
 use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
@@ -112,7 +112,8 @@ impl<S: Scalar> ElastoPlastic<S> {
         }
         let whole = -(self.elastic / level - 1.0);
         // r = 1 − σ₀·z/g; 1 − α is the square of a sine.
-        let r = approach(-(along / level - 1.0), way, |r| {
+        let steep = S::constant(0.5 * std::f64::consts::PI) / whole;
+        let r = approach_bending(-(along / level - 1.0), way, steep * steep, |r| {
             let sine = (r / whole * (0.5 * std::f64::consts::PI)).sin();
             let square = sine * sine;
             square / r - (square - 1.0)

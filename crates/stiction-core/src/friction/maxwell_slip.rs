@@ -13,6 +13,9 @@ use crate::parameter::ParameterSpec;
 use crate::parameters;
 use crate::scalar::Scalar;
 
+/// What a plain step on a curve that is not exponential takes, see [`FrictionLaw::glide_cost`].
+const OF_ANY_CURVE: u64 = 2;
+
 parameters! {
     /// Parameters of [`MaxwellSlip`].
     pub struct MaxwellSlipParameters {
@@ -248,7 +251,11 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
 
     #[inline(always)]
     fn glides(&self) -> bool {
-        self.curve.is_exponential()
+        true
+    }
+
+    fn glide_cost(&self) -> u64 {
+        if self.curve.is_exponential() { 1 } else { OF_ANY_CURVE }
     }
 
     #[inline(always)]
@@ -257,11 +264,15 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
         state: &mut MaxwellSlipState<S>,
         glide: &mut Glide<S, E, V>,
     ) {
-        self.glide_on(state, glide);
+        if self.curve.is_exponential() {
+            self.glide_on::<E, V, true>(state, glide);
+        } else {
+            self.glide_on::<E, V, false>(state, glide);
+        }
     }
 
     fn springs(&self, _state: &MaxwellSlipState<S>) -> Option<f64> {
-        self.glides().then(|| self.parameters.viscous.re())
+        self.curve.is_exponential().then(|| self.parameters.viscous.re())
     }
 
     // Where the body stays, so does the force.

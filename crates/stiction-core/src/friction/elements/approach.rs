@@ -6,6 +6,12 @@ use crate::scalar::Scalar;
 const STEP: f64 = 1.0 / 32.0;
 /// Nothing is left below this.
 const NOTHING: f64 = 1e-17;
+/// A way of which much less is left, in e-folds, ...
+const LONG: f64 = 1.0;
+/// ... is gone in steps of at most so many times [`STEP`], ...
+const MOST_LONGER: f64 = 32.0;
+/// ... and ends in closed form, where that is off by no more.
+const CLOSED: f64 = 1e-10;
 /// Of so many e-folds nothing is left.
 const MOST_E_FOLDS: f64 = 40.0;
 /// Greatest change of ln r over a part of a way.
@@ -25,14 +31,42 @@ const GAUSS: [(f64, f64); 5] = [
 /// as r^(−1/4), so that however long the way is, some two hundred of them end it.
 #[inline]
 pub fn approach<S: Scalar>(r: S, way: S, rate: impl Fn(S) -> S) -> S {
+    follow(r, way, None, rate)
+}
+
+/// [`approach`] where the rate is nowhere below 1 and 1 + `bend`·r − … near the end.
+///
+/// No more than r·e^(−way) is left then. Of a long way that is little, so that large steps are as good; and as
+/// soon as the closed form of 1 + bend·r would err by no more than they do, it ends the way.
+#[inline]
+pub fn approach_bending<S: Scalar>(r: S, way: S, bend: S, rate: impl Fn(S) -> S) -> S {
+    follow(r, way, Some(bend), rate)
+}
+
+#[inline(always)]
+fn follow<S: Scalar>(r: S, way: S, bend: Option<S>, rate: impl Fn(S) -> S) -> S {
     let mut left = way;
     let mut r = r;
     while left.re() > 0.0 {
         if r.re() < NOTHING {
             return S::constant(0.0);
         }
+        let mut longer = r.re().powf(-0.25);
+        if let Some(bend) = bend
+            && left.re() > LONG
+        {
+            let end = r.re() * (-left.re()).exp();
+            let bent = bend.re() * r.re();
+            // What r² leaves out, and what the next power of a sine does.
+            let off = bent * r.re() * (0.5 + bent / 9.0);
+            if end * off.min(1.0) <= CLOSED {
+                let scale = S::constant(1.0) / bend;
+                return approach_evenly(r, left, scale, scale);
+            }
+            longer = longer.max(end.powf(-0.25).min(MOST_LONGER));
+        }
         let k1 = rate(r);
-        let reach = STEP * r.re().powf(-0.25) / k1.re();
+        let reach = STEP * longer / k1.re();
         let last = left.re() <= reach;
         let h = if last { left } else { S::constant(reach) };
         let at = |k: S, share: f64| r * (-(k * h * share)).exp();
@@ -110,6 +144,28 @@ mod tests {
                 if there > 0.0 {
                     let back = way_evenly_to(1.3, there, gap, distance);
                     assert!((back - way).abs() < 1e-9 * way, "{back} {way}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_way_that_bends_is_the_one_of_small_steps() {
+        use std::f64::consts::FRAC_PI_2;
+        for whole in [0.02_f64, 0.1, 0.37, 1.0] {
+            let rate = |r: f64| {
+                let square = (r / whole * FRAC_PI_2).sin().powi(2);
+                square / r - (square - 1.0)
+            };
+            let bend = (FRAC_PI_2 / whole).powi(2);
+            for share in [1.0, 0.3, 0.01] {
+                for way in [0.3, 1.1, 3.0, 7.0, 12.0, 30.0, 50.0, 1e6] {
+                    let found = approach_bending(share * whole, way, bend, rate);
+                    // Halves of steps at which nothing is done at once.
+                    let parts = 400;
+                    let part = way.min(60.0) / f64::from(parts);
+                    let exact = (0..parts).fold(share * whole, |r, _| approach(r, part, rate));
+                    assert!((found - exact).abs() < 5e-9, "{whole} {share} {way}: {found} {exact}");
                 }
             }
         }

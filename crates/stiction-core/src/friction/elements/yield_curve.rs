@@ -86,11 +86,11 @@ impl<S: Scalar> YieldCurve<S> {
             let slope = self.stiffness - self.stiffness * yielded;
             return Response { force: self.coulomb * yielded, slope };
         }
-        self.any_loading(y)
+        self.any_loading(y, faded_of)
     }
 
     #[inline(always)]
-    fn any_loading(&self, y: S) -> Response<S> {
+    fn any_loading(&self, y: S, faded: impl Fn(S) -> S) -> Response<S> {
         if (self.shape * y).re() >= 1.0 {
             return Response { force: self.coulomb, slope: S::constant(0.0) };
         }
@@ -98,7 +98,7 @@ impl<S: Scalar> YieldCurve<S> {
         let index = EDGES.iter().filter(|edge| at >= **edge).count();
         let group = &self.groups[index];
         let edge = if index == 0 { 0.0 } else { EDGES[index - 1] };
-        let (yielded, sticking) = plain(y, self.shape);
+        let (yielded, sticking) = plain_by(y, self.shape, faded);
         Response {
             force: self.force * (group.weight * yielded + group.slope * (y - edge) + group.offset),
             slope: self.force * self.inverse_distance * (group.weight * sticking + group.slope),
@@ -148,7 +148,7 @@ impl<S: Scalar> YieldCurve<S> {
     }
 }
 
-/// The exponential branch on which a spring is, as numbers.
+/// The branch on which a spring is, as numbers.
 #[derive(Debug, Clone, Copy)]
 pub struct Course<S> {
     /// Reverse point, or 0 on the first loading.
@@ -161,30 +161,49 @@ pub struct Course<S> {
 }
 
 impl<S: Scalar> YieldCurve<S> {
-    /// The branch on which this spring is, where it is an exponential one.
-    pub fn course(&self, spring: &SpringState<S>) -> Option<Course<S>> {
+    /// The branch on which this spring is.
+    pub fn course(&self, spring: &SpringState<S>) -> Course<S> {
         let (branch, direction) = (spring.present(self), spring.direction);
         let zero = S::constant(0.0);
         let anchor = spring.memory.points().last();
         let (origin, force) = anchor.map_or((zero, zero), |p| (p.position, p.force));
         let size = if branch.first { 1.0 } else { 0.5 };
-        let fading = self.fading(&branch, direction)?;
+        let fading = self.faded_over(&branch, direction);
         let (stretch, scale) = (size * direction, direction / size);
-        Some(Course { origin, force, stretch, scale, fading })
+        Course { origin, force, stretch, scale, fading }
+    }
+
+    /// How a branch would fade were the curve exponential.
+    #[inline(always)]
+    fn faded_over(&self, branch: &Branch, direction: f64) -> Fading<S> {
+        // Branches have twice the size of the first loading.
+        let share = self.inverse_distance * if branch.first { 1.0 } else { 0.5 };
+        let last = S::constant(0.0);
+        Fading { target: branch.target, last, share: share * direction }
     }
 
     /// Where a motion gets that neither turns round nor closes its loop: what
-    /// [`SpringState::walk`] finds, to the bit.
+    /// [`SpringState::walk`] finds, to the bit. `EXPONENTIAL` as in [`Self::is_exponential`].
     #[inline(always)]
-    pub fn along(&self, course: &Course<S>, here: &Here<S>, displacement: S) -> Option<Here<S>> {
+    pub fn along<const EXPONENTIAL: bool>(
+        &self,
+        course: &Course<S>,
+        here: &Here<S>,
+        displacement: S,
+    ) -> Option<Here<S>> {
         let (position, share) = here.reach(&course.fading, displacement);
         if !here.stays(&course.fading, position.re(), share.re()) {
             return None;
         }
-        if here.is_short(share) {
+        if EXPONENTIAL && here.is_short(share) {
             return Some(here.shortly(&course.fading, displacement, position, share));
         }
         let y = (position - course.origin) * course.stretch * self.inverse_distance;
+        if !EXPONENTIAL {
+            let Response { force, slope } = self.any_loading(y, faded_within);
+            let force = course.force + force * course.scale;
+            return Some(Here { position, force, slope, direction: here.direction, steps: 0 });
+        }
         let yielded = faded_within(-y);
         let force = course.force + self.coulomb * yielded * course.scale;
         let slope = self.stiffness - self.stiffness * yielded;
@@ -193,13 +212,18 @@ impl<S: Scalar> YieldCurve<S> {
 }
 
 /// v(y) and its slope, for κ·y < 1; beyond, everything slides.
-#[inline(always)]
 fn plain<S: Scalar>(y: S, shape: S) -> (S, S) {
+    plain_by(y, shape, faded_of)
+}
+
+/// The same, by this 1 − e^x.
+#[inline(always)]
+fn plain_by<S: Scalar>(y: S, shape: S, faded: impl Fn(S) -> S) -> (S, S) {
     let u = shape * y;
     if u.re() >= 1.0 {
         return (S::constant(1.0), S::constant(0.0));
     }
-    let yielded = -((-(y * logarithmic_mean(u))).exp_m1());
+    let yielded = faded(-(y * logarithmic_mean(u)));
     (yielded, -(yielded - 1.0) / (-(u - 1.0)))
 }
 
@@ -228,12 +252,6 @@ impl<S: Scalar> Loading<S> for YieldCurve<S> {
 
     #[inline(always)]
     fn fading(&self, branch: &Branch, direction: f64) -> Option<Fading<S>> {
-        if !self.exponential {
-            return None;
-        }
-        // Branches have twice the size of the first loading.
-        let share = self.inverse_distance * if branch.first { 1.0 } else { 0.5 };
-        let last = S::constant(0.0);
-        Some(Fading { target: branch.target, last, share: share * direction })
+        self.exponential.then(|| self.faded_over(branch, direction))
     }
 }

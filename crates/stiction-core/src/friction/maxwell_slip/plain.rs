@@ -6,9 +6,13 @@ use crate::integrate::{Efforts, Glide, Seen};
 use crate::scalar::Scalar;
 
 impl<S: Scalar> MaxwellSlip<S> {
-    /// Steps along exponential branches until a reverse point more needs room.
+    /// Steps along branches, all of them exponential or not, until a reverse point more needs room.
     #[inline(always)]
-    pub(super) fn glide_on<E: Efforts<S>, V: Seen<S, MaxwellSlipState<S>>>(
+    pub(super) fn glide_on<
+        E: Efforts<S>,
+        V: Seen<S, MaxwellSlipState<S>>,
+        const EXPONENTIAL: bool,
+    >(
         &self,
         state: &mut MaxwellSlipState<S>,
         glide: &mut Glide<S, E, V>,
@@ -18,7 +22,7 @@ impl<S: Scalar> MaxwellSlip<S> {
         let plainly = glide.verlet.dragged(damping);
         let share = plainly.share(damping);
         let braking = plainly.braking(share);
-        let Some(mut course) = curve.course(&state.spring) else { return };
+        let mut course = curve.course(&state.spring);
         let (mut here, mut velocity) = (state.spring.here(), glide.run.velocity);
         while let Some(effort) = glide.next() {
             let mut verlet = plainly;
@@ -38,7 +42,7 @@ impl<S: Scalar> MaxwellSlip<S> {
                 braking = verlet.braking(share);
             }
             let unbraked = verlet.unbraked(velocity, push + effort_then, share);
-            if let Some(there) = curve.along(&course, &here, displacement) {
+            if let Some(there) = curve.along::<EXPONENTIAL>(&course, &here, displacement) {
                 here = there;
             } else {
                 state.spring.slide(&here.apart());
@@ -72,6 +76,6 @@ impl<S: Scalar> MaxwellSlip<S> {
         }
         state.spring.accept(&walk);
         state.spring.count(&walk, &mut state.statistics);
-        curve.course(&state.spring)
+        Some(curve.course(&state.spring))
     }
 }
