@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -45,12 +45,15 @@ class Compensated:
     errors : numpy.ndarray, shape (shares, n)
         Reference less simulated position, rad or m; NaN where the loop ran away.
     unit : str
+    stepped : numpy.ndarray, shape (n,)
+        As ``errors``, with the contact stepped along the reference as feed-forward.
     """
 
     name: str
     time: FloatArray
     errors: FloatArray
     unit: str
+    stepped: FloatArray
 
     @property
     def rms(self) -> FloatArray:
@@ -93,6 +96,12 @@ class Compensation:
         return found
 
     @property
+    def stepped(self) -> float:
+        """Tracking error with the contact stepped along the reference; NaN where a loop ran off."""
+        every = np.concatenate([each.stepped for each in self.recordings])
+        return float(np.sqrt(np.mean(every**2)))
+
+    @property
     def best(self) -> float:
         """The share that leaves the least error."""
         return self.shares[int(np.nanargmin(self.rms))]
@@ -117,7 +126,15 @@ class Compensation:
     @property
     def message(self) -> str:
         """What came out, in words."""
-        return " ".join(filter(None, (self._stated, self._spread)))
+        return " ".join(filter(None, (self._stated, self._with_states, self._spread)))
+
+    @property
+    def _with_states(self) -> str:
+        """What the contact's own states are worth beside its friction of steady motion."""
+        if np.isnan(self.stepped):
+            return "With the contact stepped along the reference a loop runs away."
+        error, unit = self.stepped, self.recordings[0].unit
+        return f"With the contact stepped along the reference it is {error:.3g} {unit} rms."
 
     @property
     def _spread(self) -> str:
@@ -133,7 +150,7 @@ class Compensation:
         hurt = f"it would hurt {self.hurt}" if self.hurt else "it hurts none"
         return (
             f"Over {len(self.machines)} machines within the 95 % intervals of the parameters: "
-            f"{ends[0]} without, {ends[1]} with it; {hurt} of them."
+            f"{ends[0]} without, {ends[1]} with the whole feed-forward; {hurt} of them."
         )
 
     @property
@@ -165,6 +182,7 @@ class Compensation:
             "rms": self.rms.tolist(),
             "best": self.best,
             "margin": self.margin,
+            "stepped": self.stepped,
             "machines": {
                 "drawn": len(self.machines),
                 "hurt": self.hurt,
@@ -180,7 +198,9 @@ class Compensation:
         return f"Compensation({self.message})"
 
 
-def feed_forward(plant: Plant, reference: FloatArray, dt: float) -> FloatArray:
+def feed_forward(
+    plant: Plant, reference: FloatArray, dt: float, *, stepped: bool = False
+) -> FloatArray:
     """Input of the drive that friction and position will take along a reference.
 
     Parameters
@@ -191,14 +211,27 @@ def feed_forward(plant: Plant, reference: FloatArray, dt: float) -> FloatArray:
         Positions, rad or m.
     dt : float
         s.
+    stepped : bool
+        Whether the contact itself is stepped along the reference, from one that never moved. Its
+        states follow the reference as those of an observer without feedback do: where the
+        reference turns round, a contact that yields builds its force up over a way. Without it
+        friction is that of steady motion at the speed of the coming sample, and none where the
+        reference rests.
 
     Returns
     -------
     numpy.ndarray, shape (n,)
-        Friction of steady motion at the speed of the coming sample, none where the reference rests,
-        and the effort that the place asks for, in units of the input.
+        Friction and the effort that the place asks for, in units of the input.
     """
     speeds = np.append(np.diff(reference), 0.0) / dt
+    if stepped:
+        contact = plant.friction_model()
+        contact.reset(float(reference[0]))
+        # What effects ask for at a place is an effort of the contact; gravity is none. A step tells
+        # of the end of a sample.
+        ends = np.append(reference[1:], reference[-1])
+        weight = replace(plant, effects=()).position_effort(ends)
+        return (contact.simulate(speeds, dt) + weight) / plant.gain
     greatest = float(np.max(np.abs(speeds), initial=0.0))
     friction = np.zeros_like(speeds)
     if greatest > 0.0:
@@ -268,7 +301,9 @@ def compensate(
                 continue
             errors.append(run.reference - run.simulated)
             time, unit = run.time, run.unit
-        found.append(Compensated(name, time, np.array(errors), unit))
+        run = _followed(plant, plant, recording, begin, 1.0, stepped=True)
+        stepped = np.full_like(errors[0], np.nan) if run is None else run.reference - run.simulated
+        found.append(Compensated(name, time, np.array(errors), unit, stepped))
     machines = np.empty((draws if within else 0, 2))
     source = np.random.default_rng(seed)
     for row in machines:
@@ -291,6 +326,7 @@ def _followed(
     begin: Begin | None,
     share: float,
     *,
+    stepped: bool = False,
     spared: bool = False,
 ) -> ClosedLoop | None:
     """The loop of a machine with a share of what is known of it; None where it runs away.
@@ -299,7 +335,7 @@ def _followed(
     """
 
     def ahead(reference: FloatArray, dt: float) -> FloatArray:
-        return share * feed_forward(known, reference, dt)
+        return share * feed_forward(known, reference, dt, stepped=stepped)
 
     try:
         return closed_loop.replay(machine, recording, ahead=ahead, **begin_of(begin))

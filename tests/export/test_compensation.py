@@ -44,6 +44,30 @@ def test_a_feed_forward_is_friction_and_place_along_the_reference():
     assert found == pytest.approx(by_hand / 0.5, rel=1e-6)
 
 
+UNBALANCE = {"name": "gravity_unbalance", "cosine": 0.05}
+BIAS = {"name": "torque_bias", "bias": 0.03}
+HANGING = {"body": {"inertia": 0.01, "gravity_amplitude": 0.2}}
+
+
+@pytest.mark.parametrize("effects", [(), (COGGING,), (UNBALANCE,), (BIAS,), (COGGING, BIAS)])
+def test_a_stepped_contact_bears_what_the_curves_bear_where_it_only_slides(effects):
+    own = plant(DRY, *effects, **HANGING, drive={"input": "current_a", "gain": 0.5})
+    reference = 0.4 + 0.5 * DT * np.arange(400)
+    curves = feed_forward(own, reference, DT)
+    stepped = feed_forward(own, reference, DT, stepped=True)
+    # A step tells of the end of a sample, the curves of its start; the last sample rests.
+    assert stepped[:-2] == pytest.approx(curves[1:-1], abs=1e-12)
+
+
+def test_states_of_a_law_are_worth_something_where_the_reference_turns():
+    yielding = {"law": "lugre", "coulomb": 0.3, "breakaway": 0.45, "viscous": 0.01}
+    found = compensate(plant(yielding, controller=PD), recording(4.0))
+    assert found.stepped < 0.9 * found.rms[found.shares.index(1.0)]
+    assert f"stepped along the reference it is {found.stepped:.3g} rad" in found.message
+    dry = compensate(plant(DRY, controller=PD), recording(4.0))
+    assert dry.stepped == pytest.approx(dry.rms[dry.shares.index(1.0)], rel=0.05)
+
+
 def test_the_loop_follows_best_with_what_is_known():
     found = compensate(machine(), recording())
     rms = found.rms
@@ -98,11 +122,13 @@ def test_machines_within_the_intervals_say_how_far_it_may_be_off():
 
 
 def test_a_machine_that_runs_away_is_counted_as_that():
-    unit = Compensated("run", np.zeros(1), np.ones((len(SHARES), 1)), "rad")
+    unit = Compensated("run", np.zeros(1), np.ones((len(SHARES), 1)), "rad", np.ones(1))
     rows = np.array([[1.0, 0.5], [1.0, np.nan], [np.nan, np.nan]])
     found = Compensation((unit,), machines=rows)
     assert found.hurt == 1
-    assert "1 to 1 rad rms (1 ran away) without, 0.5 to 0.5 rad rms (2 ran away)" in found.message
+    assert (
+        "1 to 1 rad rms (1 ran away) without, 0.5 to 0.5 rad rms (2 ran away) with" in found.message
+    )
 
 
 @pytest.mark.parametrize(

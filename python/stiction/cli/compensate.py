@@ -47,7 +47,8 @@ def compensate(
 
     The plant, as a diagnosis extended it, follows the recorded references. A feed-forward adds what
     friction and place will take along the reference to the input; half of it, the whole and twice
-    as much are simulated. `stiction export --to c` or `--to table` write it for a controller.
+    as much are simulated, and the contact itself stepped along the references, with the states of
+    its law. `stiction export --to c` or `--to table` write it for a controller.
 
     Parameters
     ----------
@@ -123,8 +124,9 @@ def _saved(found: Compensation, where: Path, stems: list[str]) -> list[str]:
 
 def _table(found: Compensation) -> list[str]:
     unit = found.recordings[0].unit
+    every = [*((f"{share:g}", rms) for share, rms in zip(found.shares, found.rms, strict=True))]
     rows = [
-        f"{share:>13g}  {'ran away' if not np.isfinite(error) else f'{error:.4g} {unit}'}"
-        for share, error in zip(found.shares, found.rms, strict=True)
+        f"{what:>13}  {'ran away' if not np.isfinite(error) else f'{error:.4g} {unit}'}"
+        for what, error in [*every, ("1, stepped", found.stepped)]
     ]
     return ["", "feed-forward × tracking error, rms", *rows, ""]
