@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Final, SupportsFloat
 
 import numpy as np
@@ -13,6 +11,7 @@ from . import given
 from .ensemble import Ensemble
 from .errors import InputError
 from .frozen import path_of
+from .intervals import drawn, intervals_of
 from .parameter import number
 from .plant import Plant
 from .trajectory import FloatArray
@@ -27,63 +26,8 @@ except ImportError:
 
 __all__ = ["Positioning", "VectorPositioning", "intervals_of"]
 
-DRAWS: Final = 100
-"""Times that values are drawn until a motor takes them: one level may not exceed another."""
 TARGETS: Final = 0.8
 """Share of the reach within which targets are drawn."""
-
-
-def intervals_of(source: Any) -> dict[str, tuple[float, float]]:
-    """95 % intervals of parameters by path.
-
-    Parameters
-    ----------
-    source : Diagnosis, FitResult, path of findings.json or fit.json, or mapping
-        A mapping has (low, high) by path.
-
-    Returns
-    -------
-    dict of str to (float, float)
-        Of a diagnosis those of the extended model. What the data do not determine has none.
-
-    Raises
-    ------
-    InputError
-        Nothing that has intervals, or one whose ends are in the wrong order.
-    """
-    where = "intervals"
-    if isinstance(source, str | Path):
-        where = str(source)
-        source = _read(given.path(source, where))
-    elif hasattr(model := getattr(source, "extended", source), "parameters"):
-        source = {path: each.ci95 for path, each in model.parameters.items()}
-    found = {}
-    for path, ends in given.mapping(source, where, "(low, high) by path").items():
-        if not isinstance(ends, tuple | list) or len(ends) != 2:
-            raise InputError(
-                f"{where}: {path} = {given.shown(ends)} is no interval; give low, high"
-            )
-        if None in ends:
-            continue
-        low, high = (number(end, f"{where}: {path}") for end in ends)
-        if not np.isfinite([low, high]).all():
-            continue
-        if low > high:
-            raise InputError(f"{where}: {path} = {low:g} to {high:g} ends before it begins")
-        found[path] = (low, high)
-    return found
-
-
-def _read(path: Path) -> dict[str, Any]:
-    """Intervals of a file that a fit or a diagnosis wrote."""
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        model = data.get("extended") or data
-        return {name: each["ci95"] for name, each in model["parameters"].items()}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise InputError(
-            f"{path}: no intervals can be read ({error}); name findings.json or fit.json"
-        ) from None
 
 
 class _Task:
@@ -127,18 +71,7 @@ class _Task:
 
     def drawn(self, source: np.random.Generator) -> dict[str, float]:
         """Values within the intervals, that a motor takes."""
-        for _ in range(DRAWS if self.intervals else 1):
-            values = {
-                path: float(source.uniform(low, high))
-                for path, (low, high) in self.intervals.items()
-            }
-            try:
-                self.machines(1, values)
-            except InputError as error:
-                refused = error
-            else:
-                return values
-        raise InputError(f"Positioning: no values within the intervals make a motor: {refused}")
+        return drawn(self.intervals, source, lambda values: self.machines(1, values))
 
     def machines(self, members: int, values: Mapping[str, Any]) -> Ensemble:
         """Machines at rest with these values, and with what the plant leaves open and follows."""

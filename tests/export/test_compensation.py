@@ -8,7 +8,13 @@ import pytest
 import stiction as st
 from stiction import closed_loop
 from stiction.cli import run
-from stiction.compensation import compensate, feed_forward
+from stiction.compensation import (
+    SHARES,
+    Compensated,
+    Compensation,
+    compensate,
+    feed_forward,
+)
 
 from .test_steady import plant
 
@@ -36,6 +42,30 @@ def test_a_feed_forward_is_friction_and_place_along_the_reference():
     speeds = np.append(np.diff(reference), 0.0) / DT
     by_hand = np.sign(speeds) * 0.3 + 0.02 * speeds - 0.04 * np.cos(6.0 * reference)
     assert found == pytest.approx(by_hand / 0.5, rel=1e-6)
+
+
+UNBALANCE = {"name": "gravity_unbalance", "cosine": 0.05}
+BIAS = {"name": "torque_bias", "bias": 0.03}
+HANGING = {"body": {"inertia": 0.01, "gravity_amplitude": 0.2}}
+
+
+@pytest.mark.parametrize("effects", [(), (COGGING,), (UNBALANCE,), (BIAS,), (COGGING, BIAS)])
+def test_a_stepped_contact_bears_what_the_curves_bear_where_it_only_slides(effects):
+    own = plant(DRY, *effects, **HANGING, drive={"input": "current_a", "gain": 0.5})
+    reference = 0.4 + 0.5 * DT * np.arange(400)
+    curves = feed_forward(own, reference, DT)
+    stepped = feed_forward(own, reference, DT, stepped=True)
+    # A step tells of the end of a sample, the curves of its start; the last sample rests.
+    assert stepped[:-2] == pytest.approx(curves[1:-1], abs=1e-12)
+
+
+def test_states_of_a_law_are_worth_something_where_the_reference_turns():
+    yielding = {"law": "lugre", "coulomb": 0.3, "breakaway": 0.45, "viscous": 0.01}
+    found = compensate(plant(yielding, controller=PD), recording(4.0))
+    assert found.stepped < 0.9 * found.rms[found.shares.index(1.0)]
+    assert f"stepped along the reference it is {found.stepped:.3g} rad" in found.message
+    dry = compensate(plant(DRY, controller=PD), recording(4.0))
+    assert dry.stepped == pytest.approx(dry.rms[dry.shares.index(1.0)], rel=0.05)
 
 
 def test_the_loop_follows_best_with_what_is_known():
@@ -73,6 +103,50 @@ def test_a_friction_that_is_overestimated_is_told():
     assert np.std(loop.reference - loop.simulated) > np.std(without.reference - without.simulated)
 
 
+def test_machines_within_the_intervals_say_how_far_it_may_be_off():
+    own = machine()
+    found = compensate(own, recording(), intervals={"coulomb": (0.3, 0.3)}, draws=2)
+    # An interval of no width holds the plant itself.
+    whole = found.shares.index(1.0)
+    assert found.machines == pytest.approx(np.tile(found.rms[[0, whole]], (2, 1)), rel=1e-12)
+    wide = compensate(own, recording(), intervals={"friction.coulomb": (0.02, 0.6)}, draws=12)
+    without, compensated = wide.machines.T
+    assert wide.rms[whole] < found.rms[0]
+    assert np.max(compensated) > 3.0 * found.rms[whole]
+    # What is in truth less than half of what the feed-forward bears is hurt, and counted.
+    assert 0 < wide.hurt == np.sum(compensated > without) < 12
+    assert f"hurt {wide.hurt} of them" in wide.message
+    again = compensate(own, recording(), intervals={"coulomb": (0.02, 0.6)}, draws=12)
+    assert np.array_equal(again.machines, wide.machines)
+    json.dumps(wide.to_dict(), allow_nan=False)
+
+
+def test_a_machine_that_runs_away_is_counted_as_that():
+    unit = Compensated("run", np.zeros(1), np.ones((len(SHARES), 1)), "rad", np.ones(1))
+    rows = np.array([[1.0, 0.5], [1.0, np.nan], [np.nan, np.nan]])
+    found = Compensation((unit,), machines=rows)
+    assert found.hurt == 1
+    assert (
+        "1 to 1 rad rms (1 ran away) without, 0.5 to 0.5 rad rms (2 ran away) with" in found.message
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"intervals": {"friction.breakaway": (0.3, 0.4)}}, "is not stated"),
+        ({"intervals": {"friction.coulomb": (0.4, 0.3)}}, "ends before it begins"),
+        ({"intervals": {"body.inertia": (-2.0, -1.0)}}, "within them make"),
+        ({"intervals": "nowhere.json"}, "findings.json or fit.json"),
+        ({"draws": 0}, "draws"),
+        ({"seed": -1}, "seed"),
+    ],
+)
+def test_intervals_that_are_none_are_refused(given, words):
+    with pytest.raises(st.InputError, match=words):
+        compensate(machine(), recording(0.2), **given)
+
+
 @pytest.mark.parametrize(
     ("own", "records", "words"),
     [
@@ -87,7 +161,9 @@ def test_what_cannot_be_compensated_is_refused(own, records, words):
         compensate(own, records)
 
 
-def test_the_command_writes_numbers_and_figures(tmp_path, capsys):
+@pytest.fixture
+def arguments(tmp_path):
+    """Of the command, in a folder with plant and session."""
     machine().save(tmp_path / "plant.toml")
     record = recording()
     np.savez(
@@ -101,10 +177,50 @@ def test_the_command_writes_numbers_and_figures(tmp_path, capsys):
         'plant = "plant.toml"\n[columns]\nreference = { name = "reference_rad", unit = "rad" }\n'
         '[[recordings]]\nfile = "run.npz"\n'
     )
-    arguments = ["compensate", str(tmp_path / "plant.toml")]
-    arguments += ["--session", str(tmp_path / "session.toml"), "-o", str(tmp_path / "out")]
+    given = ["compensate", str(tmp_path / "plant.toml")]
+    return [*given, "--session", str(tmp_path / "session.toml"), "-o", str(tmp_path / "out")]
+
+
+def test_the_command_writes_numbers_and_figures(tmp_path, capsys, arguments):
     assert run(arguments) == 0
-    assert "falls from" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "falls from" in said
+    assert "no interval: there is no findings.json or fit.json" in said
     told = json.loads((tmp_path / "out" / "compensation.json").read_text())
     assert told["best"] == 1.0
+    assert told["machines"]["drawn"] == 0
     assert (tmp_path / "out" / "run-tracking.svg").read_text().startswith("<?xml")
+
+
+def fitted(low, high):
+    return json.dumps({"parameters": {"friction.coulomb": {"ci95": [low, high]}}})
+
+
+def test_the_command_takes_the_intervals_beside_the_plant(tmp_path, capsys, arguments):
+    (tmp_path / "fit.json").write_text(fitted(0.25, 0.35))
+    assert run(arguments) == 0
+    said = capsys.readouterr().out
+    assert "Over 20 machines within the 95 % intervals" in said
+    assert "no interval" not in said
+    told = json.loads((tmp_path / "out" / "compensation.json").read_text())
+    assert told["machines"]["drawn"] == 20
+    assert told["machines"]["hurt"] == 0
+    assert len(told["machines"]["whole"]) == 20
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [(fitted(0.4, 0.5), "another plant in friction.coulomb"), ("{}", "no intervals can be read")],
+)
+def test_a_file_of_another_plant_beside_it_is_left(tmp_path, capsys, arguments, content, words):
+    (tmp_path / "findings.json").write_text(content)
+    assert run(arguments) == 0
+    said = capsys.readouterr().out
+    assert words in said
+    assert "machines within" not in said
+
+
+def test_intervals_that_were_named_must_be_some(tmp_path, capsys, arguments):
+    (tmp_path / "other.json").write_text("{}")
+    assert run([*arguments, "--intervals", str(tmp_path / "other.json")]) != 0
+    assert "no intervals can be read" in capsys.readouterr().err

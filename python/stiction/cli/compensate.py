@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 import numpy as np
 from cyclopts import Parameter
@@ -16,10 +16,12 @@ from ..begins import load_begins
 from ..compensation import Compensation
 from ..compensation import compensate as simulated
 from ..errors import InputError
+from ..intervals import intervals_of
 from ..json_text import json_of
 from ..plant import Plant
 from ..progress import phase
 from ..recording.names import names_of
+from ..wording import listed
 from .answer import answer, folder, told_anyway, written
 from .given import Quiet
 from .progress import progress
@@ -27,6 +29,8 @@ from .simulate import begin_for, stems_of
 
 __all__ = ["compensate"]
 
+RESULTS: Final = ("findings.json", "fit.json")
+"""Files that hold intervals of parameters."""
 _logger = logging.getLogger(__name__)
 
 
@@ -34,6 +38,7 @@ def compensate(
     plant: Path,
     *,
     session: Path,
+    intervals: Path | None = None,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("stiction-compensation"),
     json: Annotated[bool, Parameter(negative="")] = False,
     quiet: Quiet = False,
@@ -42,7 +47,8 @@ def compensate(
 
     The plant, as a diagnosis extended it, follows the recorded references. A feed-forward adds what
     friction and place will take along the reference to the input; half of it, the whole and twice
-    as much are simulated. `stiction export --to c` or `--to table` write it for a controller.
+    as much are simulated, and the contact itself stepped along the references, with the states of
+    its law. `stiction export --to c` or `--to table` write it for a controller.
 
     Parameters
     ----------
@@ -50,6 +56,9 @@ def compensate(
         Plant file with a [controller].
     session
         Session file; recordings that have a reference are followed.
+    intervals
+        findings.json or fit.json with the intervals of the parameters, within which machines are
+        drawn. Default: the one beside the plant.
     out
         Folder for compensation.json and figures.
     json
@@ -57,6 +66,7 @@ def compensate(
     """
     machine = Plant.load(plant)
     told = load_begins(plant, machine)
+    known, note = (intervals, "") if intervals is not None else _beside(plant, machine)
     with progress(quiet):
         every = list(sessions.load(session, plant=machine))
         chosen = [each for each in every if "reference" in each.channels]
@@ -69,14 +79,37 @@ def compensate(
         phase(_logger, "simulating the loop")
         begins = [begin_for(told, name) for name in names_of(chosen)]
         with np.errstate(all="ignore"):
-            found = simulated(machine, chosen, begins)
+            found = simulated(machine, chosen, begins, intervals=known)
         text = "\n".join([found.message, *_table(found)])
         with told_anyway(text, found.to_dict(), as_json=json), written(where):
             lines = _saved(found, where, stems_of(chosen))
+    if note:
+        lines.append(note)
     left = len(every) - len(chosen)
     if left:
         lines.append(f"{left} of {len(every)} recordings have no reference and were left out")
     answer("\n".join([text, *lines]), found.to_dict(), as_json=json)
+
+
+def _beside(plant: Path, machine: Plant) -> tuple[dict[str, tuple[float, float]] | None, str]:
+    """Intervals that a diagnosis or a fit wrote beside the plant; why there are none, in words."""
+    path = next((path for name in RESULTS if (path := plant.parent / name).exists()), None)
+    if path is None:
+        return None, f"no interval: there is no {' or '.join(RESULTS)} beside {plant}"
+    try:
+        told = intervals_of(path)
+    except InputError as error:
+        return None, f"no interval: {error}"
+    stated = machine.parameters
+    # A plant that was changed by hand, or went on with another law, is another machine.
+    foreign = [
+        name
+        for name, (low, high) in told.items()
+        if name not in stated or not low <= stated[name].value <= high
+    ]
+    if foreign:
+        return None, f"no interval: {path} tells of another plant in {listed(foreign)}"
+    return told, ""
 
 
 def _saved(found: Compensation, where: Path, stems: list[str]) -> list[str]:
@@ -91,8 +124,9 @@ def _saved(found: Compensation, where: Path, stems: list[str]) -> list[str]:
 
 def _table(found: Compensation) -> list[str]:
     unit = found.recordings[0].unit
+    every = [*((f"{share:g}", rms) for share, rms in zip(found.shares, found.rms, strict=True))]
     rows = [
-        f"{share:>13g}  {'ran away' if not np.isfinite(error) else f'{error:.4g} {unit}'}"
-        for share, error in zip(found.shares, found.rms, strict=True)
+        f"{what:>13}  {'ran away' if not np.isfinite(error) else f'{error:.4g} {unit}'}"
+        for what, error in [*every, ("1, stepped", found.stepped)]
     ]
     return ["", "feed-forward × tracking error, rms", *rows, ""]
