@@ -2,7 +2,9 @@
 
     python -m tests.blind.robots --number 20 --seed 100 --out robots.jsonl
 
-Every fifth arm hides nothing. An arm is a line of the `.jsonl` as soon as it is judged; the same
+`--way prescribed` asks the links for the efforts of a motion; the other ways drive the arm by a
+controller, joints stick where friction holds them, and the log has every effort that was set
+(`held`) or one of five (`decimated`). Every fifth arm hides nothing. An arm is a line of the `.jsonl` as soon as it is judged; the same
 command goes on where it was. Counted are joints with something hidden whose effect is named, and
 joints with nothing hidden that get no name, sure ones and undecided ones apart.
 """
@@ -13,14 +15,23 @@ import argparse
 import json
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
+from tests.robot.forward import driven
 from tests.robot.simulated import drawn
 
 from .__main__ import read_rows, state_of
 
+WAYS = {
+    "prescribed": None,
+    "held": {"rate": 250.0, "control": 250.0},
+    "decimated": {"rate": 200.0, "control": 1000.0},
+}
+"""How an arm is moved and logged: rows and efforts that are set, a second."""
 
-def judged(seed, seconds, threads):
+
+def judged(seed, way, seconds, threads):
     """One arm, as its session file tells it: a line of the results."""
     import numpy as np
 
@@ -28,13 +39,16 @@ def judged(seed, seconds, threads):
 
     robot, joint, effect = drawn(seed)
     with tempfile.TemporaryDirectory(prefix="stiction-robot-") as name:
-        session = load_session(robot.lay_out(Path(name), seconds=seconds, seed=seed))
+        rates = WAYS[way]
+        record = None if rates is None else partial(driven, robot, **rates)
+        session = load_session(robot.lay_out(Path(name), seconds, seed, record))
         began = time.process_time()
         with np.errstate(all="ignore"):
             found = diagnose_robot(session, threads=threads)
         spent = time.process_time() - began
     return {
-        "key": f"{seed}-{seconds:g}",
+        "key": f"{way}-{seed}-{seconds:g}",
+        "way": way,
         "seed": seed,
         "joint": joint,
         "effect": effect,
@@ -106,9 +120,9 @@ def main():
     done = {row["key"] for row in rows}
     try:
         for seed in range(args.seed, args.seed + args.number):
-            if f"{seed}-{args.seconds:g}" in done:
+            if f"{args.way}-{seed}-{args.seconds:g}" in done:
                 continue
-            row = {"state": state_of()} | judged(seed, args.seconds, args.threads)
+            row = {"state": state_of()} | judged(seed, args.way, args.seconds, args.threads)
             with args.out.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(row) + "\n")
             rows.append(row)
@@ -123,6 +137,7 @@ def _arguments():
     parser = argparse.ArgumentParser(prog="python -m tests.blind.robots", description=__doc__)
     parser.add_argument("--number", type=int, default=20, help="arms; 0 counts only")
     parser.add_argument("--seed", type=int, default=100, help="of the first arm")
+    parser.add_argument("--way", choices=WAYS, default="held", help="how arms are moved and logged")
     parser.add_argument("--seconds", type=float, default=24.0, help="of each recording")
     parser.add_argument("--threads", type=int, default=1, help="of a diagnosis")
     parser.add_argument("--out", type=Path, default=Path("robots.jsonl"), help="a line an arm")
