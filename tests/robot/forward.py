@@ -90,7 +90,9 @@ def driven(
             ask = ask + BANDWIDTH**2 * (goal[k] - read)
             push = inertia * ask + data.qfrc_bias
             for j, own in enumerate(robot.friction):
-                push[j] += 0.8 * own.coulomb * np.tanh(goal_v[k, j] / 0.05) + own.viscous * goal_v[k, j]
+                push[j] += (
+                    0.8 * own.coulomb * np.tanh(goal_v[k, j] / 0.05) + own.viscous * goal_v[k, j]
+                )
         if k % rows == 0:
             kept_q.append(np.round(q / turn) * turn)
             kept_tau.append(push.copy())

@@ -18,7 +18,11 @@ pytest.importorskip("pinocchio")
 pytest.importorskip("mujoco")
 
 TRUE = SimulatedRobot()
-POSITION, SPEED, EFFORT = {"base": [-2.0, 1.0]}, 1.5, {"base": 40.0, "shoulder": 70.0, "elbow": 25.0}
+POSITION, SPEED, EFFORT = (
+    {"base": [-2.0, 1.0]},
+    1.5,
+    {"base": 40.0, "shoulder": 70.0, "elbow": 25.0},
+)
 
 
 def laid(folder: Path, arm: SimulatedRobot = TRUE, **limits: float) -> Path:

@@ -18,7 +18,7 @@ from ..recording.repair import FEWEST_ROWS
 from ..recording.split import Split, split
 from ..session import Session
 from ..trajectory import FloatArray
-from .motion import JointMotion, measured
+from .motion import WIDE, JointMotion, measured
 from .regression import ArmFit, fitted, rows_of
 from .session import RobotSession, Run
 
@@ -78,7 +78,10 @@ class RobotFit:
             On the even stamps of its motion, N·m or N.
         """
         run = whole(run, "RobotFit.efforts: run", least=0, most=len(self.motions) - 1)
-        motion, model = self.motions[run], self.session.robot.arm
+        return self._efforts(run, self.motions[run])
+
+    def _efforts(self, run: int, motion: JointMotion) -> FloatArray:
+        model = self.session.robot.arm
         links = self.arm.under(self.session.runs[run].payload, model.carries)
         return model.efforts(motion.position, motion.velocity, motion.acceleration, links)
 
@@ -169,8 +172,9 @@ class RobotFit:
     def _loads(self) -> list[FloatArray]:
         """What acts on each joint from one row to the next, of each recording."""
         found = []
-        for run, motion in enumerate(self.motions):
-            acts = self.kept * motion.acceleration - self.efforts(run)
+        for run, recorded in enumerate(self.session.runs):
+            motion = measured(recorded.joints, WIDE)
+            acts = self.kept * motion.acceleration - self._efforts(run, motion)
             # A load holds from one row to the next: the mean of what acts at both.
             acts[:-1] = 0.5 * (acts[1:] + acts[:-1])
             columns = [np.interp(motion.stamps, motion.time, one) for one in acts.T]

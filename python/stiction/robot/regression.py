@@ -318,7 +318,9 @@ def _without(
     """The system without friction, whose best values go with whatever the links are."""
     base, rest = left[:, :own], left[:, own:]
     size = np.sqrt(np.sum(rest**2, axis=0))
-    directions, shares, _ = np.linalg.svd(rest / np.where(size > 0.0, size, 1.0), full_matrices=False)
+    directions, shares, _ = np.linalg.svd(
+        rest / np.where(size > 0.0, size, 1.0), full_matrices=False
+    )
     # A column that says what others do takes nothing away of its own.
     q = directions[:, shares > FRICTION_RANK * shares[0]]
 

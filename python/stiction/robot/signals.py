@@ -262,12 +262,16 @@ class RobotPlan:
     def __repr__(self) -> str:
         """A table of the signals, and how well the motion of all joints tells what is fitted."""
         total = sum(signal.duration for signal in self.signals)
-        head = f"{counted(len(self.signals), 'signal')}, {total:.0f} s in all, all from home to home"
+        head = (
+            f"{counted(len(self.signals), 'signal')}, {total:.0f} s in all, all from home to home"
+        )
         rows = [("signal", "length / s", "moves"), *map(_row, self.signals)]
         widths = [max(len(row[k]) for row in rows) for k in range(2)]
         lines = [f"{a:<{widths[0]}}  {b:>{widths[1]}}  {c}" for a, b, c in rows]
         told = [_condition(self.excitations)] if self.excitations else []
-        return "\n".join([head, "", *lines, *([""] if told or self.notes else []), *told, *self.notes])
+        return "\n".join(
+            [head, "", *lines, *([""] if told or self.notes else []), *told, *self.notes]
+        )
 
 
 def _row(signal: RobotSignal) -> tuple[str, str, str]:
