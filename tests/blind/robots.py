@@ -4,9 +4,10 @@
 
 `--way prescribed` asks the links for the efforts of a motion; the other ways drive the arm by a
 controller, joints stick where friction holds them, and the log has every effort that was set
-(`held`) or one of five (`decimated`). Every fifth arm hides nothing. An arm is a line of the `.jsonl` as soon as it is judged; the same
-command goes on where it was. Counted are joints with something hidden whose effect is named, and
-joints with nothing hidden that get no name, sure ones and undecided ones apart.
+(`held`) or one of five (`decimated`). Every fifth arm hides nothing. An arm is a line of the
+`.jsonl` as soon as it is judged; the same command goes on where it was. Counted are joints with
+something hidden whose effect is named, and joints with nothing hidden that get no name, sure ones
+and undecided ones apart.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Motion of all joints by which inertial parameters and friction are told apart.
 
-Finite Fourier series (Swevers et al., IEEE Trans. Robotics Autom. 13 (1997), 730-740), each of which
-begins and ends at rest at home, with coefficients that give the base-parameter regressor a small
-condition number within the limits of all joints (Gautier and Khalil, Int. J. Robotics Research 11
-(1992), 362-375).
+Finite Fourier series (Swevers et al., IEEE Trans. Robotics Autom. 13 (1997), 730-740), each of
+which begins and ends at rest at home, with coefficients that give the base-parameter regressor a
+small condition number within the limits of all joints (Gautier and Khalil, Int. J. Robotics
+Research 11 (1992), 362-375).
 """
 
 from __future__ import annotations
@@ -99,8 +99,9 @@ class Excitation:
         periods : int
         """
         count = round(periods * self.period * rate)
-        phase = np.arange(count + 1) * (periods / count)
-        return home + _series(self.sines, self.cosines, phase)[0]
+        phase: FloatArray = np.linspace(0.0, float(periods), count + 1)
+        moved: FloatArray = home + _series(self.sines, self.cosines, phase)[0]
+        return moved
 
 
 def excitation(load: ArmLoad, limits: ArmLimits, source: np.random.Generator) -> Excitation:

@@ -18,7 +18,7 @@ from ..recording.repair import FEWEST_ROWS
 from ..recording.split import Split, split
 from ..session import Session
 from ..trajectory import FloatArray
-from .motion import WIDE, JointMotion, measured
+from .motion import JointMotion, measured
 from .regression import ArmFit, fitted, rows_of
 from .session import RobotSession, Run
 
@@ -29,11 +29,6 @@ MOVES: Final = 0.02
 RESTS: Final = 0.05
 """Share of the largest travel in any recording that it has to travel as well."""
 
-KEPT: Final = 0.3
-"""Share of the inertia about a joint that it keeps at least as a machine of one axis. The rest is in
-its load: friction that grows with the load grows with all that the gear transmits, of which the
-inertia of the links is a part. With less a simulated motion would run away from the measured one,
-which is all that such a load knows."""
 POSES: Final = 200
 """Of a recording, over which the inertia about a joint is averaged."""
 
@@ -78,10 +73,7 @@ class RobotFit:
             On the even stamps of its motion, N·m or N.
         """
         run = whole(run, "RobotFit.efforts: run", least=0, most=len(self.motions) - 1)
-        return self._efforts(run, self.motions[run])
-
-    def _efforts(self, run: int, motion: JointMotion) -> FloatArray:
-        model = self.session.robot.arm
+        motion, model = self.motions[run], self.session.robot.arm
         links = self.arm.under(self.session.runs[run].payload, model.carries)
         return model.efforts(motion.position, motion.velocity, motion.acceleration, links)
 
@@ -134,7 +126,7 @@ class RobotFit:
         robot = self.session.robot
         own = robot.joints[joint]
         where = f"{robot.source}: joint '{own.name}'"
-        return own.plant(float(self.arm.rotors[joint] + self.kept[joint]), where)
+        return own.plant(float(self.arm.rotors[joint] + self.carried[joint]), where)
 
     def _place(self, joint: int) -> int:
         most = len(self.session.robot.joints) - 1
@@ -142,7 +134,11 @@ class RobotFit:
 
     @cached_property
     def carried(self) -> FloatArray:
-        """Inertia of the links about each joint, the mean over its motion, shape (joints,)."""
+        """Inertia of the links about each joint, the mean over its motion, shape (joints,).
+
+        It is the joint's own as a machine of one axis, which without it could not be simulated;
+        what it differs by along the motion is in the load.
+        """
         model, count = self.session.robot.arm, len(self.session.robot.joints)
         links, found = self.arm.links, []
         for motion in self.motions:
@@ -158,23 +154,11 @@ class RobotFit:
         return mean
 
     @cached_property
-    def kept(self) -> FloatArray:
-        """What of it is the joint's own as a machine of one axis, shape (joints,).
-
-        No more than the joint needs beside its rotor to be simulated: what it carries beyond that,
-        and what that differs by along the motion, is in the load.
-        """
-        whole = self.arm.rotors + self.carried
-        found: FloatArray = np.clip(KEPT * whole - self.arm.rotors, 0.0, self.carried)
-        return found
-
-    @cached_property
     def _loads(self) -> list[FloatArray]:
         """What acts on each joint from one row to the next, of each recording."""
         found = []
-        for run, recorded in enumerate(self.session.runs):
-            motion = measured(recorded.joints, WIDE)
-            acts = self.kept * motion.acceleration - self._efforts(run, motion)
+        for run, motion in enumerate(self.motions):
+            acts = self.carried * motion.acceleration - self.efforts(run)
             # A load holds from one row to the next: the mean of what acts at both.
             acts[:-1] = 0.5 * (acts[1:] + acts[:-1])
             columns = [np.interp(motion.stamps, motion.time, one) for one in acts.T]

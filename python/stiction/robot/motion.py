@@ -20,9 +20,6 @@ SHARE: Final = 0.05
 """Of the acceleration that may be noise of the readings."""
 CUTOFFS: Final = tuple(float(f) for f in np.geomspace(20.0, 2.0, 14))
 """Hz, tried from the widest: a joint of an arm moves at few hertz, its structure at tens."""
-WIDE: Final = (*(float(f) for f in np.geomspace(100.0, 22.0, 12)), *CUTOFFS)
-"""Hz, for the load of a joint: where it turns round, friction and with it the acceleration jump, and
-what a low pass rounds off of that looks like friction that comes late."""
 NYQUIST_SHARE: Final = 0.4
 """Of the rate of the rows that a cutoff may have."""
 ENDS: Final = 2.0
@@ -74,15 +71,13 @@ class JointMotion:
         return filtered(values, self.cutoff, self.dt)[:: self.every]
 
 
-def measured(joints: Sequence[Recording], cutoffs: Sequence[float] = CUTOFFS) -> JointMotion:
+def measured(joints: Sequence[Recording]) -> JointMotion:
     """The motion of an arm.
 
     Parameters
     ----------
     joints : sequence of Recording
         One for each joint, over the same clock.
-    cutoffs : sequence of float
-        Of the low pass, Hz, tried in this order.
     """
     stamps, time, dt = evenly(joints[0].time)
 
@@ -91,7 +86,7 @@ def measured(joints: Sequence[Recording], cutoffs: Sequence[float] = CUTOFFS) ->
 
     read = np.stack([onto(one.position) for one in joints], axis=1)
     driven = np.stack([onto(one.input) for one in joints], axis=1)
-    cutoff = _cutoff(read, dt, cutoffs)
+    cutoff = _cutoff(read, dt)
     position = filtered(read, cutoff, dt)
     velocity = np.gradient(position, dt, axis=0)
     acceleration = np.gradient(velocity, dt, axis=0)
@@ -109,9 +104,9 @@ def filtered(values: FloatArray, cutoff: float, dt: float) -> FloatArray:
     return found
 
 
-def _cutoff(read: FloatArray, dt: float, cutoffs: Sequence[float]) -> float:
+def _cutoff(read: FloatArray, dt: float) -> float:
     """The widest at which the acceleration of each joint that moves stands above its noise."""
-    possible = [f for f in cutoffs if f <= NYQUIST_SHARE / dt] or [NYQUIST_SHARE / dt / 2.0]
+    possible = [f for f in CUTOFFS if f <= NYQUIST_SHARE / dt] or [NYQUIST_SHARE / dt / 2.0]
     noise = np.array([noise_of(column) for column in read.T])
     for cutoff in possible:
         moved = filtered(read, cutoff, dt)

@@ -242,7 +242,7 @@ def _signal(
         role,
         robot.names,
         tuple("m" if one.motion == "linear" else "rad" for one in robot.joints),
-        np.arange(len(positions)) * dt,
+        np.asarray(np.arange(len(positions)) * dt, dtype=np.float64),
         positions,
         greatest,
     )

@@ -295,7 +295,7 @@ def _plain(packed: FloatArray, found: FloatArray, joint: int) -> tuple[FloatArra
     first = len(found) + (len(PLAIN) + SHAPES) * joint
     columns = packed[:, first : first + len(PLAIN)]
     missed = packed[:, -1] - packed[:, : len(found)] @ found
-    friction = np.linalg.lstsq(columns, missed, rcond=None)[0]
+    friction: FloatArray = np.asarray(np.linalg.lstsq(columns, missed, rcond=None)[0], dtype=float)
     return friction, float(np.linalg.norm(missed - columns @ friction))
 
 
