@@ -1,6 +1,9 @@
 //! A machine started anew along a motion that was measured: where it gets to by itself.
 
+use std::f64::consts::PI;
+
 use crate::error::{Error, Result};
+use crate::friction::FrictionLaw;
 use crate::interrupt;
 use crate::motor::{MotorSpec, PerSample, Running};
 use crate::scalar::{COLUMNS, Dual, Scalar};
@@ -11,6 +14,10 @@ use crate::work::{self, Meter};
 /// ω·h above which a sample of a window is divided: the phase error of the ring is then 0.4 % of the
 /// phase, and of a ring that fast the weights of a window keep nothing.
 const COARSE_PHASE: f64 = 0.3;
+/// The same at most: of what rings faster than samples show only where it comes to rest is seen, so it
+/// is followed no more finely than the fastest ring that they do show, as far as its steps stay well
+/// within what is stable (ω·h < 2).
+const COARSEST_PHASE: f64 = 0.6;
 /// Parts of a sample above which a window is refused: what swings a hundred times between two samples,
 /// or calms down in the five hundredth part of one, no reading can tell from what is rigid, and a trial
 /// of a fit that strays there would take minutes.
@@ -48,6 +55,12 @@ impl<S: Scalar> Running<S> {
         self.shoot_under(motion, windows, |_| S::constant(0.0), land)
     }
 
+    /// ω·h above which a sample of a window is divided, where samples are no longer than this.
+    fn coarse_phase(&self, dt: f64) -> f64 {
+        let phase = with_law!(&self.law, |law| self.machine.phase(law.greatest_stiffness(), dt));
+        (COARSE_PHASE * phase / PI).clamp(COARSE_PHASE, COARSEST_PHASE)
+    }
+
     /// As [`Self::shoot`], with an effort added to each sample of every window.
     fn shoot_under(
         &mut self,
@@ -74,6 +87,7 @@ impl<S: Scalar> Running<S> {
         let all = work::allowed(motion.samples());
         let mut left = all;
         let mut reached = 0;
+        let longest_phase = self.longest_phase.max(self.coarse_phase(dt.greatest()));
         for window in 0..windows.number(motion.samples()) {
             interrupt::check()?;
             let start = window * windows.stride.max(1);
@@ -82,7 +96,7 @@ impl<S: Scalar> Running<S> {
             let end = start + length;
             let track = Track::new(positions, actual, start);
             let mut shot = self.clone();
-            shot.longest_phase = shot.longest_phase.max(COARSE_PHASE);
+            shot.longest_phase = longest_phase;
             shot.most_parts = shot.most_parts.min(MOST_SHOT_PARTS);
             shot.run.position = track.position();
             shot.run.velocity = track.velocity(&dt);
@@ -130,6 +144,8 @@ impl Running<f64> {
         let actual: Option<&dyn Fn(f64) -> f64> =
             if sensor.misreads() { Some(&actual) } else { None };
         let mut meter = Meter::new(work::allowed(motion.samples()));
+        // What windows begin with is followed as finely as they are.
+        self.longest_phase = self.longest_phase.max(self.coarse_phase(dt.greatest()));
         for k in 0..motion.samples() {
             let track = Track::new(positions, actual, k);
             let behind = track.position() - self.run.position;

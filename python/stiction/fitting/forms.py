@@ -41,8 +41,12 @@ __all__ = [
     "windows_of",
 ]
 
-EVERY_S: Final = 0.005
-"""Spacing of the weak-form residual: the kernel leaves nothing between."""
+EVERY_S: Final = (0.005, 0.010)
+"""Spacing of the weak-form residual: at the least one the kernel leaves nothing between, and at the
+greatest, a third of the narrowest kernel, little."""
+MOST_ROWS: Final = 200_000
+"""Rows of a session from which on they are spaced further: those of a thousand seconds tell more
+than enough, and every row costs its share of every score."""
 FEWEST_COUNTS: Final = 4.0
 """Counts in the pre-sliding reach F_c/k below which friction driven by readings is wrong: a count
 more or less is then a quarter of its rise."""
@@ -126,10 +130,12 @@ def forms_of(
         if through.loop:
             return LoopForm(plant, recording)
         if through.horizon is None:
-            return WeakForm(plant, recording, support=through.support, every=EVERY_S)
+            return WeakForm(plant, recording, support=through.support, every=every)
         return ShootingForm(plant, recording, horizon=through.horizon, overlap=overlap)
 
     overlap = _overlap(recordings, through.horizon)
+    lasted = sum(recording.duration for recording in recordings)
+    every = float(np.clip(lasted / MOST_ROWS, *EVERY_S))
     return each(form, recordings)
 
 

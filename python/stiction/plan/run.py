@@ -30,6 +30,10 @@ LEVELS: Final = ("coulomb", "breakaway")
 SMALLER: Final = 0.75
 TRIES: Final = 16
 """Shares by which a signal is made smaller until it stays within the limits."""
+ROUNDED: Final = 1.02
+"""Of a limit: rounding to samples is no fault."""
+ROWS: Final = 512
+"""Samples after each of which a simulation is looked at."""
 _logger = logging.getLogger(__name__)
 
 
@@ -109,22 +113,17 @@ def plan(
             )
             continue
         phase(_logger, "planning %s", experiment.name)
-        made = [
-            _signal(
-                plant,
-                experiment,
-                (sizes, limits),
-                1.0 / rate,
-                role,
-                [seed, k, known.index(experiment.name)],
-            )
-            for k, role in enumerate(SPLIT_ROLES)
-        ]
-        kept = [signal for signal in made if signal is not None]
-        if len(kept) < len(made):
-            notes.append(f"{experiment.name} is left out: nothing of it stays within the limits")
+        made = []
+        for k, role in enumerate(SPLIT_ROLES):
+            drawn = [seed, k, known.index(experiment.name)]
+            signal = _signal(plant, experiment, (sizes, limits), 1.0 / rate, role, drawn)
+            if signal is None:
+                break
+            made.append(signal)
+        else:
+            signals += made
             continue
-        signals += kept
+        notes.append(f"{experiment.name} is left out: nothing of it stays within the limits")
     if not signals:
         raise InputError(f"{plant.source}: no signal stays within these limits; widen one of them")
     return Plan(stated, tuple(signals), tuple(notes), True, f"{len(signals)} signals")
@@ -156,12 +155,12 @@ def _signal(
     for _ in range(TRIES):
         values = experiment.build(plant, sizes, dt, np.random.default_rng(seed), share)
         if plant.servo:
-            path = _reached(plant, values, dt)
+            path = _reached(plant, values, dt, sizes)
             effort = _needed(plant, path, dt)
         elif experiment.kind == "reference":
             path, effort = values, _needed(plant, values, dt)
         else:
-            path, effort = _moved(plant, values, dt), values
+            path, effort = _reached(plant, values / plant.gain, dt, sizes), values
         speeds = np.diff(path, prepend=path[0]) / dt
         greatest = {
             "distance": float(np.max(np.abs(path))),
@@ -173,8 +172,7 @@ def _signal(
             # How hard it pushes is decided by the servo itself, and limited by its drive.
             greatest["distance"] = max(greatest["distance"], float(np.max(np.abs(values))))
             allowed["effort"] = np.inf if limits.effort is None else limits.effort
-        # Rounding to samples is no fault.
-        if all(greatest[name] <= 1.02 * allowed[name] for name in allowed):
+        if all(greatest[name] <= ROUNDED * allowed[name] for name in allowed):
             gain = 1.0 if experiment.kind == "reference" else plant.gain
             reference = "reference_rad" if plant.motion == "rotary" else "reference_m"
             if plant.servo:
@@ -210,15 +208,27 @@ def _needed(plant: Plant, path: FloatArray, dt: float) -> FloatArray:
     return np.asarray(needed)
 
 
-def _reached(plant: Plant, goal: FloatArray, dt: float) -> FloatArray:
-    """Position that a servo comes to with a goal, from rest at 0; shape (n,)."""
-    run = plant.simulate(goal[:-1], dt, outputs=["position"])
-    if not run.success:
-        return np.full(len(goal), np.inf)
-    return np.concatenate([[0.0], run.position])
+def _reached(plant: Plant, given: FloatArray, dt: float, sizes: Sizes) -> FloatArray:
+    """Position that the plant comes to with samples of its input, from rest at 0; shape (n,).
 
-
-def _moved(plant: Plant, effort: FloatArray, dt: float) -> FloatArray:
-    """Position that the plant comes to with an effort, about its start; shape (n,)."""
-    run = plant.simulate(effort[:-1] / plant.gain, dt, outputs=["position"])
-    return np.concatenate([[0.0], run.position])
+    It ends where the machine is beyond what is allowed, so that a signal that cannot be used costs
+    no more than its beginning.
+    """
+    motor = plant.motor()
+    motor.reset(0.0, 0.0)
+    path = np.zeros(1)
+    for begin in range(0, len(given) - 1, ROWS):
+        run = motor.simulate(
+            given[begin : min(begin + ROWS, len(given) - 1)], dt, outputs=["position"]
+        )
+        if not run.success:
+            return np.full(len(given), np.inf)
+        begun = path[-1:]
+        path = np.concatenate([path, run.position])
+        speeds = np.diff(run.position, prepend=begun) / dt
+        if (
+            np.max(np.abs(run.position)) > ROUNDED * sizes.reach
+            or np.max(np.abs(speeds)) > ROUNDED * sizes.speed
+        ):
+            break
+    return path

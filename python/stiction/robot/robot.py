@@ -163,7 +163,8 @@ class Robot:
         InputError
             As for ``load``.
         """
-        known(given.mapping(table, source, "the tables of a robot file"), ("robot",), source)
+        table = given.mapping(table, source, "the tables of a robot file")
+        known(table, ("robot",), source)
         own = section(table, "robot", source)
         where = f"{source}: [robot]"
         known(own, _KEYS, where)

@@ -183,6 +183,11 @@ impl<S: Scalar> Machine<S> {
         (near + shaft.0) / self.inertia.re() + shaft.1
     }
 
+    /// ω·h of the fastest ring over so long a time, see [`Self::fastest_square`].
+    pub(crate) fn phase(&self, friction: f64, duration: f64) -> f64 {
+        duration * self.fastest_square(friction).sqrt()
+    }
+
     /// Stiffness and damping by which a servo holds its goal.
     pub(super) fn servo(&self) -> (f64, f64) {
         let servo = self.drive.servo.as_ref();

@@ -57,7 +57,8 @@ pub enum Integrator {
 /// ω·h above which the fast integrator divides a sample: the phase error of its ring is then
 /// (ω·h)²/24 ≤ 2e-4 of the phase.
 pub const LONGEST_PHASE: f64 = 0.065;
-/// (C/J)·h above which a sample is divided.
+/// (C/J)·h above which a sample is divided; where rings are followed coarsely, twice their ω·h, which
+/// is that of a ring that is damped critically.
 const LONGEST_DAMPING: f64 = 0.25;
 /// Where friction falls with speed a sample is divided further, to follow the fall, but not
 /// without end: the steeper it is, the shorter it lasts.
@@ -134,8 +135,9 @@ fn asked_for<S: Scalar, L: FrictionLaw<S>>(
     longest: f64,
 ) -> (f64, f64) {
     let lightest = machine.inertia.re();
-    let phase = dt * machine.fastest_square(law.greatest_stiffness()).sqrt() / longest;
-    let calming = dt * (law.greatest_damping() + machine.servo().1) / lightest / LONGEST_DAMPING;
+    let phase = machine.phase(law.greatest_stiffness(), dt) / longest;
+    let damping = dt * (law.greatest_damping() + machine.servo().1) / lightest;
+    let calming = damping / LONGEST_DAMPING.max(2.0 * longest);
     let falling = dt * law.steepest_fall() / lightest / LONGEST_DAMPING;
     (phase.max(calming), falling.min(MOST_PARTS_FOR_A_FALL))
 }
