@@ -19,19 +19,10 @@ __all__ = ["PLAIN", "ArmFit", "Rows", "fitted", "rows_of"]
 
 PLAIN: Final = ("viscous", "coulomb", "bias")
 """Friction of a joint beside which its structure is measured."""
-SHAPES: Final = 3
-"""Columns of friction beside the plain ones: with the square of the speed, above it at low speeds,
-and with the load. Without them what friction does beyond its plain form is taken for a mass."""
-SLOW: Final = 0.3
-"""Share of a joint's usual speed in which friction that falls with the speed has fallen."""
-LOADS: Final = 2
-"""Times that links are fitted: first with the loads that the URDF has, then with those found."""
 STANDS: Final = 0.02
 """Share of a joint's usual speed below which nothing tells which way its friction acts."""
 RANK: Final = 1e-4
 """Share of the largest column that a base parameter adds at least to what those before it do."""
-FRICTION_RANK: Final = 1e-6
-"""Likewise of the columns of friction."""
 ROUNDS: Final = 6
 """Times that joints are weighted by what they leave."""
 SETTLED: Final = 1e-3
@@ -48,8 +39,6 @@ class Rows:
         Its acceleration.
     friction : numpy.ndarray, shape (joints, n, 3)
         Velocity, direction and 1.
-    bent : numpy.ndarray, shape (joints, n, 2)
-        Square of the velocity and what falls with it, each in its direction.
     effort : numpy.ndarray, shape (n, joints)
     used : numpy.ndarray of bool, shape (n, joints)
         Where the joint moves, and the row may be fitted to.
@@ -60,7 +49,6 @@ class Rows:
     links: FloatArray
     rotor: FloatArray
     friction: FloatArray
-    bent: FloatArray
     effort: FloatArray
     used: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
     payload: float
@@ -132,16 +120,11 @@ def rows_of(
     thin = slice(None, None, motion.every)
     q, v, a = (x[thin] for x in (motion.position, motion.velocity, motion.acceleration))
     links = arm.regressor(q, v, a)
-    usual = np.sqrt(np.mean(motion.velocity**2, axis=0))
-    moving = np.abs(motion.velocity) > STANDS * usual
+    moving = np.abs(motion.velocity) > STANDS * np.sqrt(np.mean(motion.velocity**2, axis=0))
     moving &= np.ptp(motion.position, axis=0) > 1e-3
     direction = np.sign(motion.velocity)
     passed = np.stack([motion.velocity, direction, np.ones_like(direction)], axis=-1)
     passed = _as_kept(motion, passed.transpose(1, 0, 2))
-    fast = np.abs(motion.velocity)
-    falls = direction * np.exp(-fast / np.maximum(SLOW * usual, 1e-300))
-    bent = np.stack([motion.velocity * fast, falls], axis=-1)
-    bent = _as_kept(motion, bent.transpose(1, 0, 2))
     allowed = np.zeros(len(motion.time), dtype=bool)
     for start, stop in free:
         allowed[start:stop] = True
@@ -151,7 +134,6 @@ def rows_of(
         links,
         motion.passed(motion.acceleration),
         passed,
-        bent,
         motion.passed(effort),
         ~still & allowed[thin, None],
         payload,
@@ -177,38 +159,36 @@ def fitted(arm: Arm, rows: Sequence[Rows]) -> ArmFit:
         A joint that never moves.
     """
     joints, payloads = len(arm.names), sorted({one.payload for one in rows} - {0.0})
-    never = [
-        name for k, name in enumerate(arm.names) if sum(one.used[:, k].sum() for one in rows) < 50
-    ]
+    systems = [_system(arm, rows, joint, payloads) for joint in range(joints)]
+    never = [name for name, (left, _) in zip(arm.names, systems, strict=True) if len(left) < 50]
     if never:
         raise NotEnoughData(f"{listed(never)} moves in no row that is fitted to")
+    own = systems[0][0].shape[1] - 3 * joints
     known = np.concatenate([feasible(arm.prior), *(_hanging(mass) for mass in payloads)])
     begin = np.concatenate([known, np.full(joints, _rotor(arm))])
-    own = len(begin)
-    found = begin
-    for _ in range(LOADS):
-        packed, counts = _systems(arm, rows, payloads, found)
-        weights = np.array(
-            [1.0 / max(_alone(one, n), 1e-12) for one, n in zip(packed, counts, strict=True)]
+    weights = np.ones(joints)
+    counts = np.array([len(right) for _, right in systems])
+    packed = [_packed(left, right) for left, right in systems]
+    weights = np.array(
+        [1.0 / max(_alone(one, n), 1e-12) for one, n in zip(packed, counts, strict=True)]
+    )
+    for _ in range(ROUNDS):
+        stack = np.vstack([w * one for w, one in zip(weights, packed, strict=True)])
+        left, right = stack[:, :-1], stack[:, -1]
+        reduced, target, back = _without(left, right, own)
+        place, free = base_parameters(reduced, target, begin)
+        found, _ = consistent(reduced, target, begin, joints)
+        whole = np.concatenate([found, back(found)])
+        left_over = np.array(
+            [
+                np.sqrt(np.sum((one[:, :-1] @ whole - one[:, -1]) ** 2) / n)
+                for one, n in zip(packed, counts, strict=True)
+            ]
         )
-        for _ in range(ROUNDS):
-            stack = np.vstack([w * one for w, one in zip(weights, packed, strict=True)])
-            left, right = stack[:, :-1], stack[:, -1]
-            reduced, target, back = _without(left, right, own)
-            place, free = base_parameters(reduced, target, begin)
-            found, _ = consistent(reduced, target, begin, joints)
-            whole = np.concatenate([found, back(found)])
-            left_over = np.array(
-                [
-                    np.sqrt(np.sum((one[:, :-1] @ whole - one[:, -1]) ** 2) / n)
-                    for one, n in zip(packed, counts, strict=True)
-                ]
-            )
-            settled = np.all(np.abs(left_over * weights - 1.0) < SETTLED)
-            weights = 1.0 / np.maximum(left_over, 1e-12)
-            if settled:
-                break
-    plain = [_plain(one, found, joint) for joint, one in enumerate(packed)]
+        settled = np.all(np.abs(left_over * weights - 1.0) < SETTLED)
+        weights = 1.0 / np.maximum(left_over, 1e-12)
+        if settled:
+            break
     links = len(arm.prior)
     least = float(np.sum((left @ np.concatenate([free, back(free)]) - right) ** 2))
     spent = float(np.sum((left @ whole - right) ** 2))
@@ -219,8 +199,8 @@ def fitted(arm: Arm, rows: Sequence[Rows]) -> ArmFit:
             for k, mass in enumerate(payloads)
         },
         found[own - joints :],
-        np.array([friction for friction, _ in plain]),
-        np.array([rest / np.sqrt(n) for (_, rest), n in zip(plain, counts, strict=True)]),
+        whole[own:].reshape(joints, 3),
+        left_over,
         len(place),
         tuple(k for k, fine in enumerate(exist(free[: own - joints])) if not fine),
         spent / least - 1.0 if least > 0.0 else 0.0,
@@ -255,21 +235,12 @@ def base_parameters(
     return told, found
 
 
-def _systems(
-    arm: Arm, rows: Sequence[Rows], payloads: Sequence[float], found: FloatArray
-) -> tuple[list[FloatArray], list[int]]:
-    """The packed rows of each joint with the loads of some links, and how many they were."""
-    systems = [_system(arm, rows, joint, payloads, found) for joint in range(len(arm.names))]
-    return [_packed(left, right) for left, right in systems], [len(right) for _, right in systems]
-
-
 def _system(
-    arm: Arm, rows: Sequence[Rows], joint: int, payloads: Sequence[float], found: FloatArray
+    arm: Arm, rows: Sequence[Rows], joint: int, payloads: Sequence[float]
 ) -> tuple[FloatArray, FloatArray]:
     """Columns (links, payloads, rotors, friction) and efforts of one joint."""
     joints, parts, efforts = len(arm.names), [], []
     last = slice(PER_LINK * arm.carries, PER_LINK * (arm.carries + 1))
-    each = len(PLAIN) + SHAPES
     for one in rows:
         used = one.used[:, joint]
         links = one.links[joint, used]
@@ -279,24 +250,11 @@ def _system(
                 hangs[:, PER_LINK * k : PER_LINK * (k + 1)] = links[:, last]
         rotor = np.zeros((len(links), joints))
         rotor[:, joint] = one.rotor[used, joint]
-        load = np.abs(np.hstack([links, hangs]) @ found[: len(found) - joints])
-        friction = np.zeros((len(links), each * joints))
-        direction = one.friction[joint, used, PLAIN.index("coulomb")]
-        friction[:, each * joint : each * (joint + 1)] = np.column_stack(
-            [one.friction[joint, used], one.bent[joint, used], load * direction]
-        )
+        friction = np.zeros((len(links), 3 * joints))
+        friction[:, 3 * joint : 3 * joint + 3] = one.friction[joint, used]
         parts.append(np.hstack([links, hangs, rotor, friction]))
         efforts.append(one.effort[used, joint])
     return np.vstack(parts), np.concatenate(efforts)
-
-
-def _plain(packed: FloatArray, found: FloatArray, joint: int) -> tuple[FloatArray, float]:
-    """Plain friction of a joint beside links that are found, and the 2-norm of what is left."""
-    first = len(found) + (len(PLAIN) + SHAPES) * joint
-    columns = packed[:, first : first + len(PLAIN)]
-    missed = packed[:, -1] - packed[:, : len(found)] @ found
-    friction: FloatArray = np.asarray(np.linalg.lstsq(columns, missed, rcond=None)[0], dtype=float)
-    return friction, float(np.linalg.norm(missed - columns @ friction))
 
 
 def _packed(left: FloatArray, right: FloatArray) -> FloatArray:
@@ -316,13 +274,8 @@ def _without(
     left: FloatArray, right: FloatArray, own: int
 ) -> tuple[FloatArray, FloatArray, Callable[[FloatArray], FloatArray]]:
     """The system without friction, whose best values go with whatever the links are."""
+    q = np.linalg.qr(left[:, own:])[0]
     base, rest = left[:, :own], left[:, own:]
-    size = np.sqrt(np.sum(rest**2, axis=0))
-    directions, shares, _ = np.linalg.svd(
-        rest / np.where(size > 0.0, size, 1.0), full_matrices=False
-    )
-    # A column that says what others do takes nothing away of its own.
-    q = directions[:, shares > FRICTION_RANK * shares[0]]
 
     def back(x: FloatArray) -> FloatArray:
         return np.asarray(np.linalg.lstsq(rest, right - base @ x, rcond=None)[0], dtype=float)
