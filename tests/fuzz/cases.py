@@ -17,9 +17,9 @@ Program = list[str]
 
 STATEFUL = ("Motor", "FrictionModel", "Ensemble")
 """Classes whose objects have a history."""
-LONG = ("fit", "diagnose", "compare.compare", "plan.plan", "demo_session.load", "command.fit",
-        "command.diagnose", "command.demo", "command.paper", "command.compare", "command.plan",
-        "file.session.toml")  # fmt: skip
+LONG = ("fit", "diagnose", "compare.compare", "plan.plan", "robot.plan_robot", "demo_session.load",
+        "command.fit", "command.diagnose", "command.demo", "command.paper", "command.compare",
+        "command.plan", "file.session.toml")  # fmt: skip
 """What works for seconds on few samples, because it simulates many times."""
 DISSIPATING = tuple(
     name

@@ -193,7 +193,8 @@ def _robot_table(draw: Draw) -> str:
     gain = draw.signed() if draw.odd() else draw.size()
     drive = f"{{'input': 'torque_nm', 'gain': {gain}, 'gear_ratio': {draw.size()}}}"
     columns = "{'position': 'q', 'input': 'u'}"
-    joint = f"{{'name': 'turn', 'columns': {columns}, 'drive': {drive}}}"
+    limits = f"{{'speed': {draw.size()}, 'effort': {gain}}}"
+    joint = f"{{'name': 'turn', 'columns': {columns}, 'drive': {drive}, 'limits': {limits}}}"
     return f"{{'robot': {{'urdf': {draw.file('one.urdf')}, 'joints': [{joint}]}}}}"
 
 
@@ -280,6 +281,7 @@ OF_TARGET: dict[str, Drawer] = {
     "Recording.without_ends.rows": lambda d: d.whole(0, 40),
     "robot.Robot.load.path": lambda d: d.file("robot.toml"),
     "robot.Robot.from_dict.table": _robot_table,
+    "robot.plan_robot.robot": lambda d: f"stiction.robot.Robot.from_dict({_robot_table(d)})",
     "robot.load_session.path": lambda d: d.file("robot-session.toml"),
     "robot.Run.joints": lambda d: "(made('Run').joints[0],)",
     "robot.Run.payload": lambda d: d.size(),

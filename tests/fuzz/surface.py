@@ -30,6 +30,8 @@ EXCLUDED = {
     "stiction.FitResult": "made by fits alone",
     "stiction.Diagnosis": "made by diagnoses alone",
     "stiction.plan.Plan": "made by plans alone",
+    "stiction.robot.RobotPlan": "made by plans alone",
+    "stiction.robot.RobotSignal": "made by plans alone",
 }
 """Public callables that no case calls, and why."""
 PARTS = {

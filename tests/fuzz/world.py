@@ -153,6 +153,16 @@ def robot_diagnosis() -> Any:
     return stiction.robot.RobotDiagnosis(robot_fit(), (own,))
 
 
+def robot_signal() -> Any:
+    """Positions of that robot."""
+    time = np.arange(50) * 0.02
+    place = np.sin(time)[:, None]
+    most = {name: np.ones(1) for name in ("position", "speed", "effort")}
+    return stiction.robot.RobotSignal(
+        "together", "", "train", ("turn",), ("rad",), time, place, most
+    )
+
+
 PRODUCERS: dict[str, Callable[[], Any]] = {
     "Trajectory": lambda: motor().simulate(wave(50), 1e-3),
     "EnsembleRun": lambda: st.simulate_ensemble(motor(), np.ones((2, 5)), 1e-3),
@@ -175,6 +185,8 @@ PRODUCERS: dict[str, Callable[[], Any]] = {
     "RobotSession": robot_session,
     "RobotFit": robot_fit,
     "RobotDiagnosis": robot_diagnosis,
+    "RobotPlan": lambda: stiction.robot.RobotPlan(robot(), (robot_signal(),)),
+    "RobotSignal": robot_signal,
     "Run": lambda: robot_session().runs[0],
     "Joint": lambda: robot().joints[0],
     "Entry": plain_entry,

@@ -6,7 +6,7 @@ Nothing here comes from the core, nor from pinocchio. A joint's friction may hid
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -123,8 +123,18 @@ class SimulatedRobot:
             found[k] = data.qfrc_inverse
         return found
 
-    def lay_out(self, folder: Path, seconds: float = 24.0, seed: int = 0) -> Path:
-        """Files as a user has them; the URDF says other inertias than are true."""
+    def lay_out(
+        self,
+        folder: Path,
+        seconds: float = 24.0,
+        seed: int = 0,
+        record: Callable[[int, float], Mapping[str, Array]] | None = None,
+    ) -> Path:
+        """Files as a user has them; the URDF says other inertias than are true.
+
+        ``record`` makes a recording from seed and seconds, ``self.record`` without it.
+        """
+        record = record or self.record
         folder.mkdir(parents=True, exist_ok=True)
         rough = SimulatedRobot(tuple(1.2 * m for m in self.masses), self.lengths)  # type: ignore[arg-type]
         (folder / "arm.urdf").write_text(rough.urdf)
@@ -136,7 +146,7 @@ class SimulatedRobot:
         (folder / "robot.toml").write_text("\n".join(lines) + "\n")
         session = ['plant = "robot.toml"', "[columns]", 'time = "t"']
         for k, role in enumerate(("train", "train", "select", "test")):
-            table = self.record(10 * seed + k, seconds)
+            table = record(10 * seed + k, seconds)
             np.savez(folder / f"run{k}.npz", **table)
             session += ["[[recordings]]", f'file = "run{k}.npz"', f"role = {json.dumps(role)}"]
         (folder / "session.toml").write_text("\n".join(session) + "\n")

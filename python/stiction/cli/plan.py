@@ -11,9 +11,11 @@ from ..given import vacant
 from ..plan import plan as run
 from ..plan.result import FILLED_IN
 from ..plant import Plant
+from ..robot.robot import describes_robot
 from .answer import answer, folder, told_anyway, written
 from .given import Quiet, Whole
 from .progress import progress
+from .robot import plan_arm
 
 __all__ = ["plan"]
 
@@ -24,7 +26,7 @@ def plan(
     position: float | None = None,
     speed: float | None = None,
     effort: float | None = None,
-    rate: float = 1000.0,
+    rate: float | None = None,
     only: tuple[str, ...] = (),
     seed: Whole = 0,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
@@ -33,20 +35,22 @@ def plan(
 ) -> None:
     """Write input and reference signals with which to record a machine, a figure of each.
 
-    A session.toml or plant.toml that is there is not overwritten.
+    A session.toml, plant.toml or robot.toml that is there is not overwritten. Of a robot the
+    limits are those of its URDF, and the options narrow them for all joints.
 
     Parameters
     ----------
     plant
-        Plant file; what it leaves out takes the catalogue's defaults.
+        Plant file; what it leaves out takes the catalogue's defaults. Or a robot file.
     position
-        Greatest distance from where the machine stands, rad or m.
+        Greatest distance from where the machine stands, rad or m; of a robot from the middle of
+        the positions of each joint.
     speed
         Greatest speed, rad/s or m/s.
     effort
         Greatest effort of the drive, N·m or N.
     rate
-        Samples a second.
+        Samples a second; 1000 without it, 100 of a robot.
     only
         Experiment to plan; may be given several times, all without it.
     seed
@@ -57,6 +61,12 @@ def plan(
         Print JSON.
     """
     where = Path(f"{plant.stem}-plan") if out is None else out
+    if describes_robot(plant):
+        asked = {"position": position, "speed": speed, "effort": effort, "only": only, "seed": seed}
+        if rate is not None:
+            asked["rate"] = rate
+        plan_arm(plant, where, asked, as_json=json, quiet=quiet)
+        return
     # Better said before the work than after it.
     vacant(where, FILLED_IN, "another folder with --out")
     with progress(quiet):
@@ -65,7 +75,7 @@ def plan(
             position=position,
             speed=speed,
             effort=effort,
-            rate=rate,
+            rate=1000.0 if rate is None else rate,
             only=only,
             seed=seed,
         )

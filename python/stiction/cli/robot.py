@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
+from ..given import vacant
 from ..robot.robot import Robot
 from ..robot.session import load_session
 from .answer import answer, folder, told_anyway, written
 from .interrupt import ending_soon, finished
 from .progress import progress
 
-__all__ = ["diagnose_arm", "export_arm"]
+__all__ = ["diagnose_arm", "export_arm", "plan_arm"]
 
 
 def diagnose_arm(
@@ -83,6 +84,42 @@ def _spared(robot: Path, where: Path) -> None:
             f"{file}: is the robot file of this session and is not overwritten; give another "
             "folder with --out"
         )
+
+
+def plan_arm(
+    robot: Path, where: Path, asked: Mapping[str, Any], *, as_json: bool, quiet: bool = False
+) -> None:
+    """``stiction plan`` of a robot.
+
+    Parameters
+    ----------
+    robot : Path
+        Robot file.
+    where : Path
+        Folder for the signals.
+    asked : mapping
+        What ``plan_robot`` takes.
+    as_json : bool
+        Print JSON.
+    quiet : bool
+        Show no progress.
+
+    Raises
+    ------
+    InputError
+    """
+    from ..robot.plan import plan_robot
+    from ..robot.signals import FILLED_IN
+
+    # Better said before the work than after it.
+    vacant(where, FILLED_IN, "another folder with --out")
+    with progress(quiet):
+        made = plan_robot(Robot.load(robot), **asked)
+        where = folder(where)
+        text = f"{made!r}\n\nsignals: {where / 'signals'}\nfill in: {where / 'session.toml'}"
+        with told_anyway(text, made.to_dict(), as_json=as_json), written(where):
+            made.save(where)
+    answer(text, made.to_dict(), as_json=as_json)
 
 
 def export_arm(

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
 from ..errors import InputError
 from ..given import regular
 
-__all__ = ["Description", "Mimic", "described"]
+__all__ = ["Description", "JointLimits", "Mimic", "described"]
 
 _LARGEST: Final = 2**24
 _MOVING: Final = ("revolute", "continuous", "prismatic")
@@ -28,6 +28,25 @@ class Mimic:
 
 
 @dataclass(frozen=True)
+class JointLimits:
+    """What a joint may do, None where nobody says.
+
+    Attributes
+    ----------
+    position : tuple of float or None
+        From and to, rad or m.
+    speed : float or None
+        rad/s or m/s.
+    effort : float or None
+        N·m or N.
+    """
+
+    position: tuple[float, float] | None = None
+    speed: float | None = None
+    effort: float | None = None
+
+
+@dataclass(frozen=True)
 class Description:
     """The joints of a URDF.
 
@@ -38,11 +57,14 @@ class Description:
     kinds : mapping of str to str
         revolute, continuous or prismatic, by joint, in the order of the file.
     mimics : mapping of str to Mimic
+    limits : mapping of str to JointLimits
+        By joint; a limit of 0 states none.
     """
 
     name: str
     kinds: Mapping[str, str]
     mimics: Mapping[str, Mimic]
+    limits: Mapping[str, JointLimits] = field(default_factory=dict)
 
     @property
     def free(self) -> tuple[str, ...]:
@@ -76,21 +98,47 @@ def described(urdf: Path) -> Description:
         raise InputError(f"{urdf}: its root is <{root.tag}> and not <robot>; give a URDF")
     kinds: dict[str, str] = {}
     mimics: dict[str, Mimic] = {}
+    limits: dict[str, JointLimits] = {}
     for joint in root.findall("joint"):
         name, kind = joint.get("name", ""), joint.get("type", "")
         if not name or kind not in _MOVING:
             continue
         kinds[name] = kind
+        limits[name] = _limits(joint, kind)
         mimic = joint.find("mimic")
         if mimic is not None:
             numbers = [_number(mimic.get(key), default, urdf, name) for key, default in _NUMBERS]
             mimics[name] = Mimic(mimic.get("joint", ""), *numbers)
     if not kinds:
         raise InputError(f"{urdf}: has no joint that moves; give the URDF of the arm")
-    return Description(root.get("name", ""), kinds, mimics)
+    return Description(root.get("name", ""), kinds, mimics, limits)
 
 
 _NUMBERS: Final = (("multiplier", 1.0), ("offset", 0.0))
+
+
+def _limits(joint: ElementTree.Element, kind: str) -> JointLimits:
+    """Of a joint. A joint without end has none of position, and 0 is what nobody filled in."""
+    limit = joint.find("limit")
+    if limit is None:
+        return JointLimits()
+    low, high, speed, effort = (
+        _stated(limit.get(key)) for key in ("lower", "upper", "velocity", "effort")
+    )
+    return JointLimits(
+        (low, high) if kind != "continuous" and low < high else None,
+        speed if speed > 0.0 else None,
+        effort if effort > 0.0 else None,
+    )
+
+
+def _stated(text: str | None) -> float:
+    """A limit, 0 where it is none: only plans need it, and say so where it is not there."""
+    try:
+        value = float(text or 0.0)
+    except ValueError:
+        return 0.0
+    return value if math.isfinite(value) else 0.0
 
 
 def _number(text: str | None, default: float, urdf: Path, joint: str) -> float:

@@ -63,6 +63,7 @@ def robot_text(robot: Robot, joints: dict[str, dict[str, Any]], folder: Path) ->
             "columns": {role: _column(column) for role, column in joint.columns.items()},
             "drive": drive,
             **joints[joint.name],
+            "limits": dict(joint.limits),
         }
         entries.append({key: value for key, value in entry.items() if value})
     return render({"robot": own, "robot.joints": entries})

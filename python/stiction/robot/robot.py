@@ -18,13 +18,14 @@ from ..plant import Plant
 from ..plant_file import read_toml, section
 from ..recording import Columns
 from ..recording.units import Motion
-from .description import described
+from .description import JointLimits, described
 from .dynamics import Arm
+from .limits import limits_table
 
 __all__ = ["Joint", "Robot", "describes_robot"]
 
 _KEYS: Final = ("urdf", "locked", "gravity", "joints")
-_JOINT: Final = ("name", "columns", "drive", "rotor_inertia", "friction", "effects")
+_JOINT: Final = ("name", "columns", "drive", "rotor_inertia", "friction", "effects", "limits")
 _DRIVE: Final = ("input", "gain", "gear_ratio")
 _COLUMNS: Final = ("position", "velocity", "input", "temperature")
 BIAS: Final = {"name": "torque_bias"}
@@ -54,6 +55,9 @@ class Joint:
         As [[effects]].
     rotor_inertia : float
         Of motor and gear on the side of the joint, kg·m² or kg, where it is known: for exports.
+    limits : mapping
+        ``position`` (from and to, rad or m), ``speed`` and ``effort`` where they are narrower than
+        in the URDF: for plans.
     """
 
     name: str
@@ -65,6 +69,7 @@ class Joint:
     friction: Mapping[str, Any] = field(default_factory=lambda: {"law": "coulomb"})
     effects: Sequence[Mapping[str, Any]] = ()
     rotor_inertia: float = 0.0
+    limits: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def effort_per_input(self) -> float:
@@ -198,6 +203,17 @@ class Robot:
         return tuple(joint.name for joint in self.joints)
 
     @cached_property
+    def stated_limits(self) -> Mapping[str, JointLimits]:
+        """What the URDF says that its joints may do, by joint.
+
+        Raises
+        ------
+        InputError
+            The URDF is gone.
+        """
+        return described(self.urdf).limits
+
+    @cached_property
     def arm(self) -> Arm:
         """Its rigid links.
 
@@ -258,6 +274,7 @@ def _joint(entry: object, kinds: Mapping[str, str], where: str) -> Joint:
         {"law": "coulomb", **section(entry, "friction", where)},
         tuple(effects),
         _inertia(entry.get("rotor_inertia", 0.0), f"{where} rotor_inertia"),
+        limits_table(section(entry, "limits", where), f"{where} limits"),
     )
 
 
