@@ -142,8 +142,11 @@ def damaged(path: Path, kind: str, error: Exception) -> Exception:
         isinstance(error, OSError) and error.errno is not None
     ):
         return error
-    reason: Any = " ".join(str(error).split()) or type(error).__name__
+    # What the library looked up in itself says nothing of the file.
+    inside = isinstance(error, (LookupError, TypeError, AttributeError))
+    reason = "" if inside else " ".join(str(error).split()) or type(error).__name__
+    told = f" ({reason[:120]})" if reason else ""
     return InputError(
-        f"{path}: this cannot be read as {kind} ({reason[:120]}); was it cut off, or has the file "
-        "another ending than it should?"
+        f"{path}: this cannot be read as {kind}{told}; was it cut off, or has the file another "
+        "ending than it should?"
     )
