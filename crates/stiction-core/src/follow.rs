@@ -196,6 +196,7 @@ where
         let MeasuredMotion { inputs, around, dt, averaged, .. } = *motion;
         let located = L::RIGID && averaged;
         let bends = !L::RIGID && averaged;
+        let count = machine.sensor.count;
         let zero = S::constant(0.0);
         let misreads = machine.effects.misreads();
         let remembers = machine.effects.remembers();
@@ -277,7 +278,7 @@ where
                     stopping(&step, left, &channels, contact, friction, mean);
                 }
                 _ if bends && step.start_velocity.re() * step.velocity.re() < 0.0 => {
-                    turning(&step, &channels, contact, friction);
+                    turning(&step, &channels, contact, friction, count);
                 }
                 _ => Along::through_events(&step, &channels, contact, friction, mean),
             }
@@ -342,7 +343,8 @@ fn stopping<S: Scalar, L: FrictionLaw<S>>(
 /// to where the sample ends. Straight to its end it would not have been where it turned, and what
 /// remembers turns would be short of a·h²/8 each time, whose force grows with the square of the sample.
 ///
-/// In between the motion is the cubic with the positions and velocities of both ends.
+/// In between the motion is the cubic with the positions and velocities of both ends. A way of no more
+/// than a count beyond them may be none: readings that rest go to and fro by as much.
 #[cold]
 #[inline(never)]
 fn turning<S: Scalar, L: FrictionLaw<S>>(
@@ -350,6 +352,7 @@ fn turning<S: Scalar, L: FrictionLaw<S>>(
     channels: &Channels<S>,
     (law, state): (&L, &mut L::State),
     force: &mut S,
+    count: f64,
 ) {
     let (start, end) = (step.start_velocity * step.duration, step.velocity * step.duration);
     let Some(share) = turn(start.re(), step.displacement.re(), end.re()) else {
@@ -359,6 +362,10 @@ fn turning<S: Scalar, L: FrictionLaw<S>>(
     // Where it turns it does not move: that a parameter makes it turn sooner changes nothing.
     let out = start * (share * left * left) + step.displacement * (square * (3.0 - 2.0 * share))
         - end * (square * left);
+    let (reached, ended) = (out.re(), step.displacement.re());
+    if (reached - ended.max(0.0)).max(ended.min(0.0) - reached) <= count {
+        return Along::through_events(step, channels, (law, state), force, None);
+    }
     let zero = S::constant(0.0);
     let there =
         Motion { displacement: out, duration: step.duration * share, velocity: zero, ..*step };
