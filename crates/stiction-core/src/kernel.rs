@@ -96,7 +96,7 @@ impl<P: Iterator<Item = usize> + Clone> Task for Seen<'_, P> {
 #[inline(always)]
 fn about(values: &[f64]) -> Vec<f64> {
     let mut means = values.to_vec();
-    for (mean, near) in means.iter_mut().skip(1).zip(values.array_windows::<3>()) {
+    for (mean, near) in means.iter_mut().skip(1).zip(values.windows(3)) {
         *mean += (near[0] - 2.0 * near[1] + near[2]) / 12.0;
     }
     means
