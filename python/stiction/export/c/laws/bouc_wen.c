@@ -94,7 +94,7 @@ static real followed(real u, real left)
         left -= to - from;
         u = SMALL;
     }
-    return u >= R(1) ? R(1) : R(1) - approach(R(1) - u, left, (const real *)0);
+    return u >= R(1) ? R(1) : R(1) - approach(R(1) - u, left, R(0), (const real *)0);
 }
 
 static real law_step(stiction_state *s, const motion *m)

@@ -38,7 +38,7 @@ static real rate(real r, const real *of)
 /* Force along the motion after a path s0*|x|. */
 static real followed(real along, real path, real level)
 {
-    real whole;
+    real whole, steep;
     if (along < ELASTIC) {
         if (path <= ELASTIC - along) {
             return along + path;
@@ -50,7 +50,8 @@ static real followed(real along, real path, real level)
         return level + (along - level) * r_exp(-path / level);
     }
     whole = R(1) - ELASTIC / level;
-    return level * (R(1) - approach(R(1) - along / level, path / level, &whole));
+    steep = R(0.5) * PI / whole;
+    return level * (R(1) - approach(R(1) - along / level, path / level, steep * steep, &whole));
 }
 
 static real law_step(stiction_state *s, const motion *m)

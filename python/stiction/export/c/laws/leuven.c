@@ -52,9 +52,10 @@ static real way_to(real r, real target, const real *of)
 #else
 
 /* The same in closed form. */
-static real approach(real r, real way, const real *of)
+static real approach(real r, real way, real bend, const real *of)
 {
     const real z = of[0] * way / of[1];
+    (void)bend;
     return z > R(40) ? R(0) : r / (r_expm1(z) * (r / of[0] + R(1)) + R(1));
 }
 
@@ -117,7 +118,7 @@ static void bend(stiction_spring *spring, int side, real path, real level)
             }
         }
         if (r > R(0)) {
-            force = goal - approach(r, path, of) * level;
+            force = goal - approach(r, path, R(0), of) * level;
         }
         along = (force - from) / span;
         along = along > R(0) ? along : R(0);
