@@ -17,7 +17,9 @@ import numpy as np
 from .._native import FrictionModel
 from ..errors import InputError
 from ..frozen import Frozen, freeze
+from ..given import mapping, names
 from ..motor import Motor
+from ..parameter import number
 from ..trajectory import FloatArray
 from .cautions import assumed, stairs
 from .graphical import Recorded, Steps, branch_curve, read_off
@@ -212,12 +214,13 @@ def estimate(
     recorded = [_recorded(record) for record in records]
     if not recorded:
         raise InputError("estimate: no recording; give at least one")
-    fixed = tuple(fixed)
-    for name in (*(start or {}), *fixed):
+    start = mapping(start, "estimate: start", "numbers by name")
+    fixed = tuple(names(fixed, "estimate: fixed"))
+    for name in (*start, *fixed):
         if name not in NAMES:
             raise InputError(f"estimate: '{name}' is no parameter; known are {', '.join(NAMES)}")
     steps = read_off(recorded)
-    guess = _guess(steps, start or {}, fixed)
+    guess = _guess(steps, start, fixed)
     fit = _Fit(recorded, guess, fixed)
     return fit.run(steps)
 
@@ -477,7 +480,7 @@ def _branch_interval(
 def _guess(steps: Steps, start: Mapping[str, float], fixed: tuple[str, ...]) -> dict[str, float]:
     """Where the fit starts: what was read off, then what was given, then the illustrative rig."""
     guess = {name: float(ILLUSTRATIVE_RIG[name]) for name in NAMES}
-    guess |= {name: float(value) for name, value in start.items()}
+    guess |= {name: number(value, f"estimate: start: {name}") for name, value in start.items()}
     read: dict[str, float] = {}
     if steps.branch is not None:
         read |= dict(zip(NAMES[:3], steps.branch, strict=True))
