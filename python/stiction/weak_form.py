@@ -397,6 +397,7 @@ class WeakForm:
         measured = measured + _centred(self.load[:-1])
         own = self.own(plant)
         if own.friction.springy and not self.prescribed:
+            # As `RowKernel` has it where it is smooth.
             needed = needed + np.diff(needed, 2, prepend=needed[:1], append=needed[-1:]) / 12.0
         inertial = own.inertia * (self.acceleration + self._bent(ahead))
         return self._mean(measured), inertial + self._mean(needed)

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .. import given
-from ..atomic_files import replacing, subfolder, write_text
-from ..errors import InputError, UnknownName
+from ..atomic_files import replacing
 from ..plant import Plant
 from ..recording.recording import SPLIT_ROLES
 from ..trajectory import FloatArray
 from ..wording import counted
+from .files import signal_named, write_plan
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -138,11 +138,7 @@ class Plan:
         UnknownName
             An ``InputError`` and a ``KeyError``: there is no such signal.
         """
-        for signal in self.signals:
-            if signal.name == name:
-                return signal
-        known = ", ".join(signal.name for signal in self.signals)
-        raise UnknownName(f"plan: there is no signal '{name}'; there are {known}")
+        return signal_named(self.signals, name)
 
     def schedule(self) -> list[dict[str, Any]]:
         """What to record when: file, role, kind and start of every recording, pauses included."""
@@ -187,27 +183,15 @@ class Plan:
             A session.toml or plant.toml is there already, which may have been filled in, and
             nothing is written then; the folder cannot be written.
         """
-        from .. import plot
-        from ..json_text import json_of
-
         folder = given.path(where, "Plan.save")
         given.vacant(folder, FILLED_IN)
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            signals = subfolder(folder, "signals")
-            for signal in self.signals:
-                signal.save(signals)
-            write_text(folder / "plan.json", json_of(self.to_dict()) + "\n")
-            self.plant.save(folder / "plant.toml")
-            write_text(folder / "session.toml", self._session())
-            for signal in self.signals:
-                drawn = signals / f"{signal.name}.svg"
-                plot.save_or_say(f"the figure of {signal.name}", signal.plot, drawn)
-        except OSError as error:
-            raise InputError(
-                f"{folder}: cannot be written ({error.strerror}); give another folder with --out"
-            ) from None
-        return folder
+        return write_plan(
+            folder,
+            self.signals,
+            self.to_dict(),
+            lambda: self.plant.save(folder / "plant.toml"),
+            self._session(),
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """As in plan.json."""

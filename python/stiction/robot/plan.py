@@ -14,7 +14,7 @@ from ..errors import InputError
 from ..parameter import number
 from ..plan.experiments import EXPERIMENTS, Experiment
 from ..plan.limits import SHARE_TO_ACCELERATE, Sizes
-from ..plan.run import LEVELS
+from ..plan.run import LEVELS, SMALLER, TRIES
 from ..presliding import presliding
 from ..progress import phase
 from ..recording.recording import SPLIT_ROLES
@@ -42,9 +42,6 @@ CHECKED_S: Final = 0.01
 """Between the rows at which efforts are looked at: smooth motion changes less."""
 BLEND_S: Final = 0.3
 """Least time to full speed of a joint that moves alone."""
-SMALLER: Final = 0.75
-TRIES: Final = 16
-"""Shares by which a signal is made smaller until it stays within the limits."""
 
 _logger = logging.getLogger(__name__)
 
