@@ -130,6 +130,7 @@ class Motion:
         load: npt.ArrayLike | None = None,
         temperature: npt.ArrayLike | None = None,
         enabled: npt.ArrayLike | None = None,
+        transmitted: npt.ArrayLike | None = None,
         averaged: bool = False,
     ) -> Motion: ...
     def __len__(self) -> int: ...
@@ -168,6 +169,7 @@ class Motor:
         enabled: npt.ArrayLike | None = None,
         outputs: Sequence[str] | None = None,
         out: dict[str, _Floats] | None = None,
+        transmitted: npt.ArrayLike | None = None,
     ) -> tuple[dict[str, _Floats], int, float, dict[str, int]]: ...
     def run_segments(
         self,
@@ -292,6 +294,7 @@ class Motor:
         load: npt.ArrayLike | None = None,
         temperature: npt.ArrayLike | None = None,
         enabled: npt.ArrayLike | None = None,
+        transmitted: npt.ArrayLike | None = None,
         out: _Floats | None = None,
         strict: bool = True,
     ) -> tuple[_Floats, _Floats]: ...

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from .errors import InputError
 from .trajectory import FloatArray
 
 if TYPE_CHECKING:
@@ -51,14 +52,31 @@ def accompanied(
         What the sensor would read, without its rounding.
     numpy.ndarray, shape (rows - 1,)
         Load together with the effort of the pull: under it the plant makes this motion.
+
+    Raises
+    ------
+    InputError
+        It runs away from the measured motion.
     """
     target = form.position if position is None else position
     rate = min(PULL_RATE / form.kernel.support, STEADY / form.dt)
     inertia = form.own(plant).inertia
+    # The pull acts on what the motor turns at once, and sampled it must not shake that either.
+    inertia *= min(1.0, STEADY * (1.0 - _behind_a_shaft(plant)) / (rate * form.dt))
     motor = form.begun(plant, target)
     load = form.load[:-1] if load is None else load
     motion = form.motion if position is None else form.moved(position, load=load)
     readings, pull = motor.accompany(
         motion, inertia * rate**2, 2.0 * inertia * rate, start=start, strict=False
     )
+    if not np.all(np.isfinite(readings)):
+        raise InputError(
+            f"{plant.source}: a simulation cannot be kept near the measured motion; it runs away"
+        )
     return np.concatenate([target[:1], readings]), load + pull
+
+
+def _behind_a_shaft(plant: Plant) -> float:
+    """Share of the inertia that hangs on a shaft or lies behind a gap, the greatest of these."""
+    shares = (each.parameters.get("inertia_share") for each in plant.effects)
+    return max((share.value for share in shares if share is not None), default=0.0)

@@ -73,6 +73,7 @@ class Motor(_native.Motor):
         load: npt.ArrayLike | None = None,
         temperature: npt.ArrayLike | None = None,
         enabled: npt.ArrayLike | None = None,
+        transmitted: npt.ArrayLike | None = None,
         outputs: Sequence[str] | None = None,
         out: dict[str, FloatArray] | None = None,
     ) -> Trajectory:
@@ -90,6 +91,10 @@ class Motor(_native.Motor):
             In degC, for what depends on it; without it nobody knows it.
         enabled : bool or array_like, shape (n,), optional
             False or 0 where the drive is off; without it the drive is on.
+        transmitted : float or array_like, shape (n,), optional
+            Effort that the gear transmits, N·m or N, positive along +x like a load: what friction
+            that grows with the load sees. Without it that is the load and gravity, and nothing of
+            what accelerates the inertia behind the gear.
         outputs : sequence of str, optional
             Which columns to compute; all of ``output_names`` without it.
         out : dict of str to numpy.ndarray, optional
@@ -115,7 +120,7 @@ class Motor(_native.Motor):
         if out is None:
             _room_for(self, current, names)
         columns, length, start, statistics = self.run(
-            current, dt, load, temperature, enabled, names, out
+            current, dt, load, temperature, enabled, names, out, transmitted
         )
         steps = dt if type(dt) is float else _steps(dt)
         return Trajectory(columns, steps, length, start, statistics)

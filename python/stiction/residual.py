@@ -315,14 +315,17 @@ def _driven(plant: Plant, recording: Recording) -> Plant:
 def _simulated(motor: Motor, recording: Recording) -> Trajectory:
     """The motor under all that acted on the recorded machine."""
     assert recording.input is not None
-    beside = (recording.channels.get(name) for name in ("load", "temperature", "enabled"))
-    load, temperature, enabled = (None if values is None else values[:-1] for values in beside)
+    names = ("load", "temperature", "enabled", "transmitted")
+    load, temperature, enabled, transmitted = (
+        None if values is None else values[:-1] for values in map(recording.channels.get, names)
+    )
     return motor.simulate(
         recording.input[:-1],
         np.diff(recording.time),
         load=load,
         temperature=temperature,
         enabled=enabled,
+        transmitted=transmitted,
     )
 
 

@@ -50,6 +50,7 @@ class Around(TypedDict):
     load: FloatArray | None
     temperature: FloatArray | None
     enabled: FloatArray | None
+    transmitted: FloatArray | None
 
 
 NOISE_SHARE: Final = 0.02
@@ -147,9 +148,10 @@ class WeakForm:
         # Of the readings themselves: between them, on even stamps, there are no steps.
         self.count = plant.count or count_of(recording.position)
         noise = noise_of(x, self.count)
-        warmth, on = (recording.channels.get(name) for name in ("temperature", "enabled"))
-        self.temperature = None if warmth is None else held(time, stamps, warmth)
-        self.enabled = None if on is None else held(time, stamps, on)
+        self.temperature, self.enabled, self.transmitted = (
+            None if values is None else held(time, stamps, values)
+            for values in map(recording.channels.get, ("temperature", "enabled", "transmitted"))
+        )
         driven = u if self.prescribed else _commanded(plant, u, x, self.dt)
         if support is not None:
             self.kernel = Kernel(support, self.dt)
@@ -255,6 +257,7 @@ class WeakForm:
             "load": self.load[:-1],
             "temperature": None if self.temperature is None else self.temperature[:-1],
             "enabled": None if self.enabled is None else self.enabled[:-1],
+            "transmitted": None if self.transmitted is None else self.transmitted[:-1],
         }
 
     @cached_property

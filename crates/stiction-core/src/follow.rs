@@ -251,6 +251,7 @@ where
                 at.velocity.put(velocity);
                 at.path.put(at.path.re() + displacement.abs());
             }
+            at.transmitted = around.transmitted_at(k);
             at.temperature = around.temperature_at(k);
             at.enabled = around.enabled_at(k);
             if remembers {
@@ -397,6 +398,7 @@ impl<S: Scalar> Run<S> {
         self.velocity = at.velocity;
         self.time = at.time;
         self.path = at.path;
+        self.transmitted = at.transmitted;
         self.temperature = at.temperature;
         self.enabled = at.enabled;
         self.second_position = at.position;

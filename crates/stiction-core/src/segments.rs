@@ -123,6 +123,7 @@ impl Running<f64> {
             let (mut k, mut passed, mut end) = (0, 0.0, 0.0);
             for (segment, duration) in segments.durations.iter().enumerate() {
                 end += duration;
+                run.transmitted = segments.around.transmitted_at(segment);
                 run.temperature = segments.around.temperature_at(segment);
                 run.enabled = segments.around.enabled_at(segment);
                 let acting = (segments.inputs[segment], segments.around.load.at(segment));
@@ -157,6 +158,7 @@ impl Running<f64> {
         let (mut k, mut passed, mut end) = (0, 0.0, 0.0);
         for (segment, duration) in segments.durations.iter().enumerate() {
             end += duration;
+            self.run.transmitted = segments.around.transmitted_at(segment);
             self.run.temperature = segments.around.temperature_at(segment);
             self.run.enabled = segments.around.enabled_at(segment);
             let (input, load) = (segments.inputs[segment], segments.around.load.at(segment));

@@ -163,6 +163,7 @@ impl Running<f64> {
             let behind = track.position() - self.run.position;
             let slower = track.velocity(&dt) - self.run.velocity;
             let effort = pull.stiffness * behind + pull.damping * slower;
+            self.run.transmitted = around.transmitted_at(k);
             self.run.temperature = around.temperature_at(k);
             self.run.enabled = around.enabled_at(k);
             self.step_within(inputs.at(k), around.load.at(k) + effort, dt.at(k), &mut meter)?;

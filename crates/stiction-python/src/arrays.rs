@@ -174,18 +174,21 @@ impl<'py> Each<'py> {
     }
 }
 
-/// What acts beside the input: external effort, temperature, whether the drive is on.
+/// What acts beside the input: external effort, temperature, whether the drive is on, and what the gear
+/// transmits.
 pub struct Around<'py> {
     load: Each<'py>,
     temperature: Option<Each<'py>>,
     enabled: Option<Each<'py>>,
+    transmitted: Option<Each<'py>>,
 }
 
 impl<'py> Around<'py> {
-    /// Reads load, temperature and whether the drive is on; without a load there is none, without a
-    /// temperature nobody knows it, and a drive is on unless it is said to be off.
-    pub fn read(given: [Option<&Bound<'py, PyAny>>; 3], shape: &[usize]) -> PyResult<Self> {
-        let [load, temperature, enabled] = given;
+    /// Reads load, temperature, whether the drive is on, and what the gear transmits; without a load there
+    /// is none, without a temperature nobody knows it, a drive is on unless it is said to be off, and a
+    /// gear transmits the load.
+    pub fn read(given: [Option<&Bound<'py, PyAny>>; 4], shape: &[usize]) -> PyResult<Self> {
+        let [load, temperature, enabled, transmitted] = given;
         let read = |name: &str, given: Option<&Bound<'py, PyAny>>| {
             given.map(|given| Each::read(name, Some(given), 0.0, shape)).transpose()
         };
@@ -193,6 +196,7 @@ impl<'py> Around<'py> {
             load: Each::read("load", load, 0.0, shape)?,
             temperature: read("temperature", temperature)?,
             enabled: read("enabled", enabled)?,
+            transmitted: read("transmitted", transmitted)?,
         })
     }
 
@@ -200,6 +204,7 @@ impl<'py> Around<'py> {
     pub fn surroundings(&self) -> PyResult<Surroundings<'_>> {
         Ok(Surroundings {
             load: self.load.per_sample()?,
+            transmitted: self.transmitted.as_ref().map(Each::per_sample).transpose()?,
             temperature: self.temperature.as_ref().map(Each::per_sample).transpose()?,
             enabled: self.enabled.as_ref().map(Each::per_sample).transpose()?,
         })

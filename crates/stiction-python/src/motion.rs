@@ -46,6 +46,9 @@ impl Numbers {
 ///     In °C.
 /// enabled : array_like, shape (n,), optional
 ///     Whether the drive is on, 0 where it is off.
+/// transmitted : float or array_like, shape (n,), optional
+///     Effort that the gear transmits, as a load that acts on the machine: friction that grows with the
+///     load sees it in place of the load.
 /// averaged : bool
 ///     Whether the friction of a rigid contact, which jumps inside samples, is its mean over the sample
 ///     before each stamp and the one after, to be compared with inputs that are held, and a contact
@@ -62,6 +65,7 @@ pub struct Motion {
     inputs: Numbers,
     dt: Numbers,
     load: Numbers,
+    transmitted: Option<Numbers>,
     temperature: Option<Numbers>,
     enabled: Option<Numbers>,
     averaged: bool,
@@ -80,6 +84,7 @@ impl Motion {
             inputs: self.inputs.per_sample(),
             around: Surroundings {
                 load: self.load.per_sample(),
+                transmitted: self.transmitted.as_ref().map(Numbers::per_sample),
                 temperature: self.temperature.as_ref().map(Numbers::per_sample),
                 enabled: self.enabled.as_ref().map(Numbers::per_sample),
             },
@@ -92,7 +97,7 @@ impl Motion {
 #[pymethods]
 impl Motion {
     #[new]
-    #[pyo3(signature = (position, current, dt, *, load=None, temperature=None, enabled=None, averaged=false))]
+    #[pyo3(signature = (position, current, dt, *, load=None, temperature=None, enabled=None, transmitted=None, averaged=false))]
     fn new(
         position: &Bound<'_, PyAny>,
         current: &Bound<'_, PyAny>,
@@ -100,6 +105,7 @@ impl Motion {
         load: Option<&Bound<'_, PyAny>>,
         temperature: Option<&Bound<'_, PyAny>>,
         enabled: Option<&Bound<'_, PyAny>>,
+        transmitted: Option<&Bound<'_, PyAny>>,
         averaged: bool,
     ) -> PyResult<Self> {
         let py = position.py();
@@ -116,6 +122,7 @@ impl Motion {
             inputs: each("current", current)?,
             dt: Numbers::of(&Each::steps("dt", dt, &[n])?)?,
             load: load.map_or(Ok(Numbers::Same(0.0)), |given| each("load", given))?,
+            transmitted: transmitted.map(|given| each("transmitted", given)).transpose()?,
             temperature: temperature.map(|given| each("temperature", given)).transpose()?,
             enabled: enabled.map(|given| each("enabled", given)).transpose()?,
             averaged,

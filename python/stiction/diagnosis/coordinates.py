@@ -332,7 +332,9 @@ def _asked(
 
 
 def _load(plant: Plant, form: WeakForm, position: FloatArray) -> FloatArray:
-    """External effort and gravity; NaN where there is neither."""
+    """What the gear transmits, else external effort and gravity; NaN where there is none."""
+    if form.transmitted is not None:
+        return form.mean(form.transmitted[1:])
     load = form.mean(form.load[1:])
     plant = form.own(plant)
     if plant.hangs:

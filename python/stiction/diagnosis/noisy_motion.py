@@ -56,7 +56,8 @@ def told_by_noise(base: Model, model: Model, name: str, gain: float) -> str:
         return ""
     # What keeps a simulation near the measured motion stands in for a load that friction reads.
     simulated = not all(form.prescribed for form in forms)
-    replays = [] if simulated and hangs_on_load(model.plant) else base.replays
+    hangs = simulated and any(hangs_on_load(model.plant, form) for form in forms)
+    replays = [] if hangs else base.replays
     if not replays:
         return LATE if late else ""
     reached = NULL_TIMES * max(_gained(replay, model) for replay in replays)

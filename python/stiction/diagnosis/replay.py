@@ -270,7 +270,7 @@ def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) 
     if replay.load is None and not form.prescribed:
         raise NoReplayError
     if replay.load is not None:
-        if form.own(plant).inertia <= 0.0 or hangs_on_load(plant):
+        if form.own(plant).inertia <= 0.0 or hangs_on_load(plant, form):
             raise NoReplayError
         # A contact at rest answers whatever acts on it, noise as well.
         moves = np.diff(replay.motion, append=replay.motion[-1:]) != 0.0
@@ -286,8 +286,13 @@ def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) 
     return found
 
 
-def hangs_on_load(plant: Plant) -> bool:
-    """Whether friction or an effect of a plant reads the load that acts on it."""
+def hangs_on_load(plant: Plant, form: WeakForm) -> bool:
+    """Whether friction or an effect of a plant reads the load that acts on it.
+
+    Not where it is known what the gear transmits: that is read in its place.
+    """
+    if form.transmitted is not None:
+        return False
     readers = {record.name for record in effects() if "load" in record.channels}
     reads = any(effect.name in readers for effect in plant.effects)
     return reads or plant.friction.law == "load_dependent"

@@ -313,7 +313,7 @@ class Recording:
         object.__setattr__(again, "input", self._held(values, "with_input"))
         return again
 
-    def with_load(self, values: FloatArray) -> Recording:
+    def with_load(self, values: FloatArray, transmitted: FloatArray | None = None) -> Recording:
         """The same recording with another load.
 
         Parameters
@@ -321,6 +321,10 @@ class Recording:
         values : numpy.ndarray, shape (rows,)
             External effort from each row to the next, positive along positive motion, N·m or N;
             copied.
+        transmitted : numpy.ndarray, shape (rows,), optional
+            Effort that the gear transmits, with the sign of a load: friction that grows with the
+            load grows with it. Without it that is the load and gravity, which lacks what
+            accelerates the inertia behind the gear. Copied.
 
         Raises
         ------
@@ -329,6 +333,9 @@ class Recording:
         """
         again = copy(self)
         channels = {**self.__dict__["_channels"], "load": self._held(values, "with_load")}
+        channels.pop("transmitted", None)
+        if transmitted is not None:
+            channels["transmitted"] = self._held(transmitted, "with_load", "transmitted")
         object.__setattr__(again, "_channels", channels)
         return again
 
@@ -365,9 +372,9 @@ class Recording:
         object.__setattr__(again, "start_s", self.start_s + began if self.start_s else 0.0)
         return again
 
-    def _held(self, values: FloatArray, method: str) -> FloatArray:
+    def _held(self, values: FloatArray, method: str, name: str = "values") -> FloatArray:
         """One number a row, copied, that cannot be written to."""
-        held = numbers(values, f"Recording.{method}: values").copy()
+        held = numbers(values, f"Recording.{method}: {name}").copy()
         if held.shape != self.time.shape:
             raise InputError(
                 f"Recording.{method}: values has shape {held.shape} where {self.time.shape} is "

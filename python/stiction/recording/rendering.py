@@ -60,5 +60,5 @@ def _rows(recording: Recording) -> list[_Row]:
             continue
         finite = array[np.isfinite(array)]
         bounds = (f"{finite.min():.6g}", f"{finite.max():.6g}") if finite.size else ("", "")
-        rows.append((name, *bounds, recording.units[name]))
+        rows.append((name, *bounds, recording.units.get(name, "")))
     return rows

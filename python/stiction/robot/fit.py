@@ -103,7 +103,13 @@ class RobotFit:
             raise NotEnoughData(f"joint '{name}' moves in no recording")
         roles = _roles(self.split, len(recordings))
         kept = [
-            _loaded(recordings[k], self._loads[k][:, joint], roles[k], self.motions[k].ends)
+            _loaded(
+                recordings[k],
+                self._loads[k][0][:, joint],
+                self._loads[k][1][:, joint],
+                roles[k],
+                self.motions[k].ends,
+            )
             for k in moves
         ]
         payloads = tuple(self.session.runs[k].payload for k in moves)
@@ -154,16 +160,26 @@ class RobotFit:
         return mean
 
     @cached_property
-    def _loads(self) -> list[FloatArray]:
-        """What acts on each joint from one row to the next, of each recording."""
+    def _loads(self) -> list[tuple[FloatArray, FloatArray]]:
+        """What acts on each joint, and what its gear transmits, of each recording.
+
+        Both from one row to the next. The inertia that a joint carries is in its body, so it is in
+        no load; its gear transmits what that inertia needs as well.
+        """
         found = []
         for run, motion in enumerate(self.motions):
-            acts = self.carried * motion.acceleration - self.efforts(run)
-            # A load holds from one row to the next: the mean of what acts at both.
-            acts[:-1] = 0.5 * (acts[1:] + acts[:-1])
-            columns = [np.interp(motion.stamps, motion.time, one) for one in acts.T]
-            found.append(np.stack(columns, axis=1))
+            transmitted = -self.efforts(run)
+            acts = self.carried * motion.acceleration + transmitted
+            found.append((_between(motion, acts), _between(motion, transmitted)))
         return found
+
+
+def _between(motion: JointMotion, efforts: FloatArray) -> FloatArray:
+    """Efforts on even stamps as they hold from one row to the next: the mean of both ends."""
+    held = efforts.copy()
+    held[:-1] = 0.5 * (held[1:] + held[:-1])
+    columns = [np.interp(motion.stamps, motion.time, one) for one in held.T]
+    return np.stack(columns, axis=1)
 
 
 @dataclass(frozen=True)
@@ -228,9 +244,11 @@ def _roles(dealt: Split, number: int) -> list[str | None]:
     return roles
 
 
-def _loaded(recording: Recording, load: FloatArray, role: str | None, ends: int) -> Recording:
+def _loaded(
+    recording: Recording, load: FloatArray, transmitted: FloatArray, role: str | None, ends: int
+) -> Recording:
     """The recording with the load, but its ends, where no acceleration is known."""
     # As many rows as samples, which stamps that jitter hardly change.
     ends = min(ends, max(0, (len(recording) - FEWEST_ROWS) // 2))
-    loaded = recording.with_load(load).without_ends(ends)
+    loaded = recording.with_load(load, transmitted).without_ends(ends)
     return loaded.with_role(role if role is not None else recording.role)

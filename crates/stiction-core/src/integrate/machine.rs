@@ -64,6 +64,8 @@ pub struct Run<S> {
     pub path: S,
     /// Displacement since effects last took a sample into their memory.
     pub moved: S,
+    /// What the gear transmits, where that is known and is not the load.
+    pub transmitted: Option<f64>,
     /// Temperature in °C, where it is known.
     pub temperature: Option<f64>,
     /// What a servo's distance from its goal has summed up to.
@@ -153,6 +155,7 @@ impl<S: Scalar> Machine<S> {
             time: zero,
             path: zero,
             moved: zero,
+            transmitted: None,
             temperature: None,
             wound: zero,
             enabled: true,
@@ -440,7 +443,8 @@ impl<S: Scalar> Machine<S> {
     /// A situation with what it lacks of the contact: its load and its friction.
     #[inline]
     pub fn at_contact(&self, at: &Situation<S>, load: S) -> Situation<S> {
-        Situation { load: load + self.body.gravity(at.position), sliding: self.sliding, ..*at }
+        let load = at.carried(load + self.body.gravity(at.position));
+        Situation { load, sliding: self.sliding, ..*at }
     }
 
     /// Whether efforts are those of a plain drive and of a weight, and no effect lies between them
@@ -463,14 +467,14 @@ impl<S: Scalar> Machine<S> {
         *driven = self.bare_drive(input, at.enabled);
         *ambient = self.weight();
         channels.effort = *driven + load + *ambient;
-        channels.load = load + self.body.level_gravity();
+        channels.load = at.carried(load + self.body.level_gravity());
         channels.temperature = at.temperature;
     }
 
     /// What reaches the contact of a bare machine.
     #[inline]
     pub(super) fn plain_channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
-        let load = load + self.body.level_gravity();
+        let load = at.carried(load + self.body.level_gravity());
         Channels { effort, load, temperature: at.temperature, ..Channels::default() }
     }
 
@@ -482,7 +486,7 @@ impl<S: Scalar> Machine<S> {
         } else {
             self.effects.levels(at)
         };
-        let load = load + self.body.gravity(at.position);
+        let load = at.carried(load + self.body.gravity(at.position));
         Channels { effort, load, level, viscous_level, temperature: at.temperature }
     }
 
@@ -565,6 +569,7 @@ impl<S: Scalar> Run<S> {
             time: self.time,
             path: self.path,
             moved: self.moved,
+            transmitted: self.transmitted,
             temperature: self.temperature,
             wound: self.wound,
             enabled: self.enabled,
@@ -605,6 +610,7 @@ impl<S: Scalar> Run<S> {
             time: lift(self.time),
             path: lift(self.path),
             moved: lift(self.moved),
+            transmitted: self.transmitted,
             temperature: self.temperature,
             wound: lift(self.wound),
             enabled: self.enabled,

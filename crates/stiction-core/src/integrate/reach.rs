@@ -43,7 +43,7 @@ impl<S: Scalar> Task for Reaching<'_, S> {
         let Self { machine, at, input, load, channels, driven, ambient } = self;
         let effects = &machine.effects;
         let gravity = machine.body.gravity(at.position);
-        at.load = *load + gravity;
+        at.load = at.carried(*load + gravity);
         *driven = if machine.drive.servo.is_some() {
             machine.driven(*input, at)
         } else if at.enabled {

@@ -135,6 +135,7 @@ impl<S: Scalar, L: FrictionLaw<S>> Stepper<S, L> for Reference<'_, S> {
             time: at.time,
             path: at.path,
             moved: at.moved,
+            transmitted: at.transmitted,
             temperature: at.temperature,
             wound: run.wound,
             enabled: run.enabled,

@@ -208,6 +208,11 @@ impl Motor {
         self.running.run.temperature = temperature;
     }
 
+    /// Sets the effort that the gear transmits in the next steps, where it is known.
+    pub fn set_transmitted(&mut self, transmitted: Option<f64>) {
+        self.running.run.transmitted = transmitted;
+    }
+
     /// Switches the drive on or off for the next steps.
     pub fn set_enabled(&mut self, enabled: bool) {
         self.running.run.enabled = enabled;

@@ -289,6 +289,7 @@ impl<S: Scalar> Running<S> {
                     divided = whole_parts(plainly, self.most_parts, dt_now)?;
                     known = dt_now;
                 }
+                self.run.transmitted = around.transmitted_at(index);
                 self.run.temperature = around.temperature_at(index);
                 self.run.enabled = around.enabled_at(index);
                 if strains {

@@ -7,6 +7,8 @@ use crate::error::{Error, Result};
 pub struct Surroundings<'a> {
     /// External effort, positive along +x.
     pub load: PerSample<'a>,
+    /// What the gear transmits, where that is known and is not the load: friction sees it.
+    pub transmitted: Option<PerSample<'a>>,
     /// Temperature in °C, where it is known.
     pub temperature: Option<PerSample<'a>>,
     /// Whether the drive is on, 0 where it is not; always on without it.
@@ -15,7 +17,8 @@ pub struct Surroundings<'a> {
 
 impl Surroundings<'_> {
     /// No load, a temperature that nobody knows, and a drive that is on.
-    pub const NONE: Self = Self { load: PerSample::Same(0.0), temperature: None, enabled: None };
+    pub const NONE: Self =
+        Self { load: PerSample::Same(0.0), transmitted: None, temperature: None, enabled: None };
 
     /// Whether the drive is on in a sample.
     #[inline]
@@ -23,10 +26,10 @@ impl Surroundings<'_> {
         self.enabled.is_none_or(|each| each.at(k) != 0.0)
     }
 
-    /// Whether the drive is always on and the temperature always the same.
+    /// Whether the drive is always on, and temperature and transmitted effort are always the same.
     pub(super) fn is_steady(&self) -> bool {
-        let changes = matches!(self.temperature, Some(PerSample::Each(_)));
-        self.enabled.is_none() && !changes
+        let changes = |each| matches!(each, Some(PerSample::Each(_)));
+        self.enabled.is_none() && !changes(self.temperature) && !changes(self.transmitted)
     }
 
     /// The temperature at a sample.
@@ -35,10 +38,17 @@ impl Surroundings<'_> {
         self.temperature.map(|each| each.at(k))
     }
 
+    /// The transmitted effort at a sample.
+    #[inline]
+    pub fn transmitted_at(&self, k: usize) -> Option<f64> {
+        self.transmitted.map(|each| each.at(k))
+    }
+
     /// Those from one sample to before another.
     pub fn between(&self, from: usize, to: usize) -> Self {
         Self {
             load: self.load.between(from, to),
+            transmitted: self.transmitted.map(|each| each.between(from, to)),
             temperature: self.temperature.map(|each| each.between(from, to)),
             enabled: self.enabled.map(|each| each.between(from, to)),
         }
@@ -47,7 +57,12 @@ impl Surroundings<'_> {
     /// Refuses numbers that are not as many as the samples.
     pub fn check(&self, wanted: usize) -> Result<()> {
         self.load.check("load", wanted)?;
-        for (name, each) in [("temperature", self.temperature), ("enabled", self.enabled)] {
+        let others = [
+            ("transmitted", self.transmitted),
+            ("temperature", self.temperature),
+            ("enabled", self.enabled),
+        ];
+        for (name, each) in others {
             each.map_or(Ok(()), |each| each.check(name, wanted))?;
         }
         Ok(())

@@ -57,8 +57,9 @@ impl Running<f64> {
     #[inline]
     pub(crate) fn needs_no_watch(&self, input: f64, load: f64, dt: f64) -> bool {
         let moves = self.run.position.abs() + self.run.velocity.abs();
-        let warmth = self.run.temperature.map_or(0.0, f64::abs);
-        self.range.covers(moves + warmth + input.abs() + load.abs(), dt)
+        let known = |each: Option<f64>| each.map_or(0.0, f64::abs);
+        let around = known(self.run.temperature) + known(self.run.transmitted);
+        self.range.covers(moves + around + input.abs() + load.abs(), dt)
     }
 
     /// The same as [`Self::step_or_stay`], whatever there is.

@@ -117,6 +117,7 @@ fn sampled(
             moved: at.moved.re(),
             load: at.load.re(),
             sliding: at.sliding.re(),
+            transmitted: at.transmitted,
             temperature: at.temperature,
             wound: at.wound.re(),
             enabled: at.enabled,

@@ -322,7 +322,7 @@ impl Motor {
     ///
     /// Parameters
     /// ----------
-    /// current, dt, load, temperature, enabled
+    /// current, dt, load, temperature, enabled, transmitted
     ///     As for ``simulate``.
     /// parameters : sequence of str
     ///     Whole paths, as ``parameters`` of the motor has them.
@@ -341,7 +341,7 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``simulate``; an unknown path, an ``out`` that is no such array.
-    #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None, out=None, strict=true))]
+    #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None, transmitted=None, out=None, strict=true))]
     #[allow(clippy::type_complexity)] // a pair of arrays, as Python gets it
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn sensitivity<'py>(
@@ -353,6 +353,7 @@ impl Motor {
         load: Option<&Bound<'py, PyAny>>,
         temperature: Option<&Bound<'py, PyAny>>,
         enabled: Option<&Bound<'py, PyAny>>,
+        transmitted: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
         strict: bool,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
@@ -360,7 +361,7 @@ impl Motor {
         let current = one_row("current", current)?;
         let shape = current.shape().to_vec();
         let dt = Each::steps("dt", dt, &shape)?;
-        let around = Around::read([load, temperature, enabled], &shape)?;
+        let around = Around::read([load, temperature, enabled, transmitted], &shape)?;
         let current = current.as_slice()?;
         let (dt, around) = (dt.per_sample()?, around.surroundings()?);
         let shape = [2, parameters.len(), current.len()];

@@ -236,6 +236,7 @@ impl Motor {
         let load = finite(py, "load", load)?;
         let temperature = temperature.map(|t| finite(py, "temperature", t)).transpose()?;
         let mut core = self.core(py)?;
+        core.set_transmitted(None);
         core.set_temperature(temperature);
         core.set_enabled(enabled);
         core.step(current, load, dt).or_input_error(py)
@@ -245,7 +246,7 @@ impl Motor {
     ///
     /// Parameters
     /// ----------
-    /// current, dt, load, temperature, enabled, outputs, out
+    /// current, dt, load, temperature, enabled, outputs, out, transmitted
     ///     As for ``simulate``.
     ///
     /// Returns
@@ -263,7 +264,7 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``simulate``.
-    #[pyo3(signature = (current, dt, load=None, temperature=None, enabled=None, outputs=None, out=None))]
+    #[pyo3(signature = (current, dt, load=None, temperature=None, enabled=None, outputs=None, out=None, transmitted=None))]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn run<'py>(
         &self,
@@ -275,11 +276,12 @@ impl Motor {
         enabled: Option<&Bound<'py, PyAny>>,
         outputs: Option<Words<'py>>,
         out: Option<&Bound<'py, PyDict>>,
+        transmitted: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Ran<'py>> {
         let current = one_row("current", current)?;
         let n = current.len();
         let dt = Each::steps("dt", dt, &[n])?;
-        let around = Around::read([load, temperature, enabled], &[n])?;
+        let around = Around::read([load, temperature, enabled, transmitted], &[n])?;
         // Name and array of each column, where there is one to fill.
         let wanted: Vec<(Bound<'py, PyString>, Option<Bound<'py, PyAny>>)> = match (outputs, out) {
             (Some(Words(names)), out) => {
@@ -388,7 +390,7 @@ impl Motor {
     ) -> PyResult<Held<'py>> {
         let durations = one_row("durations", durations)?;
         let current = one_row("current", current)?;
-        let around = Around::read([load, temperature, enabled], durations.shape())?;
+        let around = Around::read([load, temperature, enabled, None], durations.shape())?;
         let times = times.map(|times| one_row("times", times)).transpose()?;
         let segments = Segments {
             durations: durations.as_slice()?,

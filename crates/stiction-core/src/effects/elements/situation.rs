@@ -15,10 +15,14 @@ pub struct Situation<S> {
     pub path: S,
     /// Displacement since effects last took a sample into their memory.
     pub moved: S,
-    /// Effort from the machine's load, external and gravity, positive along +x.
+    /// Effort from the machine's load, external and gravity, positive along +x; what the gear transmits
+    /// where that is known.
     pub load: S,
     /// Friction of slow sliding of the law, at level 1.
     pub sliding: S,
+    /// Effort that the gear transmits, positive along +x, where that is known and is more than the
+    /// external load and gravity.
+    pub transmitted: Option<f64>,
     /// Temperature in °C, where it is known.
     pub temperature: Option<f64>,
     /// What a servo's distance from its goal has summed up to.
@@ -39,9 +43,20 @@ impl<S: Scalar> Situation<S> {
             moved: zero,
             load: zero,
             sliding: zero,
+            transmitted: None,
             temperature: None,
             wound: zero,
             enabled: true,
+        }
+    }
+
+    /// What friction that grows with the load sees of it: what the gear transmits where that is known,
+    /// which holds effort that accelerates what it carries.
+    #[inline(always)]
+    pub fn carried(&self, load: S) -> S {
+        match self.transmitted {
+            None => load,
+            Some(effort) => S::constant(effort),
         }
     }
 
