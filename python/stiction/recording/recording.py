@@ -44,6 +44,8 @@ SETTINGS: Final = (
 """What may be set anew for a recording: gains and supply of a servo, what hangs on the machine."""
 
 _MAIN: Final = ("time", "input", "position")
+_HELD: Final = ("input", "load", "transmitted")
+"""Channels that hold from a row to the next; others are readings at it."""
 _OPTIONAL: Final = tuple(role for role in ROLES if role not in _MAIN)
 
 
@@ -370,6 +372,58 @@ class Recording:
         began = float(self.time[rows] - self.time[0])
         # A clock of the session that nobody stated stays unstated.
         object.__setattr__(again, "start_s", self.start_s + began if self.start_s else 0.0)
+        return again
+
+    def decimated(self, every: int) -> Recording:
+        """The same recording with one row for as many of these.
+
+        What holds from a row to the next, input and load, is the mean of what held in between;
+        readings are those of the rows that are kept. Rows at the end that make up no whole one are
+        left out.
+
+        Parameters
+        ----------
+        every : int
+            1 keeps all rows.
+
+        Raises
+        ------
+        InputError
+            Fewer than 200 rows would be left.
+
+        Examples
+        --------
+        >>> import numpy as np, stiction as st
+        >>> time = np.arange(1000) * 1e-3
+        >>> slow = st.Recording(time, np.sin(time), time).decimated(4)
+        >>> len(slow), round(slow.dt, 6)
+        (250, 0.004)
+        """
+        every = whole(every, "Recording.decimated: every", least=1)
+        rows = len(self) // every
+        if rows < FEWEST_ROWS:
+            raise InputError(
+                f"Recording.decimated: every = {every} leaves less than {FEWEST_ROWS} of "
+                f"{len(self)} rows; give fewer"
+            )
+        steps = np.diff(self.time, append=2.0 * self.time[-1] - self.time[-2])
+        spans = steps[: rows * every].reshape(rows, every)
+
+        def kept(name: str, values: FloatArray | None) -> FloatArray | None:
+            if values is None:
+                return None
+            taken = values[: rows * every].reshape(rows, every)
+            held = name in _HELD
+            found = np.sum(taken * spans, axis=1) / np.sum(spans, axis=1) if held else taken[:, 0]
+            found = np.ascontiguousarray(found)
+            found.flags.writeable = False
+            return found
+
+        again = copy(self)
+        for name in _MAIN:
+            object.__setattr__(again, name, kept(name, getattr(self, name)))
+        channels = {name: kept(name, values) for name, values in self.__dict__["_channels"].items()}
+        object.__setattr__(again, "_channels", channels)
         return again
 
     def _held(self, values: FloatArray, method: str, name: str = "values") -> FloatArray:

@@ -29,6 +29,9 @@ MOVES: Final = 0.02
 RESTS: Final = 0.05
 """Share of the largest travel in any recording that it has to travel as well."""
 
+RATE: Final = 200.0
+"""Rows a second of a joint's own diagnosis at least: the links are known to 20 Hz at most, and what
+held in between is averaged."""
 POSES: Final = 200
 """Of a recording, over which the inertia about a joint is averaged."""
 
@@ -251,4 +254,7 @@ def _loaded(
     # As many rows as samples, which stamps that jitter hardly change.
     ends = min(ends, max(0, (len(recording) - FEWEST_ROWS) // 2))
     loaded = recording.with_load(load, transmitted).without_ends(ends)
+    # A rate that clocks jitter about is still that rate.
+    every = max(1, min(int(1.01 / (RATE * loaded.dt)), len(loaded) // FEWEST_ROWS))
+    loaded = loaded.decimated(every)
     return loaded.with_role(role if role is not None else recording.role)
