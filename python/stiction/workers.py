@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -35,7 +35,9 @@ def with_workers(threads: int | None) -> Iterator[None]:
             _pool.reset(token)
 
 
-def side_by_side(work: Callable[[Item], Result], items: Sequence[Item]) -> Iterator[Result]:
+def side_by_side(
+    work: Callable[[Item], Result], items: Sequence[Item]
+) -> Generator[Result, None, None]:
     """Results of some work on each item, in their order, whatever the number of threads.
 
     Whatever ends it early, as Ctrl-C does, ends the work on the other threads as well: a simulation

@@ -12,11 +12,13 @@ from ..best_effort import Failure, attempt
 from ..diagnosis import ALPHA, SMALLEST, SURROGATES, diagnose
 from ..diagnosis.result import Diagnosis
 from ..errors import NotEnoughData
-from ..given import instance
+from ..given import instance, whole
+from ..products import on_one_thread
 from ..progress import phase
 from ..session import Session
+from ..workers import side_by_side, with_workers
 from .agreement import Agreement, agreement_of
-from .fit import fit_robot
+from .fit import JointSession, RobotFit, fit_robot
 from .result import JointFindings, RobotDiagnosis, folder_names
 from .session import RobotSession
 
@@ -28,6 +30,7 @@ OF_THE_LINKS: Final = ("gravity_unbalance",)
 _logger = logging.getLogger(__name__)
 
 
+@on_one_thread
 def diagnose_robot(
     session: RobotSession,
     *,
@@ -65,20 +68,22 @@ def diagnose_robot(
     """
     began = time.perf_counter()
     instance(session, RobotSession, "diagnose_robot: session", "what load_session returns")
+    threads = None if threads is None else whole(threads, "diagnose_robot: threads", least=1)
     fit = fit_robot(session)
-    folders = folder_names(session.robot.names)
-    joints: list[JointFindings] = []
-    agreement: list[Agreement] = []
-    success = True
-    for index, name in enumerate(session.robot.names):
-        phase(_logger, "joint %s (%d of %d)", name, index + 1, len(session.robot.names))
-        try:
-            own = fit.joint(index)
-        except NotEnoughData as error:
-            sentence = f"These data cannot be tested: {error}."
+    names = session.robot.names
+    folders = folder_names(names)
+    sessions = [_session(fit, index) for index in range(len(names))]
+    # Joints side by side use the cores better than the recordings of one, so each has one thread.
+    alone = len(names) == 1
+
+    def told(index: int) -> tuple[JointFindings, list[Agreement]]:
+        name = names[index]
+        phase(_logger, "joint %s (%d of %d)", name, index + 1, len(names))
+        own = sessions[index]
+        if isinstance(own, NotEnoughData):
+            sentence = f"These data cannot be tested: {own}."
             untold = Diagnosis("not_testable", sentence, fit.plant(index), version=__version__)
-            joints.append(JointFindings(name, folders[name], untold))
-            continue
+            return JointFindings(name, folders[name], untold), []
         found = diagnose(
             None,
             own.session,
@@ -88,13 +93,29 @@ def diagnose_robot(
             smallest=smallest,
             alpha=alpha,
             seed=seed,
-            threads=threads,
+            threads=threads if alone else 1,
         )
-        joints.append(JointFindings(name, folders[name], found))
-        if not found.success:
+        agree = _agreement(name, found, own.session, own.payloads) if found.success else []
+        return JointFindings(name, folders[name], found), agree
+
+    joints: list[JointFindings] = []
+    agreement: list[Agreement] = []
+    success = True
+    with with_workers(1 if alone else threads):
+        results = side_by_side(told, range(len(names)))
+        try:
+            for own, agree in results:
+                joints.append(own)
+                agreement += agree
+                success = own.diagnosis.success
+                if not success:
+                    break
+        except KeyboardInterrupt:
+            if not joints:
+                raise
             success = False
-            break
-        agreement += _agreement(name, found, own.session, own.payloads)
+        finally:
+            results.close()
     return RobotDiagnosis(
         fit,
         tuple(joints),
@@ -104,6 +125,14 @@ def diagnose_robot(
         seed,
         time.perf_counter() - began,
     )
+
+
+def _session(fit: RobotFit, joint: int) -> JointSession | NotEnoughData:
+    """A joint as a session of one axis, or why it is none."""
+    try:
+        return fit.joint(joint)
+    except NotEnoughData as error:
+        return error
 
 
 def _agreement(
