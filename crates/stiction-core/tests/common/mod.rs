@@ -75,6 +75,7 @@ pub fn column_amid(
 /// Some load and some warmth: there are effects that come with them alone.
 pub const AROUND: Surroundings<'_> = Surroundings {
     load: PerSample::Same(0.05),
+    transmitted: None,
     temperature: Some(PerSample::Same(40.0)),
     enabled: None,
 };
