@@ -59,11 +59,11 @@ def test_as_many_numbers_as_samples() -> None:
 
 def test_a_recording_keeps_it_beside_its_load() -> None:
     time = np.arange(1000) * DT
-    plain = st.Recording(time, np.sin(time), time)
-    both = plain.with_load(0.1 * time, 0.3 * time)
-    assert np.array_equal(both.channels["transmitted"], 0.3 * time)
+    load, carried = np.full(1000, 0.1), np.linspace(0.0, 0.3, 1000)
+    both = st.Recording(time, np.sin(time), time).with_load(load, carried)
+    assert np.array_equal(both.channels["transmitted"], carried)
     assert "transmitted" in repr(both)
-    assert "transmitted" not in both.with_load(0.1 * time).channels
+    assert "transmitted" not in both.with_load(load).channels
 
 
 def test_a_recording_with_fewer_rows_keeps_what_held_in_between() -> None:
@@ -72,6 +72,7 @@ def test_a_recording_with_fewer_rows_keeps_what_held_in_between() -> None:
     assert len(slow) == 250
     assert np.array_equal(slow.time, time[:1000:4])
     assert slow.input == pytest.approx(np.arange(1000.0).reshape(-1, 4).mean(axis=1), rel=1e-12)
+    assert slow.position is not None
     assert np.array_equal(slow.position, np.sin(time)[:1000:4])
     with pytest.raises(st.InputError, match="every = 6 leaves less than 200"):
         st.Recording(time, time, time).decimated(6)
