@@ -130,7 +130,16 @@ def test_what_was_not_looked_at_any_more_is_said(
 
 
 @pytest.mark.parametrize(
-    "place", ["described", "residuals_of", "rest", "ceiling_of", "unnamed", "gain_of", "replayed"]
+    "place",
+    [
+        "reject_without_machine",
+        "residuals_of",
+        "rest",
+        "ceiling_of",
+        "unnamed_remainder",
+        "gain_of",
+        "with_loop_replay",
+    ],
 )
 def test_decisions_that_were_taken_are_concluded(
     place: str,

@@ -166,4 +166,4 @@ def test_a_coordinate_and_its_refinement_are_listed_once(
     shares = {"speed": 0.12, "effort": wide, "effort along the motion": fine}
     views = [view_of(name, share) for name, share in shares.items()]
     rest = Rest(tuple(sorted(views, key=lambda view: -view.share)))
-    assert [view.coordinate.name for view in rest.flagged()] == listed
+    assert [view.coordinate.name for view in rest.significant_views()] == listed

@@ -12,7 +12,7 @@ import stiction as st
 from stiction.bench.ordinary.draw import Spec, ordinary
 from stiction.bench.ordinary.files import write
 from stiction.diagnosis.evidence import Evidence
-from stiction.diagnosis.model import Model, fitted
+from stiction.diagnosis.model import Model, fit_model
 from stiction.diagnosis.replay import noise_of, surrogate_residuals
 from stiction.fitting.forms import HORIZONS_S, Through, horizon_of, told
 from stiction.fitting.rows import Nuisances
@@ -73,7 +73,7 @@ def coarse() -> list[st.Recording]:
 
 def chosen(counts: int) -> tuple[float | None, Model]:
     evidence = Evidence(plant(counts), session(counts))
-    base = fitted(evidence, plant(counts))
+    base = fit_model(evidence, plant(counts))
     return horizon_of(base.plant, base.nuisances, evidence.train, evidence.forms), base
 
 

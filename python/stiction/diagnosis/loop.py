@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .result import Diagnosis
     from .selection import Search
 
-__all__ = ["Replay", "borne_out", "replayed"]
+__all__ = ["Replay", "borne_out", "with_loop_replay"]
 
 LOOP_AGAINST: Final = "passes, but the simulated loop does worse with it"
 
@@ -68,7 +68,7 @@ Runs = dict[int, ClosedLoop | None]
 """Loops by recording, None for one that could not be simulated."""
 
 
-def replayed(found: Diagnosis, evidence: Evidence, base: Model, final: Model) -> Diagnosis:
+def with_loop_replay(found: Diagnosis, evidence: Evidence, base: Model, final: Model) -> Diagnosis:
     """A diagnosis with the loop of both models replayed; as it was where nothing can be.
 
     Raises
@@ -224,7 +224,9 @@ def _pictured(
                 continue
             drawn.append(_tracking(evidence, index, (run, other), parts))
         if drawn:
-            gained = [float(np.nansum(t.left**2) - np.nansum(t.left_before**2)) for t in drawn]
+            gained = [
+                float(np.nansum(t.error_after**2) - np.nansum(t.error_before**2)) for t in drawn
+            ]
             return replace(pictures, tracking=drawn[int(np.argmin(gained))])
     return pictures
 

@@ -42,7 +42,7 @@ class Reliability:
         return (self.first + _JEFFREYS) / (self.told + 1.0)
 
     @property
-    def covered(self) -> float:
+    def coverage(self) -> float:
         """That it or one of its look-alikes is."""
         return (self.listed + _JEFFREYS) / (self.told + 1.0)
 

@@ -8,7 +8,7 @@ from typing import Final
 from ..catalogue import EffectRecord, effects
 from ..plant import Plant
 
-__all__ = ["meant", "recorded"]
+__all__ = ["experiment_words", "meaning_of"]
 
 _Words = Mapping[str, tuple[str, str]]
 
@@ -154,7 +154,7 @@ REVERSED: Final = (
 """In place of loops below break-away, of which a contact without a spring has none."""
 
 
-def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
+def meaning_of(record: EffectRecord, plant: Plant) -> tuple[str, str]:
     """What an effect means, and what to do about it."""
     usual = record.means, record.remedy
     if plant.prescribed_motion:
@@ -173,7 +173,7 @@ def meant(record: EffectRecord, plant: Plant) -> tuple[str, str]:
     return MOVED_FALLING_LAG if plant.prescribed_motion else FALLING_LAG, usual[1]
 
 
-def recorded(plan: str, what: str, plant: Plant, separates: Sequence[str] = ()) -> str:
+def experiment_words(plan: str, what: str, plant: Plant, separates: Sequence[str] = ()) -> str:
     """An experiment in words: one of ``stiction plan``, or a motion where a rig prescribes it.
 
     A servo that cannot make it is sent goals of another kind. Where there is no pre-sliding no loop

@@ -19,16 +19,16 @@ from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from ..weak_form import Start, WeakForm
 from .evidence import Evidence
-from .noise import Noise, measure_noise, seen_effort
+from .noise import Noise, effort_noise, measure_noise
 
 __all__ = [
     "NoReplayError",
     "centre",
+    "common_bias",
     "hangs_on_load",
     "noise_of",
-    "read_alone",
+    "reading_power",
     "reread",
-    "shared",
     "surrogate_residuals",
 ]
 
@@ -110,7 +110,7 @@ def _of_one_sensor(found: Sequence[tuple[_Replay, Noise]]) -> list[tuple[_Replay
     return usual
 
 
-def read_alone(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
+def reading_power(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
     """Weighted power that readings alone leave a right plant in the rows that were fitted.
 
     Nothing that a plant may lack is in it: beside one that lacks something fast, what that makes
@@ -191,7 +191,7 @@ class _Replay:
             )
             for _ in range(TRIED)
         ]
-        seen = seen_effort(self.rows, again, alone)
+        seen = effort_noise(self.rows, again, alone)
         times = noise.effort / seen if seen > 0.0 else 1.0
         return replace(noise, effort=noise.effort * float(np.clip(times, 1.0, MOST_TIMES)))
 
@@ -300,7 +300,7 @@ def centre(null: FloatArray) -> tuple[FloatArray, FloatArray]:
     return bias, (null - bias[:, None]) * (number / (number - 1) if number > 1 else 1.0)
 
 
-def shared(bias: FloatArray, residual: FloatArray, recording: np.ndarray) -> FloatArray:
+def common_bias(bias: FloatArray, residual: FloatArray, recording: np.ndarray) -> FloatArray:
     """What surrogates have in common, in each recording as far as the residual has it too.
 
     Where a replay loses the machine all of them lose it alike, and the residual knows nothing of

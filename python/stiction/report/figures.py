@@ -189,7 +189,7 @@ def most_shown(pictures: Pictures) -> list[View]:
     before = {view.coordinate.name: view.share for view in pictures.before.views}
 
     def shows(view: View) -> tuple[bool, float]:
-        return view.flagged(), max(view.share, before.get(view.coordinate.name, view.share))
+        return view.is_flagged(), max(view.share, before.get(view.coordinate.name, view.share))
 
     chosen = sorted(pictures.after.views, key=shows, reverse=True)[:MOST_PANELS]
     names = {view.coordinate.name for view in chosen}
@@ -300,8 +300,10 @@ def closed_loop(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     if tracking is None:
         raise InputError("no loop was replayed, so there is nothing to draw")
     both, scale = bool(diagnosis.effects), loop_scale_of(diagnosis)
-    simulated = [("before", tracking.before, tracking.left_before, BEFORE)] if both else []
-    simulated.append(("after" if both else "simulated", tracking.after, tracking.left, AFTER))
+    simulated = [("before", tracking.before, tracking.error_before, BEFORE)] if both else []
+    simulated.append(
+        ("after" if both else "simulated", tracking.after, tracking.error_after, AFTER)
+    )
 
     def line(values: np.ndarray, colour: str, width: float, label: str) -> Line:
         trace = trace_line(tracking.time, scale.factor * values, colour, width, narrow)

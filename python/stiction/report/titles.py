@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from ..compared import compared_by
-from ..diagnosis.words import joined
+from ..diagnosis.words import join_words
 from .numbers import NO_BREAK, percent, plain
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def _found(diagnosis: Diagnosis) -> str:
         *others, last = (diagnosis.effects[0].name, *diagnosis.effects[0].look_alikes)
         return OR.format(", ".join(effect_title(each) for each in others), effect_title(last))
     if diagnosis.verdict == "missing_effect":
-        return MISSING.format(joined([effect_title(each.name) for each in diagnosis.effects]))
+        return MISSING.format(join_words([effect_title(each.name) for each in diagnosis.effects]))
     return VERDICTS[diagnosis.verdict]
 
 

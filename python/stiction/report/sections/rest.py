@@ -43,14 +43,14 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
             "before": percent(max(before.get(view.coordinate.name, view).share, 0.0)),
             "after": percent(max(view.share, 0.0)),
             "limit": percent(max(view.threshold, 0.0)),
-            "flagged": view.flagged(),
+            "flagged": view.is_flagged(),
         }
         for view in views
     ]
     content = {
         "left": left,
         "rows": rows,
-        "small": any(view.flagged(0.0) for view in views),
+        "small": any(view.is_flagged(0.0) for view in views),
         "both": bool(diagnosis.effects),
         "level": _level(diagnosis),
         "ceiling": _ceiling(diagnosis),
