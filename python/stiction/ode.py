@@ -318,7 +318,9 @@ def solve(
 
     equations(plant, input, load)
     until = _Until()
-    made = Equations(plant, until.left(input), None if load is None else until.left(load))
+    made = Equations(
+        plant, until.end_from_left(input), None if load is None else until.end_from_left(load)
+    )
     wanted = given.numbers(times, "solve: times")
     if wanted.ndim != 1 or len(wanted) < 2 or not np.all(np.diff(wanted) > 0.0):
         raise InputError("solve: times do not rise; give two or more, in s")
@@ -377,7 +379,7 @@ class _Until:
     def __init__(self) -> None:
         self.end = np.inf
 
-    def left(self, signal: Signal) -> Signal:
+    def end_from_left(self, signal: Signal) -> Signal:
         """The signal, and at the end its value from the left."""
         return lambda time: signal(min(time, float(np.nextafter(self.end, -np.inf))))
 

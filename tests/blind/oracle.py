@@ -9,7 +9,7 @@ import numpy as np
 from stiction.diagnosis.evidence import Evidence
 from stiction.diagnosis.gain import residuals_of
 from stiction.diagnosis.model import fit_model
-from stiction.fitting.solve import reweighted
+from stiction.fitting.solve import reweight
 
 from .stated import as_session
 
@@ -32,7 +32,7 @@ def oracle(plant, session, made, baseline):
     seen = Evidence(plant, session.recordings)
     clean = _without_hidden(plant, made)
     base = fit_model(seen, baseline)
-    reweighted(seen.train, base.plant, base.nuisances)
+    reweight(seen.train, base.plant, base.nuisances)
     seen.weigh()
     base = fit_model(seen, base.plant, base.nuisances)
 

@@ -48,7 +48,7 @@ def test_replays_of_a_dry_machine_leave_what_its_recordings_leave(dry):
     compared = 0
     for index in np.unique(recording):
         rows = recording == index
-        moved = evidence.forms[index].reached.mean()
+        moved = evidence.forms[index].noisy_rows.mean()
         if moved < 0.3:
             continue
         compared += 1

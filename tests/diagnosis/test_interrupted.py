@@ -82,7 +82,7 @@ def test_an_interrupted_base_ends_the_diagnosis(
     def never(*_: object, **__: object) -> None:
         raise AssertionError("goes on after Ctrl-C")
 
-    monkeypatch.setattr("stiction.diagnosis.base.settled", stopped)
+    monkeypatch.setattr("stiction.diagnosis.base.second_pass", stopped)
     monkeypatch.setattr("stiction.diagnosis.conclude.surrogate_residuals", never)
     found = st.diagnose(PLANT, recordings, surrogates=4)
     assert begins_with_it(found)

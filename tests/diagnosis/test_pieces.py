@@ -31,7 +31,7 @@ from stiction.diagnosis.trials import Screening
 from stiction.diagnosis.verdict import relatives
 from stiction.diagnosis.words import value_words
 from stiction.finite import finite
-from stiction.fitting.levenberg import escaped, levenberg_marquardt
+from stiction.fitting.levenberg import escape, levenberg_marquardt
 from stiction.fitting.result import FitParameter
 from stiction.fitting.rows import Nuisances
 from stiction.fitting.statistics import interval_width
@@ -293,7 +293,7 @@ def test_the_minimum_is_found_within_bounds_and_beyond_a_kink() -> None:
         kinked, lambda x: np.array([[0.0], [0.0], [1e-9]]), np.zeros(1),
         (np.full(1, -9.0), np.full(1, 9.0)), np.ones(1), **keywords,
     )  # fmt: skip
-    beyond = escaped(
+    beyond = escape(
         kinked,
         lambda x: np.array([[1.0], [0.0], [0.0]]),
         caught,

@@ -217,10 +217,10 @@ def test_windows_of_a_plant_begin_in_its_own_motion() -> None:
     bare = plant(**TRUE)
     whole = with_wave(bare)
     form = ShootingForm(bare, waved()[0], horizon=0.3)
-    assert form.led_by(None) is form
-    assert form.led_by(bare) is form
-    own = form.led_by(whole)
-    assert own is form.led_by(whole)
+    assert form.with_leader(None) is form
+    assert form.with_leader(bare) is form
+    own = form.with_leader(whole)
+    assert own is form.with_leader(whole)
     assert np.std(own.residual(whole)) < 0.8 * np.std(form.residual(whole))
     assert np.std(own.residual(whole)) < 0.2 * np.std(form.residual(bare))
 

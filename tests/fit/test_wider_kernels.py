@@ -5,7 +5,7 @@ from tests.reference.pendulum_reference import DRY, INERTIA, WEIGHT, swung
 
 import stiction as st
 from stiction.diagnosis.base import fit_baseline, fit_wider_baseline
-from stiction.fitting.forms import told as residual_told
+from stiction.fitting.forms import residual_sentence as residual_told
 from stiction.plant import Plant
 
 

@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError, NotEnoughData
-from ..fitting.first_pass import WORTH_WIDER, first_pass, share_left
+from ..fitting.first_pass import WORTH_WIDER, first_pass, remaining_share
 from ..fitting.forms import Through, astray, wider_of, windows_of
 from ..fitting.minimise import MOST_EVALUATIONS
-from ..fitting.sign import turned_round
-from ..fitting.solve import left_by_fit, settled
+from ..fitting.sign import sign_error
+from ..fitting.solve import fit_remainder, second_pass
 from ..plant import Plant
 from ..recording import Recording
 from .evidence import Evidence
@@ -74,7 +74,7 @@ def fit_baseline(
         windows=windows,
     )
     evidence = first.seen
-    solution = settled(first.solution, evidence.train, most=MOST_EVALUATIONS)
+    solution = second_pass(first.solution, evidence.train, most=MOST_EVALUATIONS)
     evidence.weigh()
     base = Model(evidence, solution)
     if not solution.interrupted:
@@ -117,8 +117,8 @@ def fit_wider_baseline(
         return other, base
     if not any(form.widened for form in other.forms):
         return None
-    left = share_left(final, evidence.train)
-    return (other, base) if share_left(base, other.train) < WORTH_WIDER * left else None
+    left = remaining_share(final, evidence.train)
+    return (other, base) if remaining_share(base, other.train) < WORTH_WIDER * left else None
 
 
 def fit_simulated_baseline(
@@ -256,7 +256,7 @@ def _refuse_what_does_not_move(
     moved = known * float(np.sqrt(np.mean(accelerations**2)))
     left = float(np.sqrt(np.mean(base.residual**2)))
     if found < LOST * known and moved > SHOWS * left:
-        hint = turned_round(stated, evidence.recordings, left_by_fit).rstrip(".")
+        hint = sign_error(stated, evidence.recordings, fit_remainder).rstrip(".")
         raise NotEnoughData(
             f"of an inertia of {known:.3g} the fit leaves {found:.2g}, though the accelerations "
             "would show it: input and motion do not belong together; check their columns, units, "

@@ -10,8 +10,8 @@ from typing import Final
 
 from ..compared import compared_by
 from ..fitting.rows import Rows
-from ..fitting.sign import turned_round
-from ..fitting.solve import left_by_fit
+from ..fitting.sign import sign_error
+from ..fitting.solve import fit_remainder
 from ..progress import phase
 from ..recording import Check
 from ..session import Session
@@ -407,7 +407,7 @@ class Conclusion:
             verdict, reason, unexplained = "not_testable", event.words() + followed, ()
         missed, hint = max(left, lost_share_on_test(test, len(causes), null)), ""
         if missed and verdict == "unexplained":
-            hint = turned_round(found.plant, self.evidence.recordings, left_by_fit)
+            hint = sign_error(found.plant, self.evidence.recordings, fit_remainder)
         before, after = self.rests
         if burst is not None and MOMENTS.name in {each.coordinate for each in unexplained}:
             # Nothing is named then: both are what the base leaves.

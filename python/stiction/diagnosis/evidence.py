@@ -14,7 +14,7 @@ from ..errors import NotEnoughData
 from ..fitting.forms import KERNELS, Through, as_session, forms_of
 from ..fitting.pushes import Watch
 from ..fitting.rows import Mask, Nuisances, Rows, require_motion, rows_of
-from ..fitting.starts import started
+from ..fitting.starts import fit_starts
 from ..plant import Plant
 from ..progress import steps
 from ..recording import Part, Recording
@@ -244,15 +244,15 @@ class Evidence:
         """
         others = [rows for rows in self.shown if rows.index not in self.training_recordings]
         near = known.of({rows.index for rows in others})
-        return self.with_starts(plant, replace(nuisances, starts=near.starts), others).joined(
+        return self.with_starts(plant, replace(nuisances, starts=near.starts), others).merge(
             nuisances
         )
 
     def with_starts(self, plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> Nuisances:
-        """Nuisances with a start of each of these recordings; see `started` of the fit."""
-        own = self.each(lambda each: started(plant, [each], nuisances), rows)
+        """Nuisances with a start of each of these recordings; see `fit_starts` of the fit."""
+        own = self.each(lambda each: fit_starts(plant, [each], nuisances), rows)
         for each, found in zip(rows, own, strict=True):
-            nuisances = found.of({each.index}).joined(nuisances)
+            nuisances = found.of({each.index}).merge(nuisances)
         return nuisances
 
     @property

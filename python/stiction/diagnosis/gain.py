@@ -98,7 +98,7 @@ def residuals_of(
         ]
         law = plant.friction.law
         near = known.get(law, Nuisances()).of({e.index for e in new})
-        begun.append(evidence.with_starts(plant, nuisances.joined(near), new))
+        begun.append(evidence.with_starts(plant, nuisances.merge(near), new))
         known.setdefault(law, begun[-1])
     plants = [plant for plant, _ in models]
     residuals = tuple(left(*each) for each in zip(plants, begun, strict=True))

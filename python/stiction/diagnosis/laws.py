@@ -15,7 +15,7 @@ from ..best_effort import Failure, attempt
 from ..catalogue import effects
 from ..catalogue import laws as all_laws
 from ..errors import InputError
-from ..fitting.first_pass import launched
+from ..fitting.first_pass import fit_from_data
 from ..fitting.forms import followable, horizon_of
 from ..fitting.minimise import MOST_EVALUATIONS
 from ..fitting.rows import require_motion
@@ -382,7 +382,7 @@ def _launched(base: Model, friction: Friction, hopeless: float) -> Model | None:
     evidence = base.evidence
     bare = replace(base.plant, friction=friction)
     require_motion(evidence.train, bare)
-    _, found = launched(
+    _, found = fit_from_data(
         bare,
         evidence.train,
         most=MOST_EVALUATIONS,

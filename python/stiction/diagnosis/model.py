@@ -12,7 +12,7 @@ import numpy as np
 
 from ..catalogue import effects
 from ..finite import finite
-from ..fitting.leading import led_by_itself
+from ..fitting.leading import refit_windows
 from ..fitting.levenberg import FIRST_DAMPING
 from ..fitting.likeliest import likeliest
 from ..fitting.minimise import Solution, minimise
@@ -341,7 +341,7 @@ def fit_model(
         beyond_kinks=False,
     )
     if not only:
-        solution = led_by_itself(solution, evidence.train, most=most, converged=converged)
+        solution = refit_windows(solution, evidence.train, most=most, converged=converged)
     return Model(evidence, solution, nuisances or Nuisances())
 
 

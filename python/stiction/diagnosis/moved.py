@@ -17,7 +17,7 @@ from ..fitting.forms import (
     can_be_shot,
     followable,
     shows_its_ring,
-    softened,
+    soften,
     stiffen,
 )
 from ..plant import Plant
@@ -130,6 +130,6 @@ def _as_stiff_as_shown(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
         return followable(plant, forms)
     most = RIGID_SHOWN * plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
     own = plant.friction.parameters
-    parameters = softened(own, 0.5 * most / own["initial_stiffness"].value)
+    parameters = soften(own, 0.5 * most / own["initial_stiffness"].value)
     parameters["initial_stiffness"] = replace(parameters["initial_stiffness"], max=most)
     return replace(plant, friction=replace(plant.friction, parameters=parameters))

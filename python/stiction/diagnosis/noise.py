@@ -91,7 +91,7 @@ def _counted(rows: Rows, lag: int) -> Mask:
     Where a rigid contact comes to rest, what is missing goes from the residual all at once: beside
     that nothing is noise, unless the machine hardly moves for longer.
     """
-    reached = rows.form.reached
+    reached = rows.form.noisy_rows
     counted: Mask = (rows.mask & reached)[lag:-lag]
     within: Mask = counted & reached[: -2 * lag] & reached[2 * lag :]
     return within if np.count_nonzero(within) >= FEWEST_ROWS else counted

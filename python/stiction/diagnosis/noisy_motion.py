@@ -49,7 +49,7 @@ def doubt_by_noise(base: Model, model: Model, name: str, gain: float) -> str:
         Held out, of the second over the first.
     """
     forms = base.evidence.forms
-    steadied = any(form.steadied > 0.0 for form in forms)
+    steadied = any(form.smoothing_support > 0.0 for form in forms)
     flickers = any(form.flickers and form.count > 0.0 for form in forms)
     late = _late_by_noise(model, name)
     if not steadied and not (flickers and gain < SMALL) and not late:

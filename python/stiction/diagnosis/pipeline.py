@@ -14,7 +14,7 @@ import numpy as np
 from .. import __version__, given
 from ..best_effort import Failure, attempt
 from ..errors import InputError, NotEnoughData
-from ..fitting.forms import told as residual_told
+from ..fitting.forms import residual_sentence as residual_told
 from ..given import instance, share, whole
 from ..plant import Plant
 from ..products import on_one_thread

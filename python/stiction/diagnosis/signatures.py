@@ -376,7 +376,7 @@ class _Seen:
                 wanted = [(one.name, dict(one.shape)) for one in candidates[piece]]
                 # Hundreds of columns: each is written once, in one piece.
                 values = (
-                    each.form.led_by(self.nuisances.leader)
+                    each.form.with_leader(self.nuisances.leader)
                     .signatures(self.plant, wanted, start, kept)
                     .T
                 )

@@ -165,7 +165,7 @@ def stretches_of(
     for each in rows:
         form, mask = each.form, each.mask
         both = [np.where(mask, each.residual(*own), np.nan) for own in begun]
-        seen = form.measured(base.plant) if form.stiffness is None else form.readings[1:]
+        seen = form.measured_effort(base.plant) if form.stiffness is None else form.readings[1:]
         measured = np.where(mask, seen, np.nan)
         started = evidence.recordings[each.index].time[0]
         stretches.append(

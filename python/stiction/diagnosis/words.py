@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ..catalogue import EffectRecord
 from ..catalogue import effects as catalogue
 from ..compared import EFFORT, Compared, compared_by
-from ..fitting.pushes import left_out
+from ..fitting.pushes import omission_words
 from ..fitting.result import FitParameter
 from ..fitting.rows import Push
 from ..fitting.waves import amplitude_of, parts_of, phase_of
@@ -296,7 +296,7 @@ def _pushed(pushes: Sequence[Push], names: Sequence[str]) -> str:
         for recording, own in of.items()
     ]
     what = pushes[0].what
-    return f"{what[0].upper()}{what[1:]} {join_words(times)}; {left_out(pushes[0])}."
+    return f"{what[0].upper()}{what[1:]} {join_words(times)}; {omission_words(pushes[0])}."
 
 
 def apart_words(apart: Sequence[tuple[str, Check]]) -> str:
