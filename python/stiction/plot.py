@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import given
-from .atomic_files import replacing
+from .atomic_files import atomic_write
 from .best_effort import Failure, attempt
 from .errors import InputError
 from .trajectory import FloatArray
@@ -37,6 +37,7 @@ __all__ = [
     "TEXT",
     "TITLE",
     "WIDTH",
+    "decimate",
     "figure",
     "legend",
     "overlay",
@@ -44,7 +45,6 @@ __all__ = [
     "residual",
     "save",
     "save_or_say",
-    "thinned",
     "tracking",
     "trajectory",
 ]
@@ -210,7 +210,7 @@ def legend(panel: Axes, **keywords: Any) -> None:
     panel.legend(**{"frameon": False, "fontsize": SMALL, "handlelength": 1.6, **keywords})
 
 
-def thinned(
+def decimate(
     x: npt.ArrayLike, y: npt.ArrayLike, buckets: int = _BUCKETS
 ) -> tuple[FloatArray, FloatArray]:
     """A long line by the least and greatest value of each stretch: same picture, fewer points.
@@ -280,7 +280,7 @@ def trajectory(
         drawn.align_ylabels()
     time = trajectory.time
     for panel, name in zip(panels, shown, strict=False):
-        panel.plot(*thinned(time, trajectory[name]), label=name, color=SIMULATED, linewidth=1.1)
+        panel.plot(*decimate(time, trajectory[name]), label=name, color=SIMULATED, linewidth=1.1)
         unit = trajectory.units.get(name, "")
         panel.set_ylabel(f"{name}\n({unit})" if unit else name)
         panel.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=True)
@@ -399,7 +399,7 @@ def save(fig: Figure | Panels | Axes, path: str | Path) -> Path:
     if path.suffix not in _FORMATS:
         raise InputError(f"{path}: ending '{path.suffix}' is not known; use .svg or .png")
     data = _encoded(_figure_of(fig), path.suffix)
-    with given.written(path), replacing(path) as file:
+    with given.explain_write_errors(path), atomic_write(path) as file:
         file.write(data)
     return path
 
@@ -437,7 +437,7 @@ def save_or_say(what: str, make: Callable[[], Figure], *paths: Path) -> str:
             path.unlink(missing_ok=True)
         return made.sentence
     for path, data in zip(paths, made, strict=True):
-        with replacing(path) as file:
+        with atomic_write(path) as file:
             file.write(data)
     return ""
 
@@ -478,13 +478,13 @@ def _compared(
     drawn, (upper, lower) = figure(
         2, height=4.2, title=title, sharex=True, height_ratios=(2.0, 1.0)
     )
-    upper.plot(*thinned(time, seen), color=MEASURED, linewidth=1.6, label=names[0])
-    upper.plot(*thinned(time, made), color=SIMULATED, linewidth=1.0, label=names[1])
+    upper.plot(*decimate(time, seen), color=MEASURED, linewidth=1.6, label=names[0])
+    upper.plot(*decimate(time, made), color=SIMULATED, linewidth=1.0, label=names[1])
     upper.set_ylabel(f"{quantity} ({unit})")
     upper.margins(y=0.12)
     legend(upper, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.1)
     lower.axhline(0.0, color=FAINT, linewidth=0.8)
-    lower.plot(*thinned(time, seen - made), color=ACCENT, linewidth=0.9)
+    lower.plot(*decimate(time, seen - made), color=ACCENT, linewidth=0.9)
     lower.set_ylabel(f"difference ({unit})")
     lower.set_xlabel("time (s)")
     for panel in (upper, lower):

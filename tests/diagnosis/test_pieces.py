@@ -160,7 +160,7 @@ def test_a_fold_does_not_go_where_the_fit_to_all_rows_may_not() -> None:
         evidence: Any = SimpleNamespace(fitted=whole)
         model = Model(evidence, SimpleNamespace())  # type: ignore[arg-type]
         model.__dict__.update(residual=residual, columns=columns)
-        return model.held_out_residual(plan)
+        return model.holdout_residual(plan)
 
     # A parameter at its bound leaves a slope that no fit may take: nor may a fold.
     free = noise - columns @ np.linalg.lstsq(columns[whole], noise[whole])[0]

@@ -240,11 +240,11 @@ def test_a_figure_of_a_comparison_that_fails_leaves_the_table(
 def test_a_figure_of_the_paper_that_fails_leaves_its_numbers(
     tmp_path: Path, left_out: list[str]
 ) -> None:
-    from stiction.cli.paper import drawn, render_json, render_text
+    from stiction.cli.paper import render_json, render_text, write_figure
     from stiction.paper import bearing_loops
 
     result = bearing_loops()
-    section = drawn(tmp_path, "bearing-loops", result, faulty)
+    section = write_figure(tmp_path, "bearing-loops", result, faulty)
     (sentence,) = left_out
     assert list(tmp_path.iterdir()) == []
     assert sentence in render_text([section])

@@ -16,7 +16,7 @@ from ..fitting.start import largest_command
 from ..plant import Plant
 from ..presliding import presliding
 from ..stated import Effect
-from ..wording import did_you_mean, listed
+from ..wording import commas, did_you_mean
 from .evidence import Evidence
 
 __all__ = ["LOWEST", "Candidate", "Scales", "candidates", "excluded_names", "present", "scales_of"]
@@ -223,7 +223,7 @@ def excluded_names(without: Sequence[str]) -> tuple[str, ...]:
         if name not in known:
             raise InputError(
                 f"without: there is no effect {name}{did_you_mean(name, known)}; "
-                f"there are {listed(known)}"
+                f"there are {commas(known)}"
             )
     return tuple(without)
 

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
-from ..compared import compared_by
+from ..compared import comparison_of
 from ..fitting.rows import Rows
 from ..fitting.sign import sign_error
 from ..fitting.solve import fit_remainder
@@ -304,7 +304,7 @@ class Conclusion:
         return ceiling_of(self.evidence, self.session.replicates, ends)
 
     @cached_property
-    def unexplained(self) -> tuple[Unexplained, ...]:
+    def unnamed_remainders(self) -> tuple[Unexplained, ...]:
         """What is left and has no name."""
         return self._unnamed(self.final_selection, self.burst)
 
@@ -374,7 +374,7 @@ class Conclusion:
         else:
             unexplained = (
                 *(left for each in self.fixed_parameters for left in each.remainders),
-                *self.unexplained,
+                *self.unnamed_remainders,
             )
             shown = {each.coordinate for each in unexplained}
             of_names = rests_of(causes, self.rests[1], remainder_share(selection))
@@ -426,7 +426,7 @@ class Conclusion:
                 missed,
                 bool(causes),
                 verdict,
-                compared_by(final.plant),
+                comparison_of(final.plant),
             )
             + (f" {hint}" if hint else ""),
             plant=extended.plant,

@@ -17,7 +17,7 @@ from .model import Model, without_effect
 from .selection import Search
 from .trials import Screening, compared_fit, whole_fit
 
-__all__ = ["MIMIC", "join", "rebuild_models", "remove_superseded", "without"]
+__all__ = ["MIMIC", "join", "rebuild_models", "remove_redundant", "without"]
 
 MIMIC: Final = 5.0
 """What keeps less than one part in so many of its gain beside a later effect was its mimic; what
@@ -30,7 +30,7 @@ AS_MUCH: Final = 0.02
 _logger = logging.getLogger(__name__)
 
 
-def remove_superseded(evidence: Evidence, found: Search) -> set[str]:
+def remove_redundant(evidence: Evidence, found: Search) -> set[str]:
     """Takes out earlier effects that are not needed beside the latest one.
 
     What explains a part of the residual first may be a mimic of what explains the whole of it.

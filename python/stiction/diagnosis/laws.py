@@ -23,7 +23,7 @@ from ..fitting.starts import with_turns
 from ..parameter import Parameter
 from ..progress import phase, steps
 from ..stated import Friction
-from ..wording import did_you_mean, listed
+from ..wording import commas, did_you_mean
 from .candidates import scales_of
 from .choose import DECIDED_Z
 from .gain import Gain, HeldOut, gain_of
@@ -178,7 +178,7 @@ def law_names(wanted: Sequence[str], own: str) -> list[str]:
         if name not in known:
             raise InputError(
                 f"laws: '{name}' is unknown{did_you_mean(name, known)}; known are all, "
-                f"{listed(known)}"
+                f"{commas(known)}"
             )
     return [name for name in dict.fromkeys(wanted) if name != own]
 

@@ -16,7 +16,7 @@ from ..fitting.rows import Mask
 from ..plant import Plant
 from ..recording import Part, Recording
 from ..trajectory import FloatArray
-from ..wording import counted
+from ..wording import plural
 from .evidence import Evidence, SealedError
 from .pictures import Pictures, Tracking
 from .traces import with_loops
@@ -165,7 +165,7 @@ def _runs(evidence: Evidence, model: Model, wanted: Sequence[int]) -> tuple[Runs
             failed.append(f"{evidence.names[index]} is not replayed in closed loop: {why}")
             _logger.info("%s", failed[-1])
     if len(failed) > 1:
-        failed[0] += f" (and {counted(len(failed) - 1, 'other recording')} likewise)"
+        failed[0] += f" (and {plural(len(failed) - 1, 'other recording')} likewise)"
     return runs, failed[:1]
 
 

@@ -235,7 +235,7 @@ class Model:
     def _timing_is_free(self) -> bool:
         return abs(self.nuisances.timing) < INSIDE * timing_bound(self.plant, self.evidence.train)
 
-    def held_out_residual(self, plan: Plan) -> FloatArray:
+    def holdout_residual(self, plan: Plan) -> FloatArray:
         """Residual of the rows that a plan holds out, fitted on those that it fits.
 
         Where the plan fits all of train that is the residual itself; in a fold it is corrected by
@@ -311,7 +311,7 @@ class Model:
         train: FloatArray = np.zeros(number)
         train += np.bincount(block[fit], self.residual[fit] ** 2, number)
         for plan in self.evidence.plans:
-            held += np.bincount(block[plan.held], self.held_out_residual(plan) ** 2, number)
+            held += np.bincount(block[plan.held], self.holdout_residual(plan) ** 2, number)
         return train / self.relative_input_power, held / self.relative_input_power
 
 

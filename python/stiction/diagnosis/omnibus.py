@@ -17,7 +17,7 @@ from .noisy_effort import Noisy
 from .passing import drift_view, moments_view, steady_rows
 from .periodic import COUPLED, ORDERS, Asked, frequency_view, order_views
 from .response import RESPONSE, response_columns, response_view
-from .smoother import smoother, stack_shown
+from .smoother import smoother, stack_rows
 from .view import LEAST_SIZE, View
 
 __all__ = ["Rest", "View", "rest"]
@@ -86,8 +86,8 @@ def rest(
     friction : float
         Weighted rms of the friction, against which sizes are measured.
     """
-    direction = stack_shown(evidence, [look.direction for look in seen])
-    position = stack_shown(evidence, [look.position for look in seen])
+    direction = stack_rows(evidence, [look.direction for look in seen])
+    position = stack_rows(evidence, [look.position for look in seen])
     both = np.column_stack([residual, null])
     cells, weights = evidence.cells, evidence.weights
     spacings = [rows.form.dt * rows.form.stride for rows in evidence.shown]
@@ -101,13 +101,13 @@ def rest(
     along = both * direction[:, None]
     asked = [Asked(coordinate, along if coordinate.odd else both) for coordinate in ORDERS]
     asked += [
-        Asked(coordinate, both, stack_shown(evidence, [coordinate.values(look) for look in seen]))
+        Asked(coordinate, both, stack_rows(evidence, [coordinate.values(look) for look in seen]))
         for coordinate in COUPLED
     ]
     views += order_views(asked, orders, position, evidence.plans, weights, friction)
 
     def answered(looks: Sequence[Look], both: FloatArray) -> View:
-        moved = stack_shown(
+        moved = stack_rows(
             evidence,
             [
                 response_columns(look.effort, max(spacings) / spacing)
@@ -117,11 +117,11 @@ def rest(
         return response_view(moved, max(spacings), evidence.plans, both, weights, friction)
 
     views.append(noisy.view(RESPONSE, answered))
-    clock = stack_shown(evidence, [look.time for look in seen])
-    velocity = stack_shown(evidence, [look.velocity for look in seen])
-    sliding = stack_shown(evidence, [look.slides.sliding for look in seen])
-    steady = stack_shown(evidence, [steady_rows(look) for look in seen])
-    of_rows = stack_shown(
+    clock = stack_rows(evidence, [look.time for look in seen])
+    velocity = stack_rows(evidence, [look.velocity for look in seen])
+    sliding = stack_rows(evidence, [look.slides.sliding for look in seen])
+    steady = stack_rows(evidence, [steady_rows(look) for look in seen])
+    of_rows = stack_rows(
         evidence,
         [np.full(len(look.time), each) for look, each in zip(seen, spacings, strict=True)],
     )
@@ -131,7 +131,7 @@ def rest(
         by_recording_view(
             coordinate,
             entered,
-            stack_shown(evidence, [coordinate.values(look) for look in seen]),
+            stack_rows(evidence, [coordinate.values(look) for look in seen]),
             both,
             weights,
             friction,

@@ -23,11 +23,11 @@ from ..recording import Check, Recording
 from ..recording.checks import DOUBTED, without_failures
 from ..recording.names import names_of
 from ..recording.recording import recordings_of
-from ..recording.session_clock import remaining
+from ..recording.session_clock import subset
 from ..recording.usable import checks_of, usable
 from ..session import Session, both_of
 from ..trajectory import FloatArray
-from ..wording import counted
+from ..wording import plural
 from ..workers import with_workers
 from .advice import advise
 from .base import (
@@ -219,7 +219,7 @@ def _usable(
     kept, told = usable(session.recordings, checks)
     if kept is None:
         return None, told
-    recordings = without_failures(remaining(session.recordings, kept))
+    recordings = without_failures(subset(session.recordings, kept))
     if not (plant.prescribed_motion or plant.hangs or any(map(_is_driven, recordings))):
         return None, NOT_DRIVEN
     places = {k: j for j, k in enumerate(kept)}
@@ -247,7 +247,7 @@ def _testable(
 ) -> Diagnosis:
     """The diagnosis of data that can be used; ``restated`` with another law than was stated."""
     whole = found
-    number = counted(len(session), "recording")
+    number = plural(len(session), "recording")
     phase(_logger, "looking through %s and fitting the base", number)
     evidence, base = fit_baseline(found.plant, session.recordings)
     found, replays = _replayed(found, evidence, base, asked.surrogates)

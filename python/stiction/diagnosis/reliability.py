@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
-from ..wording import counted
+from ..wording import plural
 
 __all__ = ["COUNTS", "Reliability", "manner", "reliability_of"]
 
@@ -48,7 +48,7 @@ class Reliability:
 
     def words(self, *, several: bool) -> str:
         """That in words, of a name with look-alikes or of one without."""
-        known = f"of {counted(self.told, 'time')} where the truth was known"
+        known = f"of {plural(self.told, 'time')} where the truth was known"
         if several:
             return (
                 f"of names told like these one was right {self.listed} {known}, the first one "

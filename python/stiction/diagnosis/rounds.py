@@ -20,7 +20,7 @@ from .choose import ALIKE, Choice, choose, covers, parallel
 from .decide import LEAST_GAIN, LEAST_STRENGTH, SMALLEST, Trial, degeneracy
 from .evidence import Evidence
 from .exact_forms import several
-from .fewer import MIMIC, join, rebuild_models, remove_superseded, without
+from .fewer import MIMIC, join, rebuild_models, remove_redundant, without
 from .model import Known, Model, without_effect
 from .replay import centre, common_bias, reading_power
 from .restarts import from_before, from_the_first
@@ -141,7 +141,7 @@ def search(
                 continue
             if stops is not None and len(found.choices) == 1 and stops(found):
                 return found
-            dropped |= remove_superseded(evidence, found)
+            dropped |= remove_redundant(evidence, found)
             rests |= join(screening, found)
             rests |= _take_back(screening, found)
         for place in range(len(found.choices) - 1):

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
 from ..catalogue import effects as catalogue
-from ..compared import EFFORT, Compared, compared_by
+from ..compared import EFFORT, Compared, comparison_of
 from ..fitting.pushes import omission_words
 from ..fitting.result import FitParameter
 from ..fitting.rows import Push
 from ..fitting.waves import amplitude_of, parts_of, phase_of
 from ..report.scale import loop_scale_of
 from ..stated import Effect
-from ..wording import counted
+from ..wording import plural
 from .directions import describe_effect
 from .orders import order_words
 
@@ -467,7 +467,7 @@ def summary(diagnosis: Diagnosis) -> str:
             lines.append(f"  counted: {cause.track_record}")
     before, after = diagnosis.baseline, diagnosis.extended
     if before is not None and before.heldout_relative is not None and after is not None:
-        by = compared_by(diagnosis.plant)
+        by = comparison_of(diagnosis.plant)
         told = f"{by.error} held out: {by.share(before.heldout_relative)}"
         if diagnosis.effects and after.heldout_relative is not None:
             told += f" before, {by.share(after.heldout_relative)} after"
@@ -488,7 +488,7 @@ def summary(diagnosis: Diagnosis) -> str:
         lines += ["", *shown_rows(diagnosis)]
         more = len(diagnosis.candidates) - MOST_ROWS
         if more > 0:
-            lines.append(f"and {counted(more, 'other')} in findings.json")
+            lines.append(f"and {plural(more, 'other')} in findings.json")
     if diagnosis.advice:
         first = diagnosis.advice[0]
         lines += ["", f"record next: {first.experiment} ({first.reason})"]

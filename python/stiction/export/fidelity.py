@@ -18,7 +18,7 @@ from ..recording import Part
 from ..recording.blocks import FEWEST_BLOCKS
 from ..recording.checks import without_failures
 from ..recording.recording import recordings_of
-from ..recording.session_clock import remaining
+from ..recording.session_clock import subset
 from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
@@ -154,7 +154,7 @@ class Bench:
         if kept is None:
             raise InputError(fault)
         self._plant = plant
-        self._recordings = without_failures(remaining(recordings, kept))
+        self._recordings = without_failures(subset(recordings, kept))
         if not self._recordings:
             raise InputError("check: there are no recordings; give a session that has some")
         only = self._recordings[0]

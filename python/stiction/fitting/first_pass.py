@@ -26,7 +26,7 @@ from .forms import (
     wider_of,
     windows_of,
 )
-from .minimise import Solution, launch, mark_interrupted, or_from
+from .minimise import Solution, launch, or_from, with_interruption
 from .pushes import Watch
 from .rows import Nuisances, Rows
 from .start import complete, free_paths, with_light_friction, yielding_starts
@@ -147,7 +147,7 @@ def first_pass(
         return _wider(plant, known, again, most=most)
     except KeyboardInterrupt:
         # Before what comes after had anything to keep.
-        return replace(known, solution=mark_interrupted(known.solution))
+        return replace(known, solution=with_interruption(known.solution))
 
 
 def fit_from_data(
@@ -194,7 +194,7 @@ def fit_from_data(
             found = _or_clinging(others, found, rows, most=most)
     except KeyboardInterrupt:
         # Before there was anything to try.
-        found = mark_interrupted(found)
+        found = with_interruption(found)
     return starts[0], found
 
 
@@ -208,7 +208,7 @@ def _or_clinging(
     other = or_from(others, found, rows, most=most)
     if remaining_share(other, rows) < WORTH_CLINGING * before:
         return other
-    kept = mark_interrupted(found) if other.interrupted else found
+    kept = with_interruption(found) if other.interrupted else found
     return replace(kept, evaluations=other.evaluations)
 
 
@@ -330,7 +330,7 @@ def _after(found: Solution, other: Solution) -> Solution:
 def _kept(found: Solution, other: Solution) -> Solution:
     """The one that was found, with what was done after it."""
     found = replace(found, evaluations=other.evaluations)
-    return mark_interrupted(found) if other.interrupted else found
+    return with_interruption(found) if other.interrupted else found
 
 
 def _lost(solution: Solution, rows: Sequence[Rows]) -> int | None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from .minimise import Solution, mark_interrupted, minimise
+from .minimise import Solution, minimise, with_interruption
 from .rows import Rows
 
 __all__ = ["refit_windows"]
@@ -55,7 +55,7 @@ def refit_windows(
             )
         except KeyboardInterrupt:
             # Before it had anything to keep.
-            return mark_interrupted(found)
+            return with_interruption(found)
         settled = abs(further.power - found.power) <= ENOUGH * found.power
         evaluations = found.evaluations + further.evaluations
         found = replace(further, begin=found.begin, evaluations=evaluations)

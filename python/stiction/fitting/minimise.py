@@ -28,9 +28,9 @@ __all__ = [
     "alone",
     "from_elsewhere",
     "launch",
-    "mark_interrupted",
     "minimise",
     "or_from",
+    "with_interruption",
 ]
 
 MOST_EVALUATIONS: Final = 60
@@ -192,7 +192,7 @@ def launch(
             # Before that start had anything to keep.
             if not first:
                 raise
-            first[-1] = mark_interrupted(first[-1])
+            first[-1] = with_interruption(first[-1])
         if first[-1].interrupted:
             break
     spent = sum(solution.evaluations for solution in first)
@@ -209,7 +209,7 @@ def launch(
                 break
     best = min(first, key=lambda solution: solution.power)
     if any(solution.interrupted for solution in first):
-        return mark_interrupted(replace(best, evaluations=spent))
+        return with_interruption(replace(best, evaluations=spent))
     if best.success:
         return replace(best, evaluations=spent)
     known = add_starts(best.plant, rows, best.nuisances)
@@ -218,7 +218,7 @@ def launch(
     return replace(whole, evaluations=whole.evaluations + spent)
 
 
-def mark_interrupted(best: Solution) -> Solution:
+def with_interruption(best: Solution) -> Solution:
     """The best so far of a fit that was interrupted in another part."""
     return replace(best, success=False, interrupted=True, message=INTERRUPTED)
 
@@ -240,7 +240,7 @@ def _further(
         )
     except KeyboardInterrupt:
         # Before it had anything to keep.
-        return replace(mark_interrupted(solution), evaluations=0)
+        return replace(with_interruption(solution), evaluations=0)
     return replace(further, begin=solution.begin)
 
 
@@ -286,12 +286,12 @@ def or_from(
                 spent += again.evaluations
         except KeyboardInterrupt:
             # Before that start had anything to keep.
-            better = mark_interrupted(better)
+            better = with_interruption(better)
             break
         if again.power < better.power:
             better = again
         if again.interrupted:
-            better = mark_interrupted(better)
+            better = with_interruption(better)
             break
     return replace(better, evaluations=spent, begin=solution.begin)
 

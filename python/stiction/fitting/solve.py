@@ -21,12 +21,12 @@ from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.checks import without_failures
 from ..recording.names import names_of
 from ..recording.recording import recordings_of
-from ..recording.session_clock import remaining
+from ..recording.session_clock import subset
 from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from ..session import Session, both_of
 from ..trajectory import FloatArray
-from ..wording import counted
+from ..wording import plural
 from ..workers import with_workers
 from .clock import bounded_plants
 from .first_pass import first_pass, fit_from_data, remaining_share
@@ -37,8 +37,8 @@ from .minimise import (
     MOST_EVALUATIONS,
     Solution,
     from_elsewhere,
-    mark_interrupted,
     minimise,
+    with_interruption,
 )
 from .pushes import Watch, push_checks
 from .result import FitParameter, FitResult
@@ -188,7 +188,7 @@ def fit_remainder(plant: Plant, recordings: list[Recording]) -> float:
 
 def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> FitResult:
     recordings, faults = _without_faults(recordings)
-    phase(_logger, "looking through %s", counted(len(recordings), "recording"))
+    phase(_logger, "looking through %s", plural(len(recordings), "recording"))
     seen = _Seen(plant, recordings)
     if not free_paths(plant) and not free_paths(complete(plant, [r.form for r in seen.train])[0]):
         raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
@@ -225,7 +225,7 @@ def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> 
     except KeyboardInterrupt:
         if solution.interrupted:
             raise
-        return told(mark_interrupted(solution))
+        return told(with_interruption(solution))
 
 
 def _without_faults(recordings: list[Recording]) -> tuple[list[Recording], list[str]]:
@@ -237,7 +237,7 @@ def _without_faults(recordings: list[Recording]) -> tuple[list[Recording], list[
     if kept is None:
         told = fault.replace("cannot be used", "are fitted, though they have a fault")
         return without_failures(recordings), [told]
-    return without_failures(remaining(recordings, kept)), [fault] if fault else []
+    return without_failures(subset(recordings, kept)), [fault] if fault else []
 
 
 def second_pass(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
@@ -260,7 +260,7 @@ def second_pass(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution
         )
     except KeyboardInterrupt:
         # Before the second pass had anything to keep.
-        return mark_interrupted(first)
+        return with_interruption(first)
     found = _followed(from_elsewhere(second, rows, most=most), rows, most=most)
     return refit_windows(found, rows, most=most, converged=CONVERGED)
 
@@ -278,7 +278,7 @@ def _followed(found: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
                 plant, found.variables.paths, rows, most=most, nuisances=found.nuisances
             )
         except KeyboardInterrupt:
-            return mark_interrupted(found)
+            return with_interruption(found)
         others.append(replace(other, begin=found.begin))
     best = min(others, key=lambda other: other.power, default=found)
     return best if best.power < AS_WELL * found.power else found

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..plant import Plant
 from ..trajectory import FloatArray
-from .minimise import Solution, alone, mark_interrupted, minimise
+from .minimise import Solution, alone, minimise, with_interruption
 from .rows import TURNS, Nuisances, Rows, Start, add_starts, start_quantities
 
 __all__ = ["fit_starts", "fit_turns", "with_turns"]
@@ -118,7 +118,7 @@ def with_turns(found: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
         begun = add_starts(found.plant, rows, known)
         return minimise(found.plant, found.variables.paths, rows, most=most, nuisances=begun)
     except KeyboardInterrupt:
-        return mark_interrupted(found)
+        return with_interruption(found)
 
 
 def _turned(plant: Plant, rows: Rows, known: Start, nuisances: Nuisances) -> Start:

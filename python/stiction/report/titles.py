@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from ..compared import compared_by
+from ..compared import comparison_of
 from ..diagnosis.words import join_words
 from .numbers import NO_BREAK, percent, plain
 
@@ -106,7 +106,7 @@ def _error(diagnosis: Diagnosis) -> str:
         for share in (held_out if tested else fitted)
     )
     what = "Held-out error" if tested else "Error on the rows fitted"
-    whole = compared_by(diagnosis.plant).whole
+    whole = comparison_of(diagnosis.plant).whole
     if not before or not after:
         return ""
     number = before.removesuffix(f"{NO_BREAK}%")

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...motion import FEWEST_SAMPLES, SUPPORTS_S, Kernel, evenly, zero_order_hold
-from ...wording import counted
+from ...wording import plural
 from ..names import names_of
 from ..recording import Recording
 from ..units import FloatArray
@@ -123,7 +123,7 @@ def impulse_checks(recordings: Sequence[Recording]) -> list[tuple[str, Check]]:
         row = each.rows[0]
         what = (
             f"input leaves its neighbours and comes back within {LONGEST} samples, in "
-            f"{counted(len(each.rows), 'row')}, first at {recording.time[row]:.6g} s to "
+            f"{plural(len(each.rows), 'row')}, first at {recording.time[row]:.6g} s to "
             f"{recording.input[row]:.4g}"
         )
         if each.got:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ...compared import compared_by
+from ...compared import comparison_of
 from ...diagnosis.words import THE_LAW
 from ..numbers import percent
 from ..scale import scale_of
@@ -64,7 +64,7 @@ def _ceiling(diagnosis: Diagnosis) -> str:
     if diagnosis.ceiling is None:
         return ""
     told = diagnosis.ceiling.words(bool(diagnosis.effects))
-    return f"{told[0].upper()}{told[1:]} (rms, share of {compared_by(diagnosis.plant).whole})."
+    return f"{told[0].upper()}{told[1:]} (rms, share of {comparison_of(diagnosis.plant).whole})."
 
 
 def _level(diagnosis: Diagnosis) -> dict[str, Any] | None:
