@@ -101,14 +101,17 @@ class Gathered:
                 f"{self._path}: no {what} of it holds a signal that is read"
                 f"{held if self.unusable else ''}; record joint states, or numbers over time"
             )
-        start = min(float(np.nanmin(time)) for time, _ in groups.values())
+        # What a damaged file has for stamps is refused later, with its rows, and begins nothing.
+        stamps = np.concatenate([time[np.isfinite(time)] for time, _ in groups.values()])
+        start = float(stamps.min()) if stamps.size else 0.0
         columns_: dict[str, FloatArray] = {}
         clocks: dict[str, str] = {}
         units: dict[str, str] = {}
         for group, (time, signals) in groups.items():
             before = f"{group}." if group else ""
             clock = f"{before}{_CLOCK}"
-            columns_[clock] = np.ascontiguousarray(time - start)
+            with np.errstate(invalid="ignore"):  # of bits that no clock writes
+                columns_[clock] = np.ascontiguousarray(time - start)
             units[clock] = "s"
             for name, values in signals.items():
                 columns_[f"{before}{name}"] = np.ascontiguousarray(values, dtype=np.float64)
