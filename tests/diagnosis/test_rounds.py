@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from stiction.catalogue import effects
-from stiction.diagnosis import decide, gains, rounds, together
+from stiction.diagnosis import block_gains, decide, rounds, together
 from stiction.diagnosis.beside import doubt_by_forms, stands_out
 from stiction.diagnosis.choose import Choice
 from stiction.diagnosis.decide import Trial
@@ -308,7 +308,7 @@ def test_a_recording_in_which_an_effect_does_nothing_does_not_judge_it(
         return SimpleNamespace(blocks=blocks, evidence=SimpleNamespace(cells=cells))
 
     contributed = np.where(recording == 0, 0.0, 1.0)
-    kept = gains.without_the_best(model(*np.ones(recordings)), model(*gained), contributed)
+    kept = block_gains.without_the_best(model(*np.ones(recordings)), model(*gained), contributed)
     assert (kept > 0.5 * decide.LEAST_GAIN) == passes
 
 
@@ -398,5 +398,5 @@ def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: 
 def test_where_an_effect_touches_nothing_its_gain_has_no_standard_error() -> None:
     base: Any = SimpleNamespace(blocks=BLOCKS)
     model: Any = SimpleNamespace(blocks=(0.5 * BLOCKS[0], 0.5 * BLOCKS[1]))
-    gain, z = gains.heldout_gain(base, model, np.zeros(30, dtype=bool))
+    gain, z = block_gains.heldout_gain(base, model, np.zeros(30, dtype=bool))
     assert (gain, z) == (0.5, 0.0)

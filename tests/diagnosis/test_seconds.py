@@ -12,7 +12,7 @@ from tests.reference.session_reference import make_session
 
 import stiction as st
 from stiction.diagnosis import seconds
-from stiction.diagnosis.confirmed import vanishes_where_active
+from stiction.diagnosis.replication import vanishes_where_active
 from stiction.diagnosis.seconds import holds_more, tried_names
 from stiction.errors import InputError
 from stiction.recording.split import split

@@ -6,8 +6,8 @@ import numpy as np
 from tests.reference.ladder_spring import LadderSpring
 
 import stiction as st
+from stiction.fitting.recording_starts import fit_starts
 from stiction.fitting.rows import WARM_UP_S, Nuisances, Rows
-from stiction.fitting.starts import fit_starts
 from stiction.weak_form import WeakForm
 
 DT = 0.01

@@ -17,9 +17,9 @@ import numpy as np
 
 from ..catalogue import effects
 from ..trajectory import FloatArray
+from .block_gains import paired_z
 from .candidates import LOWEST, scales_of
 from .decide import Trial
-from .gains import paired_z
 from .model import Model
 from .regression import FLAT
 

@@ -9,10 +9,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from .block_gains import paired_z
 from .candidates import FALL, scales_of
 from .chance import TOO_NEAR, by_chance, lacks_repeats
 from .decide import OUT_OF_RANGE, Trial
-from .gains import paired_z
 
 __all__ = ["ALIKE", "DECIDED_Z", "Choice", "choose", "covers", "parallel", "strangers"]
 

@@ -12,9 +12,9 @@ import numpy as np
 from ..fitting.rows import Mask, Rows
 from ..shooting import ShootingForm
 from ..trajectory import FloatArray
+from .block_gains import heldout_gain
 from .evidence import Evidence
 from .gain import HeldOut, gain_of
-from .gains import heldout_gain
 from .model import Model
 from .selection import Search
 

@@ -9,10 +9,7 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
-from .candidates import Candidate
-from .confirmed import confirms as is_confirmed
-from .confirmed import in_few_blocks
-from .gains import (
+from .block_gains import (
     TOUCHED,
     count_active_recordings,
     heldout_gain,
@@ -21,9 +18,12 @@ from .gains import (
     training_gain,
     without_the_best,
 )
+from .candidates import Candidate
 from .homogeneity import unevenness
 from .model import LEAST_GIVEN, Model
 from .ranges import BELOW_A_KERNEL, is_whole, out_of_its_range, partial_loss
+from .replication import confirms as is_confirmed
+from .replication import in_few_blocks
 from .screen import Score
 
 __all__ = [

@@ -13,8 +13,8 @@ import numpy as np
 from ..errors import NotEnoughData
 from ..fitting.forms import KERNELS, Through, as_session, forms_of
 from ..fitting.pushes import Watch
+from ..fitting.recording_starts import fit_starts
 from ..fitting.rows import Mask, Nuisances, Rows, require_motion, rows_of
-from ..fitting.starts import fit_starts
 from ..plant import Plant
 from ..progress import steps
 from ..recording import Part, Recording

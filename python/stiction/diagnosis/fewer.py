@@ -8,11 +8,11 @@ from dataclasses import replace
 from typing import Final
 
 from . import listing
+from .block_gains import heldout_gain
 from .candidates import FALL
 from .choose import Choice
 from .decide import LEAST_GAIN, LEAST_STRENGTH
 from .evidence import Evidence
-from .gains import heldout_gain
 from .model import Model, without_effect
 from .selection import Search
 from .trials import Screening, compared_fit, whole_fit

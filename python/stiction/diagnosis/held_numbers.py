@@ -11,8 +11,8 @@ from ..errors import InputError
 from ..fitting.variables import unit_of
 from ..progress import phase
 from ..recording import Check
+from .block_gains import heldout_gain
 from .decide import LEAST_GAIN, LEAST_STRENGTH, LEAST_Z
-from .gains import heldout_gain
 from .model import Model, without_effect
 from .result import Advice, Unexplained
 from .selection import Search

@@ -18,16 +18,16 @@ from ..errors import InputError
 from ..fitting.first_pass import fit_from_data
 from ..fitting.forms import followable, horizon_of
 from ..fitting.minimise import MOST_EVALUATIONS
+from ..fitting.recording_starts import with_turns
 from ..fitting.rows import require_motion
-from ..fitting.starts import with_turns
 from ..parameter import Parameter
 from ..progress import phase, steps
 from ..stated import Friction
 from ..wording import commas, did_you_mean
+from .block_gains import heldout_gain
 from .candidates import scales_of
 from .choose import DECIDED_Z
 from .gain import Gain, HeldOut, gain_of
-from .gains import heldout_gain
 from .left_open import OF_A_LAW
 from .lone import Lone
 from .model import LEAST_GIVEN, Model, fit_model, likeliest_of

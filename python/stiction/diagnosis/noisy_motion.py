@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from ..catalogue import effects
-from .gains import heldout_gain
+from .block_gains import heldout_gain
 from .model import Model, fit_model
 from .replay import hangs_on_load
 from .screen import NULL_TIMES

@@ -12,9 +12,9 @@ from ..catalogue import EffectRecord
 from ..parameter import Parameter
 from ..plant import Plant
 from ..stated import Effect
+from .block_gains import heldout_gain, log_gain
 from .choose import Choice
 from .decide import LEAST_GAIN, LEAST_Z, PENALTY, Trial
-from .gains import heldout_gain, log_gain
 from .model import Model, likeliest_of
 from .trials import MUCH, Screening, promises, whole_fit
 

@@ -8,10 +8,10 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
+from .block_gains import heldout_gain
 from .bursts import Burst, at_moments
 from .decide import LEAST_GAIN
 from .evidence import Evidence
-from .gains import heldout_gain
 from .model import Model
 from .omnibus import Rest
 from .outlying import outlying_recordings

@@ -12,8 +12,8 @@ import numpy as np
 from ..errors import InputError
 from ..fitting import fit
 from ..fitting.forms import HORIZONS_S, KERNELS, Through, as_session, can_be_shot, forms_of
+from ..fitting.recording_starts import fit_starts
 from ..fitting.rows import Mask, Nuisances, Rows, rows_of
-from ..fitting.starts import fit_starts
 from ..recording import Part
 from ..recording.blocks import FEWEST_BLOCKS
 from ..recording.checks import without_failures

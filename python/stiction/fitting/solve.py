@@ -41,12 +41,12 @@ from .minimise import (
     with_interruption,
 )
 from .pushes import Watch, push_checks
+from .recording_starts import fit_starts, fit_turns
 from .result import FitParameter, FitResult
 from .rows import Nuisances, Rows, add_starts, require_motion, rows_of
 from .sign import LEFT_WHERE_WRONG, sign_error
 from .slopes import slopes
 from .start import complete, free_paths
-from .starts import fit_starts, fit_turns
 from .statistics import (
     correlations,
     covariance,
