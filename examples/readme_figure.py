@@ -29,7 +29,7 @@ def draw():
     speed = 0.1  # rad/s
     time, position, _, _ = pull(speed, 1.2)
     slips.plot(time, speed * time, color=plot.FAINT, linewidth=1.2, label="end of the spring")
-    slips.plot(*plot.decimate(time, position), color=plot.SIMULATED, linewidth=1.4, label="mass")
+    slips.plot(*plot.thinned(time, position), color=plot.SIMULATED, linewidth=1.4, label="mass")
     plot.legend(slips, loc="upper left")
     slips.set_xlabel("time (s)")
     slips.set_ylabel("position (rad)")

@@ -65,7 +65,7 @@ def _columns() -> Figure:
     picture, panels = plot.figure(len(columns) - 1, height=3.6, sharex=True)
     time, *others = columns
     for panel, column in zip(panels, others, strict=True):
-        line = plot.decimate(table[time.column], table[column.column])
+        line = plot.thinned(table[time.column], table[column.column])
         panel.plot(*line, color=plot.SIMULATED, linewidth=0.9)
         title = f"{column.column} → {column.role} [{column.unit}]: {column.reason}"
         panel.set_title(title, fontsize=plot.SMALL, loc="left")

@@ -15,7 +15,7 @@ import numpy as np
 from .errors import InputError
 from .motion import count_of, evenly, zero_order_hold
 from .recording.checks import without_failures, without_spikes
-from .residual import FreeRun, free_run, motor_at_start, starting_velocity
+from .residual import FreeRun, free_run, started, starting_velocity
 from .trajectory import FloatArray
 from .weak_form import Start
 from .wording import NO_POSITION
@@ -93,7 +93,7 @@ class Controller:
         integral = stated["ki"] if stated["kind"] == "pid" else 0.0
         return cls(stated["kp"], stated.get("kd", 0.0), integral, rule=rule, **common)
 
-    def step_function(
+    def acting(
         self,
         reference: FloatArray,
         dt: float,
@@ -316,10 +316,8 @@ def replay(
     switched = (
         [True] * len(time) if on is None else (zero_order_hold(time, stamps, on) != 0.0).tolist()
     )
-    motor = motor_at_start(
-        plant, begin["reading"], begin["velocity"], start, clock=clock, path=path
-    )
-    act = controller.step_function(reference, dt, **begin, total=total)
+    motor = started(plant, begin["reading"], begin["velocity"], start, clock=clock, path=path)
+    act = controller.acting(reference, dt, **begin, total=total)
     if ahead is not None:
         act = _beside(act, ahead(reference, dt), controller.limit)
     bounds = _bounds(reference, measured)
@@ -408,7 +406,7 @@ def _along(
     moving = np.zeros_like(measured)
     if speeds is not None:
         moving = np.interp(time, stamps, speeds)
-    act = controller.step_function(reference, dt, **begin)
+    act = controller.acting(reference, dt, **begin)
     pairs = zip(measured.tolist(), moving.tolist(), strict=True)
     own = [act(k, reading, speed) for k, (reading, speed) in enumerate(pairs)]
     return zero_order_hold(time, stamps, recording.input), np.array(own)

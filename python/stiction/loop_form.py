@@ -14,7 +14,7 @@ from .errors import InputError
 from .motion import GAUSSIAN, evenly, smooth
 from .parameter import Parameter
 from .plant import Plant
-from .residual import motor_at_start, starting_velocity
+from .residual import started, starting_velocity
 from .stated import Effect
 from .trajectory import FloatArray
 from .weak_form import Candidate, Places, Start, WeakForm
@@ -262,7 +262,7 @@ class LoopForm(WeakForm):
 
     def _begun(self, plant: Plant, start: Start) -> Motor:
         begin = float(self.readings[0]), self.velocity_at_start
-        return motor_at_start(self.own(plant), *begin, start, clock=self.clock, path=self.path)
+        return started(self.own(plant), *begin, start, clock=self.clock, path=self.path)
 
 
 def _batches(names: Sequence[str]) -> list[list[int]]:

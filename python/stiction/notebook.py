@@ -13,7 +13,7 @@ from ._native import FrictionModel
 from .catalogue import laws
 from .errors import InputError
 from .plant import Plant
-from .plot import ACCENT, CYCLE, FAINT, decimate
+from .plot import ACCENT, CYCLE, FAINT, thinned
 
 if TYPE_CHECKING:
     from .motor import Motor
@@ -51,7 +51,7 @@ def drawing(lines: Sequence[Line], x: str, y: str) -> str:
     x, y : str
         What the axes show, with units.
     """
-    thin = [(name, *_finite(*decimate(across, up, BUCKETS))) for name, across, up in lines]
+    thin = [(name, *_finite(*thinned(across, up, BUCKETS))) for name, across, up in lines]
     thin = [line for line in thin if line[1].size > 1]
     if not thin:
         return ""

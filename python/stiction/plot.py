@@ -37,7 +37,6 @@ __all__ = [
     "TEXT",
     "TITLE",
     "WIDTH",
-    "decimate",
     "figure",
     "legend",
     "overlay",
@@ -45,6 +44,7 @@ __all__ = [
     "residual",
     "save",
     "save_or_say",
+    "thinned",
     "tracking",
     "trajectory",
 ]
@@ -210,7 +210,7 @@ def legend(panel: Axes, **keywords: Any) -> None:
     panel.legend(**{"frameon": False, "fontsize": SMALL, "handlelength": 1.6, **keywords})
 
 
-def decimate(
+def thinned(
     x: npt.ArrayLike, y: npt.ArrayLike, buckets: int = _BUCKETS
 ) -> tuple[FloatArray, FloatArray]:
     """A long line by the least and greatest value of each stretch: same picture, fewer points.
@@ -280,7 +280,7 @@ def trajectory(
         drawn.align_ylabels()
     time = trajectory.time
     for panel, name in zip(panels, shown, strict=False):
-        panel.plot(*decimate(time, trajectory[name]), label=name, color=SIMULATED, linewidth=1.1)
+        panel.plot(*thinned(time, trajectory[name]), label=name, color=SIMULATED, linewidth=1.1)
         unit = trajectory.units.get(name, "")
         panel.set_ylabel(f"{name}\n({unit})" if unit else name)
         panel.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=True)
@@ -478,13 +478,13 @@ def _compared(
     drawn, (upper, lower) = figure(
         2, height=4.2, title=title, sharex=True, height_ratios=(2.0, 1.0)
     )
-    upper.plot(*decimate(time, seen), color=MEASURED, linewidth=1.6, label=names[0])
-    upper.plot(*decimate(time, made), color=SIMULATED, linewidth=1.0, label=names[1])
+    upper.plot(*thinned(time, seen), color=MEASURED, linewidth=1.6, label=names[0])
+    upper.plot(*thinned(time, made), color=SIMULATED, linewidth=1.0, label=names[1])
     upper.set_ylabel(f"{quantity} ({unit})")
     upper.margins(y=0.12)
     legend(upper, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.1)
     lower.axhline(0.0, color=FAINT, linewidth=0.8)
-    lower.plot(*decimate(time, seen - made), color=ACCENT, linewidth=0.9)
+    lower.plot(*thinned(time, seen - made), color=ACCENT, linewidth=0.9)
     lower.set_ylabel(f"difference ({unit})")
     lower.set_xlabel("time (s)")
     for panel in (upper, lower):

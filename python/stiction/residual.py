@@ -28,7 +28,7 @@ __all__ = [
     "effort_residual",
     "free_run",
     "input_run",
-    "motor_at_start",
+    "started",
     "starting_velocity",
 ]
 
@@ -265,7 +265,7 @@ def free_run(
     position = without_spikes(position)
     plant = _driven(plant, recording)
     velocity = starting_velocity(recording.time, position, plant.count or count_of(position))
-    motor = motor_at_start(plant, float(position[0]), velocity, start, clock=clock, path=path)
+    motor = started(plant, float(position[0]), velocity, start, clock=clock, path=path)
     trajectory = _simulated(motor, recording)
     return FreeRun(
         recording.time[1:],
@@ -326,7 +326,7 @@ def _simulated(motor: Motor, recording: Recording) -> Trajectory:
     )
 
 
-def motor_at_start(
+def started(
     plant: Plant,
     position: float,
     velocity: float,

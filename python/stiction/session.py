@@ -168,7 +168,7 @@ class Session:
             zip(names_of(self.recordings), self.recordings, strict=True)
         ):
             if each.position is not None:
-                line = plot.decimate(self.clock(index), each.position)
+                line = plot.thinned(self.clock(index), each.position)
                 panel.plot(*line, label=name, linewidth=1.0)
         panel.set_xlabel("session clock (s)")
         panel.set_ylabel(f"position ({self._position_unit})")

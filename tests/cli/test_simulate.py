@@ -14,7 +14,7 @@ from stiction import Plant
 from stiction.begins import load_begins, save_begins
 from stiction.cli import run
 from stiction.cli.simulate import stems_of
-from stiction.residual import motor_at_start
+from stiction.residual import started
 
 DT = 1e-3
 ROWS = 2000
@@ -206,7 +206,7 @@ def preloaded(tmp_path: Path) -> tuple[Path, Path]:
     path.write_text(PRESLIDING, encoding="utf-8")
     plant = Plant.load(path)
     effort = 0.2 + 0.1 * np.sin(6.0 * TIME)
-    motor = motor_at_start(plant, 0.0, 0.0, {"force": BEGIN["force"]})
+    motor = started(plant, 0.0, 0.0, {"force": BEGIN["force"]})
     position = np.append(0.0, motor.simulate(effort[:-1], DT).position)
     return path, written(tmp_path / "run.csv", time_s=TIME, torque_nm=effort, position_rad=position)
 

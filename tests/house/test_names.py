@@ -163,6 +163,7 @@ PARTICLES = frozenset(
 )
 
 PUBLIC = {
+    "closed_loop:Controller.acting",
     "compensation:Compensation.stepped",
     "demo_session:hidden",
     "diagnosis.result:Diagnosis.gap_closed",
@@ -170,8 +171,10 @@ PUBLIC = {
     "library.comparison:UnitComparison.left",
     "library.entry_file:EntryNumber.expected",
     "plant:Plant.following",
+    "plot:thinned",
     "recording.recording:Recording.entered",
     "recording.table:Table.renamed",
+    "residual:started",
     "robot.fit:RobotFit.carried",
 }
 """Documented to users under these names, which stay valid."""

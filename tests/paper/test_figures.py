@@ -131,7 +131,7 @@ def test_thinned_line_keeps_extremes_and_ends():
     time = np.linspace(0.0, 1.0, 100_001)
     line = np.sin(40.0 * time)
     line[5000], line[70_000] = 7.0, -7.0
-    x, y = plot.decimate(time, line)
+    x, y = plot.thinned(time, line)
     assert len(x) < 3100
     assert np.all(np.diff(x) > 0.0)
     assert (y.max(), y.min()) == (7.0, -7.0)
@@ -141,10 +141,10 @@ def test_thinned_line_keeps_extremes_and_ends():
 def test_thinned_line_keeps_gaps_and_short_lines():
     line = np.ones(100_000)
     line[20_000:40_000] = np.nan
-    _, y = plot.decimate(np.arange(100_000.0), line)
+    _, y = plot.thinned(np.arange(100_000.0), line)
     assert np.isnan(y).any()
     short = np.array([1.0, np.nan, 2.0])
-    assert plot.decimate(np.arange(3.0), short)[1] is short
+    assert plot.thinned(np.arange(3.0), short)[1] is short
 
 
 def test_plotting_is_imported_on_use_only():

@@ -20,9 +20,9 @@ from ..plot import (
     MEASURED,
     SIMULATED,
     SMALL,
-    decimate,
     figure,
     legend,
+    thinned,
 )
 from ..trajectory import FloatArray
 from .dynamic import PulseTrains, RampAndCut, RampAndHold
@@ -63,7 +63,7 @@ def _ramp_and_cut(run: RampAndCut) -> Figure:
     )
     torque.sharex(position)
     torque.tick_params(labelbottom=False)
-    torque.plot(*decimate(run.time, run.effort), color=MEASURED, linewidth=1.0)
+    torque.plot(*thinned(run.time, run.effort), color=MEASURED, linewidth=1.0)
     torque.set_ylabel(_TORQUE)
     _line(position, run.time, run.measured)
     _target(position, run.target)
@@ -104,7 +104,7 @@ def _ramp_and_hold(run: RampAndHold) -> Figure:
     drawn, (torque, position) = figure(
         2, height=4.2, title=run.title, sharex=True, height_ratios=(1.0, 2.0)
     )
-    torque.plot(*decimate(run.time, run.effort), color=MEASURED, linewidth=1.2)
+    torque.plot(*thinned(run.time, run.effort), color=MEASURED, linewidth=1.2)
     torque.set_ylabel(_TORQUE)
     torque.set_ylim(bottom=0.0, top=1.15 * float(run.effort.max()))
     _line(position, run.time, run.measured)
@@ -127,11 +127,11 @@ def _pulse_trains(run: PulseTrains) -> Figure:
     drawn, (torque, position, rest) = figure(
         3, height=6.0, title=run.title, sharex=True, height_ratios=(1.0, 1.7, 1.7)
     )
-    torque.plot(*decimate(run.time, run.effort, 4000), color=MEASURED, linewidth=0.7)
+    torque.plot(*thinned(run.time, run.effort, 4000), color=MEASURED, linewidth=0.7)
     torque.set_ylabel(_TORQUE)
     torque.set_ylim(1.4 * min((*run.sizes, 0.0)), 1.3 * max((*run.sizes, 0.0)))
     position.plot(
-        *decimate(run.time, run.measured / ARC_SECOND, 4000), color=SIMULATED, linewidth=0.6
+        *thinned(run.time, run.measured / ARC_SECOND, 4000), color=SIMULATED, linewidth=0.6
     )
     position.set_ylabel(_POSITION)
     rest.plot(
@@ -222,7 +222,7 @@ def _hardening_cycles(run: HardeningCycles) -> Figure:
     drawn, (loop, plastic) = figure(1, 2, height=3.7, title=run.title)
     _path(loop, run.effort, run.position)
     permanent = run.states["plastic"] / ARC_SECOND
-    plastic.plot(*decimate(run.time, permanent), color=SIMULATED, linewidth=1.4)
+    plastic.plot(*thinned(run.time, permanent), color=SIMULATED, linewidth=1.4)
     plastic.plot(run.time[run.settled_at], permanent[run.settled_at], "o", color=ACCENT, ms=4)
     for at, added in zip(run.settled_at, run.permanent / ARC_SECOND, strict=True):
         text = f"{added:+.2f}".replace("-", "−") if abs(added) >= 0.005 else "0"
@@ -354,12 +354,12 @@ def _loop_areas(run: LoopAreas) -> Figure:
 def _stick_slip(run: StickSlip) -> Figure:
     drawn, (position, torque) = figure(2, height=4.4, title=run.title, sharex=True)
     position.plot(
-        *decimate(run.time, run.pull), color=MEASURED, linewidth=1.0, label="far end of the spring"
+        *thinned(run.time, run.pull), color=MEASURED, linewidth=1.0, label="far end of the spring"
     )
-    position.plot(*decimate(run.time, run.measured), color=SIMULATED, linewidth=1.3, label="rotor")
+    position.plot(*thinned(run.time, run.measured), color=SIMULATED, linewidth=1.3, label="rotor")
     position.set_ylabel("position (rad)")
     legend(position, loc="upper left")
-    torque.plot(*decimate(run.time, run.effort), color=ACCENT, linewidth=1.0)
+    torque.plot(*thinned(run.time, run.effort), color=ACCENT, linewidth=1.0)
     torque.set_ylabel("torque of\nthe spring (N·m)")
     torque.set_xlabel(_TIME)
     drawn.align_ylabels()
@@ -367,7 +367,7 @@ def _stick_slip(run: StickSlip) -> Figure:
 
 
 def _line(panel: Axes, time: FloatArray, position: FloatArray) -> None:
-    panel.plot(*decimate(time, position / ARC_SECOND), color=SIMULATED, linewidth=1.0)
+    panel.plot(*thinned(time, position / ARC_SECOND), color=SIMULATED, linewidth=1.0)
 
 
 def _target(panel: Axes, target: float) -> None:

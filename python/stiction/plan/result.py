@@ -100,10 +100,10 @@ class Signal:
         figure, axes = plot.figure(
             rows, height=2.2 * rows, title=f"{self.experiment}: {self.purpose}", sharex=True
         )
-        axes[0].plot(*plot.decimate(self.time, self.values), color=plot.SIMULATED, lw=0.9)
+        axes[0].plot(*plot.thinned(self.time, self.values), color=plot.SIMULATED, lw=0.9)
         axes[0].set_ylabel(self.column)
         if self.kind == "input":
-            axes[1].plot(*plot.decimate(self.time, self.expected), color=plot.ACCENT, lw=0.9)
+            axes[1].plot(*plot.thinned(self.time, self.expected), color=plot.ACCENT, lw=0.9)
             axes[1].set_ylabel("simulated position")
         axes[-1].set_xlabel("time / s")
         return figure

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ..plot import WIDTH, decimate
+from ..plot import WIDTH, thinned
 from .axis import Axis
 from .chart import Line
 
@@ -33,7 +33,7 @@ def trace_line(
     time: np.ndarray, values: np.ndarray, colour: str, width: float, narrow: bool
 ) -> Line:
     """A line over time, of as many points as can be seen."""
-    return Line(*decimate(time, values, 350 if narrow else 700), colour, width)
+    return Line(*thinned(time, values, 350 if narrow else 700), colour, width)
 
 
 def extent(parts: Sequence[np.ndarray]) -> float:

@@ -16,7 +16,7 @@ from markupsafe import Markup
 
 from ..compared import comparison_of
 from ..diagnosis.pictures import ROLES
-from ..plot import decimate
+from ..plot import thinned
 from .numbers import percent
 from .packing import Packed, pack
 from .scale import Scale, scale_for, scale_of
@@ -253,7 +253,7 @@ def _kept(traces: Sequence[Trace]) -> Sequence[Trace]:
 def _extremes(trace: Trace, blocks: int) -> Trace:
     """A recording by the rows in which its effort or its residual is extreme, block by block."""
     place = np.arange(len(trace.time), dtype=np.float64)
-    found = [decimate(place, values, blocks)[0] for values in (trace.effort, trace.after)]
+    found = [thinned(place, values, blocks)[0] for values in (trace.effort, trace.after)]
     rows = np.unique(np.concatenate(found)).astype(np.intp)
     one, two = trace.simulated or (None, None)
     return replace(

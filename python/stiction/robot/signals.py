@@ -98,7 +98,7 @@ class RobotSignal:
         for k, name in enumerate(self.names):
             if self.joint in ("", name):
                 axes[0].plot(
-                    *plot.decimate(self.time, self.positions[:, k]),
+                    *plot.thinned(self.time, self.positions[:, k]),
                     color=plot.CYCLE[k % len(plot.CYCLE)],
                     lw=0.9,
                     label=name,
