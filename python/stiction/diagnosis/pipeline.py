@@ -14,7 +14,7 @@ import numpy as np
 from .. import __version__, given
 from ..best_effort import Failure, attempt
 from ..errors import InputError, NotEnoughData
-from ..fitting.forms import residual_sentence as residual_told
+from ..fitting.forms import residual_sentence
 from ..given import instance, share, whole
 from ..plant import Plant
 from ..products import on_one_thread
@@ -520,7 +520,7 @@ def _replayed(
     data = {
         **found.data,
         "split": dealt,
-        "residual": residual_told([rows.form for rows in evidence.shown], base.plant),
+        "residual": residual_sentence([rows.form for rows in evidence.shown], base.plant),
     }
     words = "\n".join([evidence.split.describe(), *told])
     found = replace(found, split=words, data=data)
