@@ -34,7 +34,8 @@ NESTED: Final = (0.8, 0.55, 0.35, 0.2)
 """Amplitudes of nested loops in shares of friction."""
 LOOP_S: Final = 0.8
 PULSES: Final = (1.2, 1.6, 2.2)
-"""Heights of pulses in shares of friction."""
+PULSE_S: Final = 5.0
+"""Heights of pulses in shares of friction, and how long one lasts at most."""
 SHARES: Final = (0.05, 0.2, 0.8)
 """Amplitudes of sines in shares of the reach."""
 WAVES: Final = 12
@@ -216,7 +217,7 @@ def _pulses(
             # Accelerated over w, braked by friction alone: x = over·w²/(2·J)·(force/friction).
             far = 0.1 * share * sizes.reach
             width = math.sqrt(2.0 * far * sizes.inertia * sizes.friction / (over * force))
-            width = min(width, share * sizes.speed * sizes.inertia / over)
+            width = min(width, share * sizes.speed * sizes.inertia / over, PULSE_S)
             samples = max(2, round(width / dt))
             for sign in (1.0, -1.0):
                 parts += [np.full(samples, sign * force), np.zeros(round(0.6 / dt))]
