@@ -467,15 +467,21 @@ class Plant:
         shifting = {record.name for record in effects() if record.shifts_mass}
         return any(effect.name in shifting for effect in self.effects)
 
-    def follower(self) -> Motor:
+    def follower(self, *, count: float | None = None) -> Motor:
         """The plant as a motor that is only moved along given positions (``Motor.follow``).
+
+        Parameters
+        ----------
+        count : float, optional
+            Size of a sensor count that the positions show, rad or m; that of the plant without it.
 
         Raises
         ------
         InputError
-            As for ``motor``, but that a plant of prescribed motion needs no inertia.
+            As for ``motor``, but that a plant of prescribed motion needs no inertia; a count
+            below 0.
         """
-        return self._motor(self.inertia or 1.0, "fast")
+        return self._motor(self.inertia or 1.0, "fast", count)
 
     def friction_model(self, *, strict: bool = False) -> FrictionModel:
         """The friction of the plant, with the effects that act at the contact, never moved.
@@ -504,8 +510,9 @@ class Plant:
         """
         return self.follower().friction_model(strict=strict)
 
-    def _motor(self, inertia: float, integrator: str) -> Motor:
-        return Motor(inertia, integrator=integrator, **self._settings)
+    def _motor(self, inertia: float, integrator: str, count: float | None = None) -> Motor:
+        shown = {} if count is None else {"count": count}
+        return Motor(inertia, integrator=integrator, **(self._settings | shown))
 
     @cached_property
     def _settings(self) -> dict[str, Any]:

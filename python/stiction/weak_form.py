@@ -453,8 +453,11 @@ class WeakForm:
         return drive, friction - ambient, ahead
 
     def start_motor(self, plant: Plant, motion: FloatArray) -> Motor:
-        """The plant as it is for this recording, where a motion starts."""
-        motor = self.own(plant).follower()
+        """The plant as it is for this recording, where a motion starts.
+
+        It knows the step of the readings also where the plant states no sensor.
+        """
+        motor = self.own(plant).follower(count=self.count)
         motor.reset(float(motion[0]), 0.0, time=self.clock, path=self.path)
         return motor
 

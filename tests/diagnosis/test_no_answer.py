@@ -260,10 +260,8 @@ def test_a_contact_that_rests_in_all_rows_is_no_better_law() -> None:
     noise = 0.3 * source.standard_normal(len(time))
     readings = np.round(0.3 * np.sin(2.0 * np.pi * 0.05 * time) + noise)
     drive = {"input": "current_a", "gain": 0.5}
-    sensor = {"counts_per_rev": 8192}
-    machine = st.Plant.from_dict({"drive": drive, "friction": {"law": "dahl"}, "sensor": sensor})
-    count = 2.0 * np.pi / 8192
-    found = st.diagnose(machine, lone(current, count * readings), laws=["coulomb"], surrogates=4)
+    machine = st.Plant.from_dict({"drive": drive, "friction": {"law": "dahl"}})
+    found = st.diagnose(machine, lone(current, 1e-3 * readings), laws=["coulomb"], surrogates=4)
     row = next(row for row in found.laws if row.law == "coulomb")
     assert "nothing moves beyond the noise" in row.reason
     assert found.better_law == ""
