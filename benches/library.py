@@ -26,7 +26,7 @@ from tests.blind import real
 import stiction as st
 from stiction.bam import read_bam
 from stiction.fitting import FitResult
-from stiction.library.comparison import with_drive_held
+from stiction.library.comparison import fix_drive
 from stiction.plant_file import render
 
 ENTRIES = Path(__file__).parents[1] / "python" / "stiction" / "library" / "entries"
@@ -402,7 +402,7 @@ def sessions_of(recipe: Recipe, session: st.Session, result: FitResult) -> list[
     for recording in session:
         groups.setdefault(recipe.session_of(recording), []).append(recording)
     groups.pop(None, None)
-    plant, _ = with_drive_held(result.plant)
+    plant, _ = fix_drive(result.plant)
     return [st.fit(plant, group) for group in groups.values()]
 
 

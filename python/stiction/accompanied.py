@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .plant import Plant
     from .weak_form import Start, WeakForm
 
-__all__ = ["accompanied"]
+__all__ = ["nearby_motion"]
 
 PULL_RATE: Final = 10.0
 """Rate at which a run is drawn back to the measured motion, over the support of the kernel: fast
@@ -22,7 +22,7 @@ STEADY: Final = 0.3
 """Most that this rate may be over one sample; a sampled spring gets unstable at 2."""
 
 
-def accompanied(
+def nearby_motion(
     form: WeakForm,
     plant: Plant,
     start: Start = None,
@@ -63,9 +63,9 @@ def accompanied(
     inertia = form.own(plant).inertia
     # The pull acts on what the motor turns at once, and sampled it must not shake that either.
     inertia *= min(1.0, STEADY * (1.0 - _behind_a_shaft(plant)) / (rate * form.dt))
-    motor = form.begun(plant, target)
+    motor = form.start_motor(plant, target)
     load = form.load[:-1] if load is None else load
-    motion = form.motion if position is None else form.moved(position, load=load)
+    motion = form.motion if position is None else form.with_motion(position, load=load)
     readings, pull = motor.accompany(
         motion, inertia * rate**2, 2.0 * inertia * rate, start=start, strict=False
     )

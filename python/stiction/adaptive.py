@@ -9,7 +9,7 @@ import numpy as np
 from . import _native
 from .trajectory import FloatArray
 
-__all__ = ["adaptively_smoothed"]
+__all__ = ["smooth_adaptively"]
 
 WIDEST_S: Final = 0.016
 """Half the width of the widest window, s: what a machine does on the way to a stop takes longer."""
@@ -19,7 +19,7 @@ NOISELESS: Final = 1e-9
 """Noise below this share of the range of motion is none."""
 
 
-def adaptively_smoothed(readings: FloatArray, dt: float, noise: float) -> FloatArray:
+def smooth_adaptively(readings: FloatArray, dt: float, noise: float) -> FloatArray:
     """Positions behind readings, each from the widest window that noise does not refute.
 
     Parabolas are fitted to windows of 1, 3, 5, 9, … samples. About every sample the widest one is

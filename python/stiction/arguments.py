@@ -9,16 +9,16 @@ from inspect import Parameter, signature
 from typing import Any, Final, ParamSpec, TypeVar
 
 from .errors import InputError
-from .given import MOST_WHOLE, numbers, shown, whole, word, yes_or_no
+from .given import MOST_WHOLE, brief, numbers, whole, word, yes_or_no
 from .parameter import number
 
-__all__ = ["checked"]
+__all__ = ["check_arguments"]
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def checked(function: Callable[P, R]) -> Callable[P, R]:
+def check_arguments(function: Callable[P, R]) -> Callable[P, R]:
     """Refuse arguments that are not of the kind which the annotation of their parameter states.
 
     Looked at are ``float``, ``int``, ``str``, ``bool`` and ``Sequence[float]``, each also with
@@ -80,7 +80,7 @@ def _int(given: Any, where: str) -> int:
 def _floats(given: Any, where: str) -> tuple[float, ...]:
     row = numbers(given, where)
     if row.ndim != 1:
-        raise InputError(f"{where} is {shown(given)}; give a sequence of numbers")
+        raise InputError(f"{where} is {brief(given)}; give a sequence of numbers")
     return tuple(_float(value, f"{where}[{k}]") for k, value in enumerate(row.tolist()))
 
 

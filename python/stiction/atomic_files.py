@@ -26,7 +26,7 @@ try:
 except ImportError:  # not there on Windows, where a file that is open cannot be removed anyway
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["create_text", "new_folder", "replacing", "subfolder", "write_text"]
+__all__ = ["atomic_write", "create_text", "new_folder", "subfolder", "write_text"]
 
 _DRAFT: Final = re.compile(r"\.stiction-[0-9a-f]{16}\.part")
 """Names of what is being written; short, for a long name of the file itself must still fit."""
@@ -54,7 +54,7 @@ def write_text(path: Path, text: str) -> None:
     OSError
         It cannot be written; names ``path``.
     """
-    with replacing(path) as file:
+    with atomic_write(path) as file:
         file.write(_encoded(text))
 
 
@@ -84,7 +84,7 @@ def create_text(path: Path, text: str) -> None:
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[BinaryIO]:
+def atomic_write(path: Path) -> Iterator[BinaryIO]:
     """A file to write, which takes the place of ``path`` once all of it is there.
 
     Parameters

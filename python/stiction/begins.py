@@ -17,7 +17,7 @@ from .catalogue import laws
 from .errors import InputError
 from .parameter import number
 from .plant_file import read_toml
-from .wording import listed
+from .wording import commas
 
 if TYPE_CHECKING:
     from .fitting.rows import Nuisances, Rows
@@ -135,11 +135,11 @@ def load_begins(beside: Path, plant: Plant) -> dict[str, Begin]:
             raise InputError(f"{where}: is no table; write it as `stiction fit` does, or remove it")
         if foreign := begin.keys() - {CLOCK, PATH, *quantities}:
             raise InputError(
-                f"{where}: {listed(sorted(foreign))} is nothing that {law} brings "
-                f"along ({listed(quantities) or 'nothing'}); fit again, or remove the file"
+                f"{where}: {commas(sorted(foreign))} is nothing that {law} brings "
+                f"along ({commas(quantities) or 'nothing'}); fit again, or remove the file"
             )
         if CLOCK not in begin or PATH not in begin:
-            raise InputError(f"{where}: {listed((CLOCK, PATH))} are needed; state both")
+            raise InputError(f"{where}: {commas((CLOCK, PATH))} are needed; state both")
         told[name] = {key: number(value, f"{where} {key}") for key, value in begin.items()}
     return told
 

@@ -9,7 +9,7 @@ from typing import Any, Final, TypeVar
 
 from . import _native
 from .errors import UnknownName
-from .wording import did_you_mean, listed
+from .wording import commas, did_you_mean
 
 __all__ = [
     "Catalogue",
@@ -242,7 +242,7 @@ class Catalogue(tuple[Record, ...]):
                 return record
         names, what = self.names, "law" if isinstance(self[0], LawRecord) else "effect"
         raise UnknownName(
-            f"there is no {what} '{key}'{did_you_mean(key, names)}; there are {listed(names)}"
+            f"there is no {what} '{key}'{did_you_mean(key, names)}; there are {commas(names)}"
         )
 
     def __contains__(self, key: object) -> bool:

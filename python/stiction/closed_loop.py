@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .errors import InputError
-from .motion import count_of, evenly, held
+from .motion import count_of, evenly, zero_order_hold
 from .recording.checks import without_failures, without_spikes
 from .residual import FreeRun, free_run, started, starting_velocity
 from .trajectory import FloatArray
@@ -301,17 +301,21 @@ def replay(
         raise InputError(f"{source}: {NO_POSITION}")
     stamps, time, dt = evenly(recording.time)
     measured = np.interp(time, stamps, without_spikes(recording.position))
-    reference = held(time, stamps, recording.channels["reference"])
+    reference = zero_order_hold(time, stamps, recording.channels["reference"])
     velocity = starting_velocity(time, measured, plant.count or count_of(measured))
     begin = {"reading": float(measured[0]), "velocity": velocity}
     needed = _along(controller, recording, reference, measured, dt, begin)
     missed, total = (None, 0.0) if needed is None else _compared(controller, plant, *needed, dt)
     load = recording.channels.get("load")
-    loads = [0.0] * len(time) if load is None else held(time, stamps, load).tolist()
+    loads = [0.0] * len(time) if load is None else zero_order_hold(time, stamps, load).tolist()
     warmth = recording.channels.get("temperature")
-    warmths = [None] * len(time) if warmth is None else held(time, stamps, warmth).tolist()
+    warmths = (
+        [None] * len(time) if warmth is None else zero_order_hold(time, stamps, warmth).tolist()
+    )
     on = recording.channels.get("enabled")
-    switched = [True] * len(time) if on is None else (held(time, stamps, on) != 0.0).tolist()
+    switched = (
+        [True] * len(time) if on is None else (zero_order_hold(time, stamps, on) != 0.0).tolist()
+    )
     motor = started(plant, begin["reading"], begin["velocity"], start, clock=clock, path=path)
     act = controller.acting(reference, dt, **begin, total=total)
     if ahead is not None:
@@ -405,7 +409,7 @@ def _along(
     act = controller.acting(reference, dt, **begin)
     pairs = zip(measured.tolist(), moving.tolist(), strict=True)
     own = [act(k, reading, speed) for k, (reading, speed) in enumerate(pairs)]
-    return held(time, stamps, recording.input), np.array(own)
+    return zero_order_hold(time, stamps, recording.input), np.array(own)
 
 
 def _compared(

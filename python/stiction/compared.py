@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from .plant import Plant
 
-__all__ = ["EFFORT", "Compared", "compared_by"]
+__all__ = ["EFFORT", "Compared", "comparison_of"]
 
 MOST_PERCENT: Final = 10.0
 """Shares beyond this are told as a multiple: nobody reads 1234.56 %."""
@@ -51,6 +51,6 @@ POSITION: Final = Compared(
 )
 
 
-def compared_by(plant: Plant) -> Compared:
+def comparison_of(plant: Plant) -> Compared:
     """What this plant is compared with a machine by."""
     return POSITION if plant.servo else EFFORT

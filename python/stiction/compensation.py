@@ -13,7 +13,7 @@ from .begins import Begin, begin_of
 from .closed_loop import ClosedLoop
 from .errors import InputError
 from .frozen import path_of
-from .intervals import drawn, intervals_of
+from .intervals import draw_values, intervals_of
 from .plant import Plant
 from .recording import Recording
 from .recording.names import names_of
@@ -308,7 +308,7 @@ def compensate(
     source = np.random.default_rng(seed)
     for row in machines:
         own = plant.with_values(
-            drawn(within, source, lambda values: plant.with_values(values).motor())
+            draw_values(within, source, lambda values: plant.with_values(values).motor())
         )
         for k, share in enumerate((0.0, 1.0)):
             runs = [

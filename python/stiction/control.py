@@ -40,7 +40,7 @@ class _Vector:
             places = np.ndindex(*shape)
             self.names += [f"{name}.rows", *(f"{name}{list(place)}" for place in places)]
 
-    def packed(self, state: dict[str, Any]) -> FloatArray:
+    def pack(self, state: dict[str, Any]) -> FloatArray:
         """The vector of a state."""
         parts = [np.array([float(state[name]) for name in self._numbers])]
         for name, shape in self._arrays.items():
@@ -107,7 +107,7 @@ def system(plant: Plant, dt: float, *, room: int = ROOM) -> Any:
     def update(_: float, state: FloatArray, inputs: FloatArray, __: Any) -> FloatArray:
         motor.state = vector.state(state)
         motor.step(float(inputs[0]), step, load=float(inputs[1]))
-        return vector.packed(motor.state)
+        return vector.pack(motor.state)
 
     def output(_: float, state: FloatArray, __: FloatArray, ___: Any) -> FloatArray:
         return np.array(state[: len(OUTPUTS)])
@@ -146,7 +146,7 @@ def start(
     """
     motor, vector, _ = _parts(plant, dt, room)
     motor.reset(position, velocity)
-    return vector.packed(motor.state)
+    return vector.pack(motor.state)
 
 
 def _parts(plant: Plant, dt: float, room: int) -> tuple[Motor, _Vector, float]:

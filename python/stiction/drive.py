@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from .errors import InputError
-from .keys import choice, known
+from .keys import check_keys, choice
 from .parameter import Parameter, number
-from .wording import listed
+from .wording import commas
 
 __all__ = [
     "GOALS",
@@ -141,11 +141,11 @@ def read_drive(given: Mapping[str, Any], motion: str, where: str) -> dict[str, A
     kind = choice(given["kind"], KINDS, f"{where} kind") if "kind" in given else None
     drive: dict[str, Any] = {} if kind is None else {"kind": kind}
     if kind == "servo":
-        known(given, ("kind", "torque_constant", *SERVO_NUMBERS), f"{where} of kind 'servo'")
+        check_keys(given, ("kind", "torque_constant", *SERVO_NUMBERS), f"{where} of kind 'servo'")
         for name in _NEEDED:
             if name not in given:
                 raise InputError(
-                    f"{where} {name} is missing; a servo needs {listed(_NEEDED)}: state it"
+                    f"{where} {name} is missing; a servo needs {commas(_NEEDED)}: state it"
                 )
         drive["input"] = GOALS[motion]
         drive |= {
@@ -153,11 +153,11 @@ def read_drive(given: Mapping[str, Any], motion: str, where: str) -> dict[str, A
         }
         check_servo(drive, where)
     else:
-        known(given, ("kind", *_OF_INPUT), where)
+        check_keys(given, ("kind", *_OF_INPUT), where)
         useless = [name for name in _OF_INPUT if name in given]
         if kind == "prescribed_motion" and useless:
             raise InputError(
-                f"{where} {listed(useless)} goes with an input, and a machine whose motion is "
+                f"{where} {commas(useless)} goes with an input, and a machine whose motion is "
                 "prescribed has none; leave it out"
             )
         if "input" in given:

@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from ._native import played
-from .adaptive import adaptively_smoothed
-from .motion import Kernel, narrowest, rested, smooth
+from .adaptive import smooth_adaptively
+from .motion import Kernel, hold_at_rest, narrowest, smooth
 from .trajectory import FloatArray
 
 __all__ = ["Driving"]
@@ -98,7 +98,7 @@ class Driving:
     def motion(self, readings: FloatArray) -> FloatArray:
         """The motion behind readings; same shape."""
         if self._springy:
-            return adaptively_smoothed(readings, self._dt, self._noise)
+            return smooth_adaptively(readings, self._dt, self._noise)
         if self.steadied > 0.0:
             return smooth(readings, self._dt, self.steadied, drifts=True)
         followed = smooth(played(readings, self._backlash), self._dt, self._smoothing)
@@ -108,10 +108,10 @@ class Driving:
             # Below break-away a machine yields a little, which a contact without a spring does not.
             return np.full_like(readings, readings[0])
         if self._backlash > 0.0:
-            return rested(followed, readings, self._window, RESTING * self._noise)
+            return hold_at_rest(followed, readings, self._window, RESTING * self._noise)
         # Little noise turns readings round where a machine rests between counts, and there alone.
         width = FLICKER * self._count
-        return rested(followed, readings, self._window, width, to_and_fro=True)
+        return hold_at_rest(followed, readings, self._window, width, to_and_fro=True)
 
     @property
     def flickers(self) -> bool:

@@ -20,7 +20,7 @@ from .frozen import Frozen, freeze, path_of
 from .keys import choice
 from .motor import Motor
 from .trajectory import FloatArray
-from .wording import listed
+from .wording import commas
 
 __all__ = ["Ensemble", "EnsembleRun", "Reduce", "simulate_ensemble"]
 
@@ -170,7 +170,7 @@ class Ensemble(_Ensemble):
             raise InputError(
                 "members is missing; give how many there are, or parameters of one length each"
                 if not sizes
-                else f"parameters have {listed([str(n) for n in sorted(sizes)])} values; give all "
+                else f"parameters have {commas([str(n) for n in sorted(sizes)])} values; give all "
                 "of them one value a member"
             )
         count = members if members is not None else sizes.pop()
@@ -363,7 +363,7 @@ def simulate_ensemble(
     sizes = {len(row) for row in values.values()} | ({len(inputs)} if inputs.ndim == 2 else set())
     if len(sizes) > 1:
         raise InputError(
-            f"parameters and currents are for {listed([str(n) for n in sorted(sizes)])} machines; "
+            f"parameters and currents are for {commas([str(n) for n in sorted(sizes)])} machines; "
             "give all of them one row or value a machine"
         )
     members = sizes.pop() if sizes else 1

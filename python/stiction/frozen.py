@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeVar
 
 from .errors import InputError, UnknownName
-from .given import mapping, shown
-from .wording import did_you_mean, listed
+from .given import brief, mapping
+from .wording import commas, did_you_mean
 
 __all__ = ["ByPath", "Frozen", "freeze", "path_of"]
 
@@ -35,7 +35,7 @@ class Frozen(Mapping[K, V]):
             # What cannot change can be shared.
             items = given._items if isinstance(given, Frozen) else dict(given)
         except (TypeError, ValueError):
-            raise InputError(f"{shown(given)} holds nothing by name; give a mapping") from None
+            raise InputError(f"{brief(given)} holds nothing by name; give a mapping") from None
         object.__setattr__(self, "_items", items)
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -114,6 +114,6 @@ def path_of(name: str, paths: Iterable[str], where: str = "", lacking: str = "is
     if len(hits) == 1:
         return hits[0]
     if hits:
-        raise UnknownName(f"{where}parameter '{name}' may be {listed(hits)}; give the whole path")
+        raise UnknownName(f"{where}parameter '{name}' may be {commas(hits)}; give the whole path")
     near = did_you_mean(name, [*known, *words]) if isinstance(name, str) else ""
-    raise UnknownName(f"{where}parameter {name!r} {lacking}{near}; known: {listed(known)}")
+    raise UnknownName(f"{where}parameter {name!r} {lacking}{near}; known: {commas(known)}")

@@ -18,7 +18,9 @@ from .errors import InputError
 
 __all__ = [
     "MOST_WHOLE",
+    "brief",
     "each_of",
+    "explain_write_errors",
     "instance",
     "mapping",
     "memory_for",
@@ -26,14 +28,12 @@ __all__ = [
     "numbers",
     "path",
     "real",
+    "refuse_mask",
     "regular",
     "share",
-    "shown",
-    "unmasked",
     "vacant",
     "whole",
     "word",
-    "written",
     "yes_or_no",
 ]
 
@@ -71,7 +71,7 @@ def each_of(given: Any, where: str, remedy: str) -> Iterator[Any]:
     try:
         return iter(given)
     except TypeError:
-        raise InputError(f"{where} = {shown(given)} is no sequence; give {remedy}") from None
+        raise InputError(f"{where} = {brief(given)} is no sequence; give {remedy}") from None
 
 
 def instance(given: object, kind: type[T] | UnionType, where: str, remedy: str) -> T:
@@ -92,7 +92,7 @@ def instance(given: object, kind: type[T] | UnionType, where: str, remedy: str) 
         Anything else.
     """
     if not isinstance(given, kind):
-        raise InputError(f"{where} is {shown(given)}; give {remedy}")
+        raise InputError(f"{where} is {brief(given)}; give {remedy}")
     return given
 
 
@@ -107,7 +107,7 @@ def mapping(given: Any, where: str, remedy: str) -> Mapping[str, Any]:
     if given is None:
         return {}
     if not isinstance(given, Mapping):
-        raise InputError(f"{where} is {shown(given)}; give {remedy}")
+        raise InputError(f"{where} is {brief(given)}; give {remedy}")
     return given
 
 
@@ -171,7 +171,7 @@ def names(given: Any, where: str) -> list[str]:
     names = list(each_of(given, where, "a sequence of names"))
     for k, name in enumerate(names):
         if not isinstance(name, str):
-            raise InputError(f"{where}[{k}] = {shown(name)} is no word; give a sequence of names")
+            raise InputError(f"{where}[{k}] = {brief(name)} is no word; give a sequence of names")
     return names
 
 
@@ -184,7 +184,7 @@ def path(given: str | os.PathLike[str], where: str) -> Path:
         Anything that names no file: None, a number, bytes.
     """
     if not isinstance(given, str | os.PathLike) or isinstance(os.fspath(given), bytes):
-        raise InputError(f"{where}: {shown(given)} is not a path; give the name of a file")
+        raise InputError(f"{where}: {brief(given)} is not a path; give the name of a file")
     try:
         nameable = b"\0" not in os.fsencode(given)
     except UnicodeEncodeError:
@@ -212,7 +212,7 @@ def whole(given: Any, name: str, *, least: int, most: int | None = None) -> int:
     if number is None or number < least or (most is not None and number > most):
         upto = "" if most is None else f" to {most}"
         raise InputError(
-            f"{name} = {shown(given)} is out of bounds: give a whole number from {least}{upto}"
+            f"{name} = {brief(given)} is out of bounds: give a whole number from {least}{upto}"
         )
     return number
 
@@ -228,7 +228,7 @@ def share(given: Any, name: str) -> float:
     number = given if isinstance(given, Real) and not isinstance(given, bool) else None
     if number is None or not 0.0 < float(number) < 1.0:
         raise InputError(
-            f"{name} = {shown(given)} is out of bounds: give a share above 0 and below 1, such as "
+            f"{name} = {brief(given)} is out of bounds: give a share above 0 and below 1, such as "
             "0.01"
         )
     return float(number)
@@ -249,11 +249,11 @@ def yes_or_no(given: object, where: str) -> bool:
         Anything else.
     """
     if not isinstance(given, bool) and type(given).__name__ not in ("bool_", "bool"):
-        raise InputError(f"{where} is {shown(given)}; give True or False")
+        raise InputError(f"{where} is {brief(given)}; give True or False")
     return bool(given)
 
 
-def unmasked(given: object, where: str) -> None:
+def refuse_mask(given: object, where: str) -> None:
     """Refuse an array that is masked somewhere: an input has no gaps.
 
     Raises
@@ -297,7 +297,7 @@ def numbers(given: Any, where: str) -> npt.NDArray[np.float64]:
     InputError
         Anything else.
     """
-    unmasked(given, where)
+    refuse_mask(given, where)
     try:
         array: npt.NDArray[np.float64] = np.asarray(real(given), dtype=np.float64)
     except (OverflowError, TypeError, ValueError) as error:
@@ -330,12 +330,12 @@ def word(given: Any, where: str) -> str:
         Anything else.
     """
     if not isinstance(given, str):
-        raise InputError(f"{where} is {shown(given)}; give a word")
+        raise InputError(f"{where} is {brief(given)}; give a word")
     return given
 
 
 @contextmanager
-def written(file: Path) -> Iterator[None]:
+def explain_write_errors(file: Path) -> Iterator[None]:
     """Says in a sentence that a file cannot be written.
 
     Raises
@@ -351,7 +351,7 @@ def written(file: Path) -> Iterator[None]:
         ) from None
 
 
-def shown(given: object) -> str:
+def brief(given: object) -> str:
     """An object in a sentence: short, on one line."""
     try:
         shown = " ".join(repr(given).split())

@@ -11,7 +11,7 @@ from . import given
 from .ensemble import Ensemble
 from .errors import InputError
 from .frozen import path_of
-from .intervals import drawn, intervals_of
+from .intervals import draw_values, intervals_of
 from .parameter import number
 from .plant import Plant
 from .trajectory import FloatArray
@@ -69,9 +69,9 @@ class _Task:
         self.observation_space = gymnasium.spaces.Box(-bounds, bounds, dtype=np.float64)
         self.action_space = gymnasium.spaces.Box(-self.limit, self.limit, (1,), np.float64)
 
-    def drawn(self, source: np.random.Generator) -> dict[str, float]:
+    def draw_values(self, source: np.random.Generator) -> dict[str, float]:
         """Values within the intervals, that a motor takes."""
-        return drawn(self.intervals, source, lambda values: self.machines(1, values))
+        return draw_values(self.intervals, source, lambda values: self.machines(1, values))
 
     def machines(self, members: int, values: Mapping[str, Any]) -> Ensemble:
         """Machines at rest with these values, and with what the plant leaves open and follows."""
@@ -85,7 +85,7 @@ class _Task:
         """A place to go to."""
         return float(source.uniform(-TARGETS, TARGETS)) * self.reach
 
-    def observed(self, read: FloatArray, before: FloatArray, target: FloatArray) -> FloatArray:
+    def observe(self, read: FloatArray, before: FloatArray, target: FloatArray) -> FloatArray:
         """Position and velocity as the encoder shows them, and the target; shape (members, 3)."""
         rows = np.stack([read, (read - before) / self.dt, target], axis=-1)
         found: FloatArray = np.clip(rows, self.observation_space.low, self.observation_space.high)
@@ -170,7 +170,7 @@ class Positioning(gymnasium.Env[FloatArray, FloatArray]):  # type: ignore[misc, 
         """Begin an episode with a machine at rest at 0; see the class."""
         super().reset(seed=seed)
         task, asked = self._task, dict(options or {})
-        self._values = dict(asked.pop("values", None) or task.drawn(self.np_random))
+        self._values = dict(asked.pop("values", None) or task.draw_values(self.np_random))
         self._target = float(asked.pop("target", task.target(self.np_random)))
         if asked:
             raise InputError(
@@ -179,7 +179,7 @@ class Positioning(gymnasium.Env[FloatArray, FloatArray]):  # type: ignore[misc, 
         self._machine = task.machines(1, self._values)
         self._read = np.zeros(1)
         self._step = 0
-        seen = task.observed(self._read, self._read, np.array([self._target]))[0]
+        seen = task.observe(self._read, self._read, np.array([self._target]))[0]
         return seen, {"position": 0.0, "velocity": 0.0, "parameters": dict(self._values)}
 
     def step(
@@ -192,7 +192,7 @@ class Positioning(gymnasium.Env[FloatArray, FloatArray]):  # type: ignore[misc, 
         held = np.clip(np.asarray(action, dtype=np.float64).ravel()[:1], -task.limit, task.limit)
         run = self._machine.simulate(held[:, None], task.dt, outputs=_OUTPUTS, threads=1)
         position, velocity, read = (run[name][:, -1] for name in _OUTPUTS)
-        seen = task.observed(read, self._read, target)[0]
+        seen = task.observe(read, self._read, target)[0]
         self._read, self._step = read, self._step + 1
         reward = float(task.reward(position, target, held)[0])
         info = {
@@ -266,12 +266,12 @@ class VectorPositioning(
             raise InputError("VectorPositioning: give one seed, which draws all machines")
         super().reset(seed=seed)
         task, members = self._task, range(self.num_envs)
-        drawn = [task.drawn(self.np_random) for _ in members]
+        drawn = [task.draw_values(self.np_random) for _ in members]
         self._targets = np.array([task.target(self.np_random) for _ in members])
         values = {path: np.array([each[path] for each in drawn]) for path in task.intervals}
         self._machines = task.machines(self.num_envs, values)
         self._read, self._step = np.zeros(self.num_envs), 0
-        return task.observed(self._read, self._read, self._targets), {"parameters": values}
+        return task.observe(self._read, self._read, self._targets), {"parameters": values}
 
     def step(
         self, actions: FloatArray
@@ -289,7 +289,7 @@ class VectorPositioning(
             held[:, None], task.dt, outputs=_OUTPUTS, threads=self._threads
         )
         position, velocity, read = (run[name][:, -1] for name in _OUTPUTS)
-        seen = task.observed(read, self._read, self._targets)
+        seen = task.observe(read, self._read, self._targets)
         self._read, self._step = read, self._step + 1
         ended = np.full(self.num_envs, self._step >= task.length)
         info = {"position": position, "velocity": velocity}

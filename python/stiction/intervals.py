@@ -13,7 +13,7 @@ from . import given
 from .errors import InputError
 from .parameter import number
 
-__all__ = ["drawn", "intervals_of"]
+__all__ = ["draw_values", "intervals_of"]
 
 DRAWS: Final = 100
 """Times that values are drawn until a machine takes them: one level may not exceed another."""
@@ -48,7 +48,7 @@ def intervals_of(source: Any) -> dict[str, tuple[float, float]]:
     for path, ends in given.mapping(source, where, "(low, high) by path").items():
         if not isinstance(ends, tuple | list) or len(ends) != 2:
             raise InputError(
-                f"{where}: {path} = {given.shown(ends)} is no interval; give low, high"
+                f"{where}: {path} = {given.brief(ends)} is no interval; give low, high"
             )
         if None in ends:
             continue
@@ -78,7 +78,7 @@ def _read(path: Path) -> dict[str, Any]:
         ) from None
 
 
-def drawn(
+def draw_values(
     intervals: Mapping[str, tuple[float, float]],
     source: np.random.Generator,
     takes: Callable[[dict[str, float]], object],

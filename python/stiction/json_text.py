@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-__all__ = ["json_of", "worded"]
+__all__ = ["infinities_as_words", "json_of"]
 
 
 def json_of(data: Any) -> str:
@@ -15,15 +15,15 @@ def json_of(data: Any) -> str:
     return json.dumps(_plain(data), indent=2, ensure_ascii=False, allow_nan=False)
 
 
-def worded(data: Any) -> Any:
+def infinities_as_words(data: Any) -> Any:
     """The data with the words "inf" and "-inf" for infinities.
 
     In the catalogue they are values of their own: a break-away that is never reached.
     """
     if isinstance(data, dict):
-        return {key: worded(value) for key, value in data.items()}
+        return {key: infinities_as_words(value) for key, value in data.items()}
     if isinstance(data, list | tuple):
-        return [worded(value) for value in data]
+        return [infinities_as_words(value) for value in data]
     if isinstance(data, float) and math.isinf(data):
         return str(data)
     return data

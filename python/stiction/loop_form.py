@@ -61,12 +61,12 @@ class LoopForm(WeakForm):
         self.stride = 1
         self.time = self.stamps[1:]
 
-    def seen_by(self, plant: Plant) -> LoopForm:
+    def for_plant(self, plant: Plant) -> LoopForm:
         """As it is: the simulated motion drives friction."""
         return self
 
     @staticmethod
-    def stamped(time: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+    def timestamps(time: FloatArray) -> tuple[FloatArray, FloatArray, float]:
         """Even ones where the rows are those of a timer; else those of the rows themselves.
 
         A goal that is held to the next even stamp comes half a sample late, and a simulated loop
@@ -112,9 +112,9 @@ class LoopForm(WeakForm):
         seen: FloatArray = np.interp(self.stamps, self._even, made)
         return seen
 
-    def driving(self, readings: FloatArray) -> FloatArray:
+    def driving_motion(self, readings: FloatArray) -> FloatArray:
         """The motion that views look at, from readings of a position; same shape."""
-        return self._seen(super().driving, readings)
+        return self._seen(super().driving_motion, readings)
 
     def velocities(self, position: FloatArray) -> FloatArray:
         """Velocity of a position at the sample ends, shape (n,)."""
@@ -131,7 +131,7 @@ class LoopForm(WeakForm):
 
         return self._seen(bent, readings)[1:]
 
-    def measured(self, plant: Plant) -> FloatArray:
+    def measured_effort(self, plant: Plant) -> FloatArray:
         """Effort that the drive gives along the measured motion; shape (n,)."""
         return self._driven(plant, self.input)
 
@@ -142,7 +142,7 @@ class LoopForm(WeakForm):
 
     def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
         """Measured effort, and that less the residual; shape (n,) each."""
-        measured = self.measured(plant)
+        measured = self.measured_effort(plant)
         return measured, measured - self.residual(plant, start)
 
     def residual(self, plant: Plant, start: Start = None) -> FloatArray:
@@ -165,7 +165,7 @@ class LoopForm(WeakForm):
         moved = self._seen(lambda read: smooth(read, self.dt, self.kernel.support), self.readings)
         return self.stiffness * self.velocities(moved)
 
-    def acted(self, plant: Plant) -> FloatArray:
+    def noise_free_effort(self, plant: Plant) -> FloatArray:
         """Effort that the drive gives along the simulated motion; shape (n,).
 
         What a servo answers to the noise of its readings goes with that, and so does what is left.
@@ -175,7 +175,7 @@ class LoopForm(WeakForm):
         motor = replace(self.own(plant), effects=()).follower()
         motor.reset(float(self.position[0]), 0.0)
         along = np.concatenate([self.position[:1], there])
-        drive: FloatArray = motor.follow(self.moved(along), strict=False)[0]
+        drive: FloatArray = motor.follow(self.with_motion(along), strict=False)[0]
         return drive
 
     def jacobian(self, plant: Plant, paths: Sequence[str], start: Start = None) -> FloatArray:

@@ -16,12 +16,12 @@ __all__ = [
     "Kernel",
     "count_of",
     "evenly",
-    "held",
+    "hold_at_rest",
     "narrowest",
     "noise_of",
-    "rested",
     "smooth",
     "stirs",
+    "zero_order_hold",
 ]
 
 GAUSSIAN: Final = 1.4826
@@ -186,7 +186,7 @@ def count_of(position: FloatArray) -> float:
     return count if len(whole) > 20 and fits.mean() > 0.95 else 0.0
 
 
-def rested(
+def hold_at_rest(
     values: FloatArray, readings: FloatArray, window: int, width: float, *, to_and_fro: bool = False
 ) -> FloatArray:
     """Values that stay as they are as long as readings rest; same shape.
@@ -249,7 +249,7 @@ def evenly(time: FloatArray) -> tuple[FloatArray, FloatArray, float]:
     return time, np.linspace(time[0], time[-1], count + 1), span / count
 
 
-def held(stamps: FloatArray, time: FloatArray, values: FloatArray) -> FloatArray:
+def zero_order_hold(stamps: FloatArray, time: FloatArray, values: FloatArray) -> FloatArray:
     """Values at ``stamps`` of a signal that holds from each of ``time`` to the next."""
     # A stamp that falls short of a sample by a little jitter belongs to it: taken to the letter,
     # half of an even recording would be one sample late.

@@ -18,7 +18,7 @@ from . import given
 from .errors import InputError
 from .plant import Plant
 from .trajectory import FloatArray
-from .wording import listed
+from .wording import commas
 
 __all__ = ["Equations", "Solution", "equations", "solve"]
 
@@ -245,7 +245,7 @@ def equations(plant: Plant, input: Signal, load: Signal | None = None) -> Equati
     for name, signal in (("input", input), ("load", load)):
         if not callable(signal) and not (name == "load" and signal is None):
             raise InputError(
-                f"equations: {name} = {given.shown(signal)} is no function of the time"
+                f"equations: {name} = {given.brief(signal)} is no function of the time"
             )
     if plant.servo or plant.prescribed_motion:
         kind = "a servo" if plant.servo else "prescribed motion"
@@ -254,12 +254,12 @@ def equations(plant: Plant, input: Signal, load: Signal | None = None) -> Equati
     if plant.friction.law not in LAWS:
         raise InputError(
             f"{plant.source}: the equations of {plant.friction.law} do not stand here, those of "
-            f"{listed(LAWS)} do; {other}"
+            f"{commas(LAWS)} do; {other}"
         )
     foreign = [effect.name for effect in plant.effects if effect.name not in EFFECTS]
     if foreign:
         raise InputError(
-            f"{plant.source}: {listed(foreign)} cannot be held, {listed(EFFECTS)} can; {other}"
+            f"{plant.source}: {commas(foreign)} cannot be held, {commas(EFFECTS)} can; {other}"
         )
     return Equations(plant, input, load)
 
@@ -318,7 +318,9 @@ def solve(
 
     equations(plant, input, load)
     until = _Until()
-    made = Equations(plant, until.left(input), None if load is None else until.left(load))
+    made = Equations(
+        plant, until.end_from_below(input), None if load is None else until.end_from_below(load)
+    )
     wanted = given.numbers(times, "solve: times")
     if wanted.ndim != 1 or len(wanted) < 2 or not np.all(np.diff(wanted) > 0.0):
         raise InputError("solve: times do not rise; give two or more, in s")
@@ -377,7 +379,7 @@ class _Until:
     def __init__(self) -> None:
         self.end = np.inf
 
-    def left(self, signal: Signal) -> Signal:
+    def end_from_below(self, signal: Signal) -> Signal:
         """The signal, and at the end its value from the left."""
         return lambda time: signal(min(time, float(np.nextafter(self.end, -np.inf))))
 

@@ -8,7 +8,7 @@ from numbers import Real
 from typing import Any
 
 from .errors import InputError
-from .given import shown
+from .given import brief
 
 __all__ = ["Parameter"]
 
@@ -112,7 +112,7 @@ def number(given: Any, where: str) -> float:
     timed = getattr(getattr(given, "dtype", None), "kind", "f") not in "iuf"
     if isinstance(given, bool) or not isinstance(given, Real) or timed:
         kind = type(given).__name__
-        told = shown(given)
+        told = brief(given)
         what = "" if told == f"a {kind}" else f"{told} "
         quoted = "; leave out the quotes" if _is_number(given) else ""
         raise InputError(f"{where}: {what}is a {kind}; allowed is a number{quoted}")

@@ -24,7 +24,7 @@ from .parameter import Parameter, number
 from .recording.units import Motion
 from .stated import Effect, Friction, check_parameters
 from .trajectory import FloatArray, Trajectory
-from .wording import listed
+from .wording import commas
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -193,7 +193,7 @@ class Plant:
             No path, or a file that cannot be written.
         """
         path = given.path(path, "Plant.save")
-        with given.written(path):
+        with given.explain_write_errors(path):
             write_text(path, plant_file.render(self.to_dict()))
         return path
 
@@ -349,7 +349,7 @@ class Plant:
         }
         if servo and not self.servo:
             raise InputError(
-                f"{self.source}: {listed(servo)} is set for a recording, and only a servo has it; "
+                f"{self.source}: {commas(servo)} is set for a recording, and only a servo has it; "
                 "write [drive] kind = 'servo', or leave it out"
             )
         changed = replace(self, drive={**self.drive, **servo}, body={**self.body, **payload})
@@ -478,7 +478,8 @@ class Plant:
         Raises
         ------
         InputError
-            As for ``motor``, but that a plant of prescribed motion needs no inertia; a count below 0.
+            As for ``motor``, but that a plant of prescribed motion needs no inertia; a count
+            below 0.
         """
         return self._motor(self.inertia or 1.0, "fast", count)
 

@@ -14,10 +14,10 @@ from .drive import read_drive
 from .errors import InputError
 from .file_kinds import kind_of, kind_of_table
 from .given import regular
-from .keys import choice, known
+from .keys import check_keys, choice
 from .parameter import Parameter, number
 from .recording.units import Motion
-from .wording import did_you_mean, listed
+from .wording import commas, did_you_mean
 
 __all__ = ["Parts", "check_payload", "parse", "read", "read_toml", "render"]
 
@@ -173,9 +173,9 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
         raise InputError(
             f"{source}: is a session file, and a plant file is wanted; give the one that it names"
         )
-    known(table, _TABLES, source)
+    check_keys(table, _TABLES, source)
     motion_table = section(table, "motion", source)
-    known(motion_table, ("kind",), f"{source}: [motion]")
+    check_keys(motion_table, ("kind",), f"{source}: [motion]")
     kind = choice(motion_table.get("kind", "rotary"), MOTIONS, f"{source}: [motion] kind")
     motion: Motion = "linear" if kind == "linear" else "rotary"
     law, friction, options = _friction(section(table, "friction", source), source)
@@ -216,7 +216,7 @@ def _body(given: Mapping[str, Any], motion: str, source: str) -> dict[str, Param
             f"{where}: '{key}' is unknown; it is called inertia here, kg·m² of a rotary machine "
             "and kg of a linear one"
         )
-    known(given, _BODY, where)
+    check_keys(given, _BODY, where)
     body = {name: Parameter.read(value, f"{where} {name}") for name, value in given.items()}
     if "inertia" in body and not 0.0 <= body["inertia"].value < math.inf:
         unit = "kg·m²" if motion == "rotary" else "kg"
@@ -249,7 +249,7 @@ def _check_weighed(given: Any, where: str) -> None:
         useless.append("fixed = false")
     if useless:
         raise InputError(
-            f"{where}: {listed(useless)} goes with what is fitted, and a payload is weighed and "
+            f"{where}: {commas(useless)} goes with what is fitted, and a payload is weighed and "
             "measured, never fitted; leave it out"
         )
 
@@ -297,7 +297,7 @@ def _friction(
 
     where = f"{source}: [friction]"
     if "law" not in given:
-        known_laws = listed(record.name for record in laws())
+        known_laws = commas(record.name for record in laws())
         raise InputError(f"{where} law is missing; allowed are {known_laws}")
     law = choice(given["law"], (record.name for record in laws()), f"{where} law")
     record = next(record for record in laws() if record.name == law)
@@ -307,7 +307,7 @@ def _friction(
         meant = None if key in (*names, *options) else called(law, key)
         if meant is not None:
             raise InputError(f"{where}: '{key}' is unknown; it is called '{meant}' here")
-    known(given, ["law", *names, *options], where)
+    check_keys(given, ["law", *names, *options], where)
     words = {
         name: choice(given[name], (w for w, _ in option.choices), f"{where} {name}")
         for name, option in options.items()
@@ -331,14 +331,14 @@ def _effects(
     for index, entry in enumerate(given, 1):
         where = f"{source}: [[effects]] {index}"
         if "name" not in entry:
-            raise InputError(f"{where}: name is missing; allowed are {listed(records)}")
+            raise InputError(f"{where}: name is missing; allowed are {commas(records)}")
         effect = choice(entry["name"], records, f"{where} name")
         if any(effect == other for other, _ in result):
             raise InputError(f"{where}: '{effect}' is there twice; drop one")
         where = f"{where} ({effect})"
         if reason := records[effect].impossible(motion, servo=servo):
             raise InputError(f"{where}: {reason}; leave it out")
-        known(entry, ["name", *(p.name for p in records[effect].parameters)], where)
+        check_keys(entry, ["name", *(p.name for p in records[effect].parameters)], where)
         values = {
             key: Parameter.read(value, f"{where} {key}")
             for key, value in entry.items()
@@ -351,7 +351,7 @@ def _effects(
 def _sensor(given: Mapping[str, Any], motion: str, source: str) -> dict[str, float]:
     where = f"{source}: [sensor]"
     own = "counts_per_rev" if motion == "rotary" else "count_m"
-    known(given, (own,), where)
+    check_keys(given, (own,), where)
     sensor = {name: number(value, f"{where} {name}") for name, value in given.items()}
     for name, value in sensor.items():
         if not 0.0 < value < math.inf:
@@ -364,17 +364,17 @@ def _controller(given: Mapping[str, Any], source: str) -> dict[str, Any]:
     if not given:
         return {}
     if "kind" not in given:
-        raise InputError(f"{where} kind is missing; allowed are {listed(_CONTROLLERS)}")
+        raise InputError(f"{where} kind is missing; allowed are {commas(_CONTROLLERS)}")
     kind = choice(given["kind"], _CONTROLLERS, f"{where} kind")
     needed, possible = _CONTROLLERS[kind]
     numbers = (*needed, *possible, "filter_s", "limit")
-    known(given, ("kind", "derivative", *numbers), f"{where} of kind '{kind}'")
+    check_keys(given, ("kind", "derivative", *numbers), f"{where} of kind '{kind}'")
     for name in needed:
         if name not in given:
             raise InputError(
                 f"{where} {name} is missing; a controller of kind '{kind}' needs "
                 f"{' and '.join(needed)}: state {name}, or take another kind of "
-                f"{listed(_CONTROLLERS)}"
+                f"{commas(_CONTROLLERS)}"
             )
     controller: dict[str, Any] = {"kind": kind}
     if "derivative" in given:

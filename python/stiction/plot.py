@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import given
-from .atomic_files import replacing
+from .atomic_files import atomic_write
 from .best_effort import Failure, attempt
 from .errors import InputError
 from .trajectory import FloatArray
@@ -399,7 +399,7 @@ def save(fig: Figure | Panels | Axes, path: str | Path) -> Path:
     if path.suffix not in _FORMATS:
         raise InputError(f"{path}: ending '{path.suffix}' is not known; use .svg or .png")
     data = _encoded(_figure_of(fig), path.suffix)
-    with given.written(path), replacing(path) as file:
+    with given.explain_write_errors(path), atomic_write(path) as file:
         file.write(data)
     return path
 
@@ -437,7 +437,7 @@ def save_or_say(what: str, make: Callable[[], Figure], *paths: Path) -> str:
             path.unlink(missing_ok=True)
         return made.sentence
     for path, data in zip(paths, made, strict=True):
-        with replacing(path) as file:
+        with atomic_write(path) as file:
             file.write(data)
     return ""
 

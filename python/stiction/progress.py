@@ -1,6 +1,6 @@
 """How far a long call has come: what it does, and the how-manieth of how many.
 
-The library prints nothing. It notes here what it is at, and whoever ``watched`` it says so; where
+The library prints nothing. It notes here what it is at, and whoever opened ``watch`` says so; where
 nobody does, noting costs nothing.
 """
 
@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Final, TypeVar
 
-__all__ = ["Progress", "duration", "phase", "steps", "watched"]
+__all__ = ["Progress", "duration", "phase", "steps", "watch"]
 
 T = TypeVar("T")
 
@@ -34,7 +34,7 @@ class _Loop:
     def words(self) -> str:
         return f"{self.unit} {self.at}" + ("" if self.of is None else f" of {self.of}")
 
-    def remaining(self, now: float) -> float | None:
+    def seconds_to_go(self, now: float) -> float | None:
         """Seconds, where its pace tells them."""
         done, gone = self.at - 1, now - self.began
         if self.of is None or done < 1 or gone < TELLING:
@@ -69,12 +69,12 @@ class Progress:
         now = time.monotonic() if now is None else now
         loops = list(self._loops)
         parts = [each for each in (self.phase, *(loop.words() for loop in loops)) if each]
-        left = next((r for r in (loop.remaining(now) for loop in loops) if r is not None), None)
+        left = next((r for r in (loop.seconds_to_go(now) for loop in loops) if r is not None), None)
         if left is not None:
             parts.append(f"about {duration(left)} left of this")
         return f"{duration(now - self.began)}: {', '.join(parts) or 'at work'}"
 
-    def gone_through(self, items: Iterable[T], unit: str, of: int | None) -> Iterator[T]:
+    def track(self, items: Iterable[T], unit: str, of: int | None) -> Iterator[T]:
         """The items, while it is noted which one it is."""
         loop = _Loop(unit, of, time.monotonic())
         # The first is at work before it comes, where results are gone through.
@@ -93,7 +93,7 @@ _watching: Progress | None = None
 
 
 @contextmanager
-def watched() -> Iterator[Progress]:
+def watch() -> Iterator[Progress]:
     """What calls inside are at; of calls within one another the outer one looks."""
     global _watching
     if _watching is not None:
@@ -137,7 +137,7 @@ def steps(items: Iterable[T], unit: str, of: int | None = None) -> Iterable[T]:
         return items
     if of is None and isinstance(items, Sized):
         of = len(items)
-    return _watching.gone_through(items, unit, of)
+    return _watching.track(items, unit, of)
 
 
 def duration(seconds: float) -> str:

@@ -14,7 +14,7 @@ from . import given
 from .errors import InputError
 from .file_kinds import kind_of_table
 from .frozen import Frozen, freeze
-from .keys import known
+from .keys import check_keys
 from .plant import Plant
 from .plant_file import read_toml, section
 from .progress import phase, steps
@@ -25,7 +25,7 @@ from .recording.session_clock import ages_of, starts_of
 from .recording.split import BLOCK_S, EDGE_S, Split, split
 from .recording.units import FloatArray, Motion
 from .session_entries import Entry, beside, entries_of
-from .wording import counted, did_you_mean, listed
+from .wording import commas, did_you_mean, plural
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -195,7 +195,7 @@ class Session:
         return len(self.recordings)
 
     def __repr__(self) -> str:
-        return f"Session({counted(len(self.recordings), 'recording')}, plant {self.plant!r})"
+        return f"Session({plural(len(self.recordings), 'recording')}, plant {self.plant!r})"
 
     def _repr_html_(self) -> str:
         from .notebook import drawing, table
@@ -265,7 +265,7 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         raise InputError(
             f"{source}: is a plant file, and a recording or a session file is wanted here"
         )
-    known(table, _TABLES, source)
+    check_keys(table, _TABLES, source)
     if plant is None and "plant" in table:
         named = table["plant"]
         if not isinstance(named, str) or not named:
@@ -388,7 +388,7 @@ def _replicates(path: Path, entries: Sequence[Entry]) -> dict[int, int]:
             files = [other.named for other in entries if other is not entry]
             raise InputError(
                 f"{where} is none of the recordings{did_you_mean(named, files)}; name the file of "
-                f"another one: {listed(files)}"
+                f"another one: {commas(files)}"
             )
         if of == index or file == entry.files[0]:
             raise InputError(f"{where} is the recording itself; name another, or leave it out")

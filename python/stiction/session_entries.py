@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any, Final
 
 from .errors import InputError
-from .given import shown
-from .keys import choice, known
+from .given import brief
+from .keys import check_keys, choice
 from .parameter import number
 from .plant_file import section
 from .recording import SETTINGS
 from .recording.recording import SPLIT_ROLES
-from .wording import counted, listed
+from .wording import commas, plural
 
 __all__ = ["Entry", "beside", "entries_of"]
 
@@ -98,7 +98,7 @@ def entries_of(path: Path, tables: Sequence[Mapping[str, Any]]) -> list[Entry]:
 
 def _entries(path: Path, place: int, table: Mapping[str, Any]) -> list[Entry]:
     where = f"{path}: [[recordings]] {place}"
-    known(table, _KEYS, where)
+    check_keys(table, _KEYS, where)
     if "file" not in table:
         raise InputError(f'{where}: file is missing; write file = "run.csv"')
     labels = _labels(table, where)
@@ -114,7 +114,7 @@ def _entries(path: Path, place: int, table: Mapping[str, Any]) -> list[Entry]:
     files = [beside(path, name, f"{where}: file") for name in names]
     replicate = table.get("replicate_of")
     if several:
-        return [Entry(place, tuple(files), False, labels, columns, replicate, listed(names))]
+        return [Entry(place, tuple(files), False, labels, columns, replicate, commas(names))]
     if not _WILD.search(named) or files[0].exists():
         return [Entry(place, (files[0],), False, labels, columns, replicate, named)]
     found = _matching(path, named, where)
@@ -122,7 +122,7 @@ def _entries(path: Path, place: int, table: Mapping[str, Any]) -> list[Entry]:
         key = "replicate_of" if "replicate_of" in table else "start_s"
         raise InputError(
             f"{where}: {key} is said of one recording, and '{named}' fits "
-            f"{counted(len(found), 'file')}; list them one by one"
+            f"{plural(len(found), 'file')}; list them one by one"
         )
     return [Entry(place, (file,), True, labels, columns, replicate, file.name) for file in found]
 
@@ -199,7 +199,7 @@ def _end(given: Any, where: str) -> float | str:
     if isinstance(given, str):
         if _ROW.fullmatch(given) is None:
             raise InputError(
-                f'{where} = {shown(given)} is no row; write a row as in "row 120", counted from 1, '
+                f'{where} = {brief(given)} is no row; write a row as in "row 120", counted from 1, '
                 "or seconds on the clock of the file, as a number"
             )
         return given

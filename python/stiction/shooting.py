@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 import numpy as np
 
-from .accompanied import accompanied
+from .accompanied import nearby_motion
 from .errors import InputError
 from .motion import GAUSSIAN
 from .trajectory import FloatArray
@@ -50,7 +50,7 @@ class ShootingForm(WeakForm):
     smoothed measured position and velocity, with friction, effects and clock as they are after
     following the measured motion up to there, and runs with the measured input over the support
     of the kernel. Where the contact is rigid the measured motion is smoothed once more by a run of
-    the plant that is drawn to it (see ``accompanied``): it stops where a machine would. The
+    the plant that is drawn to it (see ``nearby_motion``): it stops where a machine would. The
     residual is
 
         r = J₀·K''∗x̂ − J₀·K''∗x,
@@ -135,7 +135,7 @@ class ShootingForm(WeakForm):
         self.unit = self.own(plant).inertia if stated else 1.0
         if stated and self._is_rigid(plant):
             self._leader = plant
-            self.read_with(self.noise)
+            self.denoise(self.noise)
 
     @property
     def leads(self) -> bool:
@@ -147,7 +147,7 @@ class ShootingForm(WeakForm):
         """The same led by other plants, the last ones of them."""
         return []
 
-    def led_by(self, leader: Plant | None) -> Self:
+    def with_leader(self, leader: Plant | None) -> Self:
         """The recording with windows that begin in the motion that a plant makes near it.
 
         What a plant lacks makes its run late, by up to what is missing over its inertia and the
@@ -160,7 +160,7 @@ class ShootingForm(WeakForm):
                 return known
         other = copy(self)
         other._leader = leader
-        other.read_with(self.noise)
+        other.denoise(self.noise)
         self._led.append(other)
         del self._led[:-MOST_LED]
         return other
@@ -173,13 +173,13 @@ class ShootingForm(WeakForm):
         reach = friction["coulomb"].value / friction["initial_stiffness"].value
         return reach < max(self.count, self.noise)
 
-    def driving(self, readings: FloatArray, load: FloatArray | None = None) -> FloatArray:
+    def driving_motion(self, readings: FloatArray, load: FloatArray | None = None) -> FloatArray:
         """The motion from which windows start, under a load in the place of the recorded one."""
-        smoothed = super().driving(readings)
+        smoothed = super().driving_motion(readings)
         if self._leader is None:
             return smoothed
         try:
-            return accompanied(self, self._leader, position=smoothed, load=load)[0]
+            return nearby_motion(self, self._leader, position=smoothed, load=load)[0]
         except InputError:
             # Too stiff for the sample time.
             return smoothed
@@ -195,7 +195,7 @@ class ShootingForm(WeakForm):
         return self.unit * self.acceleration
 
     @property
-    def reached(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    def noisy_rows(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
         """Rows that noise of the effort reaches: a machine at rest keeps it to itself."""
         return self.moves
 
@@ -204,7 +204,7 @@ class ShootingForm(WeakForm):
 
         NaN where the plant cannot be simulated at this sample time (see ``Motor.simulate``).
         """
-        measured = self.measured(plant)
+        measured = self.measured_effort(plant)
         return measured, measured - self.residual(plant, start)
 
     def residual(self, plant: Plant, start: Start = None) -> FloatArray:
@@ -222,7 +222,7 @@ class ShootingForm(WeakForm):
         cannot be simulated.
         """
         wanted = list(paths)
-        motor = self.begun(plant, self.position)
+        motor = self.start_motor(plant, self.position)
         try:
             moved = motor.shoot_sensitivity(
                 self.motion, self.kernel.second, self.stride, wanted, start=start, strict=False
@@ -250,13 +250,13 @@ class ShootingForm(WeakForm):
         """
         weights = self.kernel.second
         number = min(RESPONSE_PARTS, len(weights))
-        found = self.begun(plant, self.position).shoot_signatures(
+        found = self.start_motor(plant, self.position).shoot_signatures(
             self.motion, weights, self.stride, list(candidates), number, start=start, strict=False
         )
         columns: FloatArray = (self.unit * found).T
         return columns if kept is None else columns[kept]
 
-    def missed(
+    def residual_for(
         self, plant: Plant, start: Start, readings: FloatArray, load: FloatArray
     ) -> FloatArray:
         """Residual of other readings under another load; shape (n,).
@@ -270,7 +270,7 @@ class ShootingForm(WeakForm):
         load : numpy.ndarray, shape (rows - 1,)
             Beside the recorded input.
         """
-        motion = self.driving(readings, load)
+        motion = self.driving_motion(readings, load)
         got = self._shot(plant, start, motion, load)
         missed: FloatArray = self.unit * (got - self.accelerations(readings))
         return missed
@@ -283,7 +283,7 @@ class ShootingForm(WeakForm):
         Of one motion that is read ``number`` times, after the first time with counts that stand
         elsewhere.
         """
-        motion, load = accompanied(self, plant, start)
+        motion, load = nearby_motion(self, plant, start)
         source = np.random.default_rng(READ_AGAIN)
         found = []
         for k in range(number):
@@ -291,7 +291,7 @@ class ShootingForm(WeakForm):
             if self.count > 0.0:
                 phase = self.count * source.uniform() if k else 0.0
                 readings = np.round((readings + phase) / self.count) * self.count - phase
-            found.append(self.missed(plant, start, readings, load))
+            found.append(self.residual_for(plant, start, readings, load))
         return found
 
     def _missed(self, plant: Plant, start: Start) -> FloatArray:
@@ -300,9 +300,9 @@ class ShootingForm(WeakForm):
 
     def _shot(self, plant: Plant, start: Start, motion: FloatArray, load: FloatArray) -> FloatArray:
         """Acceleration of the simulated motion of each window, through the kernel."""
-        motor = self.begun(plant, motion)
+        motor = self.start_motor(plant, motion)
         try:
-            moved = self.moved(motion, load=load)
+            moved = self.with_motion(motion, load=load)
             return motor.shoot(moved, self.kernel.second, self.stride, start=start, strict=False)
         except InputError:
             # A trial of a fit that is too stiff for the sample time: it must look bad, not end it.

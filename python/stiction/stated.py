@@ -11,7 +11,7 @@ from .errors import UnknownName
 from .frozen import Frozen, freeze
 from .given import instance, mapping, word
 from .parameter import Parameter
-from .wording import did_you_mean, listed
+from .wording import commas, did_you_mean
 
 __all__ = ["Effect", "Friction", "check_parameters"]
 
@@ -27,7 +27,7 @@ def check_parameters(given: Mapping[str, Parameter], where: str) -> None:
         instance(value, Parameter, f"{where} {name}", "a Parameter of stiction.parameter")
 
 
-def known(name: str, records: Iterable[LawRecord | EffectRecord], where: str) -> None:
+def check_name(name: str, records: Iterable[LawRecord | EffectRecord], where: str) -> None:
     """Refuse what is no name of the catalogue.
 
     Raises
@@ -39,7 +39,7 @@ def known(name: str, records: Iterable[LawRecord | EffectRecord], where: str) ->
     names = [record.name for record in records]
     if word(name, where) not in names:
         near = did_you_mean(name, names)
-        raise UnknownName(f"{where} '{name}' is unknown{near}; known: {listed(names)}")
+        raise UnknownName(f"{where} '{name}' is unknown{near}; known: {commas(names)}")
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Friction:
     options: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        known(self.law, laws(), "friction: law")
+        check_name(self.law, laws(), "friction: law")
         freeze(self, Frozen, "parameters", "options")
         check_parameters(self.parameters, "friction:")
 
@@ -84,7 +84,7 @@ class Effect:
     parameters: Mapping[str, Parameter] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        known(self.name, effects(), "effect: name")
+        check_name(self.name, effects(), "effect: name")
         freeze(self, Frozen, "parameters")
         check_parameters(self.parameters, f"effect {self.name}:")
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import given
-from .atomic_files import replacing
+from .atomic_files import atomic_write
 from .errors import InputError
 from .motor import Motor
 from .parameter import number
@@ -173,7 +173,7 @@ def _identity(motor: Motor, dt: float, every: int, load: float) -> str:
 def _keep(motor: Motor, path: Path, identity: str, done: int, start: float) -> None:
     """Keep the state; a kill leaves the old one or the new."""
     state = {f"state.{name}": np.asarray(value) for name, value in motor.state.items()}
-    with given.written(path), replacing(path) as file:
+    with given.explain_write_errors(path), atomic_write(path) as file:
         np.savez(file, identity=identity, done=done, start=start, **state)  # type: ignore[arg-type]
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import given
-from .atomic_files import replacing
+from .atomic_files import atomic_write
 from .errors import InputError
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def save_table(path: Path, table: Mapping[str, FloatArray]) -> Path:
         raise InputError(f"{path}: there is no folder {path.parent}; make it first")
     if path.suffix not in (".npz", ".csv"):
         raise InputError(f"{path}: ending '{path.suffix}' is not known; use .npz or .csv")
-    with given.written(path), replacing(path) as file:
+    with given.explain_write_errors(path), atomic_write(path) as file:
         if path.suffix == ".npz":
             np.savez_compressed(file, **table)  # type: ignore[arg-type]
         else:

@@ -21,10 +21,10 @@ from .motion import (
     Kernel,
     count_of,
     evenly,
-    held,
     narrowest,
     noise_of,
     stirs,
+    zero_order_hold,
 )
 from .recording.checks.signal import without_spikes
 from .trajectory import FloatArray
@@ -135,7 +135,7 @@ class WeakForm:
             )
         if self.prescribed:
             driving = without_spikes(driving)
-        stamps, time, self.dt = self.stamped(recording.time)
+        stamps, time, self.dt = self.timestamps(recording.time)
         self.stamps = time
         least = support or max(SUPPORTS_S[0], FEWEST_SAMPLES * self.dt)
         # Before any kernel is made: at 10 MHz one of 30 ms would have 300 000 samples.
@@ -144,12 +144,12 @@ class WeakForm:
         if possible and recording.duration < 1.5 * least:
             raise NotEnoughData(_too_few(source, len(time), least))
         x = np.interp(time, stamps, without_spikes(recording.position))
-        u = held(time, stamps, driving)
+        u = zero_order_hold(time, stamps, driving)
         # Of the readings themselves: between them, on even stamps, there are no steps.
         self.count = plant.count or count_of(recording.position)
         noise = noise_of(x, self.count)
         self.temperature, self.enabled, self.transmitted = (
-            None if values is None else held(time, stamps, values)
+            None if values is None else zero_order_hold(time, stamps, values)
             for values in map(recording.channels.get, ("temperature", "enabled", "transmitted"))
         )
         driven = u if self.prescribed else _commanded(plant, u, x, self.dt)
@@ -168,16 +168,16 @@ class WeakForm:
             raise NotEnoughData(_too_few(source, len(time), self.kernel.support))
         self.stride = 1 if every is None else max(1, round(every / self.dt))
         load = recording.channels.get("load")
-        self.load = np.zeros_like(x) if load is None else held(time, stamps, load)
+        self.load = np.zeros_like(x) if load is None else zero_order_hold(time, stamps, load)
         self.effort = driven if plant.gain == 1.0 else driven / plant.gain
         self.springy = plant.friction.springy
         self.readings = x
-        self.read_with(noise)
+        self.denoise(noise)
         self.input = np.zeros(len(x) - 1) if self.prescribed else u[:-1]
         self.clock = self.path = 0.0
         self.time = self._thin(time[1:][self.kernel.half : -self.kernel.half])
 
-    def seen_by(self, plant: Plant) -> Self:
+    def for_plant(self, plant: Plant) -> Self:
         """The recording with friction driven as that of a plant has to be.
 
         What keeps a rigid contact at rest between two counts would lead one that yields in steps,
@@ -192,7 +192,7 @@ class WeakForm:
         """Whether windows begin in the motion that a plant makes near the measured one."""
         return False
 
-    def led_by(self, leader: Plant | None) -> Self:
+    def with_leader(self, leader: Plant | None) -> Self:
         """The recording with windows that begin in the motion of a plant; see ``ShootingForm``."""
         return self
 
@@ -200,15 +200,15 @@ class WeakForm:
     def _otherwise(self) -> Self:
         other = copy(self)
         other.springy = not self.springy
-        other.read_with(self.noise)
+        other.denoise(self.noise)
         return other
 
     @staticmethod
-    def stamped(time: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+    def timestamps(time: FloatArray) -> tuple[FloatArray, FloatArray, float]:
         """Stamps as they were meant, those of the rows that are made of them, and their spacing."""
         return evenly(time)
 
-    def read_with(self, noise: float) -> None:
+    def denoise(self, noise: float) -> None:
         """Drives friction by what the readings are without so much noise; forgets what it knew.
 
         The kernel stays as wide as the recording's own noise made it.
@@ -224,7 +224,7 @@ class WeakForm:
             springy=self.adapts,
             prescribed=self.prescribed,
         )
-        self.position = self.driving(self.readings)
+        self.position = self.driving_motion(self.readings)
         self.acceleration = self.accelerations(self.readings, self.position)
 
     def __len__(self) -> int:
@@ -263,9 +263,9 @@ class WeakForm:
     @cached_property
     def motion(self) -> Motion:
         """The measured motion, and what acted in every sample."""
-        return self.moved()
+        return self.with_motion()
 
-    def moved(
+    def with_motion(
         self,
         position: FloatArray | None = None,
         *,
@@ -299,7 +299,7 @@ class WeakForm:
             other.effort = acted
         else:
             other.load = acted
-        other.position = self.driving(readings)
+        other.position = self.driving_motion(readings)
         other.acceleration = other.accelerations(readings, other.position)
         return other
 
@@ -308,7 +308,7 @@ class WeakForm:
         return plant.under(self.settings)
 
     @property
-    def reached(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    def noisy_rows(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
         """Rows that noise of the effort reaches; shape (n,).
 
         All of them, but a rigid contact at rest answers whatever acts on it, noise as well.
@@ -339,7 +339,7 @@ class WeakForm:
         return self._driving.flickers
 
     @property
-    def steadied(self) -> float:
+    def smoothing_support(self) -> float:
         """Support, s, over which the motion was smoothed because noise is much of its speed."""
         return self._driving.steadied
 
@@ -352,23 +352,23 @@ class WeakForm:
         """Values at the ends of the samples (shape of ``position[1:]``) through the kernel."""
         return self._mean(values)
 
-    def given(self, drive: FloatArray, load: FloatArray) -> FloatArray:
+    def applied_effort(self, drive: FloatArray, load: FloatArray) -> FloatArray:
         """What drive and load gave, held over each sample, through the kernel; shape (n,)."""
         return self._mean(_centred(drive) + _centred(load))
 
-    def measured(self, plant: Plant) -> FloatArray:
+    def measured_effort(self, plant: Plant) -> FloatArray:
         """Effort of the drive and load (prescribed motion: the measured one); shape (n,)."""
         if self.prescribed:
             return self._mean(self.effort[1:] + _centred(self.load[:-1]))
-        return self.given(self._driven(plant, self.input), self.load[:-1])
+        return self.applied_effort(self._driven(plant, self.input), self.load[:-1])
 
     def whole(self, plant: Plant) -> FloatArray:
         """What a residual is a part of, to tell how much of it a plant explains; shape (n,)."""
-        return self.measured(plant)
+        return self.measured_effort(plant)
 
-    def acted(self, plant: Plant) -> FloatArray:
+    def noise_free_effort(self, plant: Plant) -> FloatArray:
         """Effort of the drive and load that the noise of no reading is in, as far as may be."""
-        return self.measured(plant)
+        return self.measured_effort(plant)
 
     def _driven(self, plant: Plant, given: FloatArray) -> FloatArray:
         """Effort of the drive for an input held over each sample, effects left out."""
@@ -380,10 +380,10 @@ class WeakForm:
             return driven
         motor = replace(plant, effects=()).follower()
         motor.reset(float(self.position[0]), 0.0)
-        drive: FloatArray = motor.follow(self.moved(current=given), strict=False)[0]
+        drive: FloatArray = motor.follow(self.with_motion(current=given), strict=False)[0]
         return drive
 
-    def driving(self, readings: FloatArray) -> FloatArray:
+    def driving_motion(self, readings: FloatArray) -> FloatArray:
         """The motion that drives friction, from readings of a position; same shape."""
         return self._driving.motion(readings)
 
@@ -429,8 +429,8 @@ class WeakForm:
         ``position`` and ``load`` as in ``along``; with ``driven`` False the drive is left out.
         """
         measured = position is None and load is None
-        motion = self.motion if measured else self.moved(position, load=load)
-        motor = self.begun(plant, self.position if position is None else position)
+        motion = self.motion if measured else self.with_motion(position, load=load)
+        motor = self.start_motor(plant, self.position if position is None else position)
         rows = self._rows(plant, driven=driven)
         # A trial of a fit may run away: it must look bad, not end it.
         return motor.follow_rows(motion, rows, start=start, strict=False)
@@ -450,12 +450,12 @@ class WeakForm:
         the place of the measured motion, and ``load`` of what acted beside the input (rows - 1).
         """
         measured = position is None and load is None
-        motion = self.motion if measured else self.moved(position, load=load)
-        motor = self.begun(plant, self.position if position is None else position)
+        motion = self.motion if measured else self.with_motion(position, load=load)
+        motor = self.start_motor(plant, self.position if position is None else position)
         drive, ambient, friction, ahead = motor.follow(motion, start=start, strict=False)
         return drive, friction - ambient, ahead
 
-    def begun(self, plant: Plant, motion: FloatArray) -> Motor:
+    def start_motor(self, plant: Plant, motion: FloatArray) -> Motor:
         """The plant as it is for this recording, where a motion starts.
 
         It knows the step of the readings also where the plant states no sensor.
@@ -487,7 +487,7 @@ class WeakForm:
         Beside parameters of the plant the paths may name quantities of the start, such as
         ``start.force``.
         """
-        motor = self.begun(plant, self.position)
+        motor = self.start_motor(plant, self.position)
         found = motor.follow_columns(
             self.motion, list(paths), self._rows(plant), start=start, strict=False
         )
@@ -522,7 +522,7 @@ class WeakForm:
         numpy.ndarray, shape (kept, gains)
             In the order of the candidates and of the gains of each.
         """
-        motor = self.begun(plant, self.position)
+        motor = self.start_motor(plant, self.position)
         rows = self._rows(plant)
         found = motor.signature_columns(
             self.motion,

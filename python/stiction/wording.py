@@ -23,7 +23,7 @@ NO_POSITION = (
 """Of a recording without one, where a model is compared with it."""
 
 
-def listed(words: Iterable[str]) -> str:
+def commas(words: Iterable[str]) -> str:
     """Words joined by commas, at most 24 of them, or "nothing"."""
     all_words = list(words)
     text = ", ".join(all_words[:_LISTED])
@@ -82,6 +82,6 @@ def did_you_mean(word: object, words: Iterable[str]) -> str:
     return f" (did you mean '{near}'?)" if near is not None else ""
 
 
-def counted(number: int, singular: str, plural: str | None = None) -> str:
+def plural(number: int, singular: str, plural: str | None = None) -> str:
     """``"1 row"``, ``"3 rows"``."""
     return f"{number} {singular if number == 1 else plural or singular + 's'}"

@@ -96,14 +96,14 @@ def test_finer_steps_change_little_where_faces_strike() -> None:
 @pytest.mark.parametrize("name", HIDDEN)
 def test_what_is_hidden_has_about_the_size_that_was_asked_for(name: str) -> None:
     made = ordinary(Spec(5, hidden=name, size=0.1, signals=("sines",) * 2, loop="open", **SHORT))
-    assert 0.02 < made.reached < 0.4
+    assert 0.02 < made.relative_rms < 0.4
 
 
 def test_the_same_seed_gives_the_same_machine_whatever_is_hidden() -> None:
     plain, hidden = (ordinary(Spec(6, hidden=name, **SHORT)) for name in ("", "torque_bias"))
     assert replace(hidden.machine, effects=Effects()) == plain.machine
     assert hidden.drive == plain.drive
-    assert plain.reached == 0.0
+    assert plain.relative_rms == 0.0
 
 
 @pytest.mark.parametrize("file_format", FORMATS)

@@ -8,8 +8,8 @@ import numpy as np
 
 from stiction.diagnosis.evidence import Evidence
 from stiction.diagnosis.gain import residuals_of
-from stiction.diagnosis.model import fitted
-from stiction.fitting.solve import reweighted
+from stiction.diagnosis.model import fit_model
+from stiction.fitting.solve import reweight
 
 from .stated import as_session
 
@@ -31,16 +31,16 @@ def oracle(plant, session, made, baseline):
     """What there is to be found in a session; `baseline` is the plant where fits start from."""
     seen = Evidence(plant, session.recordings)
     clean = _without_hidden(plant, made)
-    base = fitted(seen, baseline)
-    reweighted(seen.train, base.plant, base.nuisances)
+    base = fit_model(seen, baseline)
+    reweight(seen.train, base.plant, base.nuisances)
     seen.weigh()
-    base = fitted(seen, base.plant, base.nuisances)
+    base = fit_model(seen, base.plant, base.nuisances)
 
     def power(evidence):
         for rows, own in zip(evidence.train, seen.train, strict=True):
             rows.weight = own.weight
         evidence.weigh()
-        best = fitted(evidence, base.plant, base.nuisances)
+        best = fit_model(evidence, base.plant, base.nuisances)
         opened = residuals_of(evidence, evidence.open_test(), [(best.plant, best.nuisances)])
         return float(np.sum(opened.residuals[0] ** 2))
 

@@ -82,7 +82,7 @@ class OrdinaryCase:
             spec={name: value for name, value in asdict(made.spec).items() if name != "seed"},
             seed=made.spec.seed,
             names=made.names,
-            reached=made.reached,
+            reached=made.relative_rms,
             truth={
                 "inertia": machine.inertia,
                 "coulomb": machine.coulomb,

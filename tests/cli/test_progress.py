@@ -18,7 +18,7 @@ from tests.cli.desk import Desk, of_two
 
 from stiction.cli import run
 from stiction.cli.progress import progress
-from stiction.progress import Progress, duration, phase, steps, watched
+from stiction.progress import Progress, duration, phase, steps, watch
 
 LINE = re.compile(r"(\d+ min )?\d+ s: .+")
 
@@ -128,7 +128,7 @@ def test_a_long_line_never_wraps(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_loops_within_one_another_are_all_counted_and_their_pace_tells_the_rest() -> None:
-    with watched() as state:
+    with watch() as state:
         phase(logging.getLogger("stiction.test"), "comparing")
         began = state.began
         laws, parts = iter(steps("abcd", "law")), iter(steps(iter("xy"), "recording", 2))
@@ -145,7 +145,7 @@ def test_loops_within_one_another_are_all_counted_and_their_pace_tells_the_rest(
 
 
 def test_a_loop_that_was_left_is_not_told_any_more() -> None:
-    with watched() as state:
+    with watch() as state:
         for _ in steps(range(5), "law"):
             for _ in steps(range(5), "recording"):
                 break
@@ -156,13 +156,13 @@ def test_a_loop_that_was_left_is_not_told_any_more() -> None:
 def test_where_nobody_looks_and_in_other_threads_nothing_is_counted() -> None:
     items = [1, 2]
     assert steps(items, "recording") is items
-    with watched() as state:
+    with watch() as state:
         seen = []
         thread = threading.Thread(target=lambda: seen.append(steps(items, "recording")))
         thread.start()
         thread.join()
         assert seen == [items]
-        with watched() as inner:
+        with watch() as inner:
             assert inner is state
 
 

@@ -18,7 +18,7 @@ import pytest
 import stiction as st
 from stiction.cli import run
 from stiction.cli.answer import folder
-from stiction.cli.interrupt import HEARD, ending_soon, finished
+from stiction.cli.interrupt import HEARD, answer_on_interrupt, defer_interrupt
 from stiction.fitting import fit
 
 PLANT = """
@@ -64,9 +64,9 @@ def test_what_is_being_written_is_finished() -> None:
     done = []
 
     def written(times: int) -> None:
-        with finished():
+        with defer_interrupt():
             for _ in range(times):
-                with finished():
+                with defer_interrupt():
                     struck()
             done.append(times)
 
@@ -83,13 +83,13 @@ def test_what_is_being_written_is_finished() -> None:
 def test_ctrl_c_is_said_to_be_heard_before_what_there_is_is_written(
     capfd: pytest.CaptureFixture[str],
 ) -> None:
-    with pytest.raises(KeyboardInterrupt), ending_soon():
+    with pytest.raises(KeyboardInterrupt), answer_on_interrupt():
         struck()
     assert capfd.readouterr().err == f"{HEARD}\n"
     done = []
 
     def written(*, before: bool) -> None:
-        with finished(struck=before):
+        with defer_interrupt(struck=before):
             struck()
             done.append(capfd.readouterr().err)
 

@@ -11,7 +11,7 @@ import pytest
 import stiction as st
 from stiction.cli import run
 from stiction.compare import compare
-from stiction.compare.document import figure_line, filled, property_block, symptom_block, write
+from stiction.compare.document import figure_line, fill, property_block, symptom_block, write
 from stiction.compare.figures import law_figures, name_of
 from stiction.errors import InputError
 
@@ -69,7 +69,7 @@ def test_refreshing_twice_changes_nothing_but_the_cost(table, tmp_path):
 
 def test_a_page_without_marks_is_refused():
     with pytest.raises(InputError, match=r"page\.md"):
-        filled("no marks", "table", "x", Path("page.md"))
+        fill("no marks", "table", "x", Path("page.md"))
 
 
 def test_the_command_prints_text_or_json_and_writes_a_page(tmp_path, capsys):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.base import based
+from stiction.diagnosis.base import fit_baseline
 from stiction.fitting.forms import horizon_of
 from stiction.fitting.rows import Nuisances, Rows
 from stiction.fitting.solve import SELECT_IS_FITTED
@@ -39,7 +39,7 @@ def plant(law: str) -> st.Plant:
 def test_fit_and_diagnosis_find_one_machine_on_the_same_rows(law: str) -> None:
     session = [recorded(k, role=role) for k, role in enumerate(("train", "train", "test"))]
     fitted = st.fit(plant(law), session)
-    _, base = based(plant(law), session)
+    _, base = fit_baseline(plant(law), session)
     assert base.plant == fitted.plant
 
 
@@ -47,7 +47,7 @@ def test_both_leave_out_a_recording_with_a_fault_and_say_so() -> None:
     good = [recorded(k, role="train", kind=f"{k}") for k in range(3)]
     still = replace_position(good[2], np.zeros(ROWS))
     fitted = st.fit(plant("coulomb"), [*good[:2], still, recorded(9, role="test")])
-    _, base = based(plant("coulomb"), [*good[:2], recorded(9, role="test")])
+    _, base = fit_baseline(plant("coulomb"), [*good[:2], recorded(9, role="test")])
     assert base.plant == fitted.plant
     assert "1 recording is left out: recording 3" in fitted.split
     assert "test: recording 4" in fitted.split
@@ -109,7 +109,7 @@ def test_a_plant_of_which_all_is_known_is_diagnosed_as_it_is(law: str) -> None:
         }
     )
     session = [recorded(k, role=role) for k, role in enumerate(("train", "train", "select"))]
-    _, base = based(whole, session)
+    _, base = fit_baseline(whole, session)
     assert base.plant.parameters["friction.coulomb"].value == 0.25
     if law == "coulomb":
         assert not base.solution.variables.paths

@@ -8,8 +8,8 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
-from stiction.diagnosis.base import based
-from stiction.diagnosis.model import stepped
+from stiction.diagnosis.base import fit_baseline
+from stiction.diagnosis.model import step_beside
 
 # One seed in which the elements that yield first vanish from the base: small efforts move nothing.
 HIDDEN = ("drive_deadband", 0.0129)
@@ -20,7 +20,7 @@ SPEC = {"seed": 5810023, "base": "maxwell_slip", "hidden": (HIDDEN,)}
 def test_an_effect_towards_which_the_base_has_bent_itself_is_found() -> None:
     (made,) = make_sessions([SPEC])
     plant, session = as_plant(made), as_session(made)
-    _, base = based(plant, session.recordings)
+    _, base = fit_baseline(plant, session.recordings)
     assert base.plant.parameters["friction.weight_2"].value < 0.1  # the bend
     found = st.diagnose(plant, session, surrogates=12)
     assert [cause.name for cause in found.effects] == [HIDDEN[0]]
@@ -54,12 +54,12 @@ def test_a_shape_far_from_every_signature_is_no_freed_base() -> None:
 
 def test_what_nothing_explains_moves_no_base() -> None:
     (made,) = make_sessions([{"seed": 7720000, "base": "hsieh_pan", "seconds": 78.0}])
-    _, base = based(as_plant(made), as_session(made).recordings)
+    _, base = fit_baseline(as_plant(made), as_session(made).recordings)
     rows = len(base.residual)
-    for path, given in stepped(base, np.zeros(rows)).parameters.items():
+    for path, given in step_beside(base, np.zeros(rows)).parameters.items():
         assert given.value == pytest.approx(base.plant.parameters[path].value, rel=1e-12)
     # What is explained in its place by something else it gives up, but for what damping keeps.
     column = base.columns[:, list(base.solution.variables.paths).index("friction.viscous")]
     before = base.plant.parameters["friction.viscous"].value
-    moved = stepped(base, 0.01 * before * column).parameters["friction.viscous"].value
+    moved = step_beside(base, 0.01 * before * column).parameters["friction.viscous"].value
     assert 1.005 * before < moved < 1.01 * before

@@ -42,18 +42,18 @@ def test_slopes_that_differ_by_recording_show() -> None:
     view = seen(slopes)
     # .16 of slopes beside .09 of noise; one of eight is not counted.
     assert view.share == pytest.approx(7.0 / 8.0 * 0.16 / 0.25, abs=0.05)
-    assert view.flagged()
+    assert view.is_flagged()
     assert view.at.tolist() == list(range(1, RECORDINGS + 1))
     assert view.mean == pytest.approx(slopes, abs=0.05)
 
 
 def test_noise_and_one_recording_alone_do_not() -> None:
-    assert not seen(np.zeros(RECORDINGS)).flagged()
-    assert not seen(np.where(np.arange(RECORDINGS) == 3, 1.0, 0.0)).flagged()
+    assert not seen(np.zeros(RECORDINGS)).is_flagged()
+    assert not seen(np.where(np.arange(RECORDINGS) == 3, 1.0, 0.0)).is_flagged()
 
 
 def test_a_slope_that_all_have_in_common_does_not() -> None:
-    assert not seen(np.full(RECORDINGS, 0.4)).flagged()
+    assert not seen(np.full(RECORDINGS, 0.4)).is_flagged()
     both = seen(0.4 + np.repeat([-0.4, 0.4], RECORDINGS // 2))
     # Beyond that it is a share of all that is left.
     assert both.share == pytest.approx(7.0 / 8.0 * 0.16 / (0.16 + 0.16 + 0.09), abs=0.06)
@@ -98,7 +98,7 @@ def test_it_describes_what_is_left(
     told: list[tuple[str, float]], share: float, expected: list[str]
 ) -> None:
     given = tuple(Unexplained(*each) for each in told)
-    assert rest(share).flagged() == ()
+    assert rest(share).significant_views() == ()
     described = verdict._described(rest(share), given, named=False)
     assert [each.coordinate for each in described] == expected
 

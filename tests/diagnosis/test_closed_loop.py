@@ -17,7 +17,7 @@ from stiction.cli import run
 from stiction.closed_loop import replay
 from stiction.diagnosis import loop
 from stiction.diagnosis.evidence import Evidence, SealedError
-from stiction.diagnosis.loop import replayed
+from stiction.diagnosis.loop import with_loop_replay
 from stiction.diagnosis.result import CandidateRow
 from stiction.diagnosis.selection import Search
 from stiction.diagnosis.words import loop_words, worse_loop_words
@@ -361,10 +361,10 @@ def test_blocks_of_a_single_recording_are_told_apart_and_a_loop_may_run_away() -
     evidence = Evidence(machine, [recording])
     base = SimpleNamespace(plant=machine, nuisances=Nuisances())
     with pytest.raises(SealedError):
-        replayed(found, evidence, base, base)  # type: ignore[arg-type]
+        with_loop_replay(found, evidence, base, base)  # type: ignore[arg-type]
     evidence.weigh()
     evidence.open_test()
-    again = replayed(found, evidence, base, base)  # type: ignore[arg-type]
+    again = with_loop_replay(found, evidence, base, base)  # type: ignore[arg-type]
     assert again.baseline is not None
     assert again.baseline.replay is not None
     error = replay(machine, recording).error
@@ -379,7 +379,7 @@ def test_blocks_of_a_single_recording_are_told_apart_and_a_loop_may_run_away() -
     assert again.pictures.tracking is not None
     assert np.isnan(again.pictures.tracking.measured).any()
     away = SimpleNamespace(plant=plant({"kind": "pd", "kp": -9.0}), nuisances=Nuisances())
-    lost = replayed(found, evidence, away, away)  # type: ignore[arg-type]
+    lost = with_loop_replay(found, evidence, away, away)  # type: ignore[arg-type]
     assert lost.to_dict()["baseline"]["replay"] == {
         "unit": "rad",
         "train_rms": None,
@@ -388,7 +388,7 @@ def test_blocks_of_a_single_recording_are_told_apart_and_a_loop_may_run_away() -
     assert "not replayed in closed loop: the simulated loop runs away" in lost.baseline.remarks[-1]  # type: ignore[union-attr]
     assert "runs away" in loop_words(lost)
     open_loop = SimpleNamespace(plant=plant(), nuisances=Nuisances())
-    assert replayed(found, evidence, open_loop, open_loop) is found  # type: ignore[arg-type]
+    assert with_loop_replay(found, evidence, open_loop, open_loop) is found  # type: ignore[arg-type]
 
 
 def test_the_command_line_prints_the_loop(

@@ -5,8 +5,8 @@ import pytest
 from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
-from stiction.diagnosis.base import based
-from stiction.diagnosis.replay import centre, shared, surrogate_residuals
+from stiction.diagnosis.base import fit_baseline
+from stiction.diagnosis.replay import centre, common_bias, surrogate_residuals
 from stiction.driving import Driving
 from stiction.motion import Kernel
 
@@ -19,7 +19,7 @@ ALIKE = 0.35
 @pytest.fixture(scope="module")
 def dry():
     made = make_session(77, base="coulomb", noise=NOISE)
-    evidence, base = based(as_plant(made), as_session(made).recordings)
+    evidence, base = fit_baseline(as_plant(made), as_session(made).recordings)
     null, noises = surrogate_residuals(evidence, base.plant, base.nuisances, 12, 0)
     return made, evidence, base, null, noises
 
@@ -48,7 +48,7 @@ def test_replays_of_a_dry_machine_leave_what_its_recordings_leave(dry):
     compared = 0
     for index in np.unique(recording):
         rows = recording == index
-        moved = evidence.forms[index].reached.mean()
+        moved = evidence.forms[index].noisy_rows.mean()
         if moved < 0.3:
             continue
         compared += 1
@@ -88,7 +88,7 @@ def test_what_replays_share_counts_as_far_as_the_residual_has_it():
     common, noise = source.standard_normal(400), 0.1 * source.standard_normal(400)
     recording = np.repeat([0, 1, 2, 3], 100)
     factor = np.array([1.0, 0.5, 0.0, -1.0])[recording]
-    found = shared(common, factor * common + noise, recording)
+    found = common_bias(common, factor * common + noise, recording)
     expected = np.clip(factor, 0.0, 1.0) * common
     assert rms(found - expected) < 0.03
     assert np.array_equal(found[recording == 3], np.zeros(100))

@@ -56,7 +56,7 @@ def test_only_a_reference_that_is_followed_takes_the_place_of_the_motion() -> No
     velocity, acceleration, effort = found
     assert np.std(velocity - form.velocity) < 0.2 * np.std(form.velocity)
     assert np.std(acceleration) < np.std(form.acceleration)
-    assert np.std(effort - form.measured(plant)) < np.std(effort)
+    assert np.std(effort - form.measured_effort(plant)) < np.std(effort)
     # None, and that of another motion.
     for other in (None, -asked):
         assert looked(other) is None

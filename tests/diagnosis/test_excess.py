@@ -44,11 +44,13 @@ def test_a_coordinate_that_shows_little_hides_not_that_most_goes_with_nothing(mo
     """Where nothing is named: of a servo 5 % went with its load, and 95 % with nothing."""
     monkeypatch.setattr(verdict, "_excess", lambda *_: 0.98)
     monkeypatch.setattr(verdict, "at_moments", lambda *_: False)
-    monkeypatch.setattr(verdict, "outlying", lambda *_: ())
+    monkeypatch.setattr(verdict, "outlying_recordings", lambda *_: ())
     view = SimpleNamespace(coordinate=SimpleNamespace(name="load"), share=share)
-    left = SimpleNamespace(flagged=lambda least: [view], described=())
+    left = SimpleNamespace(significant_views=lambda least: [view], leading_views=())
     evidence = SimpleNamespace(shown=[], plant=SimpleNamespace(servo=True))
     selection = SimpleNamespace(choices=[], models=[None], imitated=0.0)
-    told = verdict.unnamed(evidence, selection, left, left, np.zeros((4, 2)), lambda: None)
+    told = verdict.unnamed_remainder(
+        evidence, selection, left, left, np.zeros((4, 2)), lambda: None
+    )
     names = [each.coordinate for each in told]
     assert names == ([NO_COORDINATE, "load"] if share < 0.1 else ["load"])

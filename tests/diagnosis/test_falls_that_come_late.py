@@ -7,7 +7,7 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis.base import based
+from stiction.diagnosis.base import fit_baseline
 from stiction.diagnosis.candidates import candidates, scales_of
 from stiction.diagnosis.evidence import Evidence
 from stiction.diagnosis.model import with_effect
@@ -69,10 +69,10 @@ def test_where_a_fall_is_stated_its_lag_is_found_alone() -> None:
     stated = {**table, "effects": [{"name": "stribeck", "excess": 0.1, "velocity": 0.3}]}
     laws = {**table["friction"], "breakaway": 0.2, "stribeck_velocity": 0.1}
     for own in (stated, {**table, "friction": laws}):
-        evidence, base = based(st.Plant.from_dict(own), as_session(made).recordings)
+        evidence, base = fit_baseline(st.Plant.from_dict(own), as_session(made).recordings)
         tried = _candidates(evidence, base, (), Search([base]))
         assert {c.shape["fall"] for c in tried if c.name == "frictional_lag"} == {0.0}
-    evidence, base = based(as_plant(made), as_session(made).recordings)
+    evidence, base = fit_baseline(as_plant(made), as_session(made).recordings)
     for without, forms in (((), {0.0, 1.0}), (("stribeck",), {0.0})):
         tried = _candidates(evidence, base, without, Search([base]))
         assert {c.shape["fall"] for c in tried if c.name == "frictional_lag"} == forms

@@ -12,7 +12,7 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
-from stiction.diagnosis.held_numbers import FILE, HELD, Held, held_numbers, held_words
+from stiction.diagnosis.held_numbers import FILE, HELD, Held, fixed_parameters, fixed_words
 from stiction.parameter import Parameter
 
 SECONDS = 72.0
@@ -69,7 +69,7 @@ def test_rows_that_are_simulated_and_numbers_that_are_free_are_not_asked() -> No
     for simulated in (False, True):
         model = SimpleNamespace(plant=plant, evidence=SimpleNamespace(simulated=simulated))
         selection: Any = SimpleNamespace(models=[model], choices=[])
-        assert held_numbers(selection) == []
+        assert fixed_parameters(selection) == []
         plant = SimpleNamespace(
             body={"inertia": Parameter(1.0, fixed=True)}, prescribed_motion=not simulated
         )
@@ -78,12 +78,12 @@ def test_rows_that_are_simulated_and_numbers_that_are_free_are_not_asked() -> No
 def test_what_a_cause_stands_for_is_no_rest_of_its_own() -> None:
     beside = Held("inertia", 102.0, 94.75, (94.02, 95.47), "kg", 0.12)
     instead = replace(beside, instead=("torque_constant_ripple",))
-    assert [(each.coordinate, each.share) for each in beside.left] == [
+    assert [(each.coordinate, each.share) for each in beside.remainders] == [
         ("the inertia that is held fixed", 0.12)
     ]
-    assert instead.left == ()
-    assert held_words([]) == ""
-    assert held_words([instead]) == (
+    assert instead.remainders == ()
+    assert fixed_words([]) == ""
+    assert fixed_words([instead]) == (
         "In the plant file inertia is held at 102 kg; left free it comes to 94.75 kg (94.02 to "
         "95.47) and explains as much as torque_constant_ripple does."
     )

@@ -7,7 +7,7 @@ import pytest
 from tests.reference.pendulum_reference import DRY, WEIGHT, swung
 
 import stiction as st
-from stiction.diagnosis.base import based
+from stiction.diagnosis.base import fit_baseline
 from stiction.diagnosis.holds import holds_of
 from stiction.plant import Plant
 
@@ -55,7 +55,7 @@ def test_a_rest_under_a_weight_is_told_with_what_balances_there(session):
 
 
 def told(plant, session):
-    evidence, base = based(plant, session.recordings)
+    evidence, base = fit_baseline(plant, session.recordings)
     return holds_of(evidence.shown, base, evidence.names)
 
 

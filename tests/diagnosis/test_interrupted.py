@@ -82,7 +82,7 @@ def test_an_interrupted_base_ends_the_diagnosis(
     def never(*_: object, **__: object) -> None:
         raise AssertionError("goes on after Ctrl-C")
 
-    monkeypatch.setattr("stiction.diagnosis.base.settled", stopped)
+    monkeypatch.setattr("stiction.diagnosis.base.second_pass", stopped)
     monkeypatch.setattr("stiction.diagnosis.conclude.surrogate_residuals", never)
     found = st.diagnose(PLANT, recordings, surrogates=4)
     assert begins_with_it(found)
@@ -130,7 +130,16 @@ def test_what_was_not_looked_at_any_more_is_said(
 
 
 @pytest.mark.parametrize(
-    "place", ["described", "residuals_of", "rest", "ceiling_of", "unnamed", "gain_of", "replayed"]
+    "place",
+    [
+        "reject_without_machine",
+        "residuals_of",
+        "rest",
+        "ceiling_of",
+        "unnamed_remainder",
+        "gain_of",
+        "with_loop_replay",
+    ],
 )
 def test_decisions_that_were_taken_are_concluded(
     place: str,

@@ -11,7 +11,7 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis.chance import odds, share_of_phases, share_of_waves, unrepeated
+from stiction.diagnosis.chance import lacks_repeats, odds, share_of_phases, share_of_waves
 
 SPAN = 4.0
 """rad that a machine moves over once it is geared down."""
@@ -120,5 +120,5 @@ def test_a_wave_that_was_never_seen_to_repeat_is_known_as_such(order: float, see
     ]
     evidence = SimpleNamespace(shown=shown)
     model: Any = SimpleNamespace(plant=SimpleNamespace(effects=(effect,)), evidence=evidence)
-    assert unrepeated(model, "cogging") is not seen
-    assert not unrepeated(model, "torque_bias")
+    assert lacks_repeats(model, "cogging") is not seen
+    assert not lacks_repeats(model, "torque_bias")

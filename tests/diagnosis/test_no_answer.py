@@ -16,8 +16,8 @@ from stiction.diagnosis.confirm import (
     NO_BETTER,
     NO_MACHINE,
     NOT_KNOWN,
-    confirmed,
-    described,
+    confirm_on_test,
+    reject_without_machine,
 )
 from stiction.diagnosis.evidence import Cells
 from stiction.diagnosis.gain import HeldOut
@@ -63,7 +63,7 @@ def test_names_that_test_rows_speak_against_are_taken_away(
 ) -> None:
     names = ("first", "second")[: len(sizes) - 1]
     selection = selected(*names)
-    found = confirmed(selection, opened(*sizes), 0)
+    found = confirm_on_test(selection, opened(*sizes), 0)
     assert [choice.winner.name for choice in found.choices] == list(names[:kept])
     assert found.models == selection.models[: kept + 1]
     reasons = [found.rows[name].reason for name in names]
@@ -71,7 +71,7 @@ def test_names_that_test_rows_speak_against_are_taken_away(
 
 
 def test_without_rows_that_test_nothing_is_taken_away() -> None:
-    assert len(confirmed(selected("first"), None, 0).choices) == 1
+    assert len(confirm_on_test(selected("first"), None, 0).choices) == 1
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_without_rows_that_test_nothing_is_taken_away() -> None:
 def test_a_name_needs_a_strength_or_a_gain_that_is_not_nothing(
     size: float, known: bool, kept: int
 ) -> None:
-    found = confirmed(selected("first", known=known), opened(1.0, size), 0)
+    found = confirm_on_test(selected("first", known=known), opened(1.0, size), 0)
     assert len(found.choices) == kept
     assert found.rows["first"].reason == ("accepted" if kept else NOT_KNOWN)
 
@@ -157,7 +157,7 @@ def test_a_name_needs_a_plant_that_describes_the_machine(
     models = [modelled(size * one) for size in sizes]
     # Noise alone leaves as little everywhere.
     null = np.repeat(0.1 * one[:, None], 4, axis=1)
-    found = described(replace(selection, models=models), evidence, null)
+    found = reject_without_machine(replace(selection, models=models), evidence, null)
     assert found.rows["first"].reason == reason
     assert len(found.choices) == (reason == "accepted")
     assert len(found.models) == 1 + len(found.choices)
@@ -181,9 +181,9 @@ def test_one_block_takes_no_name_away() -> None:
     )
     selection = replace(selected("first"), models=[modelled(before), modelled(after)])
     null = np.repeat(0.1 * before[:, None], 4, axis=1)
-    assert described(selection, evidence, null).choices
+    assert reject_without_machine(selection, evidence, null).choices
     astray = replace(selection, models=[modelled(before), modelled(1.2 * before)])
-    assert not described(astray, evidence, null).choices
+    assert not reject_without_machine(astray, evidence, null).choices
 
 
 def alone(*, bias: float, follows: bool) -> st.Diagnosis:
@@ -294,8 +294,8 @@ def test_a_plant_of_which_nothing_is_left_is_no_better_one(
         trials,
         "Model",
         lambda evidence, solution, _: SimpleNamespace(
-            evidence=evidence, solution=solution, power=solution.power, given=1
+            evidence=evidence, solution=solution, power=solution.power, relative_input_power=1
         ),
     )
     model: Any = SimpleNamespace(evidence=evidence, solution=own, nuisances=None)
-    assert (trials.unstuck(model) is not model) == taken
+    assert (trials.escape_local_minimum(model) is not model) == taken

@@ -12,7 +12,7 @@ import stiction as st
 from stiction.bench.ordinary.draw import Spec, ordinary
 from stiction.bench.ordinary.files import write
 from stiction.diagnosis import left_open, pipeline
-from stiction.diagnosis.decide import emptied
+from stiction.diagnosis.decide import degeneracy
 from stiction.diagnosis.result import Cause
 from stiction.diagnosis.verdict import relatives
 from stiction.diagnosis.words import THE_LAW
@@ -62,7 +62,7 @@ def test_what_was_told_stays_where_the_diagnosis_with_the_better_law_comes_to_no
     monkeypatch: pytest.MonkeyPatch,
     left_out: list[str],
 ) -> None:
-    whole, begun = pipeline.based, []
+    whole, begun = pipeline.fit_baseline, []
 
     def based(*given: Any) -> Any:
         begun.append(given)
@@ -70,7 +70,7 @@ def test_what_was_told_stays_where_the_diagnosis_with_the_better_law_comes_to_no
             raise fault
         return whole(*given)
 
-    monkeypatch.setattr(pipeline, "based", based)
+    monkeypatch.setattr(pipeline, "fit_baseline", based)
     found = st.diagnose(None, session(tmp_path, Spec(11, law="dahl", contact="dry", **SHORT)))
     assert len(begun) == 2
     assert found.success is success
@@ -130,16 +130,16 @@ def test_a_bias_that_outweighs_the_level_or_bends_a_spring_is_told(
 def test_a_fit_that_lost_its_inertia_or_its_input_is_no_cause() -> None:
     def model(inertia: float, given: float) -> Any:
         plant = SimpleNamespace(inertia=inertia)
-        return SimpleNamespace(plant=plant, given=given, evidence=evidence)
+        return SimpleNamespace(plant=plant, relative_input_power=given, evidence=evidence)
 
     evidence = SimpleNamespace(simulated=False)
     base = model(1.0, 1.0)
-    assert emptied(base, model(0.9, 1.0)) == ""
-    assert "the inertia" in emptied(base, model(0.1, 1.0))
+    assert degeneracy(base, model(0.9, 1.0)) == ""
+    assert "the inertia" in degeneracy(base, model(0.1, 1.0))
     # What is simulated without it misses the motion, which counts against it as it is.
     evidence.simulated = True
-    assert emptied(base, model(0.1, 1.0)) == ""
-    assert "the effort itself" in emptied(base, model(1.0, 0.005))
+    assert degeneracy(base, model(0.1, 1.0)) == ""
+    assert "the effort itself" in degeneracy(base, model(1.0, 0.005))
 
 
 def cause(name: str, family: str) -> Cause:

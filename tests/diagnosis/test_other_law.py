@@ -58,8 +58,8 @@ def test_a_name_that_took_less_than_twice_what_is_left_is_not_decided(
     models = [SimpleNamespace(blocks=(None, np.full(4, p))) for p in (25.0, 5.0, 3.0)]
     names = [SimpleNamespace(winner=SimpleNamespace(name=each)) for each in ("first", "second")]
     selection: Any = SimpleNamespace(models=models, choices=names)
-    assert left_open.outweighed(selection, [Unexplained(coordinate, share)]) == little
-    assert left_open.outweighed(selection, []) == set()
+    assert left_open.outweighed_names(selection, [Unexplained(coordinate, share)]) == little
+    assert left_open.outweighed_names(selection, []) == set()
 
 
 @pytest.mark.parametrize(("strength", "sure"), [(60.0, True), (5.0, False)])
@@ -82,7 +82,7 @@ def test_a_name_of_which_no_number_is_known_is_decided_by_its_strength_alone(
     model = SimpleNamespace(strength=lambda candidate: strengths[candidate])
     choices = [SimpleNamespace(winner=SimpleNamespace(candidate=each.name)) for each in causes]
     selection: Any = SimpleNamespace(models=[model], choices=choices)
-    found = left_open.known_by_themselves(selection, causes)
+    found = left_open.leave_zero_open(selection, causes)
     assert [each.decided for each in found] == [sure, True, False, True, True]
 
 

@@ -14,9 +14,10 @@ from stiction.diagnosis.contact import slides_of
 from stiction.diagnosis.coordinates import COORDINATES, UNJUDGED, Coordinate
 from stiction.diagnosis.held_numbers import HELD
 from stiction.diagnosis.omnibus import Rest, View
-from stiction.diagnosis.own import OWN, Wave, own_coordinate
+from stiction.diagnosis.own import own_coordinate
 from stiction.diagnosis.passing import DRIFT, MOMENTS
 from stiction.diagnosis.periodic import COUPLED, FREQUENCY, ORDERS
+from stiction.diagnosis.presentation import PRESENTATIONS, Wave
 from stiction.diagnosis.response import RESPONSE
 from stiction.diagnosis.smoother import BINS, smoother
 from stiction.parameter import Parameter
@@ -35,12 +36,12 @@ def test_every_effect_has_a_coordinate_of_its_own(record: st.EffectRecord) -> No
     coordinate = own_coordinate(effect_of(record.name), "rotary")
     assert coordinate.name
     assert ", " in coordinate.axis
-    if not isinstance(OWN[record.name], Wave):
+    if not isinstance(PRESENTATIONS[record.name].over, Wave):
         assert coordinate.name in {each.name for each in (*COORDINATES, *UNJUDGED)}
 
 
-def test_no_coordinate_belongs_to_an_effect_that_is_not_there() -> None:
-    assert set(OWN) == {record.name for record in st.effects()}
+def test_every_effect_of_the_catalogue_and_no_other_has_an_entry() -> None:
+    assert set(PRESENTATIONS) == {record.name for record in st.effects()}
 
 
 def test_every_coordinate_has_a_hint_and_an_experiment() -> None:
@@ -166,4 +167,4 @@ def test_a_coordinate_and_its_refinement_are_listed_once(
     shares = {"speed": 0.12, "effort": wide, "effort along the motion": fine}
     views = [view_of(name, share) for name, share in shares.items()]
     rest = Rest(tuple(sorted(views, key=lambda view: -view.share)))
-    assert [view.coordinate.name for view in rest.flagged()] == listed
+    assert [view.coordinate.name for view in rest.significant_views()] == listed

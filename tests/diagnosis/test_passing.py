@@ -62,8 +62,8 @@ def session(recordings=6):
 
 def test_noise_neither_drifts_nor_comes_in_bursts():
     made = session()
-    assert not made.drift().flagged()
-    assert not made.moments().flagged()
+    assert not made.drift().is_flagged()
+    assert not made.moments().is_flagged()
 
 
 @pytest.mark.parametrize("recordings", [1, 6])
@@ -72,8 +72,8 @@ def test_an_offset_that_wanders_within_seconds_is_told_by_the_seconds_beside_it(
     wander = 0.08 * np.sin(2.0 * np.pi * 0.07 * made.clock + 1.0)
     made.both[:, 0] += wander
     seen = made.drift()
-    assert seen.flagged()
-    assert not made.moments().flagged()
+    assert seen.is_flagged()
+    assert not made.moments().is_flagged()
     assert seen.share == pytest.approx(np.mean(wander**2) / np.mean(made.both[:, 0] ** 2), rel=0.3)
     # Drawn as it is: the mean of each second, in units of effort.
     assert np.corrcoef(seen.mean, np.interp(seen.at, made.clock, wander))[0, 1] > 0.9
@@ -83,14 +83,14 @@ def test_a_drift_in_one_recording_is_a_machine_that_was_lost_there():
     made = session()
     lost = made.cells.recording == 2
     made.both[lost, 0] += 0.3 * np.sin(2.0 * np.pi * 0.07 * made.clock[lost])
-    assert not made.drift().flagged()
+    assert not made.drift().is_flagged()
 
 
 def test_what_a_resting_contact_holds_is_no_drift():
     made = session()
     made.sliding[:] = np.mod(made.clock, 5.0) > 3.0
     made.both[~made.sliding, 0] += 0.2
-    assert not made.drift().flagged()
+    assert not made.drift().is_flagged()
     made.sliding[:] = False
     assert made.drift() is None
 
@@ -98,7 +98,7 @@ def test_what_a_resting_contact_holds_is_no_drift():
 def test_what_goes_with_the_velocity_is_no_drift():
     made = session()
     made.both[:, 0] += 0.1 * made.velocity
-    assert not made.drift().flagged()
+    assert not made.drift().is_flagged()
 
 
 def test_bursts_are_seen_away_from_reversals_alone():
@@ -109,25 +109,25 @@ def test_bursts_are_seen_away_from_reversals_alone():
     for first in rng.choice(at, 40):
         bursts[first : first + 16] += rng.choice([-0.6, 0.6])
     made.both[:, 0] += bursts
-    assert made.moments().flagged()
-    assert not made.drift().flagged()
+    assert made.moments().is_flagged()
+    assert not made.drift().is_flagged()
 
     near = session()
     near.both[:, 0] += np.where(near.elapsed < 0.08, 0.6, 0.0)
-    assert not near.moments().flagged()
+    assert not near.moments().is_flagged()
 
 
 def test_what_stands_out_everywhere_is_no_matter_of_moments():
     made = session()
     made.both[:, 0] *= 8.0
-    assert not made.moments().flagged()
+    assert not made.moments().is_flagged()
 
 
 def test_three_outliers_are_no_bursts():
     made = session()
     for first in (1000, 9000, 17100):
         made.both[first : first + 10, 0] += 3.0
-    assert not made.moments().flagged()
+    assert not made.moments().is_flagged()
 
 
 def test_a_machine_that_turns_round_all_the_time_has_no_moments():

@@ -17,12 +17,12 @@ from stiction.catalogue import EffectRecord
 from stiction.cli import run
 from stiction.diagnosis import choose as choosing
 from stiction.diagnosis import listing
-from stiction.diagnosis.candidates import Scales, candidates, left_out, present, scales_of
+from stiction.diagnosis.candidates import Scales, candidates, excluded_names, present, scales_of
 from stiction.diagnosis.choose import Choice, choose, strangers
 from stiction.diagnosis.decide import OUT_OF_RANGE, Trial
 from stiction.diagnosis.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.gain import HeldOut, gain_of
-from stiction.diagnosis.model import LEAST_GIVEN, Model, fitted, with_effect
+from stiction.diagnosis.model import LEAST_GIVEN, Model, fit_model, with_effect
 from stiction.diagnosis.periodic import waves_of
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.replay import centre, noise_of, surrogate_residuals
@@ -31,7 +31,7 @@ from stiction.diagnosis.trials import Screening
 from stiction.diagnosis.verdict import relatives
 from stiction.diagnosis.words import value_words
 from stiction.finite import finite
-from stiction.fitting.levenberg import escaped, levenberg_marquardt
+from stiction.fitting.levenberg import escape, levenberg_marquardt
 from stiction.fitting.result import FitParameter
 from stiction.fitting.rows import Nuisances
 from stiction.fitting.statistics import interval_width
@@ -160,7 +160,7 @@ def test_a_fold_does_not_go_where_the_fit_to_all_rows_may_not() -> None:
         evidence: Any = SimpleNamespace(fitted=whole)
         model = Model(evidence, SimpleNamespace())  # type: ignore[arg-type]
         model.__dict__.update(residual=residual, columns=columns)
-        return model.held(plan)
+        return model.holdout_residual(plan)
 
     # A parameter at its bound leaves a slope that no fit may take: nor may a fold.
     free = noise - columns @ np.linalg.lstsq(columns[whole], noise[whole])[0]
@@ -247,7 +247,7 @@ def test_an_effect_that_the_law_holds_is_not_offered_again() -> None:
 
 def test_unknown_names_are_refused_with_the_nearest_one() -> None:
     with pytest.raises(st.InputError, match="did you mean 'cogging'"):
-        left_out(("coging",))
+        excluded_names(("coging",))
     with pytest.raises(st.InputError, match="did you mean 'coulomb'"):
         st.diagnose(true_plant(), recorded(0), laws=("coulom",))
     for wrong in ({"surrogates": 2}, {"seed": -1}, {"threads": 0}):
@@ -293,7 +293,7 @@ def test_the_minimum_is_found_within_bounds_and_beyond_a_kink() -> None:
         kinked, lambda x: np.array([[0.0], [0.0], [1e-9]]), np.zeros(1),
         (np.full(1, -9.0), np.full(1, 9.0)), np.ones(1), **keywords,
     )  # fmt: skip
-    beyond = escaped(
+    beyond = escape(
         kinked,
         lambda x: np.array([[1.0], [0.0], [0.0]]),
         caught,
@@ -412,7 +412,7 @@ def test_only_what_passed_by_itself_leaves_waves_aside(monkeypatch: pytest.Monke
     chosen = choose([winner, other])
     assert chosen is not None
     assert (chosen.decided, chosen.rivals, chosen.aside) == (True, (), (other,))
-    assert "by chance" in listing.tried(other, chosen).reason
+    assert "by chance" in listing.row_of_trial(other, chosen).reason
     refused = tried(0.97, 1, "its held-out gain is 1.80 standard errors", by_blocks=True)
     chosen = choose([winner, refused])
     assert chosen is not None
@@ -439,8 +439,8 @@ def test_every_row_has_a_reason() -> None:
     passes, refused = tried(0.5, 1), tried(1.0, 1, "imitates something else", family="offset")
     for choice in (None, choose([passes])):
         for trial in (passes, refused):
-            assert listing.tried(trial, choice).reason
-    assert "imitate" in listing.tried(passes, None).reason
+            assert listing.row_of_trial(trial, choice).reason
+    assert "imitate" in listing.row_of_trial(passes, None).reason
 
 
 def test_a_strength_that_is_not_quite_even_stands_for_its_family() -> None:
@@ -521,7 +521,7 @@ def test_what_may_be_a_relative_instead_leaves_a_name_undecided() -> None:
 @pytest.mark.slow
 def test_an_interrupted_refit_ends_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*given: Any, **named: Any) -> Model:
-        model = fitted(*given, **named)
+        model = fit_model(*given, **named)
         return replace(model, solution=replace(model.solution, interrupted=True))
 
     # An effort that nobody logged: something to be found.
@@ -533,7 +533,7 @@ def test_an_interrupted_refit_ends_the_search(monkeypatch: pytest.MonkeyPatch) -
     ]
     plant = true_plant()
     assert st.diagnose(plant, recordings, surrogates=4).effects
-    monkeypatch.setattr("stiction.diagnosis.trials.fitted", interrupted)
+    monkeypatch.setattr("stiction.diagnosis.trials.fit_model", interrupted)
     found = st.diagnose(plant, recordings, surrogates=4)
     assert not found.success
     assert found.effects == ()
@@ -610,7 +610,7 @@ def test_a_drive_that_gives_nothing_leaves_nothing_to_explain() -> None:
             effects=(Effect("drive_deadband", {"deadband": Parameter(deadband)}),),
         )
         solution = SimpleNamespace(plant=plant, nuisances=Nuisances())
-        return Model(evidence, solution).given  # type: ignore[arg-type]
+        return Model(evidence, solution).relative_input_power  # type: ignore[arg-type]
 
     assert given(0.01) == 1.0
     assert 0.0 < given(0.4) < 0.5

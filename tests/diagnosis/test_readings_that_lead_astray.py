@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.base import based
+from stiction.diagnosis.base import fit_baseline
 from stiction.diagnosis.conclude import surrogates_of
 from stiction.diagnosis.evidence import Evidence
-from stiction.diagnosis.model import Model, fitted
+from stiction.diagnosis.model import Model, fit_model
 from stiction.diagnosis.moved import _powers, borne_out_in_motion
 from stiction.diagnosis.selection import Search
 from stiction.fitting.forms import Through
@@ -96,7 +96,7 @@ def test_a_dry_contact_and_a_coarse_encoder_lack_nothing() -> None:
 
 
 def test_errors_of_readings_bend_no_parameter() -> None:
-    _, base = based(plant(), recordings())
+    _, base = fit_baseline(plant(), recordings())
     friction = base.plant.friction.parameters
     assert base.plant.inertia == pytest.approx(INERTIA, rel=0.01)
     assert friction["coulomb"].value == pytest.approx(COULOMB, rel=0.01)
@@ -106,7 +106,7 @@ def test_errors_of_readings_bend_no_parameter() -> None:
 def test_what_is_exact_is_not_simulated() -> None:
     exact = [replace_position(recording) for recording in recordings()]
     stated = replace(plant(), sensor={})
-    evidence, base = based(stated, exact)
+    evidence, base = fit_baseline(stated, exact)
     assert not evidence.simulated
     assert base.plant.inertia == pytest.approx(INERTIA, rel=1e-3)
 
@@ -133,7 +133,7 @@ def test_a_residual_does_not_vanish_with_the_inertia() -> None:
 
 
 def test_replays_scatter_as_the_recording_does() -> None:
-    evidence, base = based(plant(), recordings(LOG_NOISE))
+    evidence, base = fit_baseline(plant(), recordings(LOG_NOISE))
     assert evidence.simulated
     null, _ = surrogates_of(evidence, base, 12, 0)
     assert np.mean(null**2) == pytest.approx(np.mean(base.residual**2), rel=0.3)
@@ -217,10 +217,10 @@ def test_windows_of_a_plant_begin_in_its_own_motion() -> None:
     bare = plant(**TRUE)
     whole = with_wave(bare)
     form = ShootingForm(bare, waved()[0], horizon=0.3)
-    assert form.led_by(None) is form
-    assert form.led_by(bare) is form
-    own = form.led_by(whole)
-    assert own is form.led_by(whole)
+    assert form.with_leader(None) is form
+    assert form.with_leader(bare) is form
+    own = form.with_leader(whole)
+    assert own is form.with_leader(whole)
     assert np.std(own.residual(whole)) < 0.8 * np.std(form.residual(whole))
     assert np.std(own.residual(whole)) < 0.2 * np.std(form.residual(bare))
 
@@ -228,7 +228,7 @@ def test_windows_of_a_plant_begin_in_its_own_motion() -> None:
 def test_a_fit_is_not_pulled_towards_the_plant_that_it_began_with() -> None:
     bare = plant(inertia=1.06 * INERTIA, coulomb=1.1 * COULOMB, viscous=VISCOUS)
     windows = Evidence(bare, waved(), through=Through(horizon=0.3))
-    found = fitted(windows, with_wave(bare), NOTHING)
+    found = fit_model(windows, with_wave(bare), NOTHING)
     friction = found.plant.friction.parameters
     assert found.plant.inertia == pytest.approx(INERTIA, rel=1e-3)
     assert friction["coulomb"].value == pytest.approx(COULOMB, rel=2e-3)

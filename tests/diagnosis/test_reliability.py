@@ -20,7 +20,7 @@ def cause(*alike: str, held: Reliability | None = None) -> Cause:
 def test_counts_of_every_manner_are_there_and_in_order(how: tuple[bool, bool, bool]) -> None:
     held = reliability_of(decided=how[0], several=how[1], unexplained=how[2])
     assert 0 <= held.first <= held.listed <= held.told
-    assert 0.0 < held.probability <= held.covered < 1.0
+    assert 0.0 < held.probability <= held.coverage < 1.0
 
 
 def test_a_sure_name_is_more_probable_than_one_of_several() -> None:
@@ -74,8 +74,8 @@ def test_names_are_counted_by_how_they_were_told() -> None:
 def test_it_is_said_in_words() -> None:
     held = Reliability(told=19, first=9, listed=17)
     several = "of names told like these one was right 17 of 19 times where the truth was known"
-    assert cause("frictional_lag", held=held).counted == f"{several}, the first one 9"
+    assert cause("frictional_lag", held=held).track_record == f"{several}, the first one 9"
     told = "names told like this one were right 9 of 19 times where the truth was known"
-    assert cause(held=held).counted == told
-    assert cause(held=Reliability(0, 0, 0)).counted == ""
-    assert cause().counted == ""
+    assert cause(held=held).track_record == told
+    assert cause(held=Reliability(0, 0, 0)).track_record == ""
+    assert cause().track_record == ""

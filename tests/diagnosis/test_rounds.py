@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from stiction.catalogue import effects
-from stiction.diagnosis import decide, gains, rounds, together
-from stiction.diagnosis.beside import left_by_forms, stands_out
+from stiction.diagnosis import block_gains, decide, rounds, together
+from stiction.diagnosis.beside import doubt_by_forms, stands_out
 from stiction.diagnosis.choose import Choice
 from stiction.diagnosis.decide import Trial
-from stiction.diagnosis.exact_forms import doubted
+from stiction.diagnosis.exact_forms import doubt_geometry
 from stiction.diagnosis.result import CandidateRow, Cause, Unexplained
 from stiction.diagnosis.selection import Search
 
@@ -65,7 +65,7 @@ class Bench:
     def from_where(self, model: Any, score: Any, lead: Any) -> None:
         return None
 
-    def contributed(self, score: Any, model: Any) -> Any:
+    def contribution(self, score: Any, model: Any) -> Any:
         return score.signature
 
     def encompasses(self, one: Trial, other: Trial) -> bool:
@@ -277,7 +277,7 @@ def test_what_geometry_leaves_no_rest_of_speaks_against_a_name(
 ) -> None:
     cause = Cause(name, "cogging", True, (), {}, None, "", "", "", "")
     left = [Unexplained(coordinate, 0.1)]
-    after = doubted(cause, left, left)
+    after = doubt_geometry(cause, left, left)
     assert after.decided is decided
     twins = () if decided or coordinate != "angle" else ("cogging",)
     assert after.look_alikes == twins
@@ -308,7 +308,7 @@ def test_a_recording_in_which_an_effect_does_nothing_does_not_judge_it(
         return SimpleNamespace(blocks=blocks, evidence=SimpleNamespace(cells=cells))
 
     contributed = np.where(recording == 0, 0.0, 1.0)
-    kept = gains.without_the_best(model(*np.ones(recordings)), model(*gained), contributed)
+    kept = block_gains.without_the_best(model(*np.ones(recordings)), model(*gained), contributed)
     assert (kept > 0.5 * decide.LEAST_GAIN) == passes
 
 
@@ -357,9 +357,9 @@ def test_beside_a_name_a_further_one_has_to_stand_out(
     for gain, z in ((0.2, 9.0), (0.5, 3.0), (0.5, 9.0)):
         tried: Any = SimpleNamespace(score=score, reason="", gain=gain, z=z)
         surely = gain > 0.3 and z > 4.0
-        assert (left_by_forms(evidence, tried, families) == "") == (passes or surely)
+        assert (doubt_by_forms(evidence, tried, families) == "") == (passes or surely)
     refused: Any = SimpleNamespace(score=score, reason="another one", gain=0.2, z=9.0)
-    assert left_by_forms(evidence, refused, families) == ""
+    assert doubt_by_forms(evidence, refused, families) == ""
 
 
 @pytest.mark.parametrize(("explained", "refused"), [(0.03, True), (0.1, False)])
@@ -377,7 +377,7 @@ def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: 
     left = 0.5 * held * (1.0 + 0.01 * block / number)
     model: Any = SimpleNamespace(
         power=100.0 * (1.0 - explained),
-        given=1.0,
+        relative_input_power=1.0,
         plant=plant,
         blocks=((1.0 - explained) * train, left),
         strength=lambda _: 9.0,
@@ -398,5 +398,5 @@ def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: 
 def test_where_an_effect_touches_nothing_its_gain_has_no_standard_error() -> None:
     base: Any = SimpleNamespace(blocks=BLOCKS)
     model: Any = SimpleNamespace(blocks=(0.5 * BLOCKS[0], 0.5 * BLOCKS[1]))
-    gain, z = gains.heldout_gain(base, model, np.zeros(30, dtype=bool))
+    gain, z = block_gains.heldout_gain(base, model, np.zeros(30, dtype=bool))
     assert (gain, z) == (0.5, 0.0)

@@ -39,12 +39,12 @@ def test_a_second_wave_has_another_order() -> None:
     whole = tuple(candidates(record, scales))
     columns, every = np.zeros((4, 2 * len(whole))), np.ones(4, dtype=bool)
     effect = Effect("cogging", {"order": Parameter(2.0, fixed=True)})
-    second = Signatures.given(whole, columns, every).second_of(effect)
+    second = Signatures.from_columns(whole, columns, every).second_of(effect)
     assert [each.shape["order"] for each in second.candidates] == [1.0, 3.0]
     assert all(each.second for each in second.candidates)
     # Where an order is free a neighbour may come to it as well.
     free = tuple(candidates(record, Scales((0.1, 1.0), (1.0, 2.0, 3.0, 4.0, 5.0), False, {})))
-    second = Signatures.given(free, np.zeros((4, 10)), every).second_of(effect)
+    second = Signatures.from_columns(free, np.zeros((4, 10)), every).second_of(effect)
     assert [each.shape["order"] for each in second.candidates] == [4.0, 5.0]
 
 
@@ -64,7 +64,7 @@ def screened(
     null = np.random.default_rng(3).standard_normal((ROWS, SURROGATES))
     block = np.arange(ROWS) // 20
     problem = Problem(residual, base, null[fit], block, fit, [Plan(fit, ~fit)])
-    signatures = Signatures.given(every, columns[:, :gains], fit)
+    signatures = Signatures.from_columns(every, columns[:, :gains], fit)
     return {score.candidate.name: score for score in screen(problem, signatures, 1.0, alpha)}
 
 

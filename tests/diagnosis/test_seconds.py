@@ -12,8 +12,8 @@ from tests.reference.session_reference import make_session
 
 import stiction as st
 from stiction.diagnosis import seconds
-from stiction.diagnosis.confirmed import gone_where_it_acts
-from stiction.diagnosis.seconds import asked_before, holds_more
+from stiction.diagnosis.replication import vanishes_where_active
+from stiction.diagnosis.seconds import holds_more, tried_names
 from stiction.errors import InputError
 from stiction.recording.split import split
 
@@ -90,7 +90,7 @@ def test_next_to_nothing_is_left_where_it_acts(left: float, noise: float, gone: 
     explained = np.where(np.isin(BLOCK, (7, 8)), 12.0 * source.standard_normal(len(BLOCK)), 0.0)
     rest = noise * source.standard_normal(len(BLOCK))
     after = rest + left * explained
-    assert gone_where_it_acts(BLOCK, explained, after + explained, after, 10.0) is gone
+    assert vanishes_where_active(BLOCK, explained, after + explained, after, 10.0) is gone
 
 
 @pytest.mark.parametrize("roles", [["train", "select", "test"] * 2, [None] * 6, [None]])
@@ -145,7 +145,7 @@ def test_what_a_limit_holds_back_is_known_or_everything(
     told = SimpleNamespace(parameters={"effects.drive_saturation.share": number})
     candidate = SimpleNamespace(record=SimpleNamespace(limits=True), gains=("share",))
     trial: Any = SimpleNamespace(name="drive_saturation", candidate=candidate)
-    assert seconds._is_known(trial, cast("Any", SimpleNamespace(told=told))) is known
+    assert seconds._is_known(trial, cast("Any", SimpleNamespace(fit_result=told))) is known
 
 
 def test_a_push_in_few_seconds_is_no_limit_of_the_drive_for_sure() -> None:
@@ -180,6 +180,6 @@ def test_copies_are_not_fitted_and_judged_on_in_turn() -> None:
 
 
 def test_limits_alone_are_asked_again_where_nothing_is_named() -> None:
-    names = {record.name for record in st.effects()} - set(asked_before(looked()))
+    names = {record.name for record in st.effects()} - set(tried_names(looked()))
     assert names == {"drive_saturation", "voltage_limit"}
-    assert asked_before(looked("stribeck")) == ()
+    assert tried_names(looked("stribeck")) == ()

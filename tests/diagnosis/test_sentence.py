@@ -10,15 +10,15 @@ from stiction.diagnosis.words import (
     LEAVES_NOTHING,
     OUTWEIGHED,
     UNREPEATED,
-    joined,
+    join_words,
     sentence,
     unseen_words,
 )
 
 
 def test_words_join_and_say_what_was_not_confirmed() -> None:
-    assert joined(["a"]) == "a"
-    assert joined(["a", "b", "c"], "or") == "a, b or c"
+    assert join_words(["a"]) == "a"
+    assert join_words(["a", "b", "c"], "or") == "a, b or c"
     assert "Nothing is missing" in sentence("nothing_missing", (), None, (), "")
     little = sentence("nothing_missing", (), None, (), "", slight=True)
     assert little.startswith("Nothing that counts is missing: some of what is left is more than")

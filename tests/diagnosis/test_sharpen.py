@@ -15,7 +15,7 @@ from tests.reference.session_reference import make_sessions
 import stiction as st
 from stiction.diagnosis import sharpen, verdict
 from stiction.diagnosis.omnibus import Rest
-from stiction.diagnosis.sharpen import is_sharpened
+from stiction.diagnosis.sharpen import has_free_shapes
 from stiction.diagnosis.view import View
 from stiction.parameter import Parameter
 from stiction.stated import Effect
@@ -105,8 +105,8 @@ def test_a_shape_of_its_own_has_to_gain(
     if model is not None:
         (effect,) = model.plant.effects
         assert not effect.parameters["exponent"].fixed
-        assert is_sharpened(effect, record)
-        assert not is_sharpened(Effect("stribeck", stated), record)
+        assert has_free_shapes(effect, record)
+        assert not has_free_shapes(Effect("stribeck", stated), record)
 
 
 def test_shapes_held_at_nothing_start_from_what_is_typical() -> None:

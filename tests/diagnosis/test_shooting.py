@@ -12,9 +12,9 @@ import stiction as st
 from stiction.bench.ordinary.draw import Spec, ordinary
 from stiction.bench.ordinary.files import write
 from stiction.diagnosis.evidence import Evidence
-from stiction.diagnosis.model import Model, fitted
+from stiction.diagnosis.model import Model, fit_model
 from stiction.diagnosis.replay import noise_of, surrogate_residuals
-from stiction.fitting.forms import HORIZONS_S, Through, horizon_of, told
+from stiction.fitting.forms import HORIZONS_S, Through, horizon_of, residual_sentence
 from stiction.fitting.rows import Nuisances
 from stiction.shooting import ShootingForm
 from stiction.weak_form import WeakForm
@@ -73,7 +73,7 @@ def coarse() -> list[st.Recording]:
 
 def chosen(counts: int) -> tuple[float | None, Model]:
     evidence = Evidence(plant(counts), session(counts))
-    base = fitted(evidence, plant(counts))
+    base = fit_model(evidence, plant(counts))
     return horizon_of(base.plant, base.nuisances, evidence.train, evidence.forms), base
 
 
@@ -81,10 +81,10 @@ def test_a_coarse_encoder_is_looked_at_by_short_simulations() -> None:
     horizon, base = chosen(COARSE)
     assert horizon is not None
     assert HORIZONS_S[0] <= horizon <= HORIZONS_S[1]
-    assert "weak form" in told(base.evidence.forms, base.plant)
+    assert "weak form" in residual_sentence(base.evidence.forms, base.plant)
     evidence = Evidence(plant(COARSE), session(COARSE), through=Through(horizon=horizon))
     assert all(isinstance(form, ShootingForm) for form in evidence.forms)
-    assert "shooting" in told(evidence.forms, base.plant)
+    assert "shooting" in residual_sentence(evidence.forms, base.plant)
 
 
 def test_a_fine_encoder_keeps_the_weak_form() -> None:

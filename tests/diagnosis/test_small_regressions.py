@@ -11,7 +11,7 @@ from scipy.optimize import lsq_linear
 
 from stiction.diagnosis.evidence import Cells
 from stiction.diagnosis.periodic import frequency_view
-from stiction.diagnosis.regression import bounded
+from stiction.diagnosis.regression import bounded_gains
 from stiction.diagnosis.result import CandidateRow
 from stiction.diagnosis.verdict import verdict_of
 
@@ -25,7 +25,7 @@ def test_gains_within_bounds_are_those_of_the_bounded_least_squares() -> None:
     normal = columns.transpose(0, 2, 1) @ columns
     product = np.einsum("mnq,mn->mq", columns, wanted)
     best = np.linalg.solve(normal, product[:, :, None])[:, :, 0]
-    gains = bounded(normal, product, best, low, high)
+    gains = bounded_gains(normal, product, best, low, high)
     assert np.any(gains != np.clip(best, low, high))
     for k in range(40):
         right = lsq_linear(columns[k], wanted[k], (low[k], high[k]), tol=1e-13).x

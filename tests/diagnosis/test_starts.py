@@ -6,8 +6,8 @@ import numpy as np
 from tests.reference.ladder_spring import LadderSpring
 
 import stiction as st
+from stiction.fitting.recording_starts import fit_starts
 from stiction.fitting.rows import WARM_UP_S, Nuisances, Rows
-from stiction.fitting.starts import started
 from stiction.weak_form import WeakForm
 
 DT = 0.01
@@ -72,7 +72,7 @@ def test_a_start_is_found_from_the_rows_of_its_own_recording() -> None:
     fitted = st.fit(PLANT, session("test")).plant
     spring = LadderSpring(**CURVE)
     spring.advance(LOADED)
-    found = started(fitted, [rows], Nuisances(0.0, {7: {"force": 1.0}}))
+    found = fit_starts(fitted, [rows], Nuisances(0.0, {7: {"force": 1.0}}))
     assert abs(found.starts[0]["force"] - spring.force()) < 0.05 * spring.force()
     assert found.starts[7] == {"force": 1.0}
     # Where a law brings nothing along there is nothing to find.
@@ -83,7 +83,7 @@ def test_a_start_is_found_from_the_rows_of_its_own_recording() -> None:
             "friction": {"law": "coulomb", "coulomb": 10.0},
         }
     )
-    assert started(rigid, [rows], Nuisances()) == Nuisances()
+    assert fit_starts(rigid, [rows], Nuisances()) == Nuisances()
 
 
 def test_a_contact_that_is_moved_and_read_coarsely_is_told_without_a_ring() -> None:
@@ -153,13 +153,13 @@ def test_a_second_turn_is_kept_where_it_explains_more() -> None:
     fitted = st.fit(PLANT, machine(slid, bent(62, "test", *RANG))).plant
     form = WeakForm(PLANT, bent(60, "test", *RANG))
     rows = Rows(PLANT, form, 0, form.time > WARM_UP_S)
-    start = started(fitted, [rows], Nuisances()).starts[0]
+    start = fit_starts(fitted, [rows], Nuisances()).starts[0]
     left = rows.residual(fitted, Nuisances(0.0, {0: start}))[rows.mask]
     assert np.sqrt(np.mean(left**2)) < NOISE
     assert start["turned"] < -0.9
     assert 0.4 < start["turned_again"] < 0.7
     # What it is fitted from afterwards stays: a plant that hardly differs does not lose it.
-    again = started(fitted, [rows], Nuisances(0.0, {0: start})).starts[0]
+    again = fit_starts(fitted, [rows], Nuisances(0.0, {0: start})).starts[0]
     assert set(again) == set(start)
 
 
@@ -168,7 +168,7 @@ def test_a_force_that_makes_up_for_an_offset_hides_no_turn() -> None:
     fitted = st.fit(PLANT, machine(bent(61, "train", *SLID_BACK))).plant
     form = WeakForm(PLANT, bent(60, "test", *SLID_BACK, size=0.5 * LOADED))
     rows = Rows(PLANT, form, 0, form.time > WARM_UP_S)
-    start = started(fitted, [rows], Nuisances()).starts[0]
+    start = fit_starts(fitted, [rows], Nuisances()).starts[0]
     left = rows.residual(fitted, Nuisances(0.0, {0: start}))[rows.mask]
     # With a force alone it would be 1.2 N.
     assert np.sqrt(np.mean(left**2)) < NOISE

@@ -13,9 +13,9 @@ import stiction as st
 from stiction._native import Motion
 from stiction.diagnosis.advice import advise
 from stiction.diagnosis.candidates import Scales
-from stiction.diagnosis.listing import screened
+from stiction.diagnosis.listing import row_of_score
 from stiction.diagnosis.orders import open_orders, order_words
-from stiction.diagnosis.remedies import GOALS, meant, recorded
+from stiction.diagnosis.remedies import GOALS, experiment_words, meaning_of
 from stiction.diagnosis.result import Unexplained
 from stiction.diagnosis.screen import Score
 from stiction.diagnosis.words import NO_COORDINATE, sentence, what
@@ -39,9 +39,9 @@ def test_a_linear_machine_has_no_gear_and_no_angle(name: str) -> None:
     if EFFECTS[name].rotary_only:
         return
     if name in ("direction_asymmetry", "torque_bias", "torque_constant_ripple"):
-        told = " ".join(meant(EFFECTS[name], plant("linear")))
+        told = " ".join(meaning_of(EFFECTS[name], plant("linear")))
         assert not {"gear", "angle", "angles", "torque"} & set(told.replace(",", "").split())
-    assert meant(EFFECTS[name], plant("rotary")) == (EFFECTS[name].means, EFFECTS[name].remedy)
+    assert meaning_of(EFFECTS[name], plant("rotary")) == (EFFECTS[name].means, EFFECTS[name].remedy)
 
 
 @pytest.mark.parametrize("motion", ["rotary", "linear"])
@@ -51,7 +51,9 @@ def test_a_rig_that_moves_a_specimen_has_no_amplifier_and_no_drive(name: str, mo
     if {"input map", "input delay", "input lag", "input rate"} & set(record.hooks):
         return
     rig = plant(motion, moved=True)
-    told = " ".join([*meant(record, rig), recorded(record.plan, record.experiment, rig)])
+    told = " ".join(
+        [*meaning_of(record, rig), experiment_words(record.plan, record.experiment, rig)]
+    )
     words = ["amplifier", "current", "chirp", "pulses", "the input", "drive", "motor", "rotor"]
     for word in [*words, "controller", "command", "compensat", "feed-forward", "forward over"]:
         assert word not in told
@@ -77,14 +79,14 @@ def test_a_servo_is_advised_nothing_that_its_plan_leaves_out() -> None:
     left_out = {each.name for each in EXPERIMENTS if each.kind == "input"}
     assert left_out == set(GOALS)
     for record in EFFECTS.values():
-        said = recorded(record.plan, record.experiment, servo)
+        said = experiment_words(record.plan, record.experiment, servo)
         assert said.startswith("send it goals: ") == (record.plan in left_out)
 
 
 def test_a_dry_contact_is_turned_round_where_others_make_loops_below_break_away() -> None:
     def said(law: str, *separates: str) -> str:
         table = {"drive": {"input": "torque_nm", "gain": 1.0}, "friction": {"law": law}}
-        return recorded("loops", "nested loops", st.Plant.from_dict(table), separates)
+        return experiment_words("loops", "nested loops", st.Plant.from_dict(table), separates)
 
     assert said("coulomb", "torque_bias").startswith("mount it the other way round")
     assert said("coulomb", "creep_hardening") == said("coulomb") == ""
@@ -95,7 +97,7 @@ def test_what_comes_late_is_told_by_its_sign_and_with_its_fall() -> None:
     def lags(excess: float, fall: float = 0.0, *, moved: bool = False) -> str:
         effect = {"name": "frictional_lag", "excess": excess, "fall": fall}
         table = plant("linear", moved=moved).to_dict() | {"effects": [effect]}
-        return meant(EFFECTS["frictional_lag"], st.Plant.from_dict(table))[0]
+        return meaning_of(EFFECTS["frictional_lag"], st.Plant.from_dict(table))[0]
 
     for moved in (False, True):
         assert "higher while speeding up" in lags(0.3, moved=moved)
@@ -148,7 +150,7 @@ def test_the_share_that_the_base_imitates_is_a_plain_number(left: float, told: s
     score = SimpleNamespace(
         testable=False, left=left, candidate=candidate, score=0.0, threshold=0.1, heldout=0.0
     )
-    assert told in screened(cast("Score", score)).reason
+    assert told in row_of_score(cast("Score", score)).reason
 
 
 def test_more_than_noise_that_goes_with_nothing_is_said_so() -> None:

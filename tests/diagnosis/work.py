@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 import stiction as st
-from stiction.cli.sessions import loaded
+from stiction.cli.sessions import load_session
 
 KNOWN = Path(__file__).with_name("work.json")
 DEMO = Path(st.__file__).parent / "demo_session" / "session.toml"
@@ -46,7 +46,7 @@ def counts(session: Path = DEMO) -> dict[str, int]:
     dict of str to int
         By what was counted.
     """
-    recordings, plant = loaded(session, keep_faulty=True)
+    recordings, plant = load_session(session, keep_faulty=True)
     found: _Counts = Counter()
     with _watched(found):
         st.diagnose(plant, recordings, threads=1)

@@ -9,7 +9,7 @@ from tests.reference.laws.load_dependent import Gear
 
 import stiction as st
 from stiction.bam import read_bam
-from stiction.bam.format import ACTUATORS, MODELS, searched
+from stiction.bam.format import ACTUATORS, MODELS, search_space
 from stiction.cli import run
 
 from .test_steady import plant
@@ -60,7 +60,7 @@ def drawn(model, actuator, rng):
     """A file of parameters somewhere in the bounds of the search."""
     numbers = {
         name: float(rng.uniform(each.least, min(each.most, each.least + 5.0)))
-        for name, each in searched(model, actuator).items()
+        for name, each in search_space(model, actuator).items()
     }
     if "alpha" in numbers:
         numbers["alpha"] = float(rng.uniform(0.5, 5.0))
@@ -365,7 +365,7 @@ def test_the_package_searches_within_the_same_bounds(name):
     package = pytest.importorskip("bam.model")
     for model in MODELS:
         theirs = package.load_model_from_dict({"model": model, "actuator": name}).get_parameters()
-        own = searched(model, name)
+        own = search_space(model, name)
         assert own.keys() == theirs.keys()
         for key, each in theirs.items():
             assert (own[key].start, own[key].least, own[key].most) == pytest.approx(

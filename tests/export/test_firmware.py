@@ -10,12 +10,12 @@ import pytest
 
 import stiction as st
 from stiction.export import fragments
-from stiction.export.fragments import known
+from stiction.export.fragments import names_of
 
 from .compiled import FLAGS, Compiled
 from .test_steady import plant
 
-LAWS = known("laws")
+LAWS = names_of("laws")
 NEAR = 1e-12
 """Of the level, in doubles: round-off of the functions of two libraries."""
 NEAR_FLOAT = 1e-5
@@ -205,7 +205,7 @@ def test_too_many_reverse_points_are_hardly_missed(law, tmp_path):
 def test_a_law_without_c_keeps_its_feed_forward(monkeypatch):
     from stiction.export import firmware
 
-    monkeypatch.setattr(firmware, "known", lambda kind: ())
+    monkeypatch.setattr(firmware, "names_of", lambda kind: ())
     made = plant({"law": "lugre"}, {"name": "run_in", "coulomb": 0.1}).export("c")
     assert "stiction_step" not in "".join(made.files.values())
     assert made.lost[0] == "friction step by step: lugre has no C, its feed-forward alone"
@@ -296,7 +296,7 @@ def test_efforts_that_effects_add_are_taken_off(name, tmp_path):
 
 
 @pytest.mark.parametrize("law", ["coulomb", "lugre"])
-@pytest.mark.parametrize("name", known("effects"))
+@pytest.mark.parametrize("name", names_of("effects"))
 def test_each_effect_is_that_of_a_motor_that_is_moved(name, law, tmp_path):
     record = next(each for each in st.effects() if each.name == name)
     effect = {"name": name, **{each.name: each.typical for each in record.parameters}}
@@ -313,7 +313,7 @@ def test_all_effects_go_with_every_law(law, tmp_path):
     effects = [
         {"name": each.name, **{p.name: p.typical for p in each.parameters}}
         for each in st.effects()
-        if each.name in known("effects")
+        if each.name in names_of("effects")
     ]
     compare_moved(plant({"law": law, "viscous": 0.05}, *effects), tmp_path)
 
@@ -351,7 +351,7 @@ def test_a_contact_with_all_effects_steps_as_the_core_does(law, tmp_path):
     effects = {
         each.name: {p.name: p.typical for p in each.parameters}
         for each in st.effects()
-        if each.name in known("effects")
+        if each.name in names_of("effects")
     }
     own = plant({"law": law}, *({"name": name, **values} for name, values in effects.items()))
     model = st.FrictionModel(law, effects=effects)

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 import stiction as st
 from stiction.cli import run
 from stiction.export import fmu_archive
-from stiction.export.fragments import known
+from stiction.export.fragments import names_of
 
 from .compiled import WARNINGS
 from .test_machine_c import DRY, machine
@@ -347,7 +347,7 @@ def test_a_machine_that_is_moved_has_no_equation_of_motion():
 
 def test_laws_with_model_exchange_are_those_of_the_list(monkeypatch):
     monkeypatch.setattr(fmu_archive, "compiler", lambda: None)
-    found = {law for law in known("laws") if exchanges(law)}
+    found = {law for law in names_of("laws") if exchanges(law)}
     assert found == set(EXCHANGED)
 
 

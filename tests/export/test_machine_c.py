@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.export.fragments import known
+from stiction.export.fragments import names_of
 from stiction.export.machine_source import MachineSource
 
 from .compiled import WARNINGS
@@ -103,7 +103,7 @@ def off(plant, folder, *, dt=DT, load=0.0, size=1.0):
     )
 
 
-@pytest.mark.parametrize("law", [name for name in known("laws") if name != "bristle"])
+@pytest.mark.parametrize("law", [name for name in names_of("laws") if name != "bristle"])
 def test_each_law_moves_a_machine_as_the_core_does(law, tmp_path):
     assert off(machine({"law": law, "viscous": 0.02}), tmp_path) < NEAR
 
@@ -145,7 +145,7 @@ SERVO = {
     "kind": "servo", "proportional": 5.0, "integral": 3.0, "derivative": 0.02, "supply_v": 7.4,
     "resistance_ohm": 3.0, "torque_constant": 0.5, "current_limit_a": 1.0,
 }  # fmt: skip
-HELD = (*known("effects"), *known("drive"))
+HELD = (*names_of("effects"), *names_of("drive"))
 
 
 @pytest.mark.parametrize("name", HELD)

@@ -19,7 +19,7 @@ from tests.report.canned import diagnosis, plant
 
 import stiction as st
 from stiction import plot
-from stiction.atomic_files import create_text, replacing, subfolder, write_text
+from stiction.atomic_files import atomic_write, create_text, subfolder, write_text
 from stiction.plan.result import Signal
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="asks for what POSIX promises")
@@ -183,7 +183,7 @@ def test_what_a_killed_program_left_is_cleared_by_the_next_and_not_what_is_being
     (left,) = tmp_path.iterdir()
     mine = tmp_path / "notes.part"
     mine.write_text("somebody else's")
-    with replacing(path) as file:
+    with atomic_write(path) as file:
         assert not left.exists()
         (draft,) = tmp_path.glob(".stiction-*.part")
         # Another file in the same folder, written meanwhile.

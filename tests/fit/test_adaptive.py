@@ -8,7 +8,7 @@ from scipy.ndimage import minimum_filter1d, uniform_filter1d
 
 from stiction import InputError
 from stiction._native import adaptively_smoothed as by_the_core
-from stiction.adaptive import adaptively_smoothed
+from stiction.adaptive import smooth_adaptively
 
 DT = 1e-3
 COUNT = 2.0 * np.pi / 2**18
@@ -22,13 +22,13 @@ def rounded(position: np.ndarray) -> np.ndarray:
 
 def off(position: np.ndarray) -> float:
     """Error of what is made of the readings, in counts."""
-    made = adaptively_smoothed(rounded(position), DT, NOISE)
+    made = smooth_adaptively(rounded(position), DT, NOISE)
     return float(np.sqrt(np.mean((made - position) ** 2))) / COUNT
 
 
 def test_slow_motion_over_the_counts_goes_on_in_one_direction() -> None:
     slow = 0.15 * COUNT * np.arange(2000)
-    made = adaptively_smoothed(rounded(slow), DT, NOISE)
+    made = smooth_adaptively(rounded(slow), DT, NOISE)
     assert np.all(np.diff(made)[40:-40] > 0.0)
     assert off(slow) < 0.06
     assert np.mean(np.diff(rounded(slow)) == 0.0) > 0.8
@@ -38,7 +38,7 @@ def test_slow_motion_over_the_counts_goes_on_in_one_direction() -> None:
 def test_loops_keep_their_ends(amplitude: float) -> None:
     time = np.arange(3000) * DT
     loop = amplitude * COUNT * np.sin(2.0 * np.pi * 2.0 * time)
-    made = adaptively_smoothed(rounded(loop), DT, NOISE)
+    made = smooth_adaptively(rounded(loop), DT, NOISE)
     assert np.max(made) == pytest.approx(amplitude * COUNT, abs=0.5 * COUNT)
     assert off(loop) < 0.2  # rounding alone: 0.29
 
@@ -46,18 +46,18 @@ def test_loops_keep_their_ends(amplitude: float) -> None:
 def test_a_stop_stays_where_it_is() -> None:
     time = np.arange(2000) * DT
     stop = np.where(time < 1.0, 0.5 * (1.0 - time) ** 2, 0.0)
-    made = adaptively_smoothed(rounded(stop), DT, NOISE)
+    made = smooth_adaptively(rounded(stop), DT, NOISE)
     assert np.max(np.abs(made[1020:])) == 0.0
     sudden = np.where(time < 1.0, time - 1.0, 0.0)
-    assert np.max(np.abs(adaptively_smoothed(rounded(sudden), DT, NOISE) - sudden)) < COUNT
+    assert np.max(np.abs(smooth_adaptively(rounded(sudden), DT, NOISE) - sudden)) < COUNT
 
 
 def test_what_has_no_noise_is_left_as_it_is() -> None:
     motion = np.cumsum(np.random.default_rng(0).standard_normal(500))
-    assert np.array_equal(adaptively_smoothed(motion, DT, 0.0), motion)
+    assert np.array_equal(smooth_adaptively(motion, DT, 0.0), motion)
     # Nor is there anything to smooth by where samples are too far apart.
-    assert np.array_equal(adaptively_smoothed(rounded(motion), 0.1, NOISE), rounded(motion))
-    assert len(adaptively_smoothed(motion[:5], DT, 1.0)) == 5
+    assert np.array_equal(smooth_adaptively(rounded(motion), 0.1, NOISE), rounded(motion))
+    assert len(smooth_adaptively(motion[:5], DT, 1.0)) == 5
 
 
 def by_scipy(readings: np.ndarray, noise: float, halves: list[int]) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.fitting.clock import bounded, follows
+from stiction.fitting.clock import bounded_plants, follows
 from stiction.fitting.rows import rows_of
 from stiction.recording import Part
 from stiction.weak_form import WeakForm
@@ -46,7 +46,7 @@ def test_what_samples_can_follow_stays_as_it_is() -> None:
     rows: Any = [Told(lambda plant: 1.0)]
     well = plant(1e-3, 0.01)
     assert follows(well, rows)
-    assert bounded(well, PATHS, rows, NONE) == []
+    assert bounded_plants(well, PATHS, rows, NONE) == []
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_the_number_that_the_data_do_not_show_gives_way(shows: str, moved: str, 
 
     rows: Any = [Told(left)]
     assert not follows(stiff, rows)
-    found, *_ = bounded(stiff, PATHS, rows, NONE)
+    found, *_ = bounded_plants(stiff, PATHS, rows, NONE)
     assert follows(found, rows)
     own, other = found.parameters[moved], found.parameters[stays]
     assert own.value in (own.min, own.max)
@@ -76,7 +76,7 @@ def test_the_number_that_the_data_do_not_show_gives_way(shows: str, moved: str, 
 def test_what_leaves_no_numbers_is_none() -> None:
     stiff = plant(1e-12, 3000.0)
     rows: Any = [Told(lambda plant: 1.0 if plant == stiff else np.nan)]
-    assert bounded(stiff, PATHS, rows, NONE) == []
+    assert bounded_plants(stiff, PATHS, rows, NONE) == []
 
 
 def test_rows_that_see_a_long_gap_are_left_out() -> None:

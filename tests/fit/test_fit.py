@@ -391,7 +391,7 @@ def test_two_parameters_that_do_the_same_end_at_numbers() -> None:
     assert found.r2 > 0.9
 
 
-@pytest.mark.parametrize("place", ["reweighted", "evaluate"])
+@pytest.mark.parametrize("place", ["reweight", "evaluate"])
 def test_a_fit_that_is_interrupted_near_its_end_keeps_what_it_has(
     place: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -68,8 +68,8 @@ def test_what_stays_at_its_bound_has_no_slope() -> None:
     variables = Variables.of(bounded, ["friction.coulomb", "friction.breakaway"])
     beyond, inside = np.array([0.5, 0.5]), np.array([0.2, 0.5])
     by_parameters = np.array([[1.0, 2.0], [3.0, 4.0]])
-    assert variables.clamped(beyond) == {0: "upper"}
-    assert variables.clamped(inside) == {}
+    assert variables.bounds_hit(beyond) == {0: "upper"}
+    assert variables.bounds_hit(inside) == {}
     for vector in (beyond, inside):
         slopes = variables.chain(by_parameters, vector)
         for k, step in enumerate(1e-6 * np.eye(2)):

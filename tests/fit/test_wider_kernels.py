@@ -4,8 +4,8 @@ import pytest
 from tests.reference.pendulum_reference import DRY, INERTIA, WEIGHT, swung
 
 import stiction as st
-from stiction.diagnosis.base import based, based_wider
-from stiction.fitting.forms import told as residual_told
+from stiction.diagnosis.base import fit_baseline, fit_wider_baseline
+from stiction.fitting.forms import residual_sentence as residual_told
 from stiction.plant import Plant
 
 
@@ -44,19 +44,19 @@ def test_errors_that_go_with_the_angle_take_no_inertia_with_them():
 
 @pytest.mark.parametrize("what", [{}, {"error": 5e-5}, {"ripple": 0.3}])
 def test_kernels_stay_narrow_where_the_inertia_shows(what):
-    evidence, base = based(pendulum(), recordings(**what), wide=True)
+    evidence, base = fit_baseline(pendulum(), recordings(**what), wide=True)
     assert max(form.kernel.support for form in evidence.forms) < 0.1
     assert "drowned" not in residual_told(evidence.forms, base.plant)
     assert base.plant.inertia == pytest.approx(INERTIA, rel=0.1)
 
 
 def test_a_large_quick_torque_is_not_averaged_away():
-    evidence, _ = based(pendulum(), recordings(ripple=1.0), wide=True)
+    evidence, _ = fit_baseline(pendulum(), recordings(ripple=1.0), wide=True)
     assert max(form.kernel.support for form in evidence.forms) < 0.1
 
 
 def test_a_diagnosis_says_that_kernels_were_widened():
-    evidence, base = based(pendulum(), recordings(error=1e-3), wide=True)
+    evidence, base = fit_baseline(pendulum(), recordings(error=1e-3), wide=True)
     assert base.plant.inertia == pytest.approx(INERTIA, rel=0.05)
     assert "through narrower kernels the inertia drowned" in residual_told(
         evidence.forms, base.plant
@@ -65,10 +65,10 @@ def test_a_diagnosis_says_that_kernels_were_widened():
 
 def test_kernels_that_the_recordings_cannot_hold_change_nothing(monkeypatch):
     swings = recordings(error=1e-3)
-    narrow, base = based(pendulum(), swings)
+    narrow, base = fit_baseline(pendulum(), swings)
     for module in ("fitting.first_pass", "diagnosis.base"):
         monkeypatch.setattr(f"stiction.{module}.wider_of", lambda *_: 12.0)
     result = st.fit(pendulum(), st.Session(swings))
     assert result.success
     assert values(result)[0] < 0.8 * INERTIA
-    assert based_wider(pendulum(), swings, narrow, base) is None
+    assert fit_wider_baseline(pendulum(), swings, narrow, base) is None

@@ -11,7 +11,7 @@ from tests.fit.test_fit import TRUE, plant, recorded
 
 from stiction import InputError, Plant, fit
 from stiction.fitting import first_pass, forms
-from stiction.fitting.forms import as_stated, followable, shows_its_ring, told
+from stiction.fitting.forms import followable, residual_sentence, restore_bounds, shows_its_ring
 from stiction.fitting.minimise import Solution, launch
 from stiction.fitting.rows import Rows
 from stiction.shooting import ShootingForm
@@ -35,7 +35,7 @@ def test_a_rigid_contact_is_not_simulated_stiffer_and_stiffer() -> None:
     critical = 2.0 * np.sqrt(held.value * TRUE["inertia"])
     assert damping.max == pytest.approx(critical, rel=1e-12)
     assert damping.value == min(50.0, critical)
-    back = as_stated(followable(stiff, windows), stiff).friction.parameters
+    back = restore_bounds(followable(stiff, windows), stiff).friction.parameters
     assert back["damping"].max is None
     soft = bristles(100.0)
     assert followable(soft, windows).friction.parameters["initial_stiffness"].value == 100.0
@@ -60,18 +60,18 @@ def test_the_end_of_what_windows_follow_is_no_bound_of_the_plant(most: float | N
     given = bristles(stated)
     held = followable(given, windows)
     assert held.friction.parameters["initial_stiffness"].max is not None
-    back = as_stated(held, given).friction.parameters["initial_stiffness"]
+    back = restore_bounds(held, given).friction.parameters["initial_stiffness"]
     assert (back.value, back.max) == (100.0, most)
 
 
 def test_what_is_told_of_the_residual_is_true_of_the_plant() -> None:
     """Readings of 24 µrad: of a reach of 3 mrad they tell all, of 0.3 µrad nothing."""
     seen = [WeakForm(plant(), recorded(), every=0.005)]
-    assert "fine enough" in told(seen, plant())
-    assert "fine enough" in told(seen, bristles(100.0))
-    assert "shows little" in told(seen, bristles(5e4))
-    assert "faster than it was sampled" not in told(seen, bristles(5e4))
-    assert "faster than it was sampled" in told(seen, bristles(1e6))
+    assert "fine enough" in residual_sentence(seen, plant())
+    assert "fine enough" in residual_sentence(seen, bristles(100.0))
+    assert "shows little" in residual_sentence(seen, bristles(5e4))
+    assert "faster than it was sampled" not in residual_sentence(seen, bristles(5e4))
+    assert "faster than it was sampled" in residual_sentence(seen, bristles(1e6))
 
 
 def test_an_interrupt_over_windows_that_are_given_up_is_not_lost(

@@ -7,7 +7,7 @@ import pytest
 from tests.reference.hsieh_pan_reference import follow_motion
 
 import stiction as st
-from stiction.fitting.start import clinging, complete
+from stiction.fitting.start import complete, yielding_starts
 from stiction.weak_form import WeakForm
 
 DT = 0.01
@@ -67,7 +67,7 @@ def test_a_contact_that_never_breaks_away_is_fitted_from_its_law_alone(contact: 
 
 def test_what_is_stated_of_break_away_or_stiffness_stays() -> None:
     form = WeakForm(plant(), moved(**YIELDING["a soft one"]))
-    assert len(clinging(plant(), complete(plant(), [form]), [form])) == 1
+    assert len(yielding_starts(plant(), complete(plant(), [form]), [form])) == 1
     for stated in ({"breakaway": 500.0}, {"initial_stiffness": 1e6}, {"final_stiffness": 1e3}):
         own = plant(**stated)
-        assert clinging(own, complete(own, [form]), [form]) == []
+        assert yielding_starts(own, complete(own, [form]), [form]) == []

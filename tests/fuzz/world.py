@@ -136,14 +136,14 @@ def robot_session() -> Any:
 
 def robot_fit() -> Any:
     """Links that somebody states; nothing is asked of pinocchio, which may not be there."""
-    from stiction.robot.motion import measured
+    from stiction.robot.motion import motion_of
     from stiction.robot.regression import ArmFit
 
     own = robot_session()
     link = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0])
     plain = np.array([[0.1, 0.2, 0.0]])
     arm = ArmFit(link, {}, np.array([0.1]), plain, np.array([0.01]), 2, (), 0.0)
-    motions = tuple(measured(run.joints) for run in own.runs)
+    motions = tuple(motion_of(run.joints) for run in own.runs)
     return stiction.robot.RobotFit(own, arm, motions, session().split())
 
 

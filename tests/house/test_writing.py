@@ -19,7 +19,7 @@ OF_MODULES = {
 }
 INTO = {"savez": 0, "savez_compressed": 0, "savetxt": 0, "savefig": 0, "save": 0, "to_csv": 0}
 """Functions that write into a path or an open file, and which argument that is."""
-OPENED = {"replacing", "BytesIO", "StringIO"}
+OPENED = {"atomic_write", "BytesIO", "StringIO"}
 """What makes a file that they may write into."""
 
 

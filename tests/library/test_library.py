@@ -13,7 +13,7 @@ from stiction import library
 from stiction.cli import run
 from stiction.fitting import FitParameter
 from stiction.library import Entry, EntryNumber
-from stiction.library.comparison import plant_like, said
+from stiction.library.comparison import plant_like, verdict_of
 from stiction.library.entry_file import read_entry
 from stiction.parameter import Parameter
 from stiction.stated import Effect
@@ -195,7 +195,7 @@ def found_at(value, half, at_bound=""):
 def test_two_numbers_differ_where_neither_interval_nor_spread_explains_it(
     own, library_number, word
 ):
-    assert said(own, library_number) == word
+    assert verdict_of(own, library_number) == word
 
 
 def test_a_unit_that_is_alike_and_one_that_differs():

@@ -9,7 +9,7 @@ import pytest
 
 from stiction import InputError, Plant, Recording
 from stiction._native import played
-from stiction.motion import Kernel, count_of, evenly, held, noise_of, rested
+from stiction.motion import Kernel, count_of, evenly, hold_at_rest, noise_of, zero_order_hold
 from stiction.residual import effort_residual, free_run
 from stiction.weak_form import WeakForm
 
@@ -137,7 +137,7 @@ def test_helpers_of_motion_do_what_they_say() -> None:
     assert np.ptp(played(flicker, 2e-3)) == 0.0
     _, even, dt = evenly(np.array([0.0, 0.1, 0.21, 0.3]))
     assert dt == pytest.approx(0.1)
-    values = held(even, np.array([0.0, 0.1, 0.201, 0.3]), np.array([1.0, 2.0, 3.0, 4.0]))
+    values = zero_order_hold(even, np.array([0.0, 0.1, 0.201, 0.3]), np.array([1.0, 2.0, 3.0, 4.0]))
     assert values.tolist() == [1.0, 2.0, 3.0, 4.0]
 
 
@@ -165,7 +165,7 @@ def test_stamps_of_a_timer_are_even_whatever_they_were_rounded_to(
     assert np.max(np.abs(stamps - meant)) < 0.5 * (digit or 0.0) + 2e-3 * dt
     # As many rows as stamps: each row is held from its own stamp on.
     if not lost:
-        assert held(even, stamps, np.arange(12_000.0)).tolist() == list(range(12_000))
+        assert zero_order_hold(even, stamps, np.arange(12_000.0)).tolist() == list(range(12_000))
 
 
 def test_stamps_that_scatter_stay_as_they_are() -> None:
@@ -183,7 +183,7 @@ def test_noise_moves_nothing_that_rests() -> None:
     true = np.where(time < 1.0, 0.0, np.where(time < 2.0, 0.3 * (time - 1.0), 0.3))
     readings = true + 2e-6 * rng.standard_normal(len(true))
     followed = played(readings, 8e-6)
-    kept = rested(followed, readings, 8, 1.2e-5)
+    kept = hold_at_rest(followed, readings, 8, 1.2e-5)
     moved = np.diff(kept) != 0.0
     assert not moved[:999].any()
     assert moved[1001:1998].all()
@@ -199,12 +199,12 @@ def test_readings_that_flicker_between_two_counts_rest() -> None:
     true = 0.5 + np.where(time < 1.0, 0.0, np.where(time < 2.0, 0.3 * (time - 1.0), 0.3))
     readings = np.round(true * 1e4 + 0.1 * rng.standard_normal(3000)) / 1e4
     readings[2500:] += 1e-4 * (rng.uniform(size=500) > 0.5)
-    kept = rested(readings, readings, 8, 1.5e-4, to_and_fro=True)
+    kept = hold_at_rest(readings, readings, 8, 1.5e-4, to_and_fro=True)
     assert np.any(np.diff(readings)[2500:] != 0.0)
     assert np.mean(np.diff(kept)[2510:] != 0.0) < 0.02
     # What goes one way moves, however slowly.
     slow = np.floor(np.arange(3000) / 50.0) * 1e-4
-    assert np.array_equal(rested(slow, slow, 8, 1.5e-4, to_and_fro=True), slow)
+    assert np.array_equal(hold_at_rest(slow, slow, 8, 1.5e-4, to_and_fro=True), slow)
 
 
 def test_readings_that_rest_to_the_last_digit_have_no_noise():

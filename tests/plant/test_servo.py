@@ -8,7 +8,7 @@ from tests.reference.servo_reference import Servo
 
 import stiction as st
 from stiction.closed_loop import replay
-from stiction.fitting.start import complete, lightly_held
+from stiction.fitting.start import complete, with_light_friction
 from stiction.loop_form import LoopForm
 from stiction.residual import free_run
 from stiction.weak_form import WeakForm
@@ -84,8 +84,8 @@ def test_a_direct_drive_that_is_off_gives_nothing():
     motion = 0.1 * np.sin(0.05 * rows)
     off = st.Recording(DT * rows, np.ones(400), motion, enabled=(rows < 200).astype(float))
     form = WeakForm(machine, off)
-    assert np.array_equal(form.measured(machine), form.efforts(machine)[0])
-    assert np.allclose(form.measured(machine)[form.time > 1.1], 0.0)
+    assert np.array_equal(form.measured_effort(machine), form.efforts(machine)[0])
+    assert np.allclose(form.measured_effort(machine)[form.time > 1.1], 0.0)
 
 
 def test_an_integral_takes_away_what_the_arm_hangs_short():
@@ -370,12 +370,12 @@ def test_a_second_start_holds_a_servo_by_a_tenth_of_its_effort_but_for_what_is_s
     silent = st.Plant.from_dict({**PLANT, "friction": {"law": "coulomb"}})
     forms = [WeakForm(silent, recorded(Servo(), seed)) for seed in range(2)]
     whole = complete(silent, forms)[0]
-    level = np.sqrt(np.mean(np.concatenate([form.measured(whole) for form in forms]) ** 2))
+    level = np.sqrt(np.mean(np.concatenate([form.measured_effort(whole) for form in forms]) ** 2))
     speed = np.sqrt(np.mean(np.concatenate([form.velocity for form in forms]) ** 2))
-    begun = lightly_held(silent, whole, forms).parameters
+    begun = with_light_friction(silent, whole, forms).parameters
     assert begun["friction.coulomb"].value == pytest.approx(0.1 * level)
     assert begun["friction.viscous"].value == pytest.approx(0.1 * level / speed)
     half = st.Plant.from_dict({**PLANT, "friction": {"law": "coulomb", "viscous": 0.004}})
-    begun = lightly_held(half, complete(half, forms)[0], forms).parameters
+    begun = with_light_friction(half, complete(half, forms)[0], forms).parameters
     assert begun["friction.coulomb"].value == pytest.approx(0.1 * level)
     assert begun["friction.viscous"].value == 0.004

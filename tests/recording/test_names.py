@@ -36,13 +36,13 @@ def test_the_fault_of_one_file_is_not_that_of_its_namesake(tmp_path: Path) -> No
 
 
 def test_what_is_left_of_a_session_is_called_as_in_the_session(tmp_path: Path) -> None:
-    from stiction.recording.session_clock import remaining
+    from stiction.recording.session_clock import subset
 
     days = [written(tmp_path / day / "run.csv") for day in ("monday", "tuesday")]
     made = [st.Recording(days[0].time, days[0].input, days[0].position) for _ in range(4)]
-    left = remaining([*made, *days], [0, 2, 3, 5])
+    left = subset([*made, *days], [0, 2, 3, 5])
     assert names_of(left) == ["recording 1", "recording 3", "recording 4", "tuesday/run.csv"]
-    again = remaining(left, [1, 3])
+    again = subset(left, [1, 3])
     assert names_of(again) == ["recording 3", "tuesday/run.csv"]
     assert places_in_session(again) == [2, 5]
     # Beside one of another session the name may be taken.

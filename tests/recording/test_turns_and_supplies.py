@@ -12,7 +12,7 @@ import pytest
 from stiction.cli import run
 from stiction.recording import Recording, Table
 from stiction.recording.guess import guess
-from stiction.recording.turns import unwrapped
+from stiction.recording.turns import unwrap
 
 TIME = 0.01 * np.arange(1000)
 ANGLE = 2.5 * TIME + np.sin(2.0 * TIME)
@@ -24,7 +24,7 @@ EFFORT = np.cos(2.0 * TIME)
 def test_an_angle_that_begins_anew_goes_on(low: float, sign: float) -> None:
     wrapped = (sign * ANGLE - low) % (2.0 * np.pi) + low
     wrapped[500] = np.nan
-    whole, number = unwrapped(wrapped)
+    whole, number = unwrap(wrapped)
     assert number == int(np.sum(np.abs(np.diff(np.delete(wrapped, 500))) > 4.0))
     expected = sign * ANGLE + (wrapped[0] - sign * ANGLE[0])
     np.testing.assert_allclose(np.delete(whole, 500), np.delete(expected, 500), atol=1e-9)
@@ -36,7 +36,7 @@ def test_readings_that_failed_and_motions_within_a_turn_stay_as_they_are() -> No
     failed = swing.copy()
     failed[300] = -np.pi
     for values in (swing, failed, 3.0 * ANGLE, np.full(9, np.nan), np.zeros(2)):
-        same, number = unwrapped(values)
+        same, number = unwrap(values)
         assert number == 0
         np.testing.assert_array_equal(same, values)
 

@@ -124,7 +124,7 @@ def test_matplotlib_draws_the_same_marks() -> None:
 def test_every_figure_can_be_a_figure_of_matplotlib() -> None:
     found = whole()
     charts = [getattr(figures, name) for name in figures.__all__ if name not in
-              ("cause", "most_shown", "quantity_of")]  # fmt: skip
+              ("cause", "largest_views", "quantity_of")]  # fmt: skip
     charts += [motion_figures.motion, motion_figures.curves]
     for chart in (*(each(found) for each in charts), figures.cause(found, 0)):
         assert len(make_figure(chart).axes) >= len(chart.panels)

@@ -75,7 +75,7 @@ def answered(
 
 def test_the_diagnosis_of_these_tests_has_every_figure() -> None:
     names = [order.name.rstrip("0123456789-") for order in ORDERS]
-    drawn = {name for name in figures.__all__ if name not in ("most_shown", "quantity_of")}
+    drawn = {name for name in figures.__all__ if name not in ("largest_views", "quantity_of")}
     drawn |= set(motion_figures.__all__) - {"simulated_trace"}
     assert len(names) == len(drawn)
 
@@ -240,11 +240,11 @@ def test_a_figure_of_a_comparison_that_fails_leaves_the_table(
 def test_a_figure_of_the_paper_that_fails_leaves_its_numbers(
     tmp_path: Path, left_out: list[str]
 ) -> None:
-    from stiction.cli.paper import drawn, render_json, render_text
+    from stiction.cli.paper import render_json, render_text, write_figure
     from stiction.paper import bearing_loops
 
     result = bearing_loops()
-    section = drawn(tmp_path, "bearing-loops", result, faulty)
+    section = write_figure(tmp_path, "bearing-loops", result, faulty)
     (sentence,) = left_out
     assert list(tmp_path.iterdir()) == []
     assert sentence in render_text([section])

@@ -32,8 +32,8 @@ from stiction.diagnosis.result import CandidateRow, Verdict
 from stiction.fitting.waves import waves_of
 from stiction.parameter import Parameter
 from stiction.report import write
-from stiction.report.figures import most_shown
-from stiction.report.labels import shortened
+from stiction.report.figures import largest_views
+from stiction.report.labels import shorten
 from stiction.report.numbers import between, digits, percent, quantity, tick
 from stiction.report.sections.parameters import rows_of_effect
 from stiction.stated import Effect
@@ -341,9 +341,9 @@ def test_a_file_in_place_of_the_folder_is_refused_in_a_sentence(tmp_path: Path) 
 
 
 def test_names_that_cannot_be_drawn_are_drawn_in_part() -> None:
-    assert shortened("run.csv", 30) == "run.csv"
-    assert shortened("$a$ 名\udcff\n\u202e", 30) == "$a$ 名???"
-    assert shortened("a_long_name_of_a_recording.csv", 15) == "a_long_…ing.csv"
+    assert shorten("run.csv", 30) == "run.csv"
+    assert shorten("$a$ 名\udcff\n\u202e", 30) == "$a$ 名???"
+    assert shorten("a_long_name_of_a_recording.csv", 15) == "a_long_…ing.csv"
 
 
 def test_a_headline_is_drawn_only_from_pictures() -> None:
@@ -396,7 +396,7 @@ def test_what_is_flat_everywhere_stands_in_the_table_alone() -> None:
         for k in range(20)
     )
     after, before = Rest((*flat, *whole.after.views)), Rest((*whole.before.views, *flat))
-    shown = most_shown(replace(whole, after=after, before=before))
+    shown = largest_views(replace(whole, after=after, before=before))
     assert len(shown) == 12
     names = {each.coordinate.name for each in shown}
     assert {each.coordinate.name for each in whole.after.views} <= names

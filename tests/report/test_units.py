@@ -10,7 +10,7 @@ import pytest
 
 import stiction as st
 from stiction.fitting.variables import with_effort_in
-from stiction.report.scale import Scale, suited
+from stiction.report.scale import Scale, scale_for
 
 PLANT = st.Plant.from_dict(
     {
@@ -55,7 +55,7 @@ def test_what_is_fitted_is_told_in_the_unit_that_was_measured(
     assert found.unit == unit
     assert found["friction.coulomb"].unit == unit
     assert found["friction.viscous"].unit == damping
-    assert suited([found["friction.coulomb"].value], found.unit).unit == shown
+    assert scale_for([found["friction.coulomb"].value], found.unit).unit == shown
 
 
 @pytest.mark.parametrize(
@@ -77,6 +77,6 @@ def test_every_unit_with_a_force_in_it_goes_along(path: str, stress: str, ratio:
 
 
 def test_large_and_pure_numbers_are_written_plainly() -> None:
-    assert suited([13926.9], "Pa").text(13926.9) == "13.9\u00a0kPa"
-    assert suited([0.003], "1") == Scale(1.0, "")
+    assert scale_for([13926.9], "Pa").text(13926.9) == "13.9\u00a0kPa"
+    assert scale_for([0.003], "1") == Scale(1.0, "")
     assert Scale(1.0, "").on_axis("residual") == "residual"

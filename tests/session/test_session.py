@@ -12,7 +12,7 @@ import stiction as st
 from stiction.fitting.forms import as_session
 from stiction.recording import Recording
 from stiction.recording.checks import starts
-from stiction.recording.session_clock import remaining
+from stiction.recording.session_clock import subset
 from stiction.session import load
 
 
@@ -147,7 +147,7 @@ def test_what_follows_a_cold_recording_that_is_left_out_begins_cold() -> None:
         recorded(2, start_s=7220.0),
         recorded(3, start_s=7240.0),
     ]
-    kept = remaining(recordings, [0, 2, 3])
+    kept = subset(recordings, [0, 2, 3])
     assert [each.cold for each in kept] == [False, True, False]
     assert [each.start_s for each in kept] == [4.0, 7220.0, 7240.0]
     assert not recordings[2].cold

@@ -12,7 +12,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
-__all__ = ["ACTUATORS", "BESIDE", "MODELS", "RELEASE", "Actuator", "Searched", "own_of", "searched"]
+__all__ = [
+    "ACTUATORS",
+    "BESIDE",
+    "MODELS",
+    "RELEASE",
+    "Actuator",
+    "Searched",
+    "own_of",
+    "search_space",
+]
 
 RELEASE: Final = "1.0.2"
 BESIDE: Final = ("kp", "vin", "mass", "length", "input")
@@ -185,7 +194,7 @@ def own_of(actuator: str) -> Mapping[str, Searched]:
     return _motor(free, free, free)
 
 
-def searched(model: str, actuator: str) -> dict[str, Searched]:
+def search_space(model: str, actuator: str) -> dict[str, Searched]:
     """Every number that BAM's search finds for a model and an actuator."""
     of = ACTUATORS.get(actuator, Actuator("other"))
     load = Searched(0.05, 0.0, of.most_load)

@@ -15,8 +15,8 @@ from .. import given
 from ..errors import InputError
 from ..keys import choice
 from ..parameter import number
-from ..wording import listed
-from .format import ACTUATORS, BESIDE, MODELS, RELEASE, Actuator, Searched, searched
+from ..wording import commas
+from .format import ACTUATORS, BESIDE, MODELS, RELEASE, Actuator, Searched, search_space
 
 if TYPE_CHECKING:
     from ..plant import Plant
@@ -103,7 +103,7 @@ def read_bam(path: str | Path, *, kp: float | None = None, vin: float | None = N
     source = str(file)
     table = _content(file)
     model, actuator = _names(table, source)
-    ranges = searched(model, actuator)
+    ranges = search_space(model, actuator)
     told = {**table, **{k: v for k, v in (("kp", kp), ("vin", vin)) if v is not None}}
     known = [name for name in told if name in (*ranges, *BESIDE[:-1])]
     stated = {name: _finite(told[name], f"{source}: {name}") for name in known}
@@ -182,7 +182,7 @@ def _left_out(
     if "armature" not in stated and math.isnan(ranges["armature"].start):
         notes.append("armature is not in the file: state [body] inertia to simulate")
     if foreign:
-        notes.append(f"{listed(foreign)}: no number of {model.upper()}, and left out as BAM does")
+        notes.append(f"{commas(foreign)}: no number of {model.upper()}, and left out as BAM does")
     return tuple(notes)
 
 

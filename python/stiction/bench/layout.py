@@ -17,7 +17,7 @@ from ..catalogue import effects, laws
 from ..errors import InputError
 from ..json_text import json_of
 from ..progress import phase, steps
-from ..wording import listed
+from ..wording import commas
 from .deal import CASES, SHORTEST, Dealt, deal
 from .format import BENCH_FORMAT, SCHEMA_TEXT
 from .ordinary.draw import OWN_LAWS, SECONDS, Ordinary, ordinary
@@ -128,7 +128,7 @@ def _bounds(seconds: Any) -> tuple[float, float]:
         least = most = math.nan
     if not SHORTEST <= least <= most <= LONGEST:
         raise InputError(
-            f"bench: seconds = {given.shown(seconds)} is out of bounds: give the least and the "
+            f"bench: seconds = {given.brief(seconds)} is out of bounds: give the least and the "
             f"most that a session lasts, from {SHORTEST:g} to {LONGEST:g} s, such as 20,40"
         )
     return least, most
@@ -137,10 +137,10 @@ def _bounds(seconds: Any) -> tuple[float, float]:
 def _known(cases: list[str]) -> list[str]:
     for case in cases:
         if case not in CASES:
-            raise InputError(f"bench: there is no case '{case}'; there are {listed(CASES)}")
+            raise InputError(f"bench: there is no case '{case}'; there are {commas(CASES)}")
     if not cases or len(set(cases)) < len(cases):
         raise InputError(
-            f"bench: cases = {given.shown(cases)}: give each case once, of {listed(CASES)}"
+            f"bench: cases = {given.brief(cases)}: give each case once, of {commas(CASES)}"
         )
     return cases
 
@@ -181,7 +181,7 @@ def _truth(case: str, made: Ordinary) -> dict[str, Any]:
         "name": spec.hidden,
         "class": families.get(spec.hidden, ""),
         "same_as": [twin] if twin else [],
-        "size": made.reached,
+        "size": made.relative_rms,
         "size_asked": spec.size,
         "effect": {k: v for k, v in vars(machine.effects).items() if v != usual[k]},
     }

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from ..errors import InputError
-from ..given import regular, shown
-from ..wording import did_you_mean, listed
+from ..given import brief, regular
+from ..wording import commas, did_you_mean
 from .format import BENCH_FORMAT, SCHEMA, VERDICTS
 
 __all__ = ["MANIFEST", "TRUTH", "Answer", "Named", "answer_file", "json_file", "manifest_of"]
@@ -76,7 +76,7 @@ def manifest_of(folder: Path) -> dict[str, Any]:
         )
     found = json_file(path)
     if not isinstance(found, dict) or found.get("format") != BENCH_FORMAT:
-        told = shown(found.get("format")) if isinstance(found, dict) else shown(found)
+        told = brief(found.get("format")) if isinstance(found, dict) else brief(found)
         raise InputError(
             f"{path}: format is {told} and not '{BENCH_FORMAT}'; use the version of stiction that "
             "laid it out"
@@ -135,11 +135,11 @@ def answer_file(path: Path) -> Answer:
     found = json_file(path)
     where = f"{path}"
     if not isinstance(found, dict):
-        raise InputError(f"{where}: is {shown(found)}; write an object with verdict and effects")
+        raise InputError(f"{where}: is {brief(found)}; write an object with verdict and effects")
     ours = "schema" in found
     if ours and found["schema"] != _FINDINGS:
         raise InputError(
-            f"{where}: schema = {shown(found['schema'])} is no findings.json of this version; "
+            f"{where}: schema = {brief(found['schema'])} is no findings.json of this version; "
             f"leave the key out, or write {_FINDINGS}"
         )
     _keys(found, _OF_ANSWER, ("verdict", "effects"), where, only=not ours)
@@ -149,10 +149,10 @@ def answer_file(path: Path) -> Answer:
     if not isinstance(verdict, str) or verdict not in VERDICTS:
         near = did_you_mean(verdict, VERDICTS) if isinstance(verdict, str) else ""
         raise InputError(
-            f"{where}: verdict = {shown(verdict)} is unknown{near}; write one of {listed(VERDICTS)}"
+            f"{where}: verdict = {brief(verdict)} is unknown{near}; write one of {commas(VERDICTS)}"
         )
     if not isinstance(found["effects"], list):
-        raise InputError(f"{where}: effects = {shown(found['effects'])} is no list; write one")
+        raise InputError(f"{where}: effects = {brief(found['effects'])} is no list; write one")
     named = tuple(
         _named(each, f"{where}: effects[{k}]", only=not ours)
         for k, each in enumerate(found["effects"])
@@ -163,7 +163,7 @@ def answer_file(path: Path) -> Answer:
     if not ours:
         seconds = found.get("seconds", 0.0)
         if not _number(seconds) or seconds < 0.0:
-            raise InputError(f"{where}: seconds = {shown(seconds)}; write a number from 0 on")
+            raise InputError(f"{where}: seconds = {brief(seconds)}; write a number from 0 on")
         _agrees(verdict, named, where)
     return Answer(verdict, named)
 
@@ -179,7 +179,7 @@ def _agrees(verdict: str, named: tuple[Named, ...], where: str) -> None:
         remedy = "have one effect at least with decided = false, or write missing_effect"
     else:
         return
-    said = listed([f"{each.name} (decided = {str(each.decided).lower()})" for each in named])
+    said = commas([f"{each.name} (decided = {str(each.decided).lower()})" for each in named])
     raise InputError(
         f"{where}: verdict {verdict} does not go with effects {said or 'none'}; {remedy}"
     )
@@ -187,19 +187,19 @@ def _agrees(verdict: str, named: tuple[Named, ...], where: str) -> None:
 
 def _named(each: Any, where: str, *, only: bool) -> Named:
     if not isinstance(each, dict):
-        raise InputError(f"{where} is {shown(each)}; write an object with name and decided")
+        raise InputError(f"{where} is {brief(each)}; write an object with name and decided")
     _keys(each, _OF_EFFECT, ("name", "decided"), where, only=only)
     if not isinstance(each["decided"], bool):
-        raise InputError(f"{where}.decided = {shown(each['decided'])}; write true or false")
+        raise InputError(f"{where}.decided = {brief(each['decided'])}; write true or false")
     probability = each.get("probability")
     if probability is not None and not (_number(probability) and 0.0 <= probability <= 1.0):
         raise InputError(
-            f"{where}.probability = {shown(probability)} is out of bounds; write a number from "
+            f"{where}.probability = {brief(probability)} is out of bounds; write a number from "
             "0 to 1"
         )
     alike = each.get("look_alikes", [])
     if not isinstance(alike, list):
-        raise InputError(f"{where}.look_alikes = {shown(alike)} is no list; write one of names")
+        raise InputError(f"{where}.look_alikes = {brief(alike)} is no list; write one of names")
     if only:
         _parameters(each.get("parameters", {}), f"{where}.parameters")
     return Named(
@@ -212,10 +212,10 @@ def _named(each: Any, where: str, *, only: bool) -> Named:
 
 def _parameters(found: Any, where: str) -> None:
     if not isinstance(found, dict):
-        raise InputError(f"{where} = {shown(found)} is no object; write numbers by name")
+        raise InputError(f"{where} = {brief(found)} is no object; write numbers by name")
     for name, value in found.items():
         if not _number(value):
-            raise InputError(f"{where}.{name} = {shown(value)} is no number; write one")
+            raise InputError(f"{where}.{name} = {brief(value)} is no number; write one")
 
 
 def _keys(
@@ -228,13 +228,13 @@ def _keys(
         if name not in known:
             near = did_you_mean(name, known)
             raise InputError(
-                f"{where}: key {shown(name)} is unknown{near}; there are {listed(known)}"
+                f"{where}: key {brief(name)} is unknown{near}; there are {commas(known)}"
             )
 
 
 def _name(given: Any, where: str) -> str:
     if not isinstance(given, str) or not 0 < len(given) <= _LONGEST_NAME:
-        raise InputError(f"{where} = {shown(given)} is no name of an effect; write one")
+        raise InputError(f"{where} = {brief(given)} is no name of an effect; write one")
     return given
 
 

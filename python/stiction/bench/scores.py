@@ -15,7 +15,7 @@ from .. import given
 from ..catalogue import effects
 from ..errors import InputError
 from ..json_text import json_of
-from ..wording import counted
+from ..wording import plural
 from .layout import seal_of
 from .rates import Calibration, Rate, calibration, rate
 from .read import TRUTH, Answer, answer_file, json_file, manifest_of
@@ -63,7 +63,7 @@ class Judged:
         return self.same_as | {self.hidden} if self.hidden else frozenset()
 
     @property
-    def told(self) -> frozenset[str]:
+    def all_names(self) -> frozenset[str]:
         """Names told with or without reserve, and look-alikes."""
         named = () if self.answer is None else self.answer.effects
         return frozenset().union(*(each.names for each in named))
@@ -83,14 +83,14 @@ class Judged:
     @property
     def listed(self) -> bool:
         """Whether what is missing is among the names and look-alikes."""
-        return bool(self.right & self.told)
+        return bool(self.right & self.all_names)
 
     @property
     def sure_and_wrong(self) -> bool:
         """Whether a name was told without reserve that is not missing."""
         return bool(self.sure - self.right)
 
-    def classed(self, families: dict[str, str]) -> bool:
+    def in_class(self, families: dict[str, str]) -> bool:
         """Whether an effect and all of its look-alikes are of the class of what is missing."""
         if self.answer is None or self.answer.verdict == "unexplained" or not self.hidden:
             return False
@@ -108,7 +108,7 @@ class Judged:
             "size": self.size,
             "verdict": self.verdict,
             "sure": sorted(self.sure),
-            "told": sorted(self.told),
+            "told": sorted(self.all_names),
             "named": self.named,
             "sure_and_wrong": self.sure_and_wrong,
         }
@@ -274,7 +274,7 @@ def _counted(sessions: tuple[Judged, ...]) -> Scores:
     }
     hidden = cases["hidden"]
     parts = [
-        (f"All {counted(len(sessions), 'session')}", _everywhere(sessions)),
+        (f"All {plural(len(sessions), 'session')}", _everywhere(sessions)),
         ("Nothing is missing", _null(cases["null"])),
         ("One effect is missing", _hidden(hidden)),
     ]
@@ -293,7 +293,7 @@ def _counted(sessions: tuple[Judged, ...]) -> Scores:
         rate(name, [each for each in hidden if each.hidden == name], lambda e: e.named, "high")
         for name in names
     ]
-    lengths = [len(each.told) for each in sessions if each.told]
+    lengths = [len(each.all_names) for each in sessions if each.all_names]
     told = [
         (one.probability, one.name in each.right)
         for each in sessions
@@ -323,7 +323,7 @@ def _everywhere(some: Sequence[Judged]) -> tuple[Rate, ...]:
 
 def _null(some: Sequence[Judged]) -> tuple[Rate, ...]:
     return (
-        rate("a name", some, lambda e: e.told, "low"),
+        rate("a name", some, lambda e: e.all_names, "low"),
         rate("a sure name", some, lambda e: e.sure, "low"),
         rate("unexplained", some, _is("unexplained"), "low"),
         rate("not testable", some, _is("not_testable"), "low"),
@@ -335,7 +335,7 @@ def _hidden(some: Sequence[Judged]) -> tuple[Rate, ...]:
     families = {record.name: record.family for record in effects()}
     return (
         rate("named", some, lambda e: e.named, "high"),
-        rate("its class", some, lambda e: e.classed(families), "high"),
+        rate("its class", some, lambda e: e.in_class(families), "high"),
         rate("among names and look-alikes", some, lambda e: e.listed, "high"),
         rate("a sure and wrong name", some, lambda e: e.sure_and_wrong, "low"),
         rate("ambiguous", some, _is("ambiguous")),
@@ -348,6 +348,6 @@ def _hidden(some: Sequence[Judged]) -> tuple[Rate, ...]:
 def _untestable(some: Sequence[Judged]) -> tuple[Rate, ...]:
     return (
         rate("not testable", some, _is("not_testable"), "high"),
-        rate("a name", some, lambda e: e.told, "low"),
+        rate("a name", some, lambda e: e.all_names, "low"),
         rate("silence: nothing is missing", some, _is("nothing_missing"), "low"),
     )

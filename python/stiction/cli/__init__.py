@@ -50,7 +50,7 @@ def _run(arguments: Sequence[str]) -> int:
     import cyclopts
 
     from ..errors import InputError
-    from .answer import dropped
+    from .answer import discard_stdout
     from .app import build
     from .refusal import refusal
 
@@ -71,19 +71,19 @@ def _run(arguments: Sequence[str]) -> int:
         return _refuse(str(error))
     except BrokenPipeError:
         # The reader has what it wanted; a second error while closing would say nothing new.
-        dropped()
+        discard_stdout()
         return ANSWERED
     except SystemExit as error:
         # What prints the help makes an end of its own of a reader that has gone.
         if not isinstance(error.__context__, BrokenPipeError):
             raise
-        dropped()
+        discard_stdout()
         return ANSWERED
     except OSError as error:
         # What has no name is no file, but standard output.
         if error.filename is not None:
             raise
-        dropped()
+        discard_stdout()
         return _refuse(f"standard output cannot be written ({error.strerror or error})")
     return ANSWERED
 

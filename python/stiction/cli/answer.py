@@ -12,9 +12,9 @@ from typing import Any
 
 from ..errors import InputError
 from ..json_text import json_of
-from .interrupt import finished
+from .interrupt import defer_interrupt
 
-__all__ = ["answer", "dropped", "folder", "json_of", "told_anyway", "written"]
+__all__ = ["answer", "discard_stdout", "folder", "json_of", "print_on_failure", "protect_writes"]
 
 
 def answer(text: str, data: Any, *, as_json: bool) -> None:
@@ -27,7 +27,7 @@ def answer(text: str, data: Any, *, as_json: bool) -> None:
 
 
 @contextmanager
-def told_anyway(text: str, data: Any, *, as_json: bool) -> Iterator[None]:
+def print_on_failure(text: str, data: Any, *, as_json: bool) -> Iterator[None]:
     """Where the files of an answer cannot be written the answer is printed all the same.
 
     So it is where Ctrl-C was pressed while they were written.
@@ -45,7 +45,7 @@ def told_anyway(text: str, data: Any, *, as_json: bool) -> Iterator[None]:
         raise
 
 
-def dropped() -> None:
+def discard_stdout() -> None:
     """What standard output still holds goes nowhere: closing it would fail once more."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, sys.stdout.fileno())
@@ -82,7 +82,7 @@ def folder(path: Path) -> Path:
 
 
 @contextmanager
-def written(where: Path) -> Iterator[None]:
+def protect_writes(where: Path) -> Iterator[None]:
     """Files are written in here: all of them, before Ctrl-C takes effect.
 
     Raises
@@ -92,7 +92,7 @@ def written(where: Path) -> Iterator[None]:
     KeyboardInterrupt
         At the end, where it was pressed.
     """
-    with finished():
+    with defer_interrupt():
         try:
             yield
         except OSError as error:

@@ -10,8 +10,8 @@ from cyclopts import Parameter
 
 from ..atomic_files import write_text
 from ..errors import InputError
-from ..wording import counted
-from .answer import answer, folder, told_anyway, written
+from ..wording import plural
+from .answer import answer, folder, print_on_failure, protect_writes
 from .app import VERBS
 from .given import Quiet, Whole
 from .progress import progress
@@ -70,7 +70,7 @@ def make(
         except OSError as error:
             raise _unwritten(where, error) from None
     text = (
-        f"laid out {counted(number, 'session')} in {where}\n"
+        f"laid out {plural(number, 'session')} in {where}\n"
         f"the truth: {where / 'truth'}; hand the rest out without it\n"
         f"form of an answer: {where / 'answer.schema.json'}\n"
         f"next: stiction bench score {where} ANSWERS"
@@ -146,7 +146,7 @@ def score(
         found = scored(where, answers)
     text = str(found)
     if out is not None:
-        with told_anyway(text, found.to_dict(), as_json=json), written(out):
+        with print_on_failure(text, found.to_dict(), as_json=json), protect_writes(out):
             write_text(out / "scores.json", found.to_json() + "\n")
             write_text(out / "scores.md", found.to_markdown())
         text += f"\n\nwith every session: {out / 'scores.json'}"

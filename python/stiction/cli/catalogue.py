@@ -12,9 +12,9 @@ from .. import catalogue
 from ..atomic_files import write_text
 from ..catalogue import EffectRecord, LawRecord, ParameterRecord
 from ..errors import InputError
-from ..json_text import worded
-from ..wording import did_you_mean, listed
-from .answer import answer, folder, json_of, written
+from ..json_text import infinities_as_words
+from ..wording import commas, did_you_mean
+from .answer import answer, folder, json_of, protect_writes
 
 __all__ = ["effects", "laws"]
 
@@ -56,8 +56,8 @@ def laws(
         lines += ["", f"option {option.name}: {option.meaning}"]
         for index, (word, meaning) in enumerate(option.choices):
             lines.append(f"  {word:<10} {meaning}{' (default)' if index == 0 else ''}")
-    lines += ["", f"states a trajectory shows: {listed(record.outputs)}"]
-    answer("\n".join(lines), worded(record.to_dict()), as_json=json)
+    lines += ["", f"states a trajectory shows: {commas(record.outputs)}"]
+    answer("\n".join(lines), infinities_as_words(record.to_dict()), as_json=json)
 
 
 def effects(
@@ -87,26 +87,26 @@ def effects(
         f"{record.name}: {record.summary}",
         f"means: {record.means}",
         f"try: {record.remedy}",
-        f"enters at: {listed(record.hooks)}",
+        f"enters at: {commas(record.hooks)}",
         f"shows in: {record.coordinate}",
-        f"looks like: {listed(record.look_alikes)}",
+        f"looks like: {commas(record.look_alikes)}",
         f"told apart by: {record.experiment} (stiction plan: {record.plan})",
-        f"channels needed: {listed(record.channels) if record.channels else 'input and position'}",
+        f"channels needed: {commas(record.channels) if record.channels else 'input and position'}",
         "",
         *_parameters(record.parameters),
     ]
-    answer("\n".join(lines), worded(record.to_dict()), as_json=json)
+    answer("\n".join(lines), infinities_as_words(record.to_dict()), as_json=json)
 
 
 def _write(out: Path | None, name: str, records: Iterable[LawRecord | EffectRecord]) -> None:
     if out is not None:
         text = json_of(_data(records))
-        with written(folder(out)):
+        with protect_writes(folder(out)):
             write_text(out / f"{name}.json", text + "\n")
 
 
 def _data(records: Iterable[LawRecord | EffectRecord]) -> list[Any]:
-    return [worded(record.to_dict()) for record in records]
+    return [infinities_as_words(record.to_dict()) for record in records]
 
 
 def _table(records: Iterable[LawRecord | EffectRecord]) -> str:
@@ -121,7 +121,7 @@ def _find(name: str, records: Sequence[_Record], what: str) -> _Record:
             return record
     names = [record.name for record in records]
     raise InputError(
-        f"{what} '{name}' is unknown{did_you_mean(name, names)}; known are {listed(names)}"
+        f"{what} '{name}' is unknown{did_you_mean(name, names)}; known are {commas(names)}"
     )
 
 

@@ -11,7 +11,7 @@ from ..atomic_files import write_text
 from ..compare import compare as run
 from ..compare.draws import DRAWS
 from ..compare.properties.passivity import PASSIVE_STEPS
-from .answer import answer, folder, json_of, written
+from .answer import answer, folder, json_of, protect_writes
 from .given import Quiet, Whole
 from .progress import progress
 
@@ -50,7 +50,7 @@ def compare(
         from ..compare.page import page
         from ..compare.text import as_markdown
 
-        with progress(quiet), written(out):
+        with progress(quiet), protect_writes(out):
             # The numbers first: no figure can cost them.
             write_text(out / "compare.json", json_of(made.to_dict()) + "\n")
             write_text(out / "compare.md", as_markdown(made) + "\n")

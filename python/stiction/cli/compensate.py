@@ -21,8 +21,8 @@ from ..json_text import json_of
 from ..plant import Plant
 from ..progress import phase
 from ..recording.names import names_of
-from ..wording import listed
-from .answer import answer, folder, told_anyway, written
+from ..wording import commas
+from .answer import answer, folder, print_on_failure, protect_writes
 from .given import Quiet
 from .progress import progress
 from .simulate import begin_for, stems_of
@@ -81,7 +81,7 @@ def compensate(
         with np.errstate(all="ignore"):
             found = simulated(machine, chosen, begins, intervals=known)
         text = "\n".join([found.message, *_table(found)])
-        with told_anyway(text, found.to_dict(), as_json=json), written(where):
+        with print_on_failure(text, found.to_dict(), as_json=json), protect_writes(where):
             lines = _saved(found, where, stems_of(chosen))
     if note:
         lines.append(note)
@@ -108,7 +108,7 @@ def _beside(plant: Path, machine: Plant) -> tuple[dict[str, tuple[float, float]]
         if name not in stated or not low <= stated[name].value <= high
     ]
     if foreign:
-        return None, f"no interval: {path} tells of another plant in {listed(foreign)}"
+        return None, f"no interval: {path} tells of another plant in {commas(foreign)}"
     return told, ""
 
 

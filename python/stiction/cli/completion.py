@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from ..atomic_files import write_text
-from .answer import answer, folder, written
+from .answer import answer, folder, protect_writes
 
 __all__ = ["completion"]
 
@@ -48,6 +48,6 @@ def completion(
     else:
         text = build().generate_completion(shell=shell)
     if out is not None:
-        with written(folder(out)):
+        with protect_writes(folder(out)):
             write_text(out / _FILES[shell], text)
     answer(text, {"shell": shell, "text": text}, as_json=json)

@@ -12,11 +12,11 @@ from .. import demo_session
 from ..diagnosis import diagnose as run
 from ..diagnosis.result import Diagnosis
 from ..session import Session
-from ..wording import counted
-from .answer import answer, folder, told_anyway, written
-from .diagnose import told
+from ..wording import plural
+from .answer import answer, folder, print_on_failure, protect_writes
+from .diagnose import summarise
 from .given import Quiet
-from .interrupt import ending_soon, finished
+from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
 
 __all__ = ["demo"]
@@ -50,9 +50,9 @@ def demo(
     where = folder(out)
     with progress(quiet):
         session = demo_session.load()
-        with ending_soon():
+        with answer_on_interrupt():
             found = run(None, session)
-    with finished(struck=not found.success):
+    with defer_interrupt(struck=not found.success):
         _told(session, found, where, as_json=json, quiet=quiet)
     if not found.success:
         raise KeyboardInterrupt
@@ -60,14 +60,18 @@ def demo(
 
 def _told(session: Session, found: Diagnosis, where: Path, *, as_json: bool, quiet: bool) -> None:
     """Write the report and say what was found, and what was hidden."""
-    with told_anyway(str(found), found.to_dict(), as_json=as_json), progress(quiet), written(where):
+    with (
+        print_on_failure(str(found), found.to_dict(), as_json=as_json),
+        progress(quiet),
+        protect_writes(where),
+    ):
         report = found.save(where)
     seconds = sum(recording.duration for recording in session)
     text = (
-        f"{counted(len(session), 'recording')} ({seconds:.0f} s) of a simulated motor. Its plant "
+        f"{plural(len(session), 'recording')} ({seconds:.0f} s) of a simulated motor. Its plant "
         "file names a friction law and no effect;\none physical effect is hidden in the "
         f"recordings.\n\n{found}\n\nwhat was hidden: {demo_session.hidden()}\n\n"
-        f"{told(found, report)}\n"
+        f"{summarise(found, report)}\n"
         "next: stiction demo --copy my-motor lays the recordings out as files, for you to change"
     )
     answer(text, found.to_dict(), as_json=as_json)
@@ -75,13 +79,13 @@ def _told(session: Session, found: Diagnosis, where: Path, *, as_json: bool, qui
 
 def _copied(where: Path, *, as_json: bool) -> None:
     """Lay the session out and say what comes next."""
-    with written(where):
+    with protect_writes(where):
         files = demo_session.copy(where)
     recordings = [file for file in files if file.suffix == ".csv"]
     texts = [file for file in files if file.suffix != ".csv"]
     command = f"stiction diagnose {quote(str(files[0]))}"
     lines = [f"wrote {file}" for file in texts]
-    lines += [f"wrote {counted(len(recordings), 'recording')} as CSV into {recordings[0].parent}"]
+    lines += [f"wrote {plural(len(recordings), 'recording')} as CSV into {recordings[0].parent}"]
     lines += [f"next: {command}"]
     data = {"files": [str(file) for file in files], "next": command}
     answer("\n".join(lines), data, as_json=as_json)

@@ -13,15 +13,15 @@ from ..diagnosis.added import add as added
 from ..diagnosis.result import Diagnosis
 from ..robot.session import robot_of
 from ..session import load_beside
-from .answer import answer, folder, told_anyway, written
-from .drafts import Opened, Stated, is_data, opened
+from .answer import answer, folder, print_on_failure, protect_writes
+from .drafts import Opened, Stated, is_data, open_session
 from .given import Quiet, Whole
-from .interrupt import ending_soon, finished
+from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
 from .robot import diagnose_arm
-from .sessions import mended, spared, spoken_of
+from .sessions import name_file_in_errors, refuse_overwrite, repairs_of
 
-__all__ = ["diagnose", "told"]
+__all__ = ["diagnose", "summarise"]
 
 
 def diagnose(
@@ -109,16 +109,16 @@ def diagnose(
         return
     told_of = Stated(columns, gain, law, joint, header)
     with progress(quiet):
-        at = opened([session, *more], out, "diagnosis", told_of, keep_faulty=True)
+        at = open_session([session, *more], out, "diagnosis", told_of, keep_faulty=True)
         recordings, plant, where = at.session, at.plant, at.where
         if add:
-            with spoken_of(at.path, recordings, plant), written(where):
+            with name_file_in_errors(at.path, recordings, plant), protect_writes(where):
                 found_anew = added(where, recordings, load_beside(at.path, add, plant))
             answer(str(found_anew), found_anew.findings, as_json=json)
             return
-        spared(plant, where)
+        refuse_overwrite(plant, where)
         folder(where)
-        with ending_soon(), spoken_of(at.path, recordings, plant):
+        with answer_on_interrupt(), name_file_in_errors(at.path, recordings, plant):
             found = run(
                 plant,
                 recordings,
@@ -133,12 +133,16 @@ def diagnose(
     content = found.to_dict()
     if at.assumed:
         content["draft"] = {"assumed": list(at.assumed), "files": [str(f) for f in at.drafted]}
-    with finished(struck=not found.success):
-        with told_anyway(str(found), content, as_json=json), progress(quiet), written(where):
+    with defer_interrupt(struck=not found.success):
+        with (
+            print_on_failure(str(found), content, as_json=json),
+            progress(quiet),
+            protect_writes(where),
+        ):
             report = found.save(where)
         # The sentence comes first, whatever was mended before it could be said.
-        mends = "\n".join(mended(recordings))
-        said = ("\n".join(at.assumed), str(found), mends, told(found, report), _onward(at))
+        mends = "\n".join(repairs_of(recordings))
+        said = ("\n".join(at.assumed), str(found), mends, summarise(found, report), _onward(at))
         answer("\n\n".join(filter(None, said)), content, as_json=json)
     if not found.success:
         raise KeyboardInterrupt
@@ -151,6 +155,6 @@ def _onward(at: Opened) -> str:
     return f"go on: correct {at.drafted[0]} and {at.path.name}, then stiction diagnose {at.path}"
 
 
-def told(found: Diagnosis, report: Path) -> str:
+def summarise(found: Diagnosis, report: Path) -> str:
     """Where the answer is, in words."""
     return f"{found.split}\n\nreport: {report}" if found.split else f"report: {report}"

@@ -16,12 +16,12 @@ from ..errors import InputError
 from ..plant import Plant
 from ..recording.formats import FORMATS
 from ..session import Session
-from ..wording import listed
-from .answer import folder, written
+from ..wording import commas
+from .answer import folder, protect_writes
 from .columns import read_columns
-from .sessions import loaded
+from .sessions import load_session
 
-__all__ = ["FOLDER", "Opened", "Stated", "opened"]
+__all__ = ["FOLDER", "Opened", "Stated", "open_session"]
 
 FOLDER: Final = "draft"
 """In the folder for the results: plant.toml there is what was assumed, not what was found."""
@@ -76,7 +76,7 @@ class Opened:
     drafted: tuple[Path, ...] = field(default=())
 
 
-def opened(
+def open_session(
     paths: Sequence[Path],
     out: Path | None,
     verb: str,
@@ -101,8 +101,8 @@ def opened(
     Raises
     ------
     InputError
-        As for ``loaded`` and ``draft``; options of a draft beside a session file; recordings that
-        do not tell what is needed; a draft that somebody has changed.
+        As for ``load_session`` and ``draft``; options of a draft beside a session file; recordings
+        that do not tell what is needed; a draft that somebody has changed.
     """
     first = paths[0]
     if not all(map(is_data, paths)):
@@ -128,11 +128,11 @@ def opened(
         raise InputError(f"{first}: {todo[0]}; {state}finish the drafts of stiction init")
     inside = folder(folder(where) / FOLDER)
     files = tuple(inside / name for name in FILES)
-    with written(inside):
+    with protect_writes(inside):
         for file, text in zip(files, made.texts(inside), strict=True):
             _keep_what_was_changed(file)
             write_text(file, _summed(text))
-    session, plant = loaded(files[1], keep_faulty=keep_faulty)
+    session, plant = load_session(files[1], keep_faulty=keep_faulty)
     return Opened(files[1], session, plant, where, assumptions(made, session, plant), files)
 
 
@@ -155,15 +155,15 @@ def _of_session(
         )
     if stated.options:
         raise InputError(
-            f"{path}: {listed(stated.options)} is for recordings, and a session file states it "
+            f"{path}: {commas(stated.options)} is for recordings, and a session file states it "
             "itself; leave it out and write it there"
         )
     try:
-        session, plant = loaded(path, keep_faulty=keep_faulty)
+        session, plant = load_session(path, keep_faulty=keep_faulty)
     except InputError:
         if path.suffix.casefold() == ".toml" or not os.path.isfile(path):
             raise
-        endings = listed(suffix for known in FORMATS for suffix in known.suffixes)
+        endings = commas(suffix for known in FORMATS for suffix in known.suffixes)
         raise InputError(
             f"{path}: is no session file, and no recording by its ending (known are {endings}); "
             "save a spreadsheet or a log as CSV"

@@ -11,17 +11,17 @@ from cyclopts import Parameter
 from .. import session as sessions
 from ..errors import InputError
 from ..export import Export, targets
-from ..export.speeds import speed_seen
+from ..export.speeds import recorded_speed
 from ..plant import Plant
 from ..progress import phase
 from ..robot.robot import describes_robot
 from ..session import Session
-from ..wording import listed
-from .answer import answer, folder, written
+from ..wording import commas
+from .answer import answer, folder, protect_writes
 from .given import Quiet
 from .progress import progress
 from .robot import export_arm
-from .sessions import spoken_of
+from .sessions import name_file_in_errors
 
 __all__ = ["export"]
 
@@ -69,7 +69,7 @@ def export(
         raise InputError("stiction export: no plant file is given; name one, or ask with --list")
     if not to:
         raise InputError(
-            f"stiction export: no target is given; write --to and one of {listed(known)}"
+            f"stiction export: no target is given; write --to and one of {commas(known)}"
         )
     if describes_robot(plant):
         where = Path(f"{plant.stem}-export") if out is None else out
@@ -78,10 +78,10 @@ def export(
     read = Plant.load(plant)
     loaded = None if check is None else sessions.load(check, plant=read)
     if speed is None and loaded is not None:
-        speed = speed_seen(loaded.recordings)
+        speed = recorded_speed(loaded.recordings)
     made, refused = _written(read, to, speed)
     where = folder(Path(f"{plant.stem}-export") if out is None else out)
-    with written(where):
+    with protect_writes(where):
         for each in made:
             each.save(where / each.target)
     texts = [f"{each}\n  folder: {where / each.target}" for each in made]
@@ -120,7 +120,7 @@ def _checked(
     from ..export.fidelity import Bench
 
     found: list[tuple[str, dict[str, Any]]] = []
-    with spoken_of(session, loaded, plant):
+    with name_file_in_errors(session, loaded, plant):
         bench = Bench(plant, loaded)
         for each in made:
             phase(_logger, "running %s", each.target)

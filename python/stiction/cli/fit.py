@@ -15,13 +15,13 @@ from ..begins import save_begins
 from ..errors import InputError
 from ..fitting import FitResult
 from ..fitting import fit as run
-from .answer import answer, folder, told_anyway, written
+from .answer import answer, folder, print_on_failure, protect_writes
 from .columns import read_columns
-from .drafts import Opened, Stated, is_data, opened
+from .drafts import Opened, Stated, is_data, open_session
 from .given import Quiet
-from .interrupt import ending_soon, finished
+from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
-from .sessions import mended, spared, spoken_of
+from .sessions import name_file_in_errors, refuse_overwrite, repairs_of
 
 __all__ = ["fit"]
 
@@ -72,18 +72,18 @@ def fit(
     if not more and _curve(session, columns, law, out, as_json=json):
         return
     with progress(quiet):
-        at = opened([session, *more], out, "fit", Stated(columns, gain, law, joint, header))
+        at = open_session([session, *more], out, "fit", Stated(columns, gain, law, joint, header))
         recordings, plant, where = at.session, at.plant, at.where
-        spared(plant, where)
+        refuse_overwrite(plant, where)
         folder(where)
-        with ending_soon(), spoken_of(at.path, recordings, plant):
+        with answer_on_interrupt(), name_file_in_errors(at.path, recordings, plant):
             result = run(plant, recordings)
             if not math.isfinite(result.train_rms):
                 raise InputError(
                     "the effort residual is not a finite number; check units, and values far "
                     "beyond what the machine can do"
                 )
-    with finished(struck=result.interrupted):
+    with defer_interrupt(struck=result.interrupted):
         _told(at, result, session.name, as_json=json)
     if result.interrupted:
         raise KeyboardInterrupt
@@ -102,7 +102,7 @@ def _curve(path: Path, columns: str, law: str, out: Path | None, *, as_json: boo
     found, notes = fit_curve_file(path, law or "coulomb", stated, table)
     where = folder(Path(f"{path.stem}-fit") if out is None else out)
     text, data = "\n".join([str(found), *notes]), {**found.to_dict(), "assumed": list(notes)}
-    with told_anyway(text, data, as_json=as_json), written(where):
+    with print_on_failure(text, data, as_json=as_json), protect_writes(where):
         files = found.save(where)
     wrote = "\n".join(f"wrote {file}" for file in files)
     answer(f"{text}\n\n{wrote}", data, as_json=as_json)
@@ -115,14 +115,14 @@ def _told(at: Opened, result: FitResult, name: str, *, as_json: bool) -> None:
 
     recordings, where = at.session, at.where
     files = [where / "plant.toml", where / BEGINS, where / "fit.json", where / "fit.html"]
-    with told_anyway(str(result), result.to_dict(), as_json=as_json), written(where):
+    with print_on_failure(str(result), result.to_dict(), as_json=as_json), protect_writes(where):
         # The numbers first: no figure can cost them.
         result.plant.save(files[0])
         save_begins(where, result.begins)
         write_text(files[2], result.to_json() + "\n")
         write_text(files[3], fit_page(result, list(recordings), f"Fit of {name}"))
     wrote = "\n".join(f"wrote {file}" for file in files)
-    repairs = mended(recordings)
+    repairs = repairs_of(recordings)
     told = "\n".join([*at.assumed, *repairs, str(result)])
     data = {**result.to_dict(), "repairs": repairs}
     if at.assumed:

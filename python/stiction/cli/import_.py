@@ -11,7 +11,7 @@ from ..atomic_files import create_text
 from ..bam import read_bam
 from ..given import vacant
 from ..plant_file import render
-from .answer import answer, folder, written
+from .answer import answer, folder, protect_writes
 
 __all__ = ["import_"]
 
@@ -48,6 +48,6 @@ def import_(
     vacant(out, (_FILE,), "another folder with --out")
     found = read_bam(file, kp=kp, vin=vin)
     where = folder(out)
-    with written(where):
+    with protect_writes(where):
         create_text(where / _FILE, render(found.plant.to_dict()))
     answer(f"{found}\nwrote {where / _FILE}", found.to_dict(), as_json=json)

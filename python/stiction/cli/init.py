@@ -13,8 +13,8 @@ from ..atomic_files import create_text
 from ..drafting import FILES, Draft, draft
 from ..errors import InputError
 from ..given import vacant
-from ..wording import counted, listed
-from .answer import answer, folder, written
+from ..wording import commas, plural
+from .answer import answer, folder, protect_writes
 from .given import Quiet
 from .progress import progress
 
@@ -64,7 +64,7 @@ def init(
         made = draft([data, *more], joint=joint, header=header)
     where = folder(out)
     files = [where / name for name in FILES]
-    with written(where):
+    with protect_writes(where):
         for file, text in zip(files, made.texts(where), strict=True):
             create_text(file, text)
     todo = made.to_do
@@ -92,10 +92,10 @@ def _text(made: Draft, todo: Sequence[str], files: Sequence[Path]) -> str:
         unit = "" if one.role is None else f"{one.scale:g}·{one.unit}".removeprefix("1·")
         rows.append((one.column, one.role or "-", unit, one.reason))
     widths = [max(len(row[k]) for row in rows) for k in range(3)]
-    lines = [f"guessed from {counted(len(made.tables), 'recording')}:", ""]
+    lines = [f"guessed from {plural(len(made.tables), 'recording')}:", ""]
     lines += ["  ".join([*(f"{row[k]:<{widths[k]}}" for k in range(3)), row[3]]) for row in rows]
     if joints:
-        lines += ["", f"joint: {joints[0]} (others: {listed(joints[1:])}; --joint takes them)"]
+        lines += ["", f"joint: {joints[0]} (others: {commas(joints[1:])}; --joint takes them)"]
     lines += ["", f"motion: {found.motion} ({found.motion_reason})"]
     lines += [f"drive: {found.drive or 'not known'} ({found.drive_reason})"]
     lines += [f"left out: {path}: {why.removeprefix(f'{path}: ')}" for path, why in made.left_out]

@@ -11,13 +11,13 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Final
 
-__all__ = ["ending_soon", "finished"]
+__all__ = ["answer_on_interrupt", "defer_interrupt"]
 
 HEARD: Final = "interrupted: what there is by now is still written; once more ends it at once"
 
 
 @contextmanager
-def ending_soon() -> Iterator[None]:
+def answer_on_interrupt() -> Iterator[None]:
     """What is in here makes an answer of what it has when Ctrl-C is pressed, and that is told."""
     if not _usual():
         yield
@@ -36,7 +36,7 @@ def ending_soon() -> Iterator[None]:
 
 
 @contextmanager
-def finished(*, struck: bool = False) -> Iterator[None]:
+def defer_interrupt(*, struck: bool = False) -> Iterator[None]:
     """What is in here is finished before Ctrl-C takes effect; a second one ends at once.
 
     Parameters

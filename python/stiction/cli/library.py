@@ -14,11 +14,11 @@ from ..errors import InputError
 from ..library import Entry, UnitComparison, compare, entries, entry
 from ..plant_file import read_toml
 from ..session import Session
-from .answer import answer, folder, told_anyway, written
+from .answer import answer, folder, print_on_failure, protect_writes
 from .given import Quiet
-from .interrupt import ending_soon, finished
+from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
-from .sessions import mended, spoken_of
+from .sessions import name_file_in_errors, repairs_of
 
 __all__ = ["library"]
 
@@ -61,7 +61,7 @@ def library(
         text = str(found)
         if out is not None:
             where = folder(out)
-            with written(where):
+            with protect_writes(where):
                 found.plant.save(where / "plant.toml")
             text = f"{text}\n\nwrote {where / 'plant.toml'}"
         answer(text, found.to_dict(), as_json=json)
@@ -77,7 +77,7 @@ def _listed(out: Path | None, *, as_json: bool) -> None:
         from ..json_text import json_of
 
         where = folder(out)
-        with written(where):
+        with protect_writes(where):
             write_text(where / "library.json", json_of(data) + "\n")
     answer(text, data, as_json=as_json)
 
@@ -102,9 +102,9 @@ def _compared(found: Entry, path: Path, out: Path | None, *, as_json: bool, quie
         recordings = sessions.load(path, plant=own)
         where = folder(Path(f"{path.stem}-beside-{found.name}") if out is None else out)
         plant = recordings.plant or found.plant
-        with ending_soon(), spoken_of(path, recordings, plant):
+        with answer_on_interrupt(), name_file_in_errors(path, recordings, plant):
             comparison = compare(found, recordings)
-    with finished(struck=comparison.result.interrupted):
+    with defer_interrupt(struck=comparison.result.interrupted):
         _told(recordings, comparison, where, as_json=as_json)
     if comparison.result.interrupted:
         raise KeyboardInterrupt
@@ -112,9 +112,9 @@ def _compared(found: Entry, path: Path, out: Path | None, *, as_json: bool, quie
 
 def _told(recordings: Session, found: UnitComparison, where: Path, *, as_json: bool) -> None:
     files = [where / "plant.toml", where / "comparison.json"]
-    with told_anyway(str(found), found.to_dict(), as_json=as_json), written(where):
+    with print_on_failure(str(found), found.to_dict(), as_json=as_json), protect_writes(where):
         found.result.plant.save(files[0])
         write_text(files[1], found.to_json() + "\n")
     wrote = "\n".join(f"wrote {file}" for file in files)
-    text = "\n".join([*mended(recordings), str(found)])
+    text = "\n".join([*repairs_of(recordings), str(found)])
     answer(f"{text}\n\n{wrote}", found.to_dict(), as_json=as_json)

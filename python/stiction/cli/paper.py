@@ -31,14 +31,14 @@ from ..paper import (
     stick_slip,
 )
 from ..progress import phase
-from .answer import answer, folder, json_of, written
+from .answer import answer, folder, json_of, protect_writes
 from .given import Quiet
 from .progress import progress
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Section", "drawn", "paper", "paper_command", "render_json", "render_text"]
+__all__ = ["Section", "paper", "paper_command", "render_json", "render_text", "write_figure"]
 
 _logger = logging.getLogger(__name__)
 
@@ -95,7 +95,7 @@ def paper(
         sections = paper_command(out)
     slow = next(s.result for s in sections if isinstance(s.result, StickSlip))
     smooth = stick_slip(FAST, duration=2.0)
-    sections.append(drawn(out, "smooth-sliding", smooth, smooth.plot))
+    sections.append(write_figure(out, "smooth-sliding", smooth, smooth.plot))
     _write_numbers(out, sections)
     closing = (
         f"Pulled at {slow.speed:g} rad/s the rotor sticks and slips ({slow.breakaways} "
@@ -156,7 +156,7 @@ def paper_command(out: Path) -> list[Section]:
     add("stick-slip", stick_slip())
     # The numbers first: no figure can cost them.
     _write_numbers(out, [section for section, _ in made])
-    sections = [drawn(out, section.name, section.result, make) for section, make in made]
+    sections = [write_figure(out, section.name, section.result, make) for section, make in made]
     if any(section.failure for section in sections):
         _write_numbers(out, sections)
     return sections
@@ -164,7 +164,7 @@ def paper_command(out: Path) -> list[Section]:
 
 def _write_numbers(out: Path, sections: Sequence[Section]) -> None:
     text = json_of(render_json(sections)) + "\n"
-    with written(out):
+    with protect_writes(out):
         write_text(out / "numbers.json", text)
 
 
@@ -198,12 +198,12 @@ def _paths(out: Path, name: str) -> tuple[Path, ...]:
     return tuple(out / f"{name}{ending}" for ending in (".svg", ".png"))
 
 
-def drawn(out: Path, name: str, result: Result, make: Callable[[], Figure]) -> Section:
+def write_figure(out: Path, name: str, result: Result, make: Callable[[], Figure]) -> Section:
     """Write a figure of a result as SVG and PNG, or say why it cannot be drawn."""
     from ..plot import save_or_say
 
     phase(_logger, "drawing %s", name)
     paths = _paths(out, name)
-    with written(out):
+    with protect_writes(out):
         failure = save_or_say(f"the figure {name}", make, *paths)
     return Section(name, result, () if failure else paths, failure)

@@ -12,7 +12,7 @@ from ..plan import plan as run
 from ..plan.result import FILLED_IN
 from ..plant import Plant
 from ..robot.robot import describes_robot
-from .answer import answer, folder, told_anyway, written
+from .answer import answer, folder, print_on_failure, protect_writes
 from .given import Quiet, Whole
 from .progress import progress
 from .robot import plan_arm
@@ -81,6 +81,6 @@ def plan(
         )
         where = folder(where)
         text = f"{made!r}\n\nsignals: {where / 'signals'}\nfill in: {where / 'session.toml'}"
-        with told_anyway(text, made.to_dict(), as_json=json), written(where):
+        with print_on_failure(text, made.to_dict(), as_json=json), protect_writes(where):
             made.save(where)
     answer(text, made.to_dict(), as_json=json)

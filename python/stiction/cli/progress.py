@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Final, TextIO
 
-from ..progress import Progress, watched
+from ..progress import Progress, watch
 
 __all__ = ["progress"]
 
@@ -35,7 +35,7 @@ def progress(quiet: bool = False) -> Iterator[None]:
     if quiet:
         yield
         return
-    with watched() as state:
+    with watch() as state:
         shown = _Line(sys.stderr) if sys.stderr.isatty() else _Log(sys.stderr)
         ended = threading.Event()
         reporter = threading.Thread(target=_report, args=(state, shown, ended), daemon=True)

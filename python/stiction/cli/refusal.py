@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import cyclopts
 from cyclopts import exceptions
 
-from ..wording import did_you_mean, listed
+from ..wording import commas, did_you_mean
 
 __all__ = ["refusal"]
 
@@ -32,7 +32,7 @@ def _what(error: cyclopts.CycloptsError, app: cyclopts.App, command: str) -> str
         known = [name for each in error.argument_collection if each.parse for name in each.names]
         return _no_option(given, [name for name in known if name.startswith("--")])
     if isinstance(error, exceptions.UnusedCliTokensError):
-        return f"{listed(error.unused_tokens or ())} is more than it takes; leave it out"
+        return f"{commas(error.unused_tokens or ())} is more than it takes; leave it out"
     argument = error.argument
     name = argument.name if argument is not None else ""
     if isinstance(error, exceptions.MissingArgumentError) and argument is not None:
@@ -67,9 +67,9 @@ def _no_verb(given: str, app: cyclopts.App) -> str:
     verbs = [verb for verb in app if not verb.startswith("-")]
     if given.startswith("-"):
         return _no_option(given, ["--help", "--version"])
-    return f"there is no verb '{given}'{did_you_mean(given, verbs)}; there are {listed(verbs)}"
+    return f"there is no verb '{given}'{did_you_mean(given, verbs)}; there are {commas(verbs)}"
 
 
 def _no_option(given: str, known: Iterable[str]) -> str:
     names = list(known)
-    return f"there is no option {given}{did_you_mean(given, names)}; there are {listed(names)}"
+    return f"there is no option {given}{did_you_mean(given, names)}; there are {commas(names)}"

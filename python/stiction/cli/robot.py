@@ -10,8 +10,8 @@ from ..errors import InputError
 from ..given import vacant
 from ..robot.robot import Robot
 from ..robot.session import load_session
-from .answer import answer, folder, told_anyway, written
-from .interrupt import ending_soon, finished
+from .answer import answer, folder, print_on_failure, protect_writes
+from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
 
 __all__ = ["diagnose_arm", "export_arm", "plan_arm"]
@@ -60,13 +60,13 @@ def diagnose_arm(
     with progress(quiet):
         recordings = load_session(session)
         folder(where)
-        with ending_soon():
+        with answer_on_interrupt():
             found = diagnose_robot(recordings, **asked)
-    with finished(struck=not found.success):
+    with defer_interrupt(struck=not found.success):
         with (
-            told_anyway(str(found), found.to_dict(), as_json=as_json),
+            print_on_failure(str(found), found.to_dict(), as_json=as_json),
             progress(quiet),
-            written(where),
+            protect_writes(where),
         ):
             report = found.save(where)
         left_out = [f"left out: {fault}" for fault in recordings.left_out]
@@ -117,7 +117,7 @@ def plan_arm(
         made = plan_robot(Robot.load(robot), **asked)
         where = folder(where)
         text = f"{made!r}\n\nsignals: {where / 'signals'}\nfill in: {where / 'session.toml'}"
-        with told_anyway(text, made.to_dict(), as_json=as_json), written(where):
+        with print_on_failure(text, made.to_dict(), as_json=as_json), protect_writes(where):
             made.save(where)
     answer(text, made.to_dict(), as_json=as_json)
 
@@ -163,7 +163,7 @@ def export_arm(
     made = [(name, export_robot(read, name, speed=speed)) for name in to]
     folder(where)
     told, data = [], []
-    with written(where):
+    with protect_writes(where):
         for name, parts in made:
             for part, own in parts.items():
                 own.save(where / name / part)

@@ -12,8 +12,8 @@ from typing import Any, Final
 import numpy as np
 
 from ..atomic_files import create_text
-from ..drafting.tables import as_in_file, named, read
-from ..drafting.text import column_value, comment, kinds_of, printable, quoted
+from ..drafting.tables import as_in_file, name_tables, read
+from ..drafting.text import column_value, comment, kinds_of, printable, toml_string
 from ..errors import InputError
 from ..given import vacant
 from ..progress import phase
@@ -23,10 +23,10 @@ from ..recording.guess import ColumnGuess, Guess, guess
 from ..recording.joints import joints_of
 from ..recording.recording import recording_of
 from ..robot import Joint, Robot, RobotSession, Run
-from ..robot.description import described
+from ..robot.description import read_urdf
 from ..robot.extended import relative
-from ..wording import counted, listed
-from .answer import answer, folder, written
+from ..wording import commas, plural
+from .answer import answer, folder, protect_writes
 from .progress import progress
 
 __all__ = ["FILES", "draft_robot"]
@@ -97,11 +97,11 @@ def draft_robot(
     if not data:
         raise InputError(f"{urdf}: no logs are given; name files or a folder behind the URDF")
     vacant(out, FILES, "another folder with --out")
-    description = described(urdf)
+    description = read_urdf(urdf)
     with progress(quiet):
         tables, left_out, files_of = read(data)
         phase(_logger, "guessing what each column is")
-        tables, calls = named(tables, header)
+        tables, calls = name_tables(tables, header)
         places, locked = _places(urdf, description.kinds, description.free, tables)
         joints = [
             _guessed(name, label, tables, calls, description.kinds[name])
@@ -117,13 +117,13 @@ def draft_robot(
             joints, [files_of[table.path] for table in tables], payloads, left_out, where
         ),
     )
-    with written(where):
+    with protect_writes(where):
         for file, text in zip(paths, texts, strict=True):
             create_text(file, text)
     todo = [f"{one.name}: {why}" for one in joints for why in one.found.missing.values()]
     unsure = [one.name for one in joints if one.found.drive == "current_a" and one.gain is None]
     if unsure:
-        todo.append(f"state the gain of {listed(unsure)} in robot.toml")
+        todo.append(f"state the gain of {commas(unsure)} in robot.toml")
     told = {
         "joints": {one.name: {"label": one.label, **one.found.to_dict()} for one in joints},
         "locked": list(locked),
@@ -150,10 +150,10 @@ def _places(
         return ordered, tuple(name for name in free if name not in ordered)
     if not labels or len(labels) > len(free):
         raise InputError(
-            f"{tables[0].path}: its columns are of {counted(len(labels), 'joint')}"
-            f"{f' ({listed(labels)})' if labels else ''}, and {urdf.name} has "
-            f"{counted(len(free), 'joint')} that "
-            f"{'moves' if len(free) == 1 else 'move'} ({listed(free)}); call the columns as the "
+            f"{tables[0].path}: its columns are of {plural(len(labels), 'joint')}"
+            f"{f' ({commas(labels)})' if labels else ''}, and {urdf.name} has "
+            f"{plural(len(free), 'joint')} that "
+            f"{'moves' if len(free) == 1 else 'move'} ({commas(free)}); call the columns as the "
             'URDF calls its joints, or say what they are with --header "t,q*6,qd*6,i*6"'
         )
     return dict(zip(free, labels, strict=False)), tuple(free[len(labels) :])
@@ -257,13 +257,18 @@ def _robot_text(urdf: Path, joints: Sequence[_Drafted], locked: Sequence[str], w
         ),
         "",
         "[robot]",
-        f"urdf = {quoted(relative(urdf, where))}",
+        f"urdf = {toml_string(relative(urdf, where))}",
     ]
     if locked:
         lines += comment("No column is of these joints: they are taken to rest at 0.")
         lines.append(f"locked = {{ {', '.join(f'{name} = 0.0' for name in locked)} }}")
     for one in joints:
-        lines += ["", *comment(_called_as(one)), "[[robot.joints]]", f"name = {quoted(one.name)}"]
+        lines += [
+            "",
+            *comment(_called_as(one)),
+            "[[robot.joints]]",
+            f"name = {toml_string(one.name)}",
+        ]
         lines += _columns(one.found)
         lines += _drive(one, joints)
     return "\n".join(lines) + "\n"
@@ -342,16 +347,16 @@ def _session_text(
     ]
     kinds = kinds_of([files[0] for files in paths])
     for files, kind, payload in zip(paths, kinds, payloads, strict=True):
-        names = [quoted(relative(path, where)) for path in files]
+        names = [toml_string(relative(path, where)) for path in files]
         lines += ["", "[[recordings]]"]
         lines.append(f"file = {names[0] if len(names) == 1 else '[' + ', '.join(names) + ']'}")
-        lines += [f"kind = {quoted(kind)}"] if kind else []
+        lines += [f"kind = {toml_string(kind)}"] if kind else []
         if payload:
             lines += comment("By the word in its name. TO DO: state its mass, or take this away.")
             lines.append(f"payload_kg = {payload}")
     for path, why in left_out:
         lines += ["", *comment(f"Left out: {printable(why.removeprefix(f'{path}: '))}")]
-        lines += ["# [[recordings]]", f"# file = {quoted(relative(path, where))}"]
+        lines += ["# [[recordings]]", f"# file = {toml_string(relative(path, where))}"]
     return "\n".join(lines) + "\n"
 
 
@@ -362,7 +367,7 @@ def _text(
     todo: Sequence[str],
     files: Sequence[Path],
 ) -> str:
-    lines = [f"guessed from {counted(len(tables), 'recording')}:", ""]
+    lines = [f"guessed from {plural(len(tables), 'recording')}:", ""]
     width = max(len(one.name) for one in joints)
     for one in joints:
         roles = one.found.by_role

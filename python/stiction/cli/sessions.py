@@ -16,10 +16,10 @@ from ..plant_file import read_toml
 from ..recording.names import names_of
 from ..session import Session
 
-__all__ = ["loaded", "mended", "spared", "spoken_of"]
+__all__ = ["load_session", "name_file_in_errors", "refuse_overwrite", "repairs_of"]
 
 
-def loaded(path: Path, *, keep_faulty: bool = False) -> tuple[Session, Plant]:
+def load_session(path: Path, *, keep_faulty: bool = False) -> tuple[Session, Plant]:
     """A session file and the plant that it names.
 
     Raises
@@ -51,7 +51,7 @@ def _kind_of(path: Path) -> str:
 
 
 @contextmanager
-def spoken_of(path: Path, session: Session, plant: Plant) -> Iterator[None]:
+def name_file_in_errors(path: Path, session: Session, plant: Plant) -> Iterator[None]:
     """Lets refusals name a file: the session's where they speak of all recordings together."""
     try:
         # Absurd numbers are refused in words, not by warnings.
@@ -64,7 +64,7 @@ def spoken_of(path: Path, session: Session, plant: Plant) -> Iterator[None]:
         raise InputError(told if known else f"{path}: {told}") from None
 
 
-def spared(plant: Plant, where: Path) -> None:
+def refuse_overwrite(plant: Plant, where: Path) -> None:
     """Refuse to write a plant.toml over the one that was read: what its user wrote would be gone.
 
     Raises
@@ -84,7 +84,7 @@ def spared(plant: Plant, where: Path) -> None:
         )
 
 
-def mended(session: Session) -> list[str]:
+def repairs_of(session: Session) -> list[str]:
     """What was left out or repaired on reading, a sentence each."""
     return [
         *(f"left out: {fault}" for fault in session.left_out),

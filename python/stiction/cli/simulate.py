@@ -19,7 +19,7 @@ from ..progress import phase, steps
 from ..recording import Recording
 from ..recording.checks import check, impulse_checks
 from ..recording.names import names_of
-from .answer import answer, folder, written
+from .answer import answer, folder, protect_writes
 from .columns import read_columns
 from .given import Quiet
 from .progress import progress
@@ -89,7 +89,7 @@ def simulate(
         try:
             for each, stem, begin in steps(each_with_its_begin, "recording"):
                 # Ctrl-C ends after the files of one recording, and what is done by then is told.
-                with written(where):
+                with protect_writes(where):
                     results.append(_named(machine, each, stem, support, begin))
         except KeyboardInterrupt:
             if results:

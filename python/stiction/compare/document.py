@@ -14,7 +14,7 @@ from .figures import law_figures, name_of
 from .result import CONDITIONAL, YES, Comparison
 from .text import as_markdown, notes
 
-__all__ = ["SYMPTOMS", "figure_line", "filled", "property_block", "symptom_block", "write"]
+__all__ = ["SYMPTOMS", "figure_line", "fill", "property_block", "symptom_block", "write"]
 
 SYMPTOMS: Final[tuple[tuple[str, tuple[str, ...]], ...]] = (
     ("It creeps under a held force, ever more slowly, and stops.", ("creep_that_stops",)),
@@ -89,12 +89,12 @@ def write(docs: Path, comparison: Comparison) -> list[Path]:
     for path, blocks in pages.items():
         text = path.read_text("utf-8")
         for name, block in blocks.items():
-            text = filled(text, name, block, path)
+            text = fill(text, name, block, path)
         write_text(path, text)
     return [*pages, *law_figures(docs / "figures"), *_lines(docs)]
 
 
-def filled(text: str, name: str, block: str, path: Path) -> str:
+def fill(text: str, name: str, block: str, path: Path) -> str:
     """A page with what stands between two marks replaced."""
     opening, closing = f"<!-- {name} -->", f"<!-- end of {name} -->"
     if text.count(opening) != 1 or text.count(closing) != 1:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from .. import catalogue
-from ..atomic_files import replacing
+from ..atomic_files import atomic_write
 from ..plot import ACCENT, FAINT, MEASURED, SIMULATED, SMALL, figure, legend
 from ..trajectory import FloatArray
 from .subject import Subject, variants
@@ -94,7 +94,7 @@ def small(drawn: Figure, path: Path) -> Path:
     drawn.savefig(target, format="png", metadata={"Software": None})
     with Image.open(target) as picture:
         few = picture.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)
-        with replacing(path) as file:
+        with atomic_write(path) as file:
             few.save(file, format="png", optimize=True)
     return path
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from ..errors import UnknownName
-from ..wording import counted, did_you_mean, listed
+from ..wording import commas, did_you_mean, plural
 from .measured import Measured, Property
 
 __all__ = ["CONDITIONAL", "NO", "UNDEFINED", "YES", "Cell", "Comparison", "Row", "verdict_of"]
@@ -95,7 +95,7 @@ class Comparison:
                 return row
         compared = [row.law for row in self.rows]
         near = did_you_mean(str(law), compared)
-        raise UnknownName(f"law {law!r} was not compared{near}; there are {listed(compared)}")
+        raise UnknownName(f"law {law!r} was not compared{near}; there are {commas(compared)}")
 
     @property
     def success(self) -> bool:
@@ -105,10 +105,10 @@ class Comparison:
     @property
     def message(self) -> str:
         """What happened, in words."""
-        laws = counted(len(self.rows), "law")
-        done = f"{laws} compared by {counted(len(self.properties), 'property', 'properties')}"
+        laws = plural(len(self.rows), "law")
+        done = f"{laws} compared by {plural(len(self.properties), 'property', 'properties')}"
         lost = self._without_numbers()
-        return f"{done}; no finite number came out for {listed(lost)}" if lost else done
+        return f"{done}; no finite number came out for {commas(lost)}" if lost else done
 
     def _without_numbers(self) -> list[str]:
         return [

@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..given import names, whole
 from ..progress import phase
 from ..progress import steps as each_step
-from ..wording import did_you_mean, listed
+from ..wording import commas, did_you_mean
 from .cost import BESIDE, costs
 from .draws import DRAWS
 from .draws import draws as draw
@@ -116,6 +116,6 @@ def _record(name: str) -> LawRecord:
     if name not in records:
         raise InputError(
             f"law '{name}' is unknown{did_you_mean(name, list(records))}; known are "
-            f"{listed(list(records))}"
+            f"{commas(list(records))}"
         )
     return records[name]

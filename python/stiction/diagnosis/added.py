@@ -21,7 +21,7 @@ from .bets import Bet, Bets, bets_of
 from .evidence import Evidence
 from .gain import residuals_of
 from .result import SCHEMA
-from .words import joined
+from .words import join_words
 
 __all__ = ["Added", "add"]
 
@@ -69,7 +69,7 @@ class Added:
             told = f"{bet.recording}: the plant leaves {bet.after:.3g} {self.unit} rms"
         else:
             change = f"{bet.before:.3g} → {bet.after:.3g} {self.unit} rms"
-            them = joined(self.names)
+            them = join_words(self.names)
             gain = bet.gain
             if gain is None or gain <= 0.0:
                 told = (

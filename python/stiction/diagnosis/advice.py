@@ -10,9 +10,9 @@ from ..plant import Plant
 from ..recording import Check
 from .by_recording import GAIN, INERTIA
 from .passing import MOMENTS
-from .remedies import recorded
+from .remedies import experiment_words
 from .result import Advice, Cause, Unexplained
-from .words import joined
+from .words import join_words
 
 __all__ = ["advise"]
 
@@ -125,14 +125,14 @@ def advise(
 
     def add(plan: str, what: str, reason: str, separates: tuple[str, ...] = ()) -> None:
         # The first reason to record an experiment is the best one.
-        if words := recorded(plan, what, plant, separates):
+        if words := experiment_words(plan, what, plant, separates):
             advice.setdefault(plan, Advice(words, reason, separates))
 
     for cause in causes:
         names = (cause.name, *cause.look_alikes)
         for name in () if cause.decided or not cause.look_alikes else names:
             record = records[name]
-            add(record.plan, record.experiment, f"it tells {joined(names)} apart", names)
+            add(record.plan, record.experiment, f"it tells {join_words(names)} apart", names)
     for name in unseen:
         record = records[name]
         reason = f"recordings that decide cannot judge {name}, which shows in those that train"

@@ -8,17 +8,23 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError, NotEnoughData
-from ..fitting.first_pass import WORTH_WIDER, first_pass, share_left
+from ..fitting.first_pass import WORTH_WIDER, first_pass, remaining_share
 from ..fitting.forms import Through, astray, wider_of, windows_of
 from ..fitting.minimise import MOST_EVALUATIONS
-from ..fitting.sign import turned_round
-from ..fitting.solve import left_by_fit, settled
+from ..fitting.sign import sign_error
+from ..fitting.solve import fit_remainder, second_pass
 from ..plant import Plant
 from ..recording import Recording
 from .evidence import Evidence
-from .model import Known, Model, fitted
+from .model import Known, Model, fit_model
 
-__all__ = ["based", "based_joined", "based_over_windows", "based_simulated", "based_wider"]
+__all__ = [
+    "fit_baseline",
+    "fit_baseline_over_windows",
+    "fit_joint_baseline",
+    "fit_simulated_baseline",
+    "fit_wider_baseline",
+]
 
 LOST: Final = 1e-3
 """An inertia that shrinks to this share of what the plant states, or of what the motion told at
@@ -27,7 +33,7 @@ SHOWS: Final = 0.3
 """Share of the residual that it would move, from which on it would have shown."""
 
 
-def based(
+def fit_baseline(
     plant: Plant,
     recordings: Sequence[Recording],
     *,
@@ -68,7 +74,7 @@ def based(
         windows=windows,
     )
     evidence = first.seen
-    solution = settled(first.solution, evidence.train, most=MOST_EVALUATIONS)
+    solution = second_pass(first.solution, evidence.train, most=MOST_EVALUATIONS)
     evidence.weigh()
     base = Model(evidence, solution)
     if not solution.interrupted:
@@ -76,7 +82,7 @@ def based(
     return evidence, base
 
 
-def based_wider(
+def fit_wider_baseline(
     plant: Plant,
     recordings: Sequence[Recording],
     evidence: Evidence,
@@ -103,7 +109,7 @@ def based_wider(
     if wider_of(final.plant, final.nuisances, evidence.train, evidence.forms) is None:
         return None
     try:
-        other, base = based(plant, recordings, wide=True)
+        other, base = fit_baseline(plant, recordings, wide=True)
     except InputError:
         # What was found through narrow kernels stands.
         return None
@@ -111,11 +117,11 @@ def based_wider(
         return other, base
     if not any(form.widened for form in other.forms):
         return None
-    left = share_left(final, evidence.train)
-    return (other, base) if share_left(base, other.train) < WORTH_WIDER * left else None
+    left = remaining_share(final, evidence.train)
+    return (other, base) if remaining_share(base, other.train) < WORTH_WIDER * left else None
 
 
-def based_simulated(
+def fit_simulated_baseline(
     plant: Plant,
     recordings: Sequence[Recording],
     evidence: Evidence,
@@ -163,7 +169,7 @@ def based_simulated(
         if led is None:
             return None
         along = evidence if narrow else None
-        return *based(plant, recordings, windows=True, along=along), led
+        return *fit_baseline(plant, recordings, windows=True, along=along), led
     except InputError:
         # What was found along the readings stands.
         return None
@@ -180,7 +186,7 @@ def _led_astray(
     The windows of this question are let go of: those that the base goes on with are others.
     """
     windows = Evidence(begun[0].plant, recordings, through=through, watch=evidence.watch)
-    own = [(fitted(windows, each.plant, each.nuisances), each) for each in begun]
+    own = [(fit_model(windows, each.plant, each.nuisances), each) for each in begun]
     best, led = min(own, key=lambda pair: pair[0].power)
     if not best.solution.interrupted and not astray(
         led.plant,
@@ -194,7 +200,7 @@ def _led_astray(
     return [Known(model.plant, model.nuisances) for model in models]
 
 
-def based_over_windows(
+def fit_baseline_over_windows(
     plant: Plant, recordings: Sequence[Recording], evidence: Evidence, final: Model
 ) -> tuple[Evidence, Model] | None:
     """The base simulated over windows, whatever that leaves; None where it cannot be.
@@ -212,13 +218,13 @@ def based_over_windows(
     if windows_of(final.plant, evidence.forms, evidence.train) is None:
         return None
     try:
-        simulated = based(plant, recordings, windows=True)
+        simulated = fit_baseline(plant, recordings, windows=True)
     except InputError:
         return None
     return simulated if simulated[0].simulated else None
 
 
-def based_joined(
+def fit_joint_baseline(
     plant: Plant,
     recordings: Sequence[Recording],
     evidence: Evidence,
@@ -231,7 +237,7 @@ def based_joined(
     wide = any(form.widened for form in evidence.forms)
     windows = evidence.simulated or None
     try:
-        return based(plant, recordings, wide=wide, joined=True, windows=windows)
+        return fit_baseline(plant, recordings, wide=wide, joined=True, windows=windows)
     except InputError:
         return None
 
@@ -250,7 +256,7 @@ def _refuse_what_does_not_move(
     moved = known * float(np.sqrt(np.mean(accelerations**2)))
     left = float(np.sqrt(np.mean(base.residual**2)))
     if found < LOST * known and moved > SHOWS * left:
-        hint = turned_round(stated, evidence.recordings, left_by_fit).rstrip(".")
+        hint = sign_error(stated, evidence.recordings, fit_remainder).rstrip(".")
         raise NotEnoughData(
             f"of an inertia of {known:.3g} the fit leaves {found:.2g}, though the accelerations "
             "would show it: input and motion do not belong together; check their columns, units, "

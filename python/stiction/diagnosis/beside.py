@@ -13,7 +13,7 @@ from .decide import Trial
 from .evidence import Evidence
 from .screen import Score
 
-__all__ = ["left_by_forms", "stands_out"]
+__all__ = ["doubt_by_forms", "stands_out"]
 
 BESIDE_NAMES: Final = 2.0
 """So many times its threshold a further cause scores: second ones that were hidden came to 2.2 and
@@ -38,7 +38,7 @@ def stands_out(evidence: Evidence, score: Score, families: Set[str]) -> bool:
     return score.score > BESIDE_NAMES * score.threshold
 
 
-def left_by_forms(evidence: Evidence, trial: Trial, families: Set[str]) -> str:
+def doubt_by_forms(evidence: Evidence, trial: Trial, families: Set[str]) -> str:
     """Why a trial that passed may be what the forms of these families leave, "" where it is not.
 
     What a refit gains held out tells as much as a score does.

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from ..trajectory import FloatArray
-from ..wording import counted
+from ..wording import plural
 from .gain import HeldOut
 
 __all__ = ["Bet", "Bets", "bets_of"]
@@ -100,7 +100,7 @@ class Bets:
         if not self.each:
             return ""
         won = sum(bet.payoff > 0.0 for bet in self.each)
-        of = counted(len(self.each), "recording")
+        of = plural(len(self.each), "recording")
         told = (
             f"it helps in {won} of {of} held out: by their number alone, odds of {self.value:.3g} "
             "to 1 against chance"

@@ -16,10 +16,10 @@ from ..fitting.start import largest_command
 from ..plant import Plant
 from ..presliding import presliding
 from ..stated import Effect
-from ..wording import did_you_mean, listed
+from ..wording import commas, did_you_mean
 from .evidence import Evidence
 
-__all__ = ["LOWEST", "Candidate", "Scales", "candidates", "left_out", "present", "scales_of"]
+__all__ = ["LOWEST", "Candidate", "Scales", "candidates", "excluded_names", "present", "scales_of"]
 
 FEWEST_SPEEDS: Final = (0.02, 0.90)
 """Quantiles of the moving speeds that bound the grid of a speed."""
@@ -145,7 +145,7 @@ class Candidate:
         return all(values[self.own(name)].value == self.shape[name] for name in held)
 
     @property
-    def varied_last(self) -> tuple[str, ...]:
+    def last_shapes(self) -> tuple[str, ...]:
         """Shapes that a refit varies once all else is fitted: far from there they lead astray."""
         own = {shape.parameter for shape in self.record.shapes if shape.scale == RESTING}
         return tuple(name for name in self.free if name in own)
@@ -153,7 +153,7 @@ class Candidate:
     @property
     def parameters(self) -> int:
         """How many parameters it adds to a fit; those varied last only mend what is known."""
-        return len(self.record.gains) + len(self.free) - len(self.varied_last)
+        return len(self.record.gains) + len(self.free) - len(self.last_shapes)
 
 
 def scales_of(evidence: Evidence, plant: Plant) -> Scales:
@@ -210,7 +210,7 @@ def _units(evidence: Evidence, plant: Plant, span: float) -> tuple[dict[str, flo
     return units, finest / length
 
 
-def left_out(without: Sequence[str]) -> tuple[str, ...]:
+def excluded_names(without: Sequence[str]) -> tuple[str, ...]:
     """The names of effects that are not to be tried.
 
     Raises
@@ -223,7 +223,7 @@ def left_out(without: Sequence[str]) -> tuple[str, ...]:
         if name not in known:
             raise InputError(
                 f"without: there is no effect {name}{did_you_mean(name, known)}; "
-                f"there are {listed(known)}"
+                f"there are {commas(known)}"
             )
     return tuple(without)
 

@@ -92,9 +92,9 @@ def ceiling_of(
         if number == 0 or not _alike(both):
             continue
         pairs += 1
-        new = [r for r in both if r.index not in evidence.trained]
+        new = [r for r in both if r.index not in evidence.training_recordings]
         before, after = (
-            _residuals(both, plant, evidence.started(plant, nuisances, new), number)
+            _residuals(both, plant, evidence.with_starts(plant, nuisances, new), number)
             for plant, nuisances in models
         )
         effort = [each.form.whole(models[0][0])[each.mask][:number] for each in both]

@@ -17,13 +17,13 @@ import numpy as np
 
 from ..catalogue import effects
 from ..trajectory import FloatArray
+from .block_gains import paired_z
 from .candidates import LOWEST, scales_of
 from .decide import Trial
-from .gains import paired_z
 from .model import Model
 from .regression import FLAT
 
-__all__ = ["TOO_NEAR", "by_chance", "odds", "share_of_phases", "share_of_waves", "unrepeated"]
+__all__ = ["TOO_NEAR", "by_chance", "lacks_repeats", "odds", "share_of_phases", "share_of_waves"]
 
 WAVE: Final = ("cosine", "sine")
 ORDER: Final = "order"
@@ -70,7 +70,7 @@ def by_chance(simple: Trial, other: Trial) -> bool:
     return odds(share, paired_z(other.model, simple.model), near=near) >= ENOUGH
 
 
-def unrepeated(model: Model, name: str) -> bool:
+def lacks_repeats(model: Model, name: str) -> bool:
     """Whether this is an effort over position of which nobody saw enough to call it a wave.
 
     A spring, as a cable is, and all else that goes with position look like a part of one, and so do
@@ -105,7 +105,7 @@ def _share_of_orders(simple: Trial, other: Trial) -> float:
     """Share of all orders, logarithmic, that are as near to one wave a turn; at most 1."""
     if simple.candidate.record.shapes or other.candidate.free != (ORDER,):
         return 1.0
-    order = other.model.told.parameters[f"effects.{other.name}.{other.candidate.own(ORDER)}"]
+    order = other.model.fit_result.parameters[f"effects.{other.name}.{other.candidate.own(ORDER)}"]
     if not math.isfinite(order.stderr):
         return 1.0
     least, most = _orders(other)
@@ -121,7 +121,7 @@ def _orders(other: Trial) -> tuple[float, float]:
 
 def _share_of_phases(simple: Trial, other: Trial) -> float:
     """Share of all waves that are as near to a cause with one gain; at most 1."""
-    spread = other.model.spread(other.candidate)
+    spread = other.model.gain_covariance(other.candidate)
     if spread is None:
         return 1.0
     share = share_of_phases(other.model.gains(other.candidate), spread, _most_alike(simple, other))

@@ -9,10 +9,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from .block_gains import paired_z
 from .candidates import FALL, scales_of
-from .chance import TOO_NEAR, by_chance, unrepeated
+from .chance import TOO_NEAR, by_chance, lacks_repeats
 from .decide import OUT_OF_RANGE, Trial
-from .gains import paired_z
 
 __all__ = ["ALIKE", "DECIDED_Z", "Choice", "choose", "covers", "parallel", "strangers"]
 
@@ -103,7 +103,7 @@ def _as_was_seen(accepted: Sequence[Trial]) -> Trial:
     A part of a wave follows whatever goes with position a little better than a constant does.
     """
     best = accepted[0]
-    if not unrepeated(best.model, best.name):
+    if not lacks_repeats(best.model, best.name):
         return best
     near = (t for t in accepted[1:] if t.worth >= (1.0 - NEAR) * best.worth and _alike(best, t))
     parameters = best.candidate.parameters

@@ -8,10 +8,10 @@ from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
-from ..compared import compared_by
+from ..compared import comparison_of
 from ..fitting.rows import Rows
-from ..fitting.sign import turned_round
-from ..fitting.solve import left_by_fit
+from ..fitting.sign import sign_error
+from ..fitting.solve import fit_remainder
 from ..progress import phase
 from ..recording import Check
 from ..session import Session
@@ -21,44 +21,50 @@ from .bets import Bets, bets_of
 from .bursts import Burst, burst_of
 from .candidates import scales_of
 from .ceiling import Ceiling, ceiling_of
-from .confirm import confirmed, described, lost, lost_in_motion, lost_on_test
+from .confirm import (
+    confirm_on_test,
+    lost_share,
+    lost_share_of_motion,
+    lost_share_on_test,
+    reject_without_machine,
+)
 from .coordinates import Look, looks
 from .decide import SMALLEST
 from .evidence import Evidence
 from .exact_forms import rests_of
 from .gain import HeldOut, gain_of, residuals_of
-from .held_numbers import Held, held_numbers, held_words
+from .held_numbers import Held, fixed_parameters, fixed_words
 from .holds import holds_of
 from .laws import THE_LAW, Rival, better_laws, event_words, law_rows, rivals_of
-from .left_open import beside_another_law, left_open, unconfirmed, waves_left_open
+from .left_open import beside_another_law, leave_open, leave_waves_open, unconfirmed_names
 from .listing import in_order
 from .lone import lone_event
-from .loop import borne_out, replayed
+from .loop import borne_out, with_loop_replay
 from .model import Model
 from .moved import borne_out_in_motion
 from .noise import Noise
 from .noted import with_checks, with_pushes
 from .omnibus import Rest, rest
-from .outlying import outlying_in_test
+from .outlying import outlying_test_recordings
 from .passing import MOMENTS
 from .pictures import Pictures
-from .regression import refitted
+from .regression import refit_residuals
 from .reliability import reliability_of
-from .replay import centre, shared, surrogate_residuals
+from .replay import centre, common_bias, surrogate_residuals
 from .result import Diagnosis, Unexplained, Verdict
 from .rounds import friction_of
 from .selection import Search
 from .told import (
     causes_of,
     effect_of,
-    evaluated,
+    evaluate,
     floor_of,
     own_views,
     stretches_of,
     summary_of,
 )
 from .traces import traces_of
-from .verdict import left_beside, unnamed, verdict_of
+from .verdict import remainder_share, unnamed_remainder, verdict_of
 from .view import View
 from .words import (
     INTERRUPTED,
@@ -145,7 +151,7 @@ class Conclusion:
             return self._whole()
 
     def _whole(self) -> Diagnosis:
-        final = self.confirmed.models[-1]
+        final = self.final_selection.models[-1]
         ceiling = self.ceiling
         noises = self.noises if self.brief else self._replays(final)[1]
         data = {
@@ -162,44 +168,46 @@ class Conclusion:
         }
         found = self._told(replace(self.found, data=data))
         found = with_pushes(found, self.evidence)
-        names, number = self.evidence.names, len(self.confirmed.choices)
+        names, number = self.evidence.names, len(self.final_selection.choices)
         found = with_checks(found, holds_of(self.evidence.shown, final, names))
-        held = () if self.brief else self.held
-        found = with_checks(found, [each.check for each in held], held_words(held))
-        apart = outlying_in_test(self.evidence, final, self.test, number, self.relevant)
+        held = () if self.brief else self.fixed_parameters
+        found = with_checks(found, [each.check for each in held], fixed_words(held))
+        apart = outlying_test_recordings(self.evidence, final, self.test, number, self.relevant)
         found = with_checks(found, apart, apart_words(apart))
-        return replayed(replace(found, ceiling=ceiling), self.evidence, self.base, final)
+        return with_loop_replay(replace(found, ceiling=ceiling), self.evidence, self.base, final)
 
     @cached_property
-    def decided(self) -> Search:
+    def valid_selection(self) -> Search:
         """The selection, as far as the plant describes the machine with it."""
-        selection = described(self.selection, self.evidence, self.null)
+        selection = reject_without_machine(self.selection, self.evidence, self.null)
         return borne_out(borne_out_in_motion(selection, self.evidence), self.evidence)
 
     @cached_property
     def lacking(self) -> bool:
         """Whether the plant lacks something, named or not, before the rows that test are asked."""
-        return bool(self.decided.choices) or self.unsaid
+        return bool(self.valid_selection.choices) or self.unsaid
 
     @cached_property
     def unsaid(self) -> bool:
         """Whether it lacks something that has no name, before the rows that test are asked."""
-        final = self.decided.models[-1]
-        return bool(lost(self.evidence, final, self.null) or self._unnamed(self.decided))
+        final = self.valid_selection.models[-1]
+        return bool(
+            lost_share(self.evidence, final, self.null) or self._unnamed(self.valid_selection)
+        )
 
     @cached_property
     def rivals(self) -> Sequence[Rival]:
         """Other laws, fitted."""
         if self.interrupted:
             return []
-        rivals = rivals_of(self.decided, self.others, lacking=self.lacking)
-        self.interrupted = self.interrupted or self.decided.interrupted
+        rivals = rivals_of(self.valid_selection, self.others, lacking=self.lacking)
+        self.interrupted = self.interrupted or self.valid_selection.interrupted
         return rivals
 
     @cached_property
     def better(self) -> list[Rival]:
         """The law to state and those that leave about as little; empty where none clearly helps."""
-        last = len(self.decided.models) - 1
+        last = len(self.valid_selection.models) - 1
         return better_laws(self.rivals, last, self.test, self.found.seed)
 
     @property
@@ -207,10 +215,10 @@ class Conclusion:
         """What a better law means, in a sentence."""
         first, *others = self.better
         own = self.base.plant.friction.law
-        return first.words(own, bool(self.confirmed.choices), [each.law for each in others])
+        return first.words(own, bool(self.final_selection.choices), [each.law for each in others])
 
     @cached_property
-    def opened(self) -> list[Rows]:
+    def test_rows(self) -> list[Rows]:
         """The rows that test."""
         phase(_logger, "opening the test rows")
         return self.evidence.open_test()
@@ -218,19 +226,22 @@ class Conclusion:
     @cached_property
     def test(self) -> HeldOut | None:
         """What all models leave there; those of other laws come last."""
-        models = [*self.decided.models, *(r.model for r in self.rivals if r.model is not None)]
-        return residuals_of(self.evidence, self.opened, [(m.plant, m.nuisances) for m in models])
+        models = [
+            *self.valid_selection.models,
+            *(r.model for r in self.rivals if r.model is not None),
+        ]
+        return residuals_of(self.evidence, self.test_rows, [(m.plant, m.nuisances) for m in models])
 
     @cached_property
-    def confirmed(self) -> Search:
+    def final_selection(self) -> Search:
         """The selection that the rows that test bear out."""
-        selection = confirmed(self.decided, self.test, self.found.seed)
+        selection = confirm_on_test(self.valid_selection, self.test, self.found.seed)
         return borne_out(selection, self.evidence)
 
     @cached_property
     def _centred(self) -> tuple[FloatArray, FloatArray]:
         bias, centred = centre(self.null)
-        return shared(bias, self.base.residual, self.evidence.cells.recording), centred
+        return common_bias(bias, self.base.residual, self.evidence.cells.recording), centred
 
     @cached_property
     def _seen(self) -> list[Look]:
@@ -241,7 +252,7 @@ class Conclusion:
     @cached_property
     def rests(self) -> tuple[Rest, Rest]:
         """What base and last model leave, in every coordinate."""
-        return self._rest(self.base), self._rest(self.confirmed.models[-1])
+        return self._rest(self.base), self._rest(self.final_selection.models[-1])
 
     def _replays(self, model: Model) -> tuple[FloatArray, Mapping[int, Noise]]:
         """Residuals of surrogates of a model, and the noise that they were made with.
@@ -271,7 +282,7 @@ class Conclusion:
     @cached_property
     def own(self) -> tuple[tuple[View, View], ...]:
         """Each cause in its own coordinate, before it is added and after."""
-        selection, final = self.confirmed, self.confirmed.models[-1]
+        selection, final = self.final_selection, self.final_selection.models[-1]
         (bias, centred), friction = self._centred, friction_of(self.evidence, self.base)
         return tuple(
             own_views(
@@ -288,19 +299,19 @@ class Conclusion:
     @cached_property
     def ceiling(self) -> Ceiling | None:
         """How much could be explained."""
-        base, final = self.base, self.confirmed.models[-1]
+        base, final = self.base, self.final_selection.models[-1]
         ends = (base.plant, base.nuisances), (final.plant, final.nuisances)
         return ceiling_of(self.evidence, self.session.replicates, ends)
 
     @cached_property
-    def unexplained(self) -> tuple[Unexplained, ...]:
+    def unnamed_remainders(self) -> tuple[Unexplained, ...]:
         """What is left and has no name."""
-        return self._unnamed(self.confirmed, self.burst)
+        return self._unnamed(self.final_selection, self.burst)
 
     def _unnamed(self, selection: Search, burst: Burst | None = None) -> tuple[Unexplained, ...]:
         """The same of a selection."""
         final = selection.models[-1]
-        return unnamed(
+        return unnamed_remainder(
             self.evidence,
             selection,
             self._rest(self.base),
@@ -319,24 +330,24 @@ class Conclusion:
     @cached_property
     def burst(self) -> Burst | None:
         """Single moments that hold much of what is left, where no cause is there to tell them."""
-        if self.confirmed.choices or self.confirmed.unseen:
+        if self.final_selection.choices or self.final_selection.unseen:
             return None
         friction = friction_of(self.evidence, self.base)
         starts = self.session.starts
-        return burst_of(self.evidence, self.confirmed.models[-1], self.null, friction, starts)
+        return burst_of(self.evidence, self.final_selection.models[-1], self.null, friction, starts)
 
     @cached_property
-    def held(self) -> Sequence[Held]:
+    def fixed_parameters(self) -> Sequence[Held]:
         """Numbers of the plant file that the data do not agree with."""
-        return held_numbers(self.confirmed)
+        return fixed_parameters(self.final_selection)
 
     def _told(self, found: Diagnosis) -> Diagnosis:
         """Verdict and words, from everything that was measured."""
-        evidence, selection, test, null = self.evidence, self.confirmed, self.test, self.null
+        evidence, selection, test, null = self.evidence, self.final_selection, self.test, self.null
         base, final = selection.models[0], selection.models[-1]
         floor = floor_of(evidence, null if self.brief else self._replays(final)[0])
         scales = scales_of(evidence, base.plant)
-        results = {id(m): evaluated(m, scales) for m in (base, final)}
+        results = {id(m): evaluate(m, scales) for m in (base, final)}
         baseline = summary_of(evidence, base, results[id(base)], test, 0, floor)
         number = len(selection.choices)
         extended = summary_of(evidence, final, results[id(final)], test, number, floor)
@@ -347,7 +358,7 @@ class Conclusion:
         if causes and test is not None:
             gain = gain_of(test, 0, len(causes), found.seed)
             bets = bets_of(test, len(causes), evidence.names)
-        left = lost(evidence, final, null)
+        left = lost_share(evidence, final, null)
         event = burst = None
         stands = 0.0
         unseen: Mapping[str, float] = {}
@@ -356,23 +367,26 @@ class Conclusion:
         unexplained: tuple[Unexplained, ...] = ()
         if self.brief:
             # What was not looked for any more is not claimed, and neither is that nothing is left.
-            causes = waves_left_open(selection, causes)
+            causes = leave_waves_open(selection, causes)
             decided = all(cause.decided for cause in causes)
             verdict = ("missing_effect" if decided else "ambiguous") if causes else "not_testable"
             reason = NOTHING_YET
         else:
-            unexplained = (*(left for each in self.held for left in each.left), *self.unexplained)
+            unexplained = (
+                *(left for each in self.fixed_parameters for left in each.remainders),
+                *self.unnamed_remainders,
+            )
             shown = {each.coordinate for each in unexplained}
-            of_names = rests_of(causes, self.rests[1], left_beside(selection))
+            of_names = rests_of(causes, self.rests[1], remainder_share(selection))
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
-            replaced = {name for each in self.held for name in each.instead}
-            unsure = unconfirmed(causes, test, found.seed)
-            causes = left_open(selection, causes, unexplained, of_names, replaced, unsure)
+            replaced = {name for each in self.fixed_parameters for name in each.instead}
+            unsure = unconfirmed_names(causes, test, found.seed)
+            causes = leave_open(selection, causes, unexplained, of_names, replaced, unsure)
             if self.restated or any(rival.as_good for rival in self.rivals):
                 causes = beside_another_law(causes)
             if better is not None and not causes and not unexplained:
                 unexplained = (Unexplained(THE_LAW, better.beside),)
-            stands = 0.0 if causes or left else lost_in_motion(evidence, final, null)
+            stands = 0.0 if causes or left else lost_share_of_motion(evidence, final, null)
             if stands and not unexplained:
                 unexplained = (Unexplained(NO_COORDINATE, min(stands, 1.0)),)
             if left and not unexplained:
@@ -391,9 +405,9 @@ class Conclusion:
         if event is not None and better is None:
             followed = event_words(self.rivals, base, event) if event.fitted else ""
             verdict, reason, unexplained = "not_testable", event.words() + followed, ()
-        missed, hint = max(left, lost_on_test(test, len(causes), null)), ""
+        missed, hint = max(left, lost_share_on_test(test, len(causes), null)), ""
         if missed and verdict == "unexplained":
-            hint = turned_round(found.plant, self.evidence.recordings, left_by_fit)
+            hint = sign_error(found.plant, self.evidence.recordings, fit_remainder)
         before, after = self.rests
         if burst is not None and MOMENTS.name in {each.coordinate for each in unexplained}:
             # Nothing is named then: both are what the base leaves.
@@ -412,7 +426,7 @@ class Conclusion:
                 missed,
                 bool(causes),
                 verdict,
-                compared_by(final.plant),
+                comparison_of(final.plant),
             )
             + (f" {hint}" if hint else ""),
             plant=extended.plant,
@@ -431,7 +445,7 @@ class Conclusion:
             candidates=in_order(selection.rows.values(), causes),
             laws=law_rows(
                 self.rivals,
-                len(self.decided.models),
+                len(self.valid_selection.models),
                 test,
                 found.seed,
                 beside=(base, event) if event is not None and event.fitted else None,
@@ -440,7 +454,7 @@ class Conclusion:
             extended=extended,
             unexplained=unexplained,
             advice=(
-                *(each.advice for each in (() if self.brief else self.held)),
+                *(each.advice for each in (() if self.brief else self.fixed_parameters)),
                 *([] if better is None else [better.advice()]),
                 *([] if event is None else [event.advice()]),
                 *([] if burst is None else [burst.advice()]),
@@ -473,7 +487,7 @@ class Conclusion:
 
 def _slight(selection: Search, left: Rest) -> bool:
     """Whether what was refused, or what is left in a coordinate, is more than noise makes."""
-    return bool(left.flagged(0.0)) or any(
+    return bool(left.significant_views(0.0)) or any(
         (row.score or 0.0) > (row.threshold or 0.0) and (row.select_gain or 0.0) > 0.0
         for row in selection.rows.values()
     )
@@ -489,7 +503,7 @@ def base_alone(found: Diagnosis, evidence: Evidence, base: Model) -> Diagnosis:
     evidence : Evidence
     base : Model
     """
-    result = evaluated(base, scales_of(evidence, base.plant))
+    result = evaluate(base, scales_of(evidence, base.plant))
     # What noise would leave is told by replays, of which there are none.
     known = summary_of(evidence, base, result, None, 0, float("nan"))
     told = UNFITTED if base.solution.interrupted else UNSEARCHED
@@ -512,7 +526,7 @@ def surrogates_of(
     """Residuals of a model that is right, shape (n, number), and the noise of each recording."""
     null, noises = surrogate_residuals(evidence, model.plant, model.nuisances, number, seed)
     # What a fit would have taken up is no sign of anything.
-    return refitted(model.columns, null, evidence.fitted), noises
+    return refit_residuals(model.columns, null, evidence.fitted), noises
 
 
 def _opening(interrupted: bool, named: bool) -> str:

@@ -12,13 +12,20 @@ import numpy as np
 from ..fitting.rows import Mask, Rows
 from ..shooting import ShootingForm
 from ..trajectory import FloatArray
+from .block_gains import heldout_gain
 from .evidence import Evidence
 from .gain import HeldOut, gain_of
-from .gains import heldout_gain
 from .model import Model
 from .selection import Search
 
-__all__ = ["confirmed", "described", "inertial_of", "lost", "lost_in_motion", "lost_on_test"]
+__all__ = [
+    "confirm_on_test",
+    "inertial_of",
+    "lost_share",
+    "lost_share_of_motion",
+    "lost_share_on_test",
+    "reject_without_machine",
+]
 
 MOST_LOST: Final = 0.5
 """Share of the power of the effort that a plant may leave, beyond noise, on rows that it was not
@@ -33,7 +40,7 @@ NOT_KNOWN: Final = (
 )
 
 
-def described(selection: Search, evidence: Evidence, null: FloatArray) -> Search:
+def reject_without_machine(selection: Search, evidence: Evidence, null: FloatArray) -> Search:
     """The selection without any cause where the plant describes no machine, causes and all.
 
     Beside a model that leaves most of the effort, anything that bends a little helps a little, and
@@ -50,7 +57,7 @@ def described(selection: Search, evidence: Evidence, null: FloatArray) -> Search
     if not selection.choices:
         return selection
     gain, _ = heldout_gain(*_ends(selection))
-    if lost(evidence, selection.models[-1], null):
+    if lost_share(evidence, selection.models[-1], null):
         reason = NO_MACHINE
     elif gain < 0.0:
         reason = NO_BETTER
@@ -61,7 +68,7 @@ def described(selection: Search, evidence: Evidence, null: FloatArray) -> Search
     return selection
 
 
-def lost(evidence: Evidence, model: Model, null: FloatArray) -> float:
+def lost_share(evidence: Evidence, model: Model, null: FloatArray) -> float:
     """Share of the power of the effort that a model leaves beyond noise, on the rows that decide.
 
     0 where it is no more than ``MOST_LOST``: then the plant describes the machine.
@@ -78,7 +85,7 @@ def lost(evidence: Evidence, model: Model, null: FloatArray) -> float:
     return _beyond(model.residual[held], effort, null[held])
 
 
-def lost_in_motion(evidence: Evidence, model: Model, null: FloatArray) -> float:
+def lost_share_of_motion(evidence: Evidence, model: Model, null: FloatArray) -> float:
     """The same of the motion of a plant that is simulated over windows; 0 where it is not.
 
     A contact that sticks below its break-away answers every effort, and stands still where the
@@ -97,7 +104,7 @@ def inertial_of(rows: Rows) -> FloatArray:
     return form.inertial if isinstance(form, ShootingForm) else np.zeros(len(form))
 
 
-def lost_on_test(test: HeldOut | None, index: int, null: FloatArray) -> float:
+def lost_share_on_test(test: HeldOut | None, index: int, null: FloatArray) -> float:
     """The same of one of the models on the rows that test, the noise that of the others."""
     return 0.0 if test is None else _beyond(test.residuals[index], test.effort, null)
 
@@ -117,7 +124,7 @@ def _beyond(residual: FloatArray, effort: FloatArray, null: FloatArray) -> float
     return left / power if left > MOST_LOST * power > 0.0 else 0.0
 
 
-def confirmed(selection: Search, test: HeldOut | None, seed: int) -> Search:
+def confirm_on_test(selection: Search, test: HeldOut | None, seed: int) -> Search:
     """The selection without the last causes that the rows that test do not bear out.
 
     Rows that test choose nothing. They may take a name away, though: a plant that does worse with

@@ -280,7 +280,7 @@ def _look(evidence: Evidence, plant: Plant, clock: float, window: float, rows: R
     direction = _carried(direction)
     last = _last_change(direction)
     position = form.mean(form.position[1:])
-    effort = form.acted(plant)
+    effort = form.noise_free_effort(plant)
     spacing = form.dt * form.stride
     since: FloatArray = np.arange(len(direction), dtype=np.float64) - last
     pulled = effort - form.own(plant).inertia * form.acceleration

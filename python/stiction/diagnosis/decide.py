@@ -9,21 +9,21 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
-from .candidates import Candidate
-from .confirmed import confirmed as is_confirmed
-from .confirmed import in_few_blocks
-from .gains import (
+from .block_gains import (
     TOUCHED,
-    gained_again,
-    hardly_excited,
+    count_active_recordings,
     heldout_gain,
+    lacks_excitation,
     log_gain,
-    recordings_acted_in,
+    training_gain,
     without_the_best,
 )
+from .candidates import Candidate
 from .homogeneity import unevenness
 from .model import LEAST_GIVEN, Model
-from .ranges import BELOW_A_KERNEL, is_whole, out_of_its_range, partly_lost
+from .ranges import BELOW_A_KERNEL, is_whole, out_of_its_range, partial_loss
+from .replication import confirms as is_confirmed
+from .replication import in_few_blocks
 from .screen import Score
 
 __all__ = [
@@ -34,7 +34,7 @@ __all__ = [
     "PENALTY",
     "SMALLEST",
     "Trial",
-    "emptied",
+    "degeneracy",
     "judge",
 ]
 
@@ -152,13 +152,13 @@ class Trial:
         return self.candidate.name
 
 
-def emptied(base: Model, model: Model) -> str:
+def degeneracy(base: Model, model: Model) -> str:
     """What a model takes away in place of explaining it, "" where it leaves that.
 
     Along a measured motion a machine without inertia needs no effort for it. One that is simulated
     misses the motion by as much, and may well have less than a base that lacks the cause.
     """
-    if model.given <= LEAST_GIVEN:
+    if model.relative_input_power <= LEAST_GIVEN:
         return "takes away the effort itself, so that nothing is left to explain"
     lost = model.plant.inertia < LEAST_INERTIA * base.plant.inertia
     if lost and not base.evidence.simulated:
@@ -199,7 +199,7 @@ def judge(
         lambda: strength >= SURE and is_confirmed(base, model, contributed, whole=gain_known)
     )
     reason = ""
-    empties = emptied(base, model)
+    empties = degeneracy(base, model)
     if empties:
         reason = empties
     elif explained <= 0.0:
@@ -221,10 +221,10 @@ def judge(
         reason = "does not help on rows held out"
     elif gain <= LEAST_GAIN:
         reason = f"gains {100 * gain:.2f} % on rows held out, below {100 * LEAST_GAIN:.2f} %"
-        if strength >= SURE and hardly_excited(base, contributed, LEAST_GAIN):
+        if strength >= SURE and lacks_excitation(base, contributed, LEAST_GAIN):
             reason = f"{reason}, which hardly excite it"
             unseen, by_blocks = True, size >= smallest
-    elif gain > MOST_AGAIN * (again := max(explained, gained_again(base, model))):
+    elif gain > MOST_AGAIN * (again := max(explained, training_gain(base, model))):
         reason = (
             f"gains {gain / again:.0f} times on rows held out what it explains where it "
             "was fitted: there the base had lost the machine, and anything finds it again"
@@ -234,7 +234,7 @@ def judge(
         by_blocks = strength >= LEAST_STRENGTH and size >= smallest
     elif without_the_best(base, model, contributed) <= 0.5 * LEAST_GAIN and not confirmed():
         reason = "gains on rows held out in one recording alone"
-        lone = size >= smallest and recordings_acted_in(base, contributed) <= 1
+        lone = size >= smallest and count_active_recordings(base, contributed) <= 1
     elif strength < LEAST_STRENGTH:
         reason = f"its strength is {strength:.2f} standard errors, below {LEAST_STRENGTH:.2f}"
     elif size < smallest:
@@ -244,7 +244,7 @@ def judge(
         )
     open_ = not reason or by_blocks
     uneven = unevenness(base, model, contributed) if open_ else 0.0
-    partly = partly_lost(score.candidate, model, strength)
+    partly = partial_loss(score.candidate, model, strength)
     beyond = partly or out_of_its_range(score.candidate, model)
     # What many fitted blocks leave no doubt of, and what decides cannot judge.
     doubtless = (

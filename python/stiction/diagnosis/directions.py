@@ -8,13 +8,13 @@ from typing import Final
 from ..catalogue import EffectRecord
 from ..fitting.result import FitParameter
 
-__all__ = ["found"]
+__all__ = ["describe_effect"]
 
 LEVELS: Final = {"coulomb": "dry friction", "viscous": "viscous friction"}
 """What the shares of ``direction_asymmetry`` are shares of."""
 
 
-def found(record: EffectRecord, parameters: Mapping[str, FitParameter]) -> str:
+def describe_effect(record: EffectRecord, parameters: Mapping[str, FitParameter]) -> str:
     """What an effect is, in words that hold no colon; of an asymmetry which way it goes.
 
     Parameters

@@ -13,8 +13,8 @@ import numpy as np
 from ..errors import NotEnoughData
 from ..fitting.forms import KERNELS, Through, as_session, forms_of
 from ..fitting.pushes import Watch
+from ..fitting.recording_starts import fit_starts
 from ..fitting.rows import Mask, Nuisances, Rows, require_motion, rows_of
-from ..fitting.starts import started
 from ..plant import Plant
 from ..progress import steps
 from ..recording import Part, Recording
@@ -227,11 +227,11 @@ class Evidence:
         self.weights = np.concatenate([np.full(int(r.mask.sum()), r.weight) for r in self.shown])
 
     @cached_property
-    def trained(self) -> frozenset[int]:
+    def training_recordings(self) -> frozenset[int]:
         """Recordings of which rows are fitted."""
         return frozenset(rows.index for rows in self.train)
 
-    def begun(self, plant: Plant, nuisances: Nuisances, known: Nuisances) -> Nuisances:
+    def with_held_starts(self, plant: Plant, nuisances: Nuisances, known: Nuisances) -> Nuisances:
         """Nuisances with the starts of recordings that decide and are not fitted.
 
         Parameters
@@ -242,15 +242,17 @@ class Evidence:
         known : Nuisances
             Where those starts are looked for from, as far as they are in there.
         """
-        others = [rows for rows in self.shown if rows.index not in self.trained]
+        others = [rows for rows in self.shown if rows.index not in self.training_recordings]
         near = known.of({rows.index for rows in others})
-        return self.started(plant, replace(nuisances, starts=near.starts), others).joined(nuisances)
+        return self.with_starts(plant, replace(nuisances, starts=near.starts), others).merge(
+            nuisances
+        )
 
-    def started(self, plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> Nuisances:
-        """Nuisances with a start of each of these recordings; see `started` of the fit."""
-        own = self.each(lambda each: started(plant, [each], nuisances), rows)
+    def with_starts(self, plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> Nuisances:
+        """Nuisances with a start of each of these recordings; see `fit_starts` of the fit."""
+        own = self.each(lambda each: fit_starts(plant, [each], nuisances), rows)
         for each, found in zip(rows, own, strict=True):
-            nuisances = found.of({each.index}).joined(nuisances)
+            nuisances = found.of({each.index}).merge(nuisances)
         return nuisances
 
     @property

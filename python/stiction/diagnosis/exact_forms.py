@@ -20,7 +20,7 @@ from .periodic import WITH_ACCELERATION, WITH_SQUARED_SPEED
 from .result import Cause, Unexplained
 from .words import LEAVES_NOTHING
 
-__all__ = ["doubted", "rests_of", "several"]
+__all__ = ["doubt_geometry", "rests_of", "several"]
 
 EXACT: Final = dict.fromkeys(
     ("encoder_eccentricity", "cogging", "torque_constant_ripple", "position_dependent_friction"),
@@ -42,7 +42,9 @@ def several(record: EffectRecord) -> tuple[str, ...]:
     return tuple(e.name for e in effects() if e.second and e.family == record.family)
 
 
-def doubted(cause: Cause, left: Sequence[Unexplained], rests: Sequence[Unexplained]) -> Cause:
+def doubt_geometry(
+    cause: Cause, left: Sequence[Unexplained], rests: Sequence[Unexplained]
+) -> Cause:
     """A cause; undecided where what is left depends on what its geometry leaves nothing of.
 
     Parameters

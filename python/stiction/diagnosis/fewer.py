@@ -8,16 +8,16 @@ from dataclasses import replace
 from typing import Final
 
 from . import listing
+from .block_gains import heldout_gain
 from .candidates import FALL
 from .choose import Choice
 from .decide import LEAST_GAIN, LEAST_STRENGTH
 from .evidence import Evidence
-from .gains import heldout_gain
 from .model import Model, without_effect
 from .selection import Search
 from .trials import Screening, compared_fit, whole_fit
 
-__all__ = ["MIMIC", "chained", "dropped_by_the_latest", "join", "without"]
+__all__ = ["MIMIC", "join", "rebuild_models", "remove_redundant", "without"]
 
 MIMIC: Final = 5.0
 """What keeps less than one part in so many of its gain beside a later effect was its mimic; what
@@ -30,7 +30,7 @@ AS_MUCH: Final = 0.02
 _logger = logging.getLogger(__name__)
 
 
-def dropped_by_the_latest(evidence: Evidence, found: Search) -> set[str]:
+def remove_redundant(evidence: Evidence, found: Search) -> set[str]:
     """Takes out earlier effects that are not needed beside the latest one.
 
     What explains a part of the residual first may be a mimic of what explains the whole of it.
@@ -52,7 +52,7 @@ def dropped_by_the_latest(evidence: Evidence, found: Search) -> set[str]:
         row = found.rows[name]
         found.rows[name] = replace(row, reason=f"not needed beside {latest}")
         kept = [each for each in found.choices if each is not choice]
-        found.models[:] = chained(evidence, found.models[0], kept, less)
+        found.models[:] = rebuild_models(evidence, found.models[0], kept, less)
         found.choices[:] = kept
         dropped.add(name)
     return dropped
@@ -70,7 +70,9 @@ def without(evidence: Evidence, found: Search, name: str) -> Model:
     return less
 
 
-def chained(evidence: Evidence, base: Model, choices: Sequence[Choice], last: Model) -> list[Model]:
+def rebuild_models(
+    evidence: Evidence, base: Model, choices: Sequence[Choice], last: Model
+) -> list[Model]:
     """The models behind some choices, made anew: each entry is measured beside those before it."""
     plants = [last.plant]
     for later in reversed(choices[1:]):
@@ -110,9 +112,9 @@ def join(screening: Screening, found: Search) -> set[str]:
     kept = [each for each in found.choices if each not in pair]
     settled = whole_fit(evidence, trial.model.plant, trial.model.nuisances)
     choices = [single, *kept]
-    found.models[:] = chained(evidence, found.models[0], choices, settled)
+    found.models[:] = rebuild_models(evidence, found.models[0], choices, settled)
     found.choices[:] = choices
-    found.rows[trial.name] = listing.tried(trial, single)
+    found.rows[trial.name] = listing.row_of_trial(trial, single)
     replaced = set(TOGETHER[:-1])
     for name in replaced:
         row = found.rows[name]

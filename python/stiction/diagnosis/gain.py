@@ -93,10 +93,12 @@ def residuals_of(
     known: dict[str, Nuisances] = {}
     begun = []
     for plant, nuisances in models:
-        new = [e for e in rows if e.index not in evidence.trained | nuisances.starts.keys()]
+        new = [
+            e for e in rows if e.index not in evidence.training_recordings | nuisances.starts.keys()
+        ]
         law = plant.friction.law
         near = known.get(law, Nuisances()).of({e.index for e in new})
-        begun.append(evidence.started(plant, nuisances.joined(near), new))
+        begun.append(evidence.with_starts(plant, nuisances.merge(near), new))
         known.setdefault(law, begun[-1])
     plants = [plant for plant, _ in models]
     residuals = tuple(left(*each) for each in zip(plants, begun, strict=True))

@@ -11,15 +11,15 @@ from ..errors import InputError
 from ..fitting.variables import unit_of
 from ..progress import phase
 from ..recording import Check
+from .block_gains import heldout_gain
 from .decide import LEAST_GAIN, LEAST_STRENGTH, LEAST_Z
-from .gains import heldout_gain
 from .model import Model, without_effect
 from .result import Advice, Unexplained
 from .selection import Search
 from .trials import whole_fit
-from .words import joined
+from .words import join_words
 
-__all__ = ["HELD", "Held", "held_numbers", "held_words"]
+__all__ = ["HELD", "Held", "fixed_parameters", "fixed_words"]
 
 HELD: Final = {
     "inertia": "the inertia that is held fixed",
@@ -62,7 +62,7 @@ class Held:
     instead: tuple[str, ...] = ()
 
     @property
-    def left(self) -> tuple[Unexplained, ...]:
+    def remainders(self) -> tuple[Unexplained, ...]:
         """What is left because of it; nothing where a cause stands for it."""
         return () if self.instead else (Unexplained(HELD[self.name], self.share),)
 
@@ -72,7 +72,7 @@ class Held:
         low, high = self.ci95
         unit = f" {self.unit}" if self.unit else ""
         does = (
-            f"explains as much as {joined(self.instead)} {'do' if self.instead[1:] else 'does'}"
+            f"explains as much as {join_words(self.instead)} {'do' if self.instead[1:] else 'does'}"
             if self.instead
             else f"takes {100 * self.share:.0f} % off what is left on rows held out"
         )
@@ -99,7 +99,7 @@ class Held:
         return Advice(self.check[1].try_, f"in the plant file {self.what}", ())
 
 
-def held_numbers(selection: Search) -> list[Held]:
+def fixed_parameters(selection: Search) -> list[Held]:
     """Numbers held fixed of which the data tell another value, each once.
 
     A fit that may not move a number bends causes towards it. It is free beside everything that was
@@ -146,7 +146,7 @@ def _asked(model: Model, name: str, instead: tuple[str, ...]) -> Held | None:
         # Bounds that hold nothing but the number itself.
         return None
     share, z = heldout_gain(model, freed)
-    told = freed.told.parameters[f"body.{name}"]
+    told = freed.fit_result.parameters[f"body.{name}"]
     if not abs(told.value - own.value) > LEAST_STRENGTH * told.stderr:
         return None
     if share <= 0.0 if instead else (share <= LEAST_GAIN or z <= LEAST_Z):
@@ -155,6 +155,6 @@ def _asked(model: Model, name: str, instead: tuple[str, ...]) -> Held | None:
     return Held(name, own.value, told.value, told.ci95, unit, share, instead)
 
 
-def held_words(held: Sequence[Held]) -> str:
+def fixed_words(held: Sequence[Held]) -> str:
     """All of them in words, "" without any."""
     return " ".join(f"In the plant file {each.what}." for each in held)

@@ -68,7 +68,7 @@ def holds_of(rows: Sequence[Rows], model: Model, names: Sequence[str]) -> list[t
         if first == last or (form.enabled is not None and not np.all(form.enabled[rest] > 0.0)):
             # Nothing tells what holds a machine whose drive is off.
             continue
-        motor = form.begun(model.plant, form.position)
+        motor = form.start_motor(model.plant, form.position)
         start = model.nuisances.start(each.index)
         drive, ambient, friction, _ = motor.follow(form.motion, start=start, strict=False)
         driven, loaded = float(np.mean(drive[rest])), float(np.mean(ambient[rest]))

@@ -8,13 +8,13 @@ import numpy as np
 
 from ..trajectory import FloatArray
 
-__all__ = ["limited"]
+__all__ = ["limit_influence"]
 
 MOST_TIMES: Final = 5.0
 """Power of a block over the median one that counts in full."""
 
 
-def limited(*powers: FloatArray) -> tuple[FloatArray, ...]:
+def limit_influence(*powers: FloatArray) -> tuple[FloatArray, ...]:
     """Powers per block, each block scaled down where it holds more than five times the median.
 
     In a block in which a contact breaks away a moment earlier than the model every model is wrong

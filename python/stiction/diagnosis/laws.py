@@ -15,26 +15,26 @@ from ..best_effort import Failure, attempt
 from ..catalogue import effects
 from ..catalogue import laws as all_laws
 from ..errors import InputError
-from ..fitting.first_pass import launched
+from ..fitting.first_pass import fit_from_data
 from ..fitting.forms import followable, horizon_of
 from ..fitting.minimise import MOST_EVALUATIONS
+from ..fitting.recording_starts import with_turns
 from ..fitting.rows import require_motion
-from ..fitting.starts import with_turns
 from ..parameter import Parameter
 from ..progress import phase, steps
 from ..stated import Friction
-from ..wording import did_you_mean, listed
+from ..wording import commas, did_you_mean
+from .block_gains import heldout_gain
 from .candidates import scales_of
 from .choose import DECIDED_Z
 from .gain import Gain, HeldOut, gain_of
-from .gains import heldout_gain
 from .left_open import OF_A_LAW
 from .lone import Lone
-from .model import LEAST_GIVEN, Model, fitted, likeliest_of
+from .model import LEAST_GIVEN, Model, fit_model, likeliest_of
 from .result import Advice, LawRow
 from .selection import Search
-from .within import left_within
-from .words import THE_LAW, joined
+from .within import event_power_ratio
+from .words import THE_LAW, join_words
 
 __all__ = [
     "THE_LAW",
@@ -140,14 +140,14 @@ class Rival:
         """What that means, in a sentence; ``alike`` are laws that leave about as little."""
         summary = next(record.summary for record in all_laws() if record.name == self.law)
         beside = ", whatever is added to it" if named else ""
-        kept = f", with {joined(self.kept)}," if self.kept else ""
+        kept = f", with {join_words(self.kept)}," if self.kept else ""
         return (
             f"The friction law itself lacks something: {self.law} ({summary}){kept} leaves "
             f"{_less(self.beside)} less than {own}{beside}{_as_little(alike)}."
         )
 
     @property
-    def stated(self) -> Friction:
+    def statement(self) -> Friction:
         """The law as somebody would state it, with what a fit leaves alone where it has that."""
         given = {} if self.model is None else self.model.plant.friction.parameters
         named = [*_left_alone(self.law), *(FALL if FALL[-1] in given else ())]
@@ -156,11 +156,11 @@ class Rival:
     @property
     def terms(self) -> tuple[str, ...]:
         """Terms that nobody stated and this fit has: ``"compliance = 4.2e-07"``."""
-        return tuple(f"{n} = {each.value:.2g}" for n, each in self.stated.parameters.items())
+        return tuple(f"{n} = {each.value:.2g}" for n, each in self.statement.parameters.items())
 
     def advice(self, *, followed: bool = False) -> Advice:
         """What to do about it; ``followed`` where the diagnosis has gone on with the law."""
-        stated = joined([f'law = "{self.law}"', *self.terms])
+        stated = join_words([f'law = "{self.law}"', *self.terms])
         then = ", as the extended plant does" if followed else " and diagnose again"
         return Advice(
             f"state {stated} in the plant file{then}",
@@ -178,7 +178,7 @@ def law_names(wanted: Sequence[str], own: str) -> list[str]:
         if name not in known:
             raise InputError(
                 f"laws: '{name}' is unknown{did_you_mean(name, known)}; known are all, "
-                f"{listed(known)}"
+                f"{commas(known)}"
             )
     return [name for name in dict.fromkeys(wanted) if name != own]
 
@@ -253,9 +253,11 @@ def _beside(final: Model, model: Model, rival: Rival, selection: Search) -> Riva
         return alone
     both = replace(model.plant, effects=(*model.plant.effects, *kept))
     try:
-        found = fitted(model.evidence, both, model.nuisances)
+        found = fit_model(model.evidence, both, model.nuisances)
     except InputError as error:
-        _logger.info("%s beside %s: %s", joined([effect.name for effect in kept]), rival.law, error)
+        _logger.info(
+            "%s beside %s: %s", join_words([effect.name for effect in kept]), rival.law, error
+        )
         return alone
     if found.solution.interrupted:
         # What is known of the law alone stays.
@@ -263,7 +265,7 @@ def _beside(final: Model, model: Model, rival: Rival, selection: Search) -> Riva
         return alone
     beside, z = heldout_gain(final, found)
     # Fitted anew beside another law an effect may run away: a dead band as wide as every input.
-    if beside <= alone.beside or found.given <= LEAST_GIVEN:
+    if beside <= alone.beside or found.relative_input_power <= LEAST_GIVEN:
         return alone
     return replace(rival, beside=beside, z=z, kept=tuple(effect.name for effect in kept))
 
@@ -359,7 +361,7 @@ def _falling(plain: Model) -> Model:
     ]
     try:
         begin = likeliest_of(plain.evidence, plants, plain.nuisances)
-        return _worth_its_terms(fitted(plain.evidence, begin, plain.nuisances), plain)
+        return _worth_its_terms(fit_model(plain.evidence, begin, plain.nuisances), plain)
     except InputError as error:
         _logger.info("%s that falls with speed: %s", friction.law, error)
         return plain
@@ -380,7 +382,7 @@ def _launched(base: Model, friction: Friction, hopeless: float) -> Model | None:
     evidence = base.evidence
     bare = replace(base.plant, friction=friction)
     require_motion(evidence.train, bare)
-    _, found = launched(
+    _, found = fit_from_data(
         bare,
         evidence.train,
         most=MOST_EVALUATIONS,
@@ -446,12 +448,12 @@ def law_rows(
             reason = "explains about as much as the plant's law"
         if rival.terms:
             few = len(rival.terms) < 3
-            reason += f", with {joined(rival.terms) if few else 'all of its optional terms'}"
+            reason += f", with {join_words(rival.terms) if few else 'all of its optional terms'}"
         if rival.kept:
             # A constant hides in one law more than in another: alone they are not alike.
             reason += (
-                f"; with {joined(rival.kept)} it leaves {_times(1.0 - rival.beside)} that all that "
-                "was named leaves"
+                f"; with {join_words(rival.kept)} it leaves {_times(1.0 - rival.beside)} that all "
+                "that was named leaves"
             )
         place = -1e300 if gain is None else gain.value
         if beside is not None:
@@ -466,7 +468,7 @@ def event_words(
     rivals: Sequence[Rival],
     own: Model,
     event: Lone,
-    within: Callable[[Model, Model, Lone], float | None] = left_within,
+    within: Callable[[Model, Model, Lone], float | None] = event_power_ratio,
 ) -> str:
     """Which law follows an event in rows that were fitted, in a sentence; "" where none does.
 
@@ -505,7 +507,7 @@ def _in_event(model: Model, own: Model, event: Lone) -> float:
 def _as_little(alike: Sequence[str]) -> str:
     if not alike:
         return ""
-    return f"; {joined(alike)} {'leaves' if len(alike) == 1 else 'leave'} about as little"
+    return f"; {join_words(alike)} {'leaves' if len(alike) == 1 else 'leave'} about as little"
 
 
 def _less(share: float) -> str:

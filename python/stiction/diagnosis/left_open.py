@@ -7,9 +7,9 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
-from .chance import unrepeated
+from .chance import lacks_repeats
 from .decide import SURE
-from .exact_forms import doubted
+from .exact_forms import doubt_geometry
 from .gain import HeldOut, gain_of
 from .passing import MOMENTS
 from .result import Cause, Unexplained
@@ -28,12 +28,12 @@ from .words import (
 __all__ = [
     "OF_A_LAW",
     "beside_another_law",
-    "known_by_themselves",
-    "left_open",
+    "leave_open",
+    "leave_waves_open",
+    "leave_zero_open",
     "of_one_curve",
-    "outweighed",
-    "unconfirmed",
-    "waves_left_open",
+    "outweighed_names",
+    "unconfirmed_names",
 ]
 
 MUCH_LEFT: Final = 0.5
@@ -46,7 +46,7 @@ OVER_SPEED: Final = frozenset({"stribeck", "viscous_quadratic"})
 """Effects that are parts of one curve, that of friction over speed."""
 
 
-def left_open(
+def leave_open(
     selection: Search,
     causes: Sequence[Cause],
     left: Sequence[Unexplained],
@@ -68,12 +68,12 @@ def left_open(
     replaced : collection of str
         Names that a number of the plant file, were it free, explains as well.
     unsure : collection of str
-        Names that ``unconfirmed`` tells.
+        Names that ``unconfirmed_names`` tells.
     """
-    found = [doubted(cause, left, rests) for cause in causes]
-    found = known_by_themselves(selection, found)
+    found = [doubt_geometry(cause, left, rests) for cause in causes]
+    found = leave_zero_open(selection, found)
     doubts = dict.fromkeys(unsure, UNCONFIRMED)
-    doubts |= dict.fromkeys(outweighed(selection, left), OUTWEIGHED)
+    doubts |= dict.fromkeys(outweighed_names(selection, left), OUTWEIGHED)
     doubts |= dict.fromkeys(selection.partly, PARTLY)
     doubts |= dict.fromkeys(of_one_curve(selection), ONE_CURVE)
     return [
@@ -82,15 +82,17 @@ def left_open(
             decided=cause.decided and cause.name not in {*replaced, *doubts},
             doubt=doubts.get(cause.name, cause.doubt),
         )
-        for cause in waves_left_open(selection, found)
+        for cause in leave_waves_open(selection, found)
     ]
 
 
-def waves_left_open(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
+def leave_waves_open(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
     """Causes, waves that nobody saw to repeat undecided."""
     final = selection.models[-1]
     return [
-        replace(cause, decided=False, doubt=UNREPEATED) if unrepeated(final, cause.name) else cause
+        replace(cause, decided=False, doubt=UNREPEATED)
+        if lacks_repeats(final, cause.name)
+        else cause
         for cause in causes
     ]
 
@@ -107,7 +109,7 @@ def beside_another_law(causes: Sequence[Cause]) -> list[Cause]:
     ]
 
 
-def unconfirmed(causes: Sequence[Cause], test: HeldOut | None, seed: int) -> Set[str]:
+def unconfirmed_names(causes: Sequence[Cause], test: HeldOut | None, seed: int) -> Set[str]:
     """Which names may make the rows that test worse by as much as they make them better.
 
     By themselves and with those after them: what comes after a cause may be what hid its gain. What
@@ -142,7 +144,7 @@ def of_one_curve(selection: Search) -> Set[str]:
     return {each.name for each in named[1:] if final.strength(each) < SURE}
 
 
-def outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
+def outweighed_names(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
     """Which names took little beside what is left and has none.
 
     All names together may outweigh that by far: the first one takes most, and later ones follow
@@ -161,7 +163,7 @@ def outweighed(selection: Search, left: Sequence[Unexplained]) -> Set[str]:
     }
 
 
-def known_by_themselves(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
+def leave_zero_open(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
     """Causes, undecided where every one of their numbers may be 0.
 
     All of its numbers together may help beyond doubt, and they may help to mend what the form of

@@ -12,14 +12,14 @@ from .decide import Trial
 from .result import CandidateRow, Cause
 from .screen import Score
 
-__all__ = ["in_order", "screened", "stopped", "tried", "unscreened"]
+__all__ = ["in_order", "row_at_interrupt", "row_of_candidate", "row_of_score", "row_of_trial"]
 
 IMITATED: Final = 0.1
 """Share of a signature beside the base below which the base is what hides it."""
 STOPPED: Final = "the diagnosis was interrupted"
 
 
-def screened(score: Score) -> CandidateRow:
+def row_of_score(score: Score) -> CandidateRow:
     """What the screening says of one that is not refitted."""
     if not score.testable and score.left > IMITATED:
         reason = "not testable: 2 % of the friction would not show beside what else is left"
@@ -34,7 +34,7 @@ def screened(score: Score) -> CandidateRow:
     return CandidateRow(score.candidate.name, score.score, score.threshold, score.heldout, reason)
 
 
-def tried(trial: Trial, choice: Choice | None) -> CandidateRow:
+def row_of_trial(trial: Trial, choice: Choice | None) -> CandidateRow:
     """What a refit says, beside the one that was chosen."""
     score = trial.score
     if choice is not None and trial is choice.winner:
@@ -52,17 +52,17 @@ def tried(trial: Trial, choice: Choice | None) -> CandidateRow:
     return CandidateRow(trial.name, score.score, score.threshold, trial.gain, reason)
 
 
-def unscreened(candidate: Candidate) -> CandidateRow:
+def row_of_candidate(candidate: Candidate) -> CandidateRow:
     """One that nobody got to look at."""
     return CandidateRow(candidate.name, None, None, None, f"not screened: {STOPPED}")
 
 
-def stopped(score: Score, trials: Sequence[Trial]) -> CandidateRow:
+def row_at_interrupt(score: Score, trials: Sequence[Trial]) -> CandidateRow:
     """One that passed the screening, where Ctrl-C ended the round before its decision."""
     trial = next((each for each in trials if each.name == score.candidate.name), None)
     if trial is None:
-        return replace(screened(score), reason=f"not refitted: {STOPPED}")
-    row = tried(trial, None)
+        return replace(row_of_score(score), reason=f"not refitted: {STOPPED}")
+    row = row_of_trial(trial, None)
     return row if trial.reason else replace(row, reason=f"passes, and not decided: {STOPPED}")
 
 

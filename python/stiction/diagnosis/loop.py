@@ -16,7 +16,7 @@ from ..fitting.rows import Mask
 from ..plant import Plant
 from ..recording import Part, Recording
 from ..trajectory import FloatArray
-from ..wording import counted
+from ..wording import plural
 from .evidence import Evidence, SealedError
 from .pictures import Pictures, Tracking
 from .traces import with_loops
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .result import Diagnosis
     from .selection import Search
 
-__all__ = ["Replay", "borne_out", "replayed"]
+__all__ = ["Replay", "borne_out", "with_loop_replay"]
 
 LOOP_AGAINST: Final = "passes, but the simulated loop does worse with it"
 
@@ -68,7 +68,7 @@ Runs = dict[int, ClosedLoop | None]
 """Loops by recording, None for one that could not be simulated."""
 
 
-def replayed(found: Diagnosis, evidence: Evidence, base: Model, final: Model) -> Diagnosis:
+def with_loop_replay(found: Diagnosis, evidence: Evidence, base: Model, final: Model) -> Diagnosis:
     """A diagnosis with the loop of both models replayed; as it was where nothing can be.
 
     Raises
@@ -165,7 +165,7 @@ def _runs(evidence: Evidence, model: Model, wanted: Sequence[int]) -> tuple[Runs
             failed.append(f"{evidence.names[index]} is not replayed in closed loop: {why}")
             _logger.info("%s", failed[-1])
     if len(failed) > 1:
-        failed[0] += f" (and {counted(len(failed) - 1, 'other recording')} likewise)"
+        failed[0] += f" (and {plural(len(failed) - 1, 'other recording')} likewise)"
     return runs, failed[:1]
 
 
@@ -224,7 +224,9 @@ def _pictured(
                 continue
             drawn.append(_tracking(evidence, index, (run, other), parts))
         if drawn:
-            gained = [float(np.nansum(t.left**2) - np.nansum(t.left_before**2)) for t in drawn]
+            gained = [
+                float(np.nansum(t.error_after**2) - np.nansum(t.error_before**2)) for t in drawn
+            ]
             return replace(pictures, tracking=drawn[int(np.argmin(gained))])
     return pictures
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..catalogue import effects
 from ..finite import finite
-from ..fitting.leading import led_by_itself
+from ..fitting.leading import refit_windows
 from ..fitting.levenberg import FIRST_DAMPING
 from ..fitting.likeliest import likeliest
 from ..fitting.minimise import Solution, minimise
@@ -28,7 +28,7 @@ from ..stated import Effect
 from ..trajectory import FloatArray
 from .candidates import Candidate
 from .evidence import Evidence, Plan
-from .influence import limited
+from .influence import limit_influence
 from .regression import step
 from .replay import NoReplayError, reread
 
@@ -37,9 +37,9 @@ __all__ = [
     "REFIT_CONVERGED",
     "Known",
     "Model",
-    "fitted",
+    "fit_model",
     "likeliest_of",
-    "stepped",
+    "step_beside",
     "with_effect",
     "with_last_free",
     "without_effect",
@@ -97,7 +97,7 @@ class Model:
     @cached_property
     def nuisances(self) -> Nuisances:
         """The fitted nuisances, and the starts of recordings that decide."""
-        return self.evidence.begun(self.plant, self.solution.nuisances, self.known)
+        return self.evidence.with_held_starts(self.plant, self.solution.nuisances, self.known)
 
     @cached_property
     def residual(self) -> FloatArray:
@@ -136,7 +136,7 @@ class Model:
         return columns
 
     @cached_property
-    def told(self) -> FitResult:
+    def fit_result(self) -> FitResult:
         """What the fit says: values and intervals."""
         return evaluate(
             self.solution,
@@ -157,7 +157,7 @@ class Model:
         """
         paths = list(self.solution.variables.paths)
         own = [paths.index(f"effects.{candidate.name}.{name}") for name in candidate.gains]
-        if not all(np.isfinite(self.told.parameters[paths[k]].stderr) for k in own):
+        if not all(np.isfinite(self.fit_result.parameters[paths[k]].stderr) for k in own):
             return False
         train = self.evidence.train
         fitted_along = self.solution.nuisances
@@ -181,7 +181,7 @@ class Model:
         Its shape is taken as it is: a gain and the time over which it comes are told apart by few
         recordings, and still there may be no doubt that something comes.
         """
-        spread = self.spread(candidate)
+        spread = self.gain_covariance(candidate)
         if spread is None:
             return 0.0
         # Gains of a slow machine differ by many powers of ten: each in units of its own error.
@@ -192,7 +192,7 @@ class Model:
         squared = float(gains @ np.linalg.pinv(correlated, hermitian=True) @ gains)
         return math.sqrt(max(squared, 0.0))
 
-    def spread(self, candidate: Candidate) -> FloatArray | None:
+    def gain_covariance(self, candidate: Candidate) -> FloatArray | None:
         """Covariance of the gains of an effect over blocks of 1 s, its shape as it is.
 
         Shape (q, q); None where the rows that were fitted tell nothing of one of them.
@@ -208,7 +208,7 @@ class Model:
         bread = np.linalg.pinv(scaled.T @ scaled, rcond=FLAT, hermitian=True)
         _, index = np.unique(block[fit], return_inverse=True)
         power: FloatArray = np.bincount(index, residual**2).astype(np.float64)
-        (kept,) = limited(power)
+        (kept,) = limit_influence(power)
         pushes = np.zeros((len(power), len(live)))
         np.add.at(pushes, index, scaled * residual[:, None])
         # A block in which the model has lost the machine would make every gain uncertain.
@@ -235,7 +235,7 @@ class Model:
     def _timing_is_free(self) -> bool:
         return abs(self.nuisances.timing) < INSIDE * timing_bound(self.plant, self.evidence.train)
 
-    def held(self, plan: Plan) -> FloatArray:
+    def holdout_residual(self, plan: Plan) -> FloatArray:
         """Residual of the rows that a plan holds out, fitted on those that it fits.
 
         Where the plan fits all of train that is the residual itself; in a fold it is corrected by
@@ -248,7 +248,7 @@ class Model:
         return step(self.columns, self.residual, plan) + self.residual[plan.held] - whole
 
     @cached_property
-    def given(self) -> float:
+    def relative_input_power(self) -> float:
         """Power of what the drive gives, over that without effects; 1 where most of it is left.
 
         A dead band as wide as every input leaves no effort, and nothing to explain.
@@ -273,7 +273,7 @@ class Model:
     def power(self) -> float:
         """Weighted power of the residual over the fitted rows, per that of what the drive gives."""
         own = self.residual[self.evidence.fitted]
-        return float(own @ own) / self.given
+        return float(own @ own) / self.relative_input_power
 
     @cached_property
     def replays(self) -> list[Model]:
@@ -300,7 +300,7 @@ class Model:
         evidence = self.evidence.with_rows(
             lambda rows: reread(rows, plant, nuisances, [SEED, number, rows.index])
         )
-        return fitted(evidence, plant, nuisances)
+        return fit_model(evidence, plant, nuisances)
 
     @cached_property
     def blocks(self) -> tuple[FloatArray, FloatArray]:
@@ -311,11 +311,11 @@ class Model:
         train: FloatArray = np.zeros(number)
         train += np.bincount(block[fit], self.residual[fit] ** 2, number)
         for plan in self.evidence.plans:
-            held += np.bincount(block[plan.held], self.held(plan) ** 2, number)
-        return train / self.given, held / self.given
+            held += np.bincount(block[plan.held], self.holdout_residual(plan) ** 2, number)
+        return train / self.relative_input_power, held / self.relative_input_power
 
 
-def fitted(
+def fit_model(
     evidence: Evidence,
     plant: Plant,
     nuisances: Nuisances | None = None,
@@ -335,13 +335,13 @@ def fitted(
         paths,
         evidence.train,
         most=most,
-        nuisances=None if nuisances is None else nuisances.of(evidence.trained),
+        nuisances=None if nuisances is None else nuisances.of(evidence.training_recordings),
         converged=converged,
         # What is fitted here starts from a model that was fitted.
         beyond_kinks=False,
     )
     if not only:
-        solution = led_by_itself(solution, evidence.train, most=most, converged=converged)
+        solution = refit_windows(solution, evidence.train, most=most, converged=converged)
     return Model(evidence, solution, nuisances or Nuisances())
 
 
@@ -355,7 +355,7 @@ def likeliest_of(evidence: Evidence, plants: Sequence[Plant], nuisances: Nuisanc
     return likeliest(plants, evidence.train, left)[0]
 
 
-def stepped(model: Model, explained: FloatArray) -> Plant:
+def step_beside(model: Model, explained: FloatArray) -> Plant:
     """The plant of a model, moved to where it is best once something else explains a part.
 
     One step over the fitted rows, in the variables of the fit and damped as the first one of a fit
@@ -403,7 +403,7 @@ def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> P
         parameters[name] = Parameter(float(np.clip(np.nan_to_num(value), *reach)), *narrower)
     for name, value in candidate.shape.items():
         low, high = candidate.limits.get(name, (None, None))
-        fixed = name not in candidate.free or name in candidate.varied_last
+        fixed = name not in candidate.free or name in candidate.last_shapes
         own = candidate.own(name)
         parameters[own] = Parameter(float(np.clip(value, *bounds[own])), low, high, fixed=fixed)
     kept = []
@@ -418,7 +418,7 @@ def with_effect(plant: Plant, candidate: Candidate, gains: Sequence[float]) -> P
 def with_last_free(plant: Plant, candidate: Candidate) -> Plant:
     """The plant with the shapes free that a candidate varies last."""
     effect = next(each for each in plant.effects if each.name == candidate.name)
-    free = {name: replace(effect.parameters[name], fixed=False) for name in candidate.varied_last}
+    free = {name: replace(effect.parameters[name], fixed=False) for name in candidate.last_shapes}
     freed = Effect(effect.name, {**effect.parameters, **free})
     effects = tuple(freed if each is effect else each for each in plant.effects)
     return replace(plant, effects=effects)

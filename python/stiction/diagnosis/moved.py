@@ -17,7 +17,7 @@ from ..fitting.forms import (
     can_be_shot,
     followable,
     shows_its_ring,
-    softened,
+    soften,
     stiffen,
 )
 from ..plant import Plant
@@ -25,7 +25,7 @@ from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .confirm import inertial_of
 from .evidence import Evidence
-from .influence import limited
+from .influence import limit_influence
 from .model import Model
 from .selection import Search
 
@@ -77,7 +77,7 @@ def borne_out_in_motion(selection: Search, evidence: Evidence) -> Search:
 
 def _gain(without: FloatArray, with_it: FloatArray) -> float:
     """Share of the power of the motion that is left with something less than without."""
-    before, after = limited(without, with_it)
+    before, after = limit_influence(without, with_it)
     return 1.0 - float(after.sum()) / max(float(before.sum()), 1e-300)
 
 
@@ -130,6 +130,6 @@ def _as_stiff_as_shown(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
         return followable(plant, forms)
     most = RIGID_SHOWN * plant.inertia * (np.pi / max(form.dt for form in forms)) ** 2
     own = plant.friction.parameters
-    parameters = softened(own, 0.5 * most / own["initial_stiffness"].value)
+    parameters = soften(own, 0.5 * most / own["initial_stiffness"].value)
     parameters["initial_stiffness"] = replace(parameters["initial_stiffness"], max=most)
     return replace(plant, friction=replace(plant.friction, parameters=parameters))

@@ -14,7 +14,7 @@ from ..motion import GAUSSIAN
 from ..plant import Plant
 from ..trajectory import FloatArray
 
-__all__ = ["Noise", "measure_noise", "seen_effort"]
+__all__ = ["Noise", "effort_noise", "measure_noise"]
 
 LAG_SHARE: Final = 1.0 / 3.0
 """Lag of the second difference that tells noise from misfit, as a share of the kernel's support:
@@ -62,11 +62,11 @@ def measure_noise(
         Without them readings count as exact.
     """
     form = rows.form
-    seen = seen_effort(rows, [rows.residual(plant, nuisances)], alone)
+    seen = effort_noise(rows, [rows.residual(plant, nuisances)], alone)
     return Noise(position_noise(form), form.count, seen)
 
 
-def seen_effort(rows: Rows, residuals: Sequence[FloatArray], alone: Sequence[FloatArray]) -> float:
+def effort_noise(rows: Rows, residuals: Sequence[FloatArray], alone: Sequence[FloatArray]) -> float:
     """Noise of the effort that residuals of a recording hold beside what readings alone make.
 
     Shapes (rows,) each; 0 where no row tells of it.
@@ -91,7 +91,7 @@ def _counted(rows: Rows, lag: int) -> Mask:
     Where a rigid contact comes to rest, what is missing goes from the residual all at once: beside
     that nothing is noise, unless the machine hardly moves for longer.
     """
-    reached = rows.form.reached
+    reached = rows.form.noisy_rows
     counted: Mask = (rows.mask & reached)[lag:-lag]
     within: Mask = counted & reached[: -2 * lag] & reached[2 * lag :]
     return within if np.count_nonzero(within) >= FEWEST_ROWS else counted

@@ -8,12 +8,12 @@ from typing import Final
 import numpy as np
 
 from ..catalogue import effects
-from .gains import heldout_gain
-from .model import Model, fitted
+from .block_gains import heldout_gain
+from .model import Model, fit_model
 from .replay import hangs_on_load
 from .screen import NULL_TIMES
 
-__all__ = ["told_by_noise"]
+__all__ = ["doubt_by_noise"]
 
 SMALL: Final = 0.25
 """Gain up to which readings that flicker may be all there is to a cause: with nothing hidden they
@@ -27,7 +27,7 @@ LATE: Final = "lies within what noise of the position makes friction late by"
 _logger = logging.getLogger(__name__)
 
 
-def told_by_noise(base: Model, model: Model, name: str, gain: float) -> str:
+def doubt_by_noise(base: Model, model: Model, name: str, gain: float) -> str:
     """Why a held-out gain may be one of noise, "" where it is none or noise is no matter.
 
     Surrogates are screened along the measured motion: its noise is in the signatures, theirs is
@@ -49,7 +49,7 @@ def told_by_noise(base: Model, model: Model, name: str, gain: float) -> str:
         Held out, of the second over the first.
     """
     forms = base.evidence.forms
-    steadied = any(form.steadied > 0.0 for form in forms)
+    steadied = any(form.smoothing_support > 0.0 for form in forms)
     flickers = any(form.flickers and form.count > 0.0 for form in forms)
     late = _late_by_noise(model, name)
     if not steadied and not (flickers and gain < SMALL) and not late:
@@ -91,7 +91,7 @@ def _late_by_noise(model: Model, name: str) -> bool:
 
 def _gained(replay: Model, model: Model) -> float:
     """Held-out gain of an effect on a replay of the base, in which nothing is missing."""
-    with_it = fitted(replay.evidence, model.plant, replay.nuisances)
+    with_it = fit_model(replay.evidence, model.plant, replay.nuisances)
     if with_it.solution.interrupted:
         raise KeyboardInterrupt
     return heldout_gain(replay, with_it)[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ..fitting.pushes import told as pushes_told
+from ..fitting.pushes import push_checks
 from ..recording import Check
 from .evidence import Evidence
 from .result import Diagnosis
@@ -17,7 +17,7 @@ __all__ = ["with_checks", "with_pushes"]
 def with_pushes(found: Diagnosis, evidence: Evidence) -> Diagnosis:
     """What was left out because something pushed the machine, in the sentence and the checks."""
     words = push_words(evidence.pushes, evidence.names)
-    return with_checks(found, pushes_told(evidence.pushes, evidence.names), words)
+    return with_checks(found, push_checks(evidence.pushes, evidence.names), words)
 
 
 def with_checks(

@@ -14,10 +14,10 @@ from .by_recording import BY_RECORDING, by_recording_view
 from .coordinates import COORDINATES, Look
 from .evidence import Evidence
 from .noisy_effort import Noisy
-from .passing import drift_view, moments_view, settled
+from .passing import drift_view, moments_view, steady_rows
 from .periodic import COUPLED, ORDERS, Asked, frequency_view, order_views
 from .response import RESPONSE, response_columns, response_view
-from .smoother import smoother, stacked
+from .smoother import smoother, stack_rows
 from .view import LEAST_SIZE, View
 
 __all__ = ["Rest", "View", "rest"]
@@ -32,7 +32,7 @@ class Rest:
 
     views: tuple[View, ...]
 
-    def flagged(self, least: float = LEAST_SIZE) -> tuple[View, ...]:
+    def significant_views(self, least: float = LEAST_SIZE) -> tuple[View, ...]:
         """Coordinates in which more is left than noise explains, from a size on.
 
         Of a coordinate and one that refines it only one: the finer where it shows much more.
@@ -40,7 +40,7 @@ class Rest:
         shown = {
             view.coordinate.name: view
             for view in self.views
-            if view.flagged(least) and not view.coordinate.descriptive
+            if view.is_flagged(least) and not view.coordinate.descriptive
         }
         for fine in list(shown.values()):
             wide = shown.get(fine.coordinate.refines)
@@ -55,10 +55,10 @@ class Rest:
         return Rest(tuple(sorted((*others, view), key=lambda each: -each.share)))
 
     @property
-    def described(self) -> tuple[View, ...]:
+    def leading_views(self) -> tuple[View, ...]:
         """What it goes with where something is left, largest share first."""
         views = (view for view in self.views if view.coordinate.descriptive)
-        return tuple(view for view in views if view.flagged())
+        return tuple(view for view in views if view.is_flagged())
 
 
 def rest(
@@ -86,8 +86,8 @@ def rest(
     friction : float
         Weighted rms of the friction, against which sizes are measured.
     """
-    direction = stacked(evidence, [look.direction for look in seen])
-    position = stacked(evidence, [look.position for look in seen])
+    direction = stack_rows(evidence, [look.direction for look in seen])
+    position = stack_rows(evidence, [look.position for look in seen])
     both = np.column_stack([residual, null])
     cells, weights = evidence.cells, evidence.weights
     spacings = [rows.form.dt * rows.form.stride for rows in evidence.shown]
@@ -101,13 +101,13 @@ def rest(
     along = both * direction[:, None]
     asked = [Asked(coordinate, along if coordinate.odd else both) for coordinate in ORDERS]
     asked += [
-        Asked(coordinate, both, stacked(evidence, [coordinate.values(look) for look in seen]))
+        Asked(coordinate, both, stack_rows(evidence, [coordinate.values(look) for look in seen]))
         for coordinate in COUPLED
     ]
     views += order_views(asked, orders, position, evidence.plans, weights, friction)
 
     def answered(looks: Sequence[Look], both: FloatArray) -> View:
-        moved = stacked(
+        moved = stack_rows(
             evidence,
             [
                 response_columns(look.effort, max(spacings) / spacing)
@@ -117,11 +117,11 @@ def rest(
         return response_view(moved, max(spacings), evidence.plans, both, weights, friction)
 
     views.append(noisy.view(RESPONSE, answered))
-    clock = stacked(evidence, [look.time for look in seen])
-    velocity = stacked(evidence, [look.velocity for look in seen])
-    sliding = stacked(evidence, [look.slides.sliding for look in seen])
-    steady = stacked(evidence, [settled(look) for look in seen])
-    of_rows = stacked(
+    clock = stack_rows(evidence, [look.time for look in seen])
+    velocity = stack_rows(evidence, [look.velocity for look in seen])
+    sliding = stack_rows(evidence, [look.slides.sliding for look in seen])
+    steady = stack_rows(evidence, [steady_rows(look) for look in seen])
+    of_rows = stack_rows(
         evidence,
         [np.full(len(look.time), each) for look, each in zip(seen, spacings, strict=True)],
     )
@@ -131,7 +131,7 @@ def rest(
         by_recording_view(
             coordinate,
             entered,
-            stacked(evidence, [coordinate.values(look) for look in seen]),
+            stack_rows(evidence, [coordinate.values(look) for look in seen]),
             both,
             weights,
             friction,

@@ -14,7 +14,7 @@ from .model import Model
 from .result import Unexplained
 from .words import ALONE
 
-__all__ = ["MOST_TIMES", "outlying", "outlying_in_test"]
+__all__ = ["MOST_TIMES", "outlying_recordings", "outlying_test_recordings"]
 
 MOST_TIMES: Final = 8.0
 """Power left over what noise leaves from which on a recording stands out, in its median block.
@@ -39,7 +39,7 @@ WHOLE: Final = 0.5
 """Of the rows of a full one, from which on a block is compared."""
 
 
-def outlying(
+def outlying_recordings(
     evidence: Evidence, model: Model, null: FloatArray, least: float
 ) -> tuple[Unexplained, ...]:
     """Recordings in which far more is left than in all others, largest share first.
@@ -93,7 +93,7 @@ def outlying(
     )
 
 
-def outlying_in_test(
+def outlying_test_recordings(
     evidence: Evidence, model: Model, test: HeldOut | None, index: int, least: float
 ) -> list[tuple[str, Check]]:
     """Recordings that test in which far more is left than in those that train and decide.

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -13,10 +13,11 @@ from ..stated import Effect
 from ..trajectory import FloatArray
 from .coordinates import COORDINATES, UNJUDGED, Coordinate, Look
 from .evidence import Evidence
+from .presentation import PRESENTATIONS, SLIDING, Wave, contact_slides
 from .smoother import smoother
 from .view import View
 
-__all__ = ["OWN", "Wave", "own_coordinate", "own_view"]
+__all__ = ["own_coordinate", "own_view"]
 
 PHASES: Final = 24
 """Stretches of the longest period that is drawn, for each period of its shortest one."""
@@ -26,83 +27,6 @@ MOST_PERIODS: Final = 6
 """Periods of the first wave that are drawn side by side at most, where a second one asks for it."""
 NEAR_WHOLE: Final = 0.03
 """A ratio of periods nearer than this to a whole number is taken for it."""
-SLIDING: Final = "where the contact slides"
-
-
-@dataclass(frozen=True)
-class Wave:
-    """The period of an effect that repeats with position, at the order that was found.
-
-    Attributes
-    ----------
-    odd : bool
-        The residual is counted along the motion.
-    factor : callable, optional
-        From a ``Look`` to what the residual grows with.
-    upright : str
-        What the vertical axis says then.
-    where : callable, optional
-        From a ``Look`` to the rows that count; all of them without it.
-    rows : str
-        Those in words.
-    """
-
-    odd: bool = False
-    factor: Callable[[Look], FloatArray] | None = None
-    upright: str = ""
-    where: Callable[[Look], np.ndarray] | None = None
-    rows: str = ""
-
-
-def _slides(look: Look) -> np.ndarray:
-    """Where the contact slides: at rest its friction is what pulls at it, whatever its level."""
-    return np.asarray(look.slides.slid > 0.0)
-
-
-def _turns_evenly(look: Look) -> np.ndarray:
-    """Where an error of the reading shows by the square of speed, and less by acceleration."""
-    return np.asarray(look.velocity**2 > np.abs(look.acceleration))
-
-
-OWN: Final[dict[str, str | Wave]] = {
-    "stribeck": "speed",
-    "viscous_quadratic": "high speed",
-    "direction_asymmetry": "velocity",
-    "torque_bias": "velocity",
-    "position_dependent_friction": Wave(odd=True, where=_slides, rows=SLIDING),
-    "cogging": Wave(),
-    "torque_constant_ripple": Wave(
-        factor=lambda look: look.effort, upright="residual over effort, %"
-    ),
-    "dwell_strengthening": "rest before the slide",
-    "rate_dependent_breakaway": "loading before the slide",
-    "input_delay": "rate of the effort",
-    "goal_rate_limit": "effort",
-    "warm_up": "time switched on, in slides",
-    "run_in": "path, in slides",
-    "drive_deadband": "effort along the motion",
-    "shaft_compliance": "fourth derivative of the position",
-    "encoder_eccentricity": Wave(
-        factor=lambda look: look.velocity**2,
-        upright="residual over speed², {f}·s²/{x}²",
-        where=_turns_evenly,
-        rows="where the squared speed is larger than the acceleration",
-    ),
-    "creep_hardening": "time since the reversal",
-    "relaxation": "time since the reversal",
-    "gravity_unbalance": Wave(),
-    "torque_constant_saturation": "effort",
-    "drive_saturation": "effort",
-    "back_emf": "velocity, by what the effort gives",
-    "voltage_limit": "velocity, by what the effort gives",
-    "current_loop_lag": "rate of the effort",
-    "frictional_lag": "speed, speeding up or slowing down",
-    "reverse_point_memory": "distance since the reversal",
-    "temperature_dependent_friction": "temperature along the motion",
-    "load_dependent_friction": "load along the motion",
-    "backlash": "time since the acceleration turned round",
-}
-"""Where each effect of the catalogue shows: a coordinate by its name, or its own period."""
 ELSEWHERE: Final = "velocity"
 """Where an effect is drawn that has no entry."""
 _DRAWN: Final = {each.name: each for each in (*COORDINATES, *UNJUDGED)}
@@ -113,12 +37,19 @@ _DRAWN["high speed"] = replace(_DRAWN["speed"], logarithmic=False)
 def _in_slides(name: str) -> Coordinate:
     whole = _DRAWN[name]
     return replace(
-        whole, values=lambda look: np.where(_slides(look), whole.values(look), np.nan), rows=SLIDING
+        whole,
+        values=lambda look: np.where(contact_slides(look), whole.values(look), np.nan),
+        rows=SLIDING,
     )
 
 
 _DRAWN["time switched on, in slides"] = _in_slides("time since it was switched on")
 _DRAWN["path, in slides"] = _in_slides("path along the motion")
+
+
+def _where(name: str) -> str | Wave:
+    entry = PRESENTATIONS.get(name)
+    return ELSEWHERE if entry is None else entry.over
 
 
 def own_coordinate(effect: Effect, motion: str) -> Coordinate:
@@ -131,7 +62,7 @@ def own_coordinate(effect: Effect, motion: str) -> Coordinate:
     motion : str
         "rotary" or "linear".
     """
-    own = OWN.get(effect.name, ELSEWHERE)
+    own = _where(effect.name)
     if isinstance(own, str):
         return _DRAWN[own]
     order, _ = _periods(effect)
@@ -174,7 +105,7 @@ def own_view(
     """
     coordinate = own_coordinate(effect, evidence.plant.motion)
     edges = None
-    if isinstance(OWN.get(effect.name), Wave):
+    if isinstance(_where(effect.name), Wave):
         order, finest = _periods(effect)
         number = min(round(PHASES * max(finest / order, 1.0)), MOST_PHASES)
         edges = np.linspace(0.0, 2.0 * math.pi / order, number + 1)[1:-1]

@@ -17,7 +17,7 @@ from .coordinates import Coordinate, Look
 from .evidence import Cells
 from .view import FEWEST_ROWS, View, limit, means, sums
 
-__all__ = ["DRIFT", "MOMENTS", "drift_view", "moments_view", "settled"]
+__all__ = ["DRIFT", "MOMENTS", "drift_view", "moments_view", "steady_rows"]
 
 
 DRIFT: Final = Coordinate(
@@ -54,7 +54,7 @@ FEWEST_WINDOWS: Final = 10
 """Of a recording, for some of them to stand out."""
 
 
-def settled(look: Look) -> Mask:
+def steady_rows(look: Look) -> Mask:
     """Rows in which a machine has been sliding one way for some time; shape (n,)."""
     return look.slides.sliding & (look.elapsed >= SETTLED_S)
 

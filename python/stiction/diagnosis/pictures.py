@@ -63,12 +63,12 @@ class Tracking:
     after: FloatArray
 
     @property
-    def left_before(self) -> FloatArray:
+    def error_before(self) -> FloatArray:
         """Measured less simulated position, before."""
         return self.measured - self.before
 
     @property
-    def left(self) -> FloatArray:
+    def error_after(self) -> FloatArray:
         """Measured less simulated position, after."""
         return self.measured - self.after
 

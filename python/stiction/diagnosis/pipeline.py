@@ -14,7 +14,7 @@ import numpy as np
 from .. import __version__, given
 from ..best_effort import Failure, attempt
 from ..errors import InputError, NotEnoughData
-from ..fitting.forms import told as residual_told
+from ..fitting.forms import residual_sentence
 from ..given import instance, share, whole
 from ..plant import Plant
 from ..products import on_one_thread
@@ -23,25 +23,31 @@ from ..recording import Check, Recording
 from ..recording.checks import DOUBTED, without_failures
 from ..recording.names import names_of
 from ..recording.recording import recordings_of
-from ..recording.session_clock import remaining
+from ..recording.session_clock import subset
 from ..recording.usable import checks_of, usable
 from ..session import Session, both_of
 from ..trajectory import FloatArray
-from ..wording import counted
+from ..wording import plural
 from ..workers import with_workers
 from .advice import advise
-from .base import based, based_joined, based_over_windows, based_simulated, based_wider
-from .candidates import left_out
+from .base import (
+    fit_baseline,
+    fit_baseline_over_windows,
+    fit_joint_baseline,
+    fit_simulated_baseline,
+    fit_wider_baseline,
+)
+from .candidates import excluded_names
 from .conclude import MESSAGE, Conclusion, base_alone, surrogates_of
 from .decide import SMALLEST
 from .evidence import Evidence
 from .laws import THE_LAW, law_names
-from .model import Known, Model, fitted
+from .model import Known, Model, fit_model
 from .noise import Noise
 from .result import Diagnosis, Unexplained
 from .rounds import search
 from .screen import ALPHA
-from .seconds import acts_for_seconds, asked_before, holds_more, with_rows_of
+from .seconds import acts_for_seconds, holds_more, tried_names, with_rows_of
 from .selection import Search
 from .verdict import all_blind
 
@@ -135,7 +141,7 @@ def diagnose(
     seed = whole(seed, "seed", least=0)
     threads = None if threads is None else whole(threads, "threads", least=1)
     asked = _Asked(
-        without=left_out(_names("without", without)),
+        without=excluded_names(_names("without", without)),
         laws=law_names(_names("laws", laws), machine.friction.law),
         surrogates=surrogates,
         smallest=smallest,
@@ -213,7 +219,7 @@ def _usable(
     kept, told = usable(session.recordings, checks)
     if kept is None:
         return None, told
-    recordings = without_failures(remaining(session.recordings, kept))
+    recordings = without_failures(subset(session.recordings, kept))
     if not (plant.prescribed_motion or plant.hangs or any(map(_is_driven, recordings))):
         return None, NOT_DRIVEN
     places = {k: j for j, k in enumerate(kept)}
@@ -241,9 +247,9 @@ def _testable(
 ) -> Diagnosis:
     """The diagnosis of data that can be used; ``restated`` with another law than was stated."""
     whole = found
-    number = counted(len(session), "recording")
+    number = plural(len(session), "recording")
     phase(_logger, "looking through %s and fitting the base", number)
-    evidence, base = based(found.plant, session.recordings)
+    evidence, base = fit_baseline(found.plant, session.recordings)
     found, replays = _replayed(found, evidence, base, asked.surrogates)
     if replays is None:
         return base_alone(found, evidence, base)
@@ -254,7 +260,7 @@ def _testable(
     del evidence, base, replays
     if not look.selection.interrupted and shot is None:
         final = look.selection.models[-1]
-        wider = based_wider(found.plant, session.recordings, look.evidence, final)
+        wider = fit_wider_baseline(found.plant, session.recordings, look.evidence, final)
         if wider is not None:
             phase(_logger, "screening the effects again, through wider kernels")
             look = again(look, wider) or look
@@ -263,9 +269,9 @@ def _testable(
     del shot
     if acts_for_seconds(look.evidence, look.selection, look.null):
         phase(_logger, "screening limits again, over the rows that decide as well")
-        joined = based_joined(found.plant, session.recordings, look.evidence)
+        joined = fit_joint_baseline(found.plant, session.recordings, look.evidence)
         before = look.selection
-        others = asked._replace(without=(*asked.without, *asked_before(before)))
+        others = asked._replace(without=(*asked.without, *tried_names(before)))
         second = joined and _again(look, joined, asked=others)
         if second and holds_more(second.selection, before):
             look = second._replace(selection=with_rows_of(second.selection, before))
@@ -318,7 +324,7 @@ def _first_look(
 
     def led_astray(first: Search) -> bool:
         last = first.models[-1]
-        shot = based_simulated(found.plant, session.recordings, evidence, last, first.tried)
+        shot = fit_simulated_baseline(found.plant, session.recordings, evidence, last, first.tried)
         shots.extend([] if shot is None else [shot])
         return bool(shots)
 
@@ -338,7 +344,7 @@ def _simulated(
     seen, last = look.evidence, look.selection.models[-1]
     cut_short = shot is not None
     if shot is None:
-        shot = based_simulated(look.found.plant, session.recordings, seen, last)
+        shot = fit_simulated_baseline(look.found.plant, session.recordings, seen, last)
     if shot is None:
         return look
     phase(_logger, "screening the effects again, with the plant simulated over windows")
@@ -379,8 +385,8 @@ def _seen_otherwise(
         else:
             # What was found last stands where all others have led the plant.
             earlier = [*look.selection.models[:0:-1], *look.selection.tried]
-            final = first.decided.models[-1]
-            seen = based_over_windows(plant, recordings, look.evidence, final)
+            final = first.valid_selection.models[-1]
+            seen = fit_baseline_over_windows(plant, recordings, look.evidence, final)
         if seen is None:
             return first
         phase(_logger, "screening the effects again, with the plant simulated over windows")
@@ -397,12 +403,12 @@ def _seen_otherwise(
 def _tried_along(look: _Searched, asked: _Asked) -> list[Model]:
     """Models with a cause each that was tried along the readings, as a simulation has them."""
     try:
-        evidence, base = based(look.found.plant, look.evidence.recordings, windows=False)
+        evidence, base = fit_baseline(look.found.plant, look.evidence.recordings, windows=False)
         _, replays = _replayed(look.found, evidence, base, asked.surrogates)
         if replays is None:
             raise KeyboardInterrupt
         found = asked.search(evidence, base, replays[0], stops=lambda _: True)
-        own = [fitted(look.evidence, each.plant, each.nuisances) for each in found.tried]
+        own = [fit_model(look.evidence, each.plant, each.nuisances) for each in found.tried]
     except InputError:
         return []
     if found.interrupted or any(each.solution.interrupted for each in own):
@@ -421,7 +427,7 @@ def _restated(
     """
     better, law = conclusion.better[0], told.better_law
     phase(_logger, "diagnosing again, with law %s", law)
-    plant = replace(conclusion.found.plant, friction=better.stated)
+    plant = replace(conclusion.found.plant, friction=better.statement)
     ended = replace(told, success=False, message=MESSAGE)
     try:
         beside = attempt(f"the diagnosis with {law}", partial(again, plant))
@@ -514,7 +520,7 @@ def _replayed(
     data = {
         **found.data,
         "split": dealt,
-        "residual": residual_told([rows.form for rows in evidence.shown], base.plant),
+        "residual": residual_sentence([rows.form for rows in evidence.shown], base.plant),
     }
     words = "\n".join([evidence.split.describe(), *told])
     found = replace(found, split=words, data=data)

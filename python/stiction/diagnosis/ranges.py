@@ -8,7 +8,7 @@ from ..fitting.start import largest_command
 from .candidates import Candidate
 from .model import Model
 
-__all__ = ["is_whole", "out_of_its_range", "partly_lost", "surely_a_part"]
+__all__ = ["is_whole", "out_of_its_range", "partial_loss", "surely_a_part"]
 
 
 class Whole(NamedTuple):
@@ -78,7 +78,7 @@ def surely_a_part(candidate: Candidate, model: Model) -> bool:
     if candidate.name not in WHOLE:
         return False
     known = WHOLE[candidate.name]
-    number = model.told.parameters[f"effects.{candidate.name}.{known.gain}"]
+    number = model.fit_result.parameters[f"effects.{candidate.name}.{known.gain}"]
     return number.value + SURELY * number.stderr < known.whole
 
 
@@ -87,7 +87,7 @@ def _value(candidate: Candidate, model: Model, name: str) -> float:
     return effect.parameters[candidate.own(name)].value
 
 
-def partly_lost(candidate: Candidate, model: Model, strength: float) -> str:
+def partial_loss(candidate: Candidate, model: Model, strength: float) -> str:
     """The gain that would have to be whole and surely is not, "" where there is none."""
     if candidate.name not in WHOLE:
         return ""

@@ -11,7 +11,7 @@ from ..fitting.rows import Mask
 from ..trajectory import FloatArray
 from .evidence import Plan
 
-__all__ = ["FLAT", "Base", "Projected", "bounded", "project", "refitted", "step"]
+__all__ = ["FLAT", "Base", "Projected", "bounded_gains", "project", "refit_residuals", "step"]
 
 FLAT: Final = 1e-8
 """Directions of the base with less than this share of the strongest one are dropped."""
@@ -94,13 +94,13 @@ def step(columns: FloatArray, residual: FloatArray, plan: Plan) -> FloatArray:
     return Base(columns, plan).project(residual).held
 
 
-def refitted(columns: FloatArray, residuals: FloatArray, fitted: Mask) -> FloatArray:
+def refit_residuals(columns: FloatArray, residuals: FloatArray, fitted: Mask) -> FloatArray:
     """Residuals of all rows once the base was fitted to each over the fitted rows; same shape."""
     everywhere = Plan(fitted, np.ones_like(fitted))
     return Base(columns, everywhere).project(residuals).held
 
 
-def bounded(
+def bounded_gains(
     normal: FloatArray, product: FloatArray, best: FloatArray, low: FloatArray, high: FloatArray
 ) -> FloatArray:
     """Gains within bounds that take most, of many small regressions.

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
-from ..wording import counted
+from ..wording import plural
 
 __all__ = ["COUNTS", "Reliability", "manner", "reliability_of"]
 
@@ -42,13 +42,13 @@ class Reliability:
         return (self.first + _JEFFREYS) / (self.told + 1.0)
 
     @property
-    def covered(self) -> float:
+    def coverage(self) -> float:
         """That it or one of its look-alikes is."""
         return (self.listed + _JEFFREYS) / (self.told + 1.0)
 
     def words(self, *, several: bool) -> str:
         """That in words, of a name with look-alikes or of one without."""
-        known = f"of {counted(self.told, 'time')} where the truth was known"
+        known = f"of {plural(self.told, 'time')} where the truth was known"
         if several:
             return (
                 f"of names told like these one was right {self.listed} {known}, the first one "

@@ -9,9 +9,9 @@ from typing import Final
 
 import numpy as np
 
-from ..accompanied import accompanied
+from ..accompanied import nearby_motion
 from ..catalogue import effects
-from ..fitting.readings import as_read, position_noise, slid_of, true_motion
+from ..fitting.readings import position_noise, read_sensor, sliding_motion, true_motion
 from ..fitting.rows import Nuisances, Rows
 from ..loop_form import LoopForm
 from ..plant import Plant
@@ -19,16 +19,16 @@ from ..shooting import ShootingForm
 from ..trajectory import FloatArray
 from ..weak_form import Start, WeakForm
 from .evidence import Evidence
-from .noise import Noise, measure_noise, seen_effort
+from .noise import Noise, effort_noise, measure_noise
 
 __all__ = [
     "NoReplayError",
     "centre",
+    "common_bias",
     "hangs_on_load",
     "noise_of",
-    "read_alone",
+    "reading_power",
     "reread",
-    "shared",
     "surrogate_residuals",
 ]
 
@@ -110,7 +110,7 @@ def _of_one_sensor(found: Sequence[tuple[_Replay, Noise]]) -> list[tuple[_Replay
     return usual
 
 
-def read_alone(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
+def reading_power(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
     """Weighted power that readings alone leave a right plant in the rows that were fitted.
 
     Nothing that a plant may lack is in it: beside one that lacks something fast, what that makes
@@ -143,14 +143,14 @@ class _Replay:
 
     @classmethod
     def of(cls, rows: Rows, plant: Plant, nuisances: Nuisances) -> _Replay:
-        rows = rows.led_by(nuisances)
+        rows = rows.with_leader(nuisances)
         form, start = rows.form, nuisances.start(rows.index)
         if isinstance(form, LoopForm):
             motion, residual = _looped(form, plant, start)
         elif isinstance(form, ShootingForm):
             motion, residual = _shot(form, plant, start)
         else:
-            slid = slid_of(form, plant, start)
+            slid = sliding_motion(form, plant, start)
             if slid is not None:
                 return cls(rows, plant, nuisances, *slid)
             motion, residual = _followed(form, plant, start)
@@ -191,7 +191,7 @@ class _Replay:
             )
             for _ in range(TRIED)
         ]
-        seen = seen_effort(self.rows, again, alone)
+        seen = effort_noise(self.rows, again, alone)
         times = noise.effort / seen if seen > 0.0 else 1.0
         return replace(noise, effort=noise.effort * float(np.clip(times, 1.0, MOST_TIMES)))
 
@@ -207,7 +207,7 @@ class _Replay:
 
     def read(self, white: float, source: np.random.Generator) -> FloatArray:
         """The motion as the sensor reads it."""
-        return as_read(self.rows.form, self.motion, white, source)
+        return read_sensor(self.rows.form, self.motion, white, source)
 
 
 def _followed(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _Residual]:
@@ -223,7 +223,7 @@ def _followed(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, _
 
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
         noise = form.mean(0.5 * (added[:-1] + added[1:]))
-        return acted + noise - needed(form.driving(readings), readings)
+        return acted + noise - needed(form.driving_motion(readings), readings)
 
     return motion, residual
 
@@ -244,10 +244,10 @@ def _shot(form: ShootingForm, plant: Plant, start: Start) -> tuple[FloatArray, _
 
     A motion that is smoothed from counts is none that a plant with this friction would make.
     """
-    motion, load = accompanied(form, plant, start)
+    motion, load = nearby_motion(form, plant, start)
 
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
-        return form.missed(plant, start, readings, load + added[:-1])
+        return form.residual_for(plant, start, readings, load + added[:-1])
 
     return motion, residual
 
@@ -305,7 +305,7 @@ def centre(null: FloatArray) -> tuple[FloatArray, FloatArray]:
     return bias, (null - bias[:, None]) * (number / (number - 1) if number > 1 else 1.0)
 
 
-def shared(bias: FloatArray, residual: FloatArray, recording: np.ndarray) -> FloatArray:
+def common_bias(bias: FloatArray, residual: FloatArray, recording: np.ndarray) -> FloatArray:
     """What surrogates have in common, in each recording as far as the residual has it too.
 
     Where a replay loses the machine all of them lose it alike, and the residual knows nothing of

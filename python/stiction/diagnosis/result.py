@@ -152,7 +152,7 @@ class Cause(_Gained):
         }
 
     @property
-    def counted(self) -> str:
+    def track_record(self) -> str:
         """What names told like this one came to, in words; "" where none was counted."""
         held = self.reliability
         if held is None or not held.told:
@@ -165,7 +165,7 @@ class Cause(_Gained):
         if held is None:
             return {"probability": None, "alternatives": [], "reliability": None}
         # Nothing is known of one look-alike that is not known of the others.
-        each = (held.covered - held.probability) / max(len(self.look_alikes), 1)
+        each = (held.coverage - held.probability) / max(len(self.look_alikes), 1)
         return {
             "probability": held.probability,
             "alternatives": [{"name": name, "probability": each} for name in self.look_alikes],

@@ -14,20 +14,20 @@ from ..fitting.rows import timing_bound
 from ..plant import Plant
 from ..trajectory import FloatArray
 from . import listing
-from .beside import left_by_forms
+from .beside import doubt_by_forms
 from .candidates import FALL, Candidate, candidates, present, scales_of
 from .choose import ALIKE, Choice, choose, covers, parallel
-from .decide import LEAST_GAIN, LEAST_STRENGTH, SMALLEST, Trial, emptied
+from .decide import LEAST_GAIN, LEAST_STRENGTH, SMALLEST, Trial, degeneracy
 from .evidence import Evidence
 from .exact_forms import several
-from .fewer import MIMIC, chained, dropped_by_the_latest, join, without
+from .fewer import MIMIC, join, rebuild_models, remove_redundant, without
 from .model import Known, Model, without_effect
-from .replay import centre, read_alone, shared
+from .replay import centre, common_bias, reading_power
 from .restarts import from_before, from_the_first
 from .result import CandidateRow
 from .screen import ALPHA, Score
 from .selection import Search
-from .sharpen import beside_a_second, is_sharpened, sharpened
+from .sharpen import beside_a_second, free_shapes, has_free_shapes
 from .signatures import Signatures
 from .together import pass_together, passes_beside
 from .trials import (
@@ -35,8 +35,8 @@ from .trials import (
     SLIGHT,
     Screening,
     compared_fit,
+    escape_local_minimum,
     promises,
-    unstuck,
     whole_fit,
 )
 
@@ -103,7 +103,7 @@ def search(
     try:
         bias, centred = centre(null)
         centred = centred[evidence.fitted]
-        bias = shared(bias, base.residual, evidence.cells.recording)
+        bias = common_bias(bias, base.residual, evidence.cells.recording)
         tried = _candidates(evidence, base, without, found)
         if not tried:
             return found
@@ -113,7 +113,7 @@ def search(
             evidence, signatures, centred, bias, friction, smallest, alpha, earlier=earlier
         )
         if not evidence.simulated:
-            evidence.floor = read_alone(evidence, base.plant, base.nuisances)
+            evidence.floor = reading_power(evidence, base.plant, base.nuisances)
         dropped: set[str] = set()
         rests: set[str] = set()
         renewed = 0
@@ -129,19 +129,19 @@ def search(
             found.choices.append(choice)
             found.models.append(choice.winner.model)
             _logger.info("found %s", choice.winner.name)
-            found.choices[-1] = sharpened(screening, found.choices[-1])
-            found.models[-1] = unstuck(_settled(found.choices[-1].winner.model))
+            found.choices[-1] = free_shapes(screening, found.choices[-1])
+            found.models[-1] = escape_local_minimum(_settled(found.choices[-1].winner.model))
             for trial in trials:
                 if trial is not choice.winner:
                     trial.model.forget()
-            if empties := emptied(base, found.models[-1]):
+            if empties := degeneracy(base, found.models[-1]):
                 # A fit that was stopped short of that is no better for it.
                 rests.add(choice.winner.name)
                 found.take_back(empties)
                 continue
             if stops is not None and len(found.choices) == 1 and stops(found):
                 return found
-            dropped |= dropped_by_the_latest(evidence, found)
+            dropped |= remove_redundant(evidence, found)
             rests |= join(screening, found)
             rests |= _take_back(screening, found)
         for place in range(len(found.choices) - 1):
@@ -149,7 +149,7 @@ def search(
     except KeyboardInterrupt:
         found.interrupted = True
         for candidate in tried:
-            found.rows.setdefault(candidate.name, listing.unscreened(candidate))
+            found.rows.setdefault(candidate.name, listing.row_of_candidate(candidate))
     return found
 
 
@@ -215,7 +215,7 @@ def _round(
     for score in scores:
         # Later rounds tell of what is left; what an effect is told by is its first one.
         if not found.choices:
-            found.rows[score.candidate.name] = listing.screened(score)
+            found.rows[score.candidate.name] = listing.row_of_score(score)
             if not score.testable:
                 found.blind.append(score.candidate.record)
     outstanding = {score.candidate.name for score in _outstanding(scores)}
@@ -228,7 +228,7 @@ def _round(
     except KeyboardInterrupt:
         if not found.choices:
             # Nothing was decided among these; what the screening says of others holds.
-            rows = [listing.stopped(score, trials) for score in (*passing, *asked)]
+            rows = [listing.row_at_interrupt(score, trials) for score in (*passing, *asked)]
             found.rows |= {row.name: row for row in rows}
         raise
 
@@ -278,7 +278,7 @@ def _refitted(
     found.imitated = max((t.gain for t in strange), default=0.0)
     for trial in trials:
         if choice is not None or not found.choices:
-            found.rows[trial.name] = listing.tried(trial, choice)
+            found.rows[trial.name] = listing.row_of_trial(trial, choice)
     if not found.choices:
         found.tried = [t.model for t in trials if t.explained > t.score.threshold and not t.empty]
     freed = sorted((trial for trial in trials if trial.freed), key=lambda t: -t.worth)[:1]
@@ -313,7 +313,7 @@ def _trial(
     """A candidate refitted beside what was found; refused where that may have left it."""
     trial = screening.trial(found.models[-1], score, others)
     trial = beside_a_second(screening, found.models[-1], trial)
-    left = left_by_forms(screening.evidence, trial, found.families)
+    left = doubt_by_forms(screening.evidence, trial, found.families)
     return replace(trial, reason=left) if left else trial
 
 
@@ -413,8 +413,8 @@ def _may_be_the_rest(screening: Screening, latest: Trial, other: Trial) -> bool:
         return False
     if all(shape.scale != "order" for shape in record.shapes):
         return True
-    explained = screening.contributed(latest.score, latest.model)
-    before = screening.contributed(other.score, other.model)
+    explained = screening.contribution(latest.score, latest.model)
+    before = screening.contribution(other.score, other.model)
     return parallel(explained, before) > RELATED
 
 
@@ -482,7 +482,7 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
     if screening.evidence.loop:
         # A loop bends far more to a cause that is still missing than friction along a motion does.
         kin |= {rival.name for rival in choice.rivals} & tried.keys()
-    if len(kin) < 2 or is_sharpened(effect, record):
+    if len(kin) < 2 or has_free_shapes(effect, record):
         return
     evidence = screening.evidence
     less = without(evidence, found, record.name)
@@ -499,10 +499,10 @@ def _swap(screening: Screening, found: Search, place: int) -> None:
     if again.winner.model is not whole:
         # Another effect, or the same with another shape of those that are held.
         _logger.info("%s stands better than %s", again.winner.name, record.name)
-        found.models[:] = chained(evidence, found.models[0], choices, again.winner.model)
+        found.models[:] = rebuild_models(evidence, found.models[0], choices, again.winner.model)
     found.choices[:] = choices
     for trial in trials:
-        found.rows[trial.name] = listing.tried(trial, again)
+        found.rows[trial.name] = listing.row_of_trial(trial, again)
 
 
 def _as_it_is(screening: Screening, less: Model, score: Score, whole: Model) -> Trial | None:
@@ -511,7 +511,7 @@ def _as_it_is(screening: Screening, less: Model, score: Score, whole: Model) -> 
     effect = next((each for each in whole.plant.effects if each.name == candidate.name), None)
     if effect is None or not candidate.has_shape_of(effect):
         return None
-    return screening.judged(less, score, whole, screening.contributed(score, whole))
+    return screening.judge(less, score, whole, screening.contribution(score, whole))
 
 
 def _settled(model: Model) -> Model:

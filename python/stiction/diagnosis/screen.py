@@ -12,8 +12,8 @@ import numpy as np
 from ..trajectory import FloatArray
 from .candidates import Candidate
 from .evidence import Plan
-from .influence import limited
-from .regression import bounded, project
+from .influence import limit_influence
+from .regression import bounded_gains, project
 from .signatures import Alike, Signatures
 
 __all__ = [
@@ -147,7 +147,7 @@ def screen(
     count = 1 + base.directions.shape[1]
     within, of_null = products[:, 1:count].T, products[:, count:]
     scan = _Scan.of(signatures, within)
-    gains, explained = scan.regressed(products[:, 0])
+    gains, explained = scan.regress(products[:, 0])
     forms = [candidate.form for candidate in signatures.candidates]
     best: dict[str, int] = {}
     for index, form in enumerate(forms):
@@ -158,32 +158,32 @@ def screen(
     if signatures.single:
         # They chose; what counts of what was chosen is measured again.
         for index in chosen:
-            part = base.off(signatures.over_fitted(index))
+            part = base.off(signatures.columns_of_fit(index))
             gains[index], explained[index] = _measured(part, residual, signatures.candidates[index])
     heldout = _heldout(problem, signatures, chosen)
     # What explains most and carries over: taken out for the thresholds of all others.
     carrying = [index for index in best.values() if heldout[index] > 0.0]
     strongest = max(carrying or best.values(), key=lambda index: explained[index])
-    unexplained = residual - base.off(signatures.over_fitted(strongest)) @ gains[strongest]
+    unexplained = residual - base.off(signatures.columns_of_fit(strongest)) @ gains[strongest]
     null_power = np.maximum(np.sum(null**2, axis=0), 1e-300)
-    noise = scan.explained(of_null) / null_power
+    noise = scan.explained_power(of_null) / null_power
     turn = _Turned(signatures, base.directions, within, problem.block[fitted], null.shape[1])
-    turned = scan.explained(turn.products(unexplained)) / power
+    turned = scan.explained_power(turn.products(unexplained)) / power
     own = {form: np.array(forms) == form for form in best}
     thresholds = {form: _threshold(noise[rows], turned[rows], alpha) for form, rows in own.items()}
     most = max(best.values(), key=lambda index: explained[index])
     if most != strongest:
         # What acts in a few seconds explains them whichever way they are turned: for it alone what
         # is left of it is turned, whether or not it carries over.
-        rest = residual - base.off(signatures.over_fitted(most)) @ gains[most]
+        rest = residual - base.off(signatures.columns_of_fit(most)) @ gains[most]
         rows = own[forms[most]]
-        again = scan.explained(turn.products(rest))[rows] / power
+        again = scan.explained_power(turn.products(rest))[rows] / power
         thresholds[forms[most]] = min(
             thresholds[forms[most]], _threshold(noise[rows], again, alpha)
         )
     scores = []
     for form, index in best.items():
-        column = signatures.over_fitted(index)
+        column = signatures.columns_of_fit(index)
         total = float(np.sum(column**2))
         part = base.off(column)
         left = float(np.sum(part**2)) / total if total > 0.0 else 0.0
@@ -235,7 +235,7 @@ class _Scan:
             inverse.append(np.where(np.all(shown, axis=1)[:, None, None], _inverses(left), 0.0))
         return cls(signatures.alike, normal, inverse)
 
-    def regressed(self, products: FloatArray) -> tuple[list[FloatArray], FloatArray]:
+    def regress(self, products: FloatArray) -> tuple[list[FloatArray], FloatArray]:
         """Gains of each candidate within their bounds, and the power that they take away.
 
         ``products`` is Sᵀr, shape (columns,).
@@ -245,14 +245,14 @@ class _Scan:
         for some, normal, inverse in zip(self.alike, self.normal, self.inverse, strict=True):
             product = products[some.own]
             best = np.einsum("kij,kj->ki", inverse, product)
-            best = bounded(normal, product, best, some.low, some.high)
+            best = bounded_gains(normal, product, best, some.low, some.high)
             taken = 2.0 * np.sum(best * product, axis=1)
             explained[some.places] = taken - np.einsum("ki,kij,kj->k", best, normal, best)
             for place, own in zip(some.places.tolist(), best, strict=True):
                 gains[place] = own
         return gains, explained
 
-    def explained(self, products: FloatArray) -> FloatArray:
+    def explained_power(self, products: FloatArray) -> FloatArray:
         """Power of each of many residuals that each candidate takes away, gains without bounds.
 
         Shapes (columns, residuals) and (candidates, residuals).
@@ -351,7 +351,7 @@ def _measured(
     (inverse,) = _inverses(normal[None])
     low, high = np.array(candidate.bounds).T
     best = (inverse @ product)[None]
-    (gains,) = bounded(normal[None], product[None], best, low[None], high[None])
+    (gains,) = bounded_gains(normal[None], product[None], best, low[None], high[None])
     return gains, float(2.0 * gains @ product - gains @ normal @ gains)
 
 
@@ -372,6 +372,6 @@ def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) ->
             after[index] += np.bincount(block, left**2, number)
     shares = {}
     for index in chosen:
-        one, two = limited(before, after[index])
+        one, two = limit_influence(before, after[index])
         shares[index] = 1.0 - float(two.sum() / one.sum()) if one.sum() > 0.0 else 0.0
     return shares

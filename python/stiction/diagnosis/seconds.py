@@ -14,7 +14,7 @@ from .ranges import SURELY, is_whole, surely_a_part
 from .rounds import friction_of
 from .selection import Search
 
-__all__ = ["acts_for_seconds", "asked_before", "holds_more", "with_rows_of"]
+__all__ = ["acts_for_seconds", "holds_more", "tried_names", "with_rows_of"]
 
 
 def acts_for_seconds(evidence: Evidence, selection: Search, null: FloatArray) -> bool:
@@ -39,7 +39,7 @@ def acts_for_seconds(evidence: Evidence, selection: Search, null: FloatArray) ->
     return bursts(evidence, selection.models[-1], null, friction)
 
 
-def asked_before(selection: Search) -> Sequence[str]:
+def tried_names(selection: Search) -> Sequence[str]:
     """What need not be looked for again: all that acts all the time, where nothing was found.
 
     Beside a cause everything is asked, for that has to be found again.
@@ -66,7 +66,9 @@ def _is_known(trial: Trial, model: Model) -> bool:
     candidate = trial.candidate
     if not candidate.record.limits:
         return False
-    numbers = [model.told.parameters[f"effects.{trial.name}.{gain}"] for gain in candidate.gains]
+    numbers = [
+        model.fit_result.parameters[f"effects.{trial.name}.{gain}"] for gain in candidate.gains
+    ]
     known = all(abs(each.value) > SURELY * each.stderr for each in numbers)
     return known or is_whole(candidate, model)
 

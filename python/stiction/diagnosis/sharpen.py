@@ -12,13 +12,13 @@ from ..catalogue import EffectRecord
 from ..parameter import Parameter
 from ..plant import Plant
 from ..stated import Effect
+from .block_gains import heldout_gain, log_gain
 from .choose import Choice
 from .decide import LEAST_GAIN, LEAST_Z, PENALTY, Trial
-from .gains import heldout_gain, log_gain
 from .model import Model, likeliest_of
 from .trials import MUCH, Screening, promises, whole_fit
 
-__all__ = ["beside_a_second", "is_sharpened", "sharpened"]
+__all__ = ["beside_a_second", "free_shapes", "has_free_shapes"]
 
 PURE: Final = "one"
 """Scale of shapes that are numbers of their own, as an exponent is: what is measured in a length
@@ -32,7 +32,7 @@ WIDER: Final = 20.0
 _logger = logging.getLogger(__name__)
 
 
-def sharpened(screening: Screening, choice: Choice) -> Choice:
+def free_shapes(screening: Screening, choice: Choice) -> Choice:
     """A choice with a second wave, and with shapes of its own, where these pass like an effect.
 
     What repeats with position is seldom a sine, and a shape that the screening holds is seldom
@@ -46,7 +46,7 @@ def sharpened(screening: Screening, choice: Choice) -> Choice:
     return replace(choice, winner=winner)
 
 
-def is_sharpened(effect: Effect, record: EffectRecord) -> bool:
+def has_free_shapes(effect: Effect, record: EffectRecord) -> bool:
     """Whether an effect has a second wave or shapes that the screening holds."""
     if any(name in effect.parameters for name in record.second):
         return True
@@ -65,10 +65,10 @@ def beside_a_second(screening: Screening, base: Model, trial: Trial) -> Trial:
     if found is None:
         return trial
     second, other = found
-    explained = screening.contributed(score, other.model) + second.contributed(
+    explained = screening.contribution(score, other.model) + second.contribution(
         other.score, other.model
     )
-    both = screening.judged(base, score, other.model, explained)
+    both = screening.judge(base, score, other.model, explained)
     if both.reason:
         return trial
     _logger.info("%s passes with a second wave", trial.name)

@@ -184,12 +184,12 @@ class Signatures:
         at = slices[len(sloping) - 1].stop if sloping else 0
         weights = tuple(rows.weight for rows in evidence.shown)
         seen = _Seen(evidence, plant, nuisances, weights)
-        swung = seen.swung(swinging)
+        swung = seen.swing_columns(swinging)
         # Simulations cost more than to hold what they came to.
         bytes_of_all = 8 * slices[-1].stop * np.count_nonzero(fitted) if slices else 0
         single = not evidence.simulated and bytes_of_all > BUDGET
         others = np.ones_like(fitted) if single else ~fitted
-        held = seen.sloped(sloping, others) if evidence.simulated else None
+        held = seen.slope_columns(sloping, others) if evidence.simulated else None
         blocks = seen.blocks(sloping, fitted, single=single)
         if swinging:
             blocks.append(Block(at, slice(0, int(fitted.sum())), swung[:, fitted]))
@@ -198,7 +198,7 @@ class Signatures:
         def beside(places: Sequence[int]) -> FloatArray:
             wanted = [k for k in places if k < len(sloping)]
             if held is None:
-                found = seen.sloped([candidates[k] for k in wanted], others)
+                found = seen.slope_columns([candidates[k] for k in wanted], others)
             else:
                 found = held[_columns(slices, wanted)]
             return np.concatenate([found, swung[[k - len(sloping) for k in places[len(wanted) :]]]])
@@ -206,7 +206,7 @@ class Signatures:
         return cls(candidates, slices, tuple(blocks), fitted, beside)
 
     @classmethod
-    def given(
+    def from_columns(
         cls, candidates: Sequence[Candidate], columns: FloatArray, fitted: Mask
     ) -> Signatures:
         """Of columns of all rows that are there already, shape (n, gains)."""
@@ -261,7 +261,7 @@ class Signatures:
         ends = np.cumsum([self.slices[k].stop - self.slices[k].start for k in new])
         self.known.update(zip(new, np.split(self.beside(new), ends[:-1]), strict=True))
 
-    def over_fitted(self, index: int) -> FloatArray:
+    def columns_of_fit(self, index: int) -> FloatArray:
         """Columns of one candidate over the fitted rows; shape (n_fit, q)."""
         if self.single:
             self.ask([index])
@@ -280,14 +280,14 @@ class Signatures:
         self.ask([index])
         if self.single:
             return self.known[index].T
-        own = self.over_fitted(index)
+        own = self.columns_of_fit(index)
         columns = np.empty((len(self.fitted), own.shape[1]))
         columns[self.fitted] = own
         if index in self.known:
             columns[~self.fitted] = self.known[index].T
         return columns
 
-    def explained(self, index: int, gains: FloatArray) -> FloatArray:
+    def contribution(self, index: int, gains: FloatArray) -> FloatArray:
         """What gains of a candidate explain of all rows that may be looked at; shape (n,)."""
         found: FloatArray = self.whole(index) @ gains
         return found
@@ -325,7 +325,7 @@ class _Seen:
     nuisances: Nuisances
     weights: tuple[float, ...]
 
-    def swung(self, candidates: Sequence[Candidate]) -> FloatArray:
+    def swing_columns(self, candidates: Sequence[Candidate]) -> FloatArray:
         """What swings, by all rows: what a little of it changes; shape (candidates, n)."""
         columns = np.empty((len(candidates), len(self.evidence.weights)))
         if candidates:
@@ -336,7 +336,7 @@ class _Seen:
             column[:] = (still - finite(self.evidence.residual(with_it, self.nuisances))) / size
         return finite(columns)
 
-    def sloped(self, candidates: Sequence[Candidate], rows: Mask) -> FloatArray:
+    def slope_columns(self, candidates: Sequence[Candidate], rows: Mask) -> FloatArray:
         """Columns over some of all rows, shape (n,); shape (gains, rows)."""
         number = _slices(candidates)[-1].stop if candidates else 0
         if number == 0 or not np.any(rows):
@@ -376,7 +376,7 @@ class _Seen:
                 wanted = [(one.name, dict(one.shape)) for one in candidates[piece]]
                 # Hundreds of columns: each is written once, in one piece.
                 values = (
-                    each.form.led_by(self.nuisances.leader)
+                    each.form.with_leader(self.nuisances.leader)
                     .signatures(self.plant, wanted, start, kept)
                     .T
                 )

@@ -13,7 +13,7 @@ from .coordinates import Coordinate, Look
 from .evidence import Evidence
 from .view import FEWEST_ROWS, View, limit, means, sums
 
-__all__ = ["BINS", "SLOW_BINS", "smoother", "stacked"]
+__all__ = ["BINS", "SLOW_BINS", "smoother", "stack_rows"]
 
 BINS: Final = 24
 """Stretches of a coordinate, each with as many rows."""
@@ -38,7 +38,7 @@ FEWEST_BINS: Final = 6
 _Value = TypeVar("_Value", np.float64, np.bool_)
 
 
-def stacked(evidence: Evidence, values: Sequence[NDArray[_Value]]) -> NDArray[_Value]:
+def stack_rows(evidence: Evidence, values: Sequence[NDArray[_Value]]) -> NDArray[_Value]:
     """Values of each recording shown, one under the other, without the rows that do not count."""
     masks = [rows.mask for rows in evidence.shown]
     return np.concatenate([v[m] for v, m in zip(values, masks, strict=True)])
@@ -71,12 +71,12 @@ def smoother(
     within : bool
         The share is that of the power in rows that have a place in the coordinate.
     """
-    values = stacked(evidence, [coordinate.values(look) for look in seen])
+    values = stack_rows(evidence, [coordinate.values(look) for look in seen])
     if coordinate.odd:
-        both = both * stacked(evidence, [look.direction for look in seen])[:, None]
+        both = both * stack_rows(evidence, [look.direction for look in seen])[:, None]
     factor = np.ones(len(values))
     if coordinate.factor is not None:
-        factor = stacked(evidence, [coordinate.factor(look) for look in seen])
+        factor = stack_rows(evidence, [coordinate.factor(look) for look in seen])
     surrogates = both.shape[1]
     slow = _is_slow(coordinate, evidence)
     if slow:

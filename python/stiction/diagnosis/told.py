@@ -20,7 +20,7 @@ from .model import Model
 from .orders import open_orders
 from .own import own_view
 from .pictures import Stretch
-from .remedies import meant
+from .remedies import meaning_of
 from .result import Cause, ModelSummary
 from .selection import Search
 from .verdict import relatives
@@ -30,7 +30,7 @@ from .words import what
 __all__ = [
     "causes_of",
     "effect_of",
-    "evaluated",
+    "evaluate",
     "floor_of",
     "own_views",
     "stretches_of",
@@ -65,7 +65,7 @@ def causes_of(
             for path, p in result.waves.items()
             if path.startswith(f"effects.{record.name}.")
         }
-        means, remedy = meant(record, final.plant)
+        means, remedy = meaning_of(record, final.plant)
         effect = effect_of(final.plant, record.name)
         own = {f"effects.{record.name}.{name}": p.value for name, p in effect.parameters.items()}
         causes.append(
@@ -108,8 +108,8 @@ def effect_of(plant: Plant, name: str) -> Effect:
     return next(effect for effect in plant.effects if effect.name == name)
 
 
-def evaluated(model: Model, scales: Scales) -> FitResult:
-    return replace(model.told, parameters=open_orders(model.told.parameters, scales))
+def evaluate(model: Model, scales: Scales) -> FitResult:
+    return replace(model.fit_result, parameters=open_orders(model.fit_result.parameters, scales))
 
 
 def summary_of(
@@ -165,7 +165,7 @@ def stretches_of(
     for each in rows:
         form, mask = each.form, each.mask
         both = [np.where(mask, each.residual(*own), np.nan) for own in begun]
-        seen = form.measured(base.plant) if form.stiffness is None else form.readings[1:]
+        seen = form.measured_effort(base.plant) if form.stiffness is None else form.readings[1:]
         measured = np.where(mask, seen, np.nan)
         started = evidence.recordings[each.index].time[0]
         stretches.append(

@@ -101,7 +101,7 @@ def _beside(evidence: Evidence, rows: Rows, models: list[_Begun], left: list[Flo
         time=form.time - started,
         position=position,
         velocity=form.velocity,
-        effort=form.measured(base),
+        effort=form.measured_effort(base),
         inertial=form.own(final).inertia * form.acceleration,
         before=left[0],
         after=left[-1],
@@ -170,5 +170,5 @@ def _refused(selection: Search, base: _Begun, taken: set[str]) -> dict[str, _Beg
         names = {effect.name for effect in model.plant.effects} - stated - taken
         if len(names) == 1 and model.plant.friction.law == plant.friction.law:
             # Where a recording that tests begins is as it is for the base.
-            found.setdefault(names.pop(), (model.plant, model.nuisances.joined(nuisances)))
+            found.setdefault(names.pop(), (model.plant, model.nuisances.merge(nuisances)))
     return dict(list(found.items())[:MOST_REFUSED])

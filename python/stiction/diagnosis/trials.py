@@ -16,20 +16,20 @@ from ..plant import Plant
 from ..progress import phase
 from ..trajectory import FloatArray
 from .candidates import Candidate
-from .decide import SMALLEST, Trial, emptied, judge
+from .decide import SMALLEST, Trial, degeneracy, judge
 from .evidence import Evidence
 from .model import (
     REFIT_CONVERGED,
     Known,
     Model,
-    fitted,
+    fit_model,
     likeliest_of,
-    stepped,
+    step_beside,
     with_effect,
     with_last_free,
     without_effect,
 )
-from .noisy_motion import told_by_noise
+from .noisy_motion import doubt_by_noise
 from .screen import ALPHA, Problem, Score, likelier, screen
 from .signatures import Signatures, gain_at
 
@@ -38,8 +38,8 @@ __all__ = [
     "SLIGHT",
     "Screening",
     "compared_fit",
+    "escape_local_minimum",
     "promises",
-    "unstuck",
     "whole_fit",
 ]
 
@@ -162,22 +162,22 @@ class Screening:
     def _tried(self, base: Model, score: Score, best: float) -> Trial:
         phase(_logger, "refitting with %s", score.candidate.name)
         model = _refit(self.evidence, base, self.signatures, score, best)
-        explained = self.contributed(score, model)
-        trial = self.judged(base, score, model, explained)
+        explained = self.contribution(score, model)
+        trial = self.judge(base, score, model, explained)
         if trial.freed and score.candidate.free:
             there = self._where_it_came_to(base, score, model)
             if there.score > score.score:
-                return self.judged(base, there, model, explained)
+                return self.judge(base, there, model, explained)
         return trial
 
-    def judged(self, base: Model, score: Score, model: Model, explained: FloatArray) -> Trial:
+    def judge(self, base: Model, score: Score, model: Model, explained: FloatArray) -> Trial:
         """A model with a candidate, judged; ``explained`` is what that does, shape (n,)."""
         size = float(np.sqrt(np.mean(explained**2))) / max(self.friction, 1e-300)
         trial = judge(base, score, model, explained, size, self.smallest)
         reason = (
             trial.reason
             or _too_good(self.evidence, model)
-            or told_by_noise(base, model, trial.name, trial.gain)
+            or doubt_by_noise(base, model, trial.name, trial.gain)
         )
         return replace(trial, reason=reason)
 
@@ -191,7 +191,7 @@ class Screening:
         evidence, candidate = self.evidence, score.candidate
         less = without_effect(lead.model.plant, lead.name)
         nuisances = lead.model.nuisances
-        own = Signatures.of(evidence, less, nuisances, [candidate]).over_fitted(0)
+        own = Signatures.of(evidence, less, nuisances, [candidate]).columns_of_fit(0)
         left = finite(evidence.residual(less, nuisances))[evidence.fitted]
         gains = np.linalg.lstsq(own, left, rcond=None)[0]
         if not np.any(gains):
@@ -215,7 +215,7 @@ class Screening:
     def _judged_from(self, base: Model, score: Score, start: Plant, nuisances: Nuisances) -> Trial:
         phase(_logger, "refitting with %s, from another start", score.candidate.name)
         model = compared_fit(self.evidence, start, nuisances)
-        return self.judged(base, score, model, self.contributed(score, model))
+        return self.judge(base, score, model, self.contribution(score, model))
 
     def _where_it_came_to(self, base: Model, score: Score, model: Model) -> Score:
         """The score with what the signature explains at the shape that a refit came to.
@@ -228,7 +228,7 @@ class Screening:
         if candidate.record.swings:
             plant = replace(base.plant, effects=(*base.plant.effects, effect))
             column = base.residual - finite(self.evidence.residual(plant, base.nuisances))
-            there = Signatures.given([candidate], column[:, None], self.evidence.fitted)
+            there = Signatures.from_columns([candidate], column[:, None], self.evidence.fitted)
         else:
             shape = {name: effect.parameters[candidate.own(name)].value for name in candidate.shape}
             there = Signatures.of(
@@ -260,7 +260,7 @@ class Screening:
         """The same for other candidates."""
         return replace(self, signatures=signatures, kept=[])
 
-    def contributed(self, score: Score, model: Model) -> FloatArray:
+    def contribution(self, score: Score, model: Model) -> FloatArray:
         """What an effect explains of every row after its refit; shape (n,)."""
         record = score.candidate.record
         if record.swings or record.limits:
@@ -268,7 +268,7 @@ class Screening:
             return finite(self.evidence.residual(less, model.nuisances)) - model.residual
         index = self.signatures.candidates.index(score.candidate)
         gains = model.gains(score.candidate)
-        return self.signatures.explained(index, gains)
+        return self.signatures.contribution(index, gains)
 
     def _left_by(self, model: Model) -> Problem:
         evidence = self.evidence
@@ -288,7 +288,7 @@ def _refit(
     """The base with an effect, fitted; what leads astray far from a fit is varied from there on."""
     model = _from_screening(evidence, base, signatures, score, best)
     candidate = score.candidate
-    if not candidate.varied_last:
+    if not candidate.last_shapes:
         return model
     plant = with_last_free(model.plant, candidate)
     return min((model, compared_fit(evidence, plant, model.nuisances)), key=lambda each: each.power)
@@ -307,10 +307,10 @@ def _from_screening(
     if not np.any(gains):
         typical = {each.name: each.typical for each in score.candidate.record.parameters}
         gains = np.array([typical[name] for name in score.candidate.record.gains])
-    explained = signatures.explained(index, score.gains)
+    explained = signatures.contribution(index, score.gains)
 
     def begun(share: float, like: Candidate, gains: FloatArray) -> Plant:
-        return with_effect(stepped(base, share * explained), like, (share * gains).tolist())
+        return with_effect(step_beside(base, share * explained), like, (share * gains).tolist())
 
     # A contact breaks away or does not: slopes tell little of what a whole gain does.
     shares = SHARES if evidence.simulated else FEW_SHARES
@@ -323,7 +323,7 @@ def _from_screening(
 
     def rank(model: Model) -> tuple[bool, float]:
         # What takes away what was to be explained leaves less than any cause does.
-        return bool(emptied(base, model)), model.power
+        return bool(degeneracy(base, model)), model.power
 
     if rank(model) < (False, (1.0 - KEPT * score.score) * base.power):
         return model
@@ -340,7 +340,7 @@ def _from_screening(
         tried.append(compared_fit(evidence, alone.plant, alone.nuisances))
         if alone.power < base.power:
             break
-    return unstuck(min(tried, key=rank))
+    return escape_local_minimum(min(tried, key=rank))
 
 
 def _of_its_share(
@@ -372,17 +372,17 @@ def _alike(
         return [*found, _of_its_share(candidate, float(gains[0]), inertia)]
     if not candidate.record.swings:
         return found
-    own = signatures.over_fitted(index)
+    own = signatures.columns_of_fit(index)
     for place, other in enumerate(signatures.candidates):
         alike = other.name == candidate.name and other.resonance == 0.0
         if alike and other is not candidate:
-            column = signatures.over_fitted(place)
+            column = signatures.columns_of_fit(place)
             times = float(np.sum(own * column)) / max(float(np.sum(column**2)), 1e-300)
             found.append((other, times * gains))
     return found
 
 
-def unstuck(model: Model) -> Model:
+def escape_local_minimum(model: Model) -> Model:
     """A model, or a better one from starts that it may not have seen (see ``from_elsewhere``).
 
     What is fitted on from a base that made up for the effect may end in the valley of that base.
@@ -412,7 +412,7 @@ def whole_fit(
     A fit keeps its best at Ctrl-C and goes on from there; one of several that make a decision must
     end all of them.
     """
-    model = fitted(evidence, plant, nuisances, only=only, converged=converged)
+    model = fit_model(evidence, plant, nuisances, only=only, converged=converged)
     if model.solution.interrupted:
         raise KeyboardInterrupt
     return model
@@ -434,6 +434,6 @@ def _too_good(evidence: Evidence, model: Model) -> str:
     """
     if evidence.simulated:
         return ""
-    if model.power * model.given >= LEAST_OF_NOISE * evidence.floor:
+    if model.power * model.relative_input_power >= LEAST_OF_NOISE * evidence.floor:
         return ""
     return "leaves far less than the noise of these data must: it takes away what was measured"

@@ -8,13 +8,13 @@ from typing import Final
 import numpy as np
 
 from ..trajectory import FloatArray
+from .block_gains import heldout_gain
 from .bursts import Burst, at_moments
 from .decide import LEAST_GAIN
 from .evidence import Evidence
-from .gains import heldout_gain
 from .model import Model
 from .omnibus import Rest
-from .outlying import outlying
+from .outlying import outlying_recordings
 from .passing import MOMENTS
 from .periodic import FREQUENCY
 from .result import Unexplained, Verdict
@@ -22,7 +22,7 @@ from .selection import Search
 from .view import LEAST_SIZE
 from .words import ALONE, NO_COORDINATE
 
-__all__ = ["all_blind", "left_beside", "relatives", "unnamed", "verdict_of"]
+__all__ = ["all_blind", "relatives", "remainder_share", "unnamed_remainder", "verdict_of"]
 
 WORTH_SHARE: Final = 0.25
 """What is left counts against the names where it is worth this share of what they gained."""
@@ -49,7 +49,7 @@ BESIDE_A_NAME: Final = 0.0015
 leaves little, spread over many coordinates."""
 
 
-def unnamed(
+def unnamed_remainder(
     evidence: Evidence,
     selection: Search,
     before: Rest,
@@ -89,7 +89,7 @@ def unnamed(
         told = beside if _outweighs(selection, beside) else ()
     if not told and selection.imitated > LEAST_GAIN:
         # What was refused as an imitation shows that there is something to imitate.
-        shown = left.flagged(0.0)
+        shown = left.significant_views(0.0)
         where = shown[0].coordinate.name if shown else NO_COORDINATE
         told = (Unexplained(where, selection.imitated),)
     # A few coordinates that show little must not hide that most goes with none of them.
@@ -105,7 +105,7 @@ def unnamed(
         more = Unexplained(MOMENTS.name if bursts else NO_COORDINATE, excess)
         told = (more, *(each for each in told if each.coordinate != more.coordinate))
     told = _behind(burst if not selection.choices else None, told)
-    alone = outlying(evidence, selection.models[-1], null, relevant)
+    alone = outlying_recordings(evidence, selection.models[-1], null, relevant)
     # One recording stands first where it leaves most; beside a coordinate, in which the others
     # show the same, several of them only make a list longer.
     most = 1 if alone and (not told or alone[0].share > told[0].share) else 0
@@ -131,7 +131,7 @@ def _described(
     """
     excess = max((each.share for each in told if each.coordinate == NO_COORDINATE), default=0.0)
     places = [each.share for each in told if each.coordinate != NO_COORDINATE]
-    view = next(iter(left.described), None)
+    view = next(iter(left.leading_views), None)
     if not told or view is None or view.share <= max([WORTH_SHARE * excess, *places]):
         return told
     if view.share > HALF * excess and not named:
@@ -195,7 +195,7 @@ def _is_level_at_stick(selection: Search) -> bool:
 
 
 def _told(left: Rest, least: float) -> tuple[Unexplained, ...]:
-    views = left.flagged(least)
+    views = left.significant_views(least)
     return tuple(Unexplained(view.coordinate.name, view.share) for view in views)
 
 
@@ -221,17 +221,17 @@ def _falls_short(selection: Search, before: Rest) -> bool:
     imitates it, and then whatever is left of it counts.
     """
     gain = heldout_gain(selection.models[0], selection.models[-1])[0]
-    return any(view.share > gain for view in before.flagged())
+    return any(view.share > gain for view in before.significant_views())
 
 
 def _outweighs(selection: Search, left: Sequence[Unexplained]) -> bool:
     """Whether what is left is worth more than a quarter of what was named."""
     if not left:
         return False
-    return max(each.share for each in left) * left_beside(selection) > WORTH_SHARE
+    return max(each.share for each in left) * remainder_share(selection) > WORTH_SHARE
 
 
-def left_beside(selection: Search) -> float:
+def remainder_share(selection: Search) -> float:
     """Power that is left on rows that decide over that of what the names took; inf without any."""
     before, after = (float(m.blocks[1].sum()) for m in (selection.models[0], selection.models[-1]))
     return after / (before - after) if before > after else float("inf")

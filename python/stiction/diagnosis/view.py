@@ -50,7 +50,7 @@ class View:
     threshold: float
     size: float
 
-    def flagged(self, least: float = LEAST_SIZE) -> bool:
+    def is_flagged(self, least: float = LEAST_SIZE) -> bool:
         """Whether something is left that noise does not explain and that matters from a size on.
 
         What stands far above noise matters from half that size on.

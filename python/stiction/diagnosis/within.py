@@ -9,9 +9,9 @@ import numpy as np
 
 from ..fitting.rows import Mask, Rows
 from .lone import Lone
-from .model import Model, fitted
+from .model import Model, fit_model
 
-__all__ = ["left_within"]
+__all__ = ["event_power_ratio"]
 
 PIECES: Final = 4
 """Every other one is held out, then the others: the beginning of an event does not tell its end."""
@@ -19,7 +19,7 @@ FEWEST_KERNELS: Final = 2.0
 """Pieces shorter than so many kernels are not apart from one another."""
 
 
-def left_within(model: Model, own: Model, event: Lone) -> float | None:
+def event_power_ratio(model: Model, own: Model, event: Lone) -> float | None:
     """Power that a law leaves in pieces of an event held out, over what the plant's own leaves.
 
     What happens once cannot be confirmed by what happens again. That a law which saw one half of it
@@ -59,7 +59,7 @@ def _left(model: Model, event: Lone, length: float) -> float | None:
         seen.train = [
             rows.of(rows.mask & ~mask) for rows, mask in zip(evidence.train, near, strict=True)
         ]
-        found = fitted(seen, model.plant, model.nuisances)
+        found = fit_model(seen, model.plant, model.nuisances)
         if found.solution.interrupted:
             return None
         for rows in held:

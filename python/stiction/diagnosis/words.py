@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
 from ..catalogue import effects as catalogue
-from ..compared import EFFORT, Compared, compared_by
-from ..fitting.pushes import left_out
+from ..compared import EFFORT, Compared, comparison_of
+from ..fitting.pushes import omission_words
 from ..fitting.result import FitParameter
 from ..fitting.rows import Push
 from ..fitting.waves import amplitude_of, parts_of, phase_of
 from ..report.scale import loop_scale_of
 from ..stated import Effect
-from ..wording import counted
-from .directions import found
+from ..wording import plural
+from .directions import describe_effect
 from .orders import order_words
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ __all__ = [
     "UNREPEATED",
     "WORSE",
     "gain_words",
-    "joined",
+    "join_words",
     "loop_words",
     "no_machine",
     "push_words",
@@ -95,7 +95,7 @@ MISSED = 0.1
 """Share of the recorded input that a stated controller may miss before it is doubted."""
 
 
-def joined(words: Sequence[str], last: str = "and") -> str:
+def join_words(words: Sequence[str], last: str = "and") -> str:
     """``"a"``, ``"a and b"``, ``"a, b and c"``."""
     if len(words) < 2:
         return "".join(words)
@@ -156,7 +156,7 @@ def what(
         for name in chosen
         if name in effect.parameters and effect.parameters[name].fixed
     ]
-    meaning = found(record, parameters)
+    meaning = describe_effect(record, parameters)
     return f"{meaning}: {', '.join(values)}" if values else meaning
 
 
@@ -209,7 +209,7 @@ def sentence(
     outweighed = [cause.name for cause in effects if cause.doubt == OUTWEIGHED]
     left = f" What is left {_depends(unexplained)}." if more or outweighed else ""
     if outweighed:
-        took = joined(outweighed)
+        took = join_words(outweighed)
         left += f" What has no name there is worth more than half of what {took} took."
     for cause in effects:
         if cause.doubt == UNREPEATED:
@@ -233,9 +233,9 @@ def unseen_words(unseen: Mapping[str, float], beside: bool) -> str:
     ]
     them = "it" if len(unseen) == 1 else "them"
     judged = (
-        f"of what is left where the plant was fitted {joined(told)}. In rows that decide, or were "
-        f"left out in turn, too little of {them} shows, or too unevenly: they neither bear {them} "
-        f"out nor refute {them}."
+        f"of what is left where the plant was fitted {join_words(told)}. In rows that decide, or "
+        f"were left out in turn, too little of {them} shows, or too unevenly: they neither bear "
+        f"{them} out nor refute {them}."
     )
     if beside:
         return f" {judged[0].upper()}{judged[1:]}"
@@ -292,18 +292,18 @@ def _pushed(pushes: Sequence[Push], names: Sequence[str]) -> str:
         return ""
     of = {push.recording: [p for p in pushes if p.recording == push.recording] for push in pushes}
     times = [
-        f"from {joined([push.when() for push in own])} in {names[recording]}"
+        f"from {join_words([push.when() for push in own])} in {names[recording]}"
         for recording, own in of.items()
     ]
     what = pushes[0].what
-    return f"{what[0].upper()}{what[1:]} {joined(times)}; {left_out(pushes[0])}."
+    return f"{what[0].upper()}{what[1:]} {join_words(times)}; {omission_words(pushes[0])}."
 
 
 def apart_words(apart: Sequence[tuple[str, Check]]) -> str:
     """Recordings that test and stand apart from all others, as one sentence; "" without any."""
     if not apart:
         return ""
-    each = joined([f"{name} {check.what}" for name, check in apart[:MOST_TOLD]])
+    each = join_words([f"{name} {check.what}" for name, check in apart[:MOST_TOLD]])
     return (
         f"Of the recordings that test, {each}: something is different there, and no verdict rests "
         "on it."
@@ -317,14 +317,14 @@ def _unconfirmed(effects: Sequence[Cause]) -> str:
     for cause in effects:
         if cause.gain is not None and cause.gain.ci95[0] <= 0.0:
             (worse if cause.gain.ci95[1] <= 0.0 else open_).append(cause.name)
-    told = f" The held-out rows do not confirm {joined(open_)}." if open_ else ""
-    return told + (f" The held-out rows speak against {joined(worse)}." if worse else "")
+    told = f" The held-out rows do not confirm {join_words(open_)}." if open_ else ""
+    return told + (f" The held-out rows speak against {join_words(worse)}." if worse else "")
 
 
 def _depends(unexplained: Sequence[Unexplained]) -> str:
     """On what the residual still depends, and how much of it on nothing that was looked at."""
     shown = [each for each in unexplained if each.coordinate != NO_COORDINATE][:3]
-    on = joined([f"{each.coordinate} ({100 * each.share:.0f} %)" for each in shown])
+    on = join_words([f"{each.coordinate} ({100 * each.share:.0f} %)" for each in shown])
     nowhere = [each.share for each in unexplained if each.coordinate == NO_COORDINATE]
     if not nowhere:
         return f"still depends on {on}"
@@ -351,10 +351,10 @@ def _causes(effects: Sequence[Cause]) -> str:
             (told if cause.decided else undecided).append(_cause(cause, others))
         elif cause.name not in together:
             together |= group
-            each = joined([_with_meaning(one) for one in kin])
+            each = join_words([_with_meaning(one) for one in kin])
             groups.append(f"{each}, which together may be another cause that resembles them")
     # What is told first: after "cannot tell apart" each further name would seem to be one of these.
-    return joined([*told, *undecided, *groups])
+    return join_words([*told, *undecided, *groups])
 
 
 def _with_meaning(cause: Cause) -> str:
@@ -372,7 +372,7 @@ def _cause(cause: Cause, others: Set[str]) -> str:
     alike = (known.get(n, n) if n not in others else f"more of {n}" for n in cause.look_alikes)
     names = [own, *alike]
     either = "either" if len(names) == 2 else "one of"
-    return f"{either} {joined(names, 'or')}, which these data cannot tell apart"
+    return f"{either} {join_words(names, 'or')}, which these data cannot tell apart"
 
 
 def shown_rows(diagnosis: Diagnosis) -> list[str]:
@@ -463,11 +463,11 @@ def summary(diagnosis: Diagnosis) -> str:
         lines.append(f"  gain: {gain_words(cause.gain)}")
         if cause.doubtful:
             lines.append(f"  care: {DOUBTFUL}")
-        if cause.counted:
-            lines.append(f"  counted: {cause.counted}")
+        if cause.track_record:
+            lines.append(f"  counted: {cause.track_record}")
     before, after = diagnosis.baseline, diagnosis.extended
     if before is not None and before.heldout_relative is not None and after is not None:
-        by = compared_by(diagnosis.plant)
+        by = comparison_of(diagnosis.plant)
         told = f"{by.error} held out: {by.share(before.heldout_relative)}"
         if diagnosis.effects and after.heldout_relative is not None:
             told += f" before, {by.share(after.heldout_relative)} after"
@@ -488,7 +488,7 @@ def summary(diagnosis: Diagnosis) -> str:
         lines += ["", *shown_rows(diagnosis)]
         more = len(diagnosis.candidates) - MOST_ROWS
         if more > 0:
-            lines.append(f"and {counted(more, 'other')} in findings.json")
+            lines.append(f"and {plural(more, 'other')} in findings.json")
     if diagnosis.advice:
         first = diagnosis.advice[0]
         lines += ["", f"record next: {first.experiment} ({first.reason})"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..plant import Plant
 from ..session import Session
-from ..wording import counted
+from ..wording import plural
 from .draft import Draft
 from .text import GAIN_UNIT
 
@@ -71,5 +71,5 @@ def _sampling(session: Session, plant: Plant) -> str:
         encoder = f"encoder of {plant.count:g} {plant.position_unit} a count"
     else:
         encoder = "no encoder steps found, noise is estimated from the readings"
-    made = counted(len(session), "recording")
+    made = plural(len(session), "recording")
     return f"sampling: every {every}, {lasts:.3g} s in {made}; {encoder}"

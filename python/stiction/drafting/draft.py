@@ -11,8 +11,8 @@ from typing import Any
 from ..errors import InputError
 from ..progress import phase
 from ..recording import Columns, Table
-from ..recording.guess import Guess, guess, overruled
-from .tables import as_in_file, named, one_joint, read
+from ..recording.guess import Guess, guess, overrule
+from .tables import as_in_file, name_tables, one_joint, read
 from .text import plant_text, session_text
 
 __all__ = ["FILES", "Draft", "draft"]
@@ -112,13 +112,13 @@ def draft(
     _check_law(law)
     tables, left_out, files_of = read(paths)
     phase(_logger, "guessing what each column is")
-    tables, calls = named(tables, header)
+    tables, calls = name_tables(tables, header)
     stated = Columns.parse(columns, where=where)
     wanted = [column.name for column in stated.values()]
     tables, joints = one_joint(tables, joint, wanted)
     found = as_in_file(guess(tables), calls)
     if stated:
-        found = overruled(found, stated)
+        found = overrule(found, stated)
     _check_gain(gain, found)
     return Draft(
         found,
@@ -133,12 +133,12 @@ def draft(
 
 def _check_law(law: str) -> None:
     from ..catalogue import laws
-    from ..wording import did_you_mean, listed
+    from ..wording import commas, did_you_mean
 
     names = [record.name for record in laws()]
     if law not in names:
         raise InputError(
-            f"there is no law '{law}'{did_you_mean(law, names)}; there are {listed(names)}"
+            f"there is no law '{law}'{did_you_mean(law, names)}; there are {commas(names)}"
         )
 
 

@@ -12,20 +12,20 @@ from pathlib import Path
 from ..errors import InputError
 from ..progress import phase, steps
 from ..recording import Table, read_table
-from ..recording.columns import numbered
+from ..recording.columns import default_name
 from ..recording.formats import FORMATS
 from ..recording.guess import Guess
 from ..recording.joints import MOST, joints_of
 from ..recording.repair import FEWEST_ROWS
 from ..recording.signals import read_signals, runs_of_signals
-from ..wording import counted, listed
+from ..wording import commas, plural
 
-__all__ = ["as_in_file", "named", "one_joint", "read", "recordings_in"]
+__all__ = ["as_in_file", "name_tables", "one_joint", "read", "recordings_in"]
 
 _logger = logging.getLogger(__name__)
 
 
-def named(tables: list[Table], header: str) -> tuple[list[Table], dict[str, str]]:
+def name_tables(tables: list[Table], header: str) -> tuple[list[Table], dict[str, str]]:
     """The tables under the names that were given, and what their columns are called in the file.
 
     Raises
@@ -45,14 +45,14 @@ def named(tables: list[Table], header: str) -> tuple[list[Table], dict[str, str]
         raise InputError("--header: a name is empty or there twice; give each column its own")
     for table in tables:
         own = list(table.columns)
-        if own != [numbered(place) for place in range(1, len(own) + 1)]:
+        if own != [default_name(place) for place in range(1, len(own) + 1)]:
             raise InputError(
-                f"{table.path}: its columns have names ({listed(own)}), and --header is for files "
+                f"{table.path}: its columns have names ({commas(own)}), and --header is for files "
                 "without; leave it out"
             )
         if len(own) != len(names):
             raise InputError(
-                f"{table.path}: has {counted(len(own), 'column')}, and --header names {len(names)}"
+                f"{table.path}: has {plural(len(own), 'column')}, and --header names {len(names)}"
             )
     calls = dict(zip(names, tables[0].columns, strict=True))
     back = {column: name for name, column in calls.items()}
@@ -77,7 +77,7 @@ def one_joint(
         if wanted:
             raise InputError(
                 f"{tables[0].path}: --joint is {wanted}, and the columns are not those of several "
-                f"joints ({listed(tables[0].columns)}); leave it out"
+                f"joints ({commas(tables[0].columns)}); leave it out"
             )
         return tables, []
     having = [
@@ -86,7 +86,7 @@ def one_joint(
         if set(columns) <= joints.only(tables[0], label).columns.keys()
     ]
     told = having[0] if columns and len(having) == 1 else ""
-    joint = wanted or told or joints.moving(tables)
+    joint = wanted or told or joints.moving_joint(tables)
     others = [label for label in joints.labels if label != joint]
     return [joints.only(table, joint) for table in tables], [joint, *others]
 
@@ -128,9 +128,9 @@ def read(paths: Sequence[Path]) -> _Read:
                     raise
                 left_out.append((file, str(error)))
     if not tables:
-        faults = listed(why for _, why in left_out[:3])
+        faults = commas(why for _, why in left_out[:3])
         raise InputError(
-            f"{listed(str(path) for path in paths)}: no file in it can be used: {faults}"
+            f"{commas(str(path) for path in paths)}: no file in it can be used: {faults}"
         )
     if runs := runs_of_signals(tables):
         tables = [read_signals(run) for run in runs]
@@ -170,7 +170,7 @@ def _table(path: Path) -> Table:
     rows = max(len(column) for column in table.columns.values())
     if rows < FEWEST_ROWS:
         raise InputError(
-            f"{path}: the recording has {counted(rows, 'row')}, and at least {FEWEST_ROWS} are "
+            f"{path}: the recording has {plural(rows, 'row')}, and at least {FEWEST_ROWS} are "
             "needed; record longer or sample faster"
         )
     return table
@@ -187,7 +187,7 @@ def _same_columns(
         if own == usual:
             same.append(table)
             continue
-        lacks, has = listed(sorted(usual - own)), listed(sorted(own - usual))
+        lacks, has = commas(sorted(usual - own)), commas(sorted(own - usual))
         why = f"other columns than the rest: it lacks {lacks}, and has {has} on top"
         if chosen:
             raise InputError(

@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..recording.columns import CANONICAL
 from ..recording.guess import ColumnGuess, Guess
 from ..recording.units import SI_UNIT, find_unit
-from ..wording import listed
+from ..wording import commas
 
 __all__ = [
     "GAIN_UNIT",
@@ -24,8 +24,8 @@ __all__ = [
     "kinds_of",
     "plant_text",
     "printable",
-    "quoted",
     "session_text",
+    "toml_string",
 ]
 
 _WIDTH = 98
@@ -144,7 +144,7 @@ def _numbers_beside(found: Guess) -> str:
     scalars = [one.column for one in found.columns if one.reason == "is a scalar"]
     if not scalars:
         return ""
-    return f" The file also holds the single numbers {listed(scalars)}: one may be the gain."
+    return f" The file also holds the single numbers {commas(scalars)}: one may be the gain."
 
 
 def _body(found: Guess, unit: str, effort: str) -> list[str]:
@@ -238,7 +238,7 @@ def session_text(
     if unused:
         lines += ["", "# Not used:"]
         for one in unused:
-            lines += comment(f"{quoted(one.column)}: {one.reason}", "#   ")
+            lines += comment(f"{toml_string(one.column)}: {one.reason}", "#   ")
     lines += ["", *_recordings(paths, left_out, where, headers)]
     return "\n".join(lines) + "\n"
 
@@ -247,7 +247,7 @@ def _joint(joints: Sequence[str]) -> str:
     if not joints:
         return ""
     return (
-        f"Joint {joints[0]} alone: the recordings hold {listed(joints[1:])} as well, which init "
+        f"Joint {joints[0]} alone: the recordings hold {commas(joints[1:])} as well, which init "
         "--joint takes. What the others do to it (inertia, gravity) is not in this plant."
     )
 
@@ -261,11 +261,11 @@ def _column(one: ColumnGuess) -> list[str]:
 
 def column_value(one: ColumnGuess) -> str:
     """A column as it stands in TOML."""
-    name = quoted(one.column)
+    name = toml_string(one.column)
     if one.column in CANONICAL and one.scale == 1.0:
         return name
     scale = "" if one.scale == 1.0 else f", scale = {one.scale!r}"
-    return f"{{ name = {name}, unit = {quoted(one.unit or '1')}{scale} }}"
+    return f"{{ name = {name}, unit = {toml_string(one.unit or '1')}{scale} }}"
 
 
 def _measured_unit(found: Guess, effort: str) -> str:
@@ -302,15 +302,15 @@ def _recordings(
         + (" The kinds are from the names of the files." if any(kinds) else "")
     )
     for files, kind, header in zip(paths, kinds, headers or [{}] * len(paths), strict=True):
-        named = [quoted(_relative(path, where)) for path in files]
+        named = [toml_string(_relative(path, where)) for path in files]
         told = named[0] if len(named) == 1 else f"[{', '.join(named)}]"
         lines += ["", "[[recordings]]", f"file = {told}"]
-        lines += [f"kind = {quoted(kind)}"] if kind else []
+        lines += [f"kind = {toml_string(kind)}"] if kind else []
         lines += _stated(header)
     for path, why in left_out:
         told = why.removeprefix(f"{path}: ")
         lines += ["", *comment(f"Left out: {printable(told)}")]
-        lines += ["# [[recordings]]", f"# file = {quoted(_relative(path, where))}"]
+        lines += ["# [[recordings]]", f"# file = {toml_string(_relative(path, where))}"]
     return lines
 
 
@@ -362,7 +362,7 @@ def _relative(path: Path, where: Path) -> str:
         return full.as_posix()
 
 
-def quoted(text: str) -> str:
+def toml_string(text: str) -> str:
     """A TOML string. JSON's escapes are TOML's, but for one control character."""
     quoted = json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007F")
     try:

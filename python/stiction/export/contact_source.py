@@ -7,13 +7,13 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from .fragments import Fragments, known
+from .fragments import Fragments, names_of
 
 if TYPE_CHECKING:
     from ..plant import Plant
     from ..stated import Effect
 
-__all__ = ["ContactSource", "numbers_of", "plant_numbers", "prologue", "spaced"]
+__all__ = ["ContactSource", "collapse_blank_lines", "numbers_of", "plant_numbers", "prologue"]
 
 TYPES: Final = re.compile(r"^typedef [^;{}]*(?:\{(?:(?!^\}).)*\})? ?(stiction_\w+);\n", re.M | re.S)
 MATHS: Final = re.compile(r"\br_(\w+)\(")
@@ -54,7 +54,7 @@ class ContactSource:
         fragments.numbers |= {name.upper(): value for name, value in model.parameters.items()}
         fragments.numbers |= {name.upper(): word for name, word in model.options.items()}
         folders = ("effects", "drive") if driven else ("effects",)
-        places = {name: folder for folder in folders for name in known(folder)}
+        places = {name: folder for folder in folders for name in names_of(folder)}
         effects = tuple(each for each in plant.effects if each.name in places)
         law = fragments.expand(f"laws/{plant.friction.law}")
         contact = law
@@ -113,7 +113,7 @@ def numbers_of(effect: Effect) -> dict[str, float]:
     }
 
 
-def spaced(text: str) -> str:
+def collapse_blank_lines(text: str) -> str:
     """A text as a compiler gets it, with no more than one empty line at a time."""
     return re.sub(r"\n{3,}", "\n\n", re.sub(r"^# ", "#", text, flags=re.M))
 

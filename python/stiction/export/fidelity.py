@@ -12,13 +12,13 @@ import numpy as np
 from ..errors import InputError
 from ..fitting import fit
 from ..fitting.forms import HORIZONS_S, KERNELS, Through, as_session, can_be_shot, forms_of
+from ..fitting.recording_starts import fit_starts
 from ..fitting.rows import Mask, Nuisances, Rows, rows_of
-from ..fitting.starts import started
 from ..recording import Part
 from ..recording.blocks import FEWEST_BLOCKS
 from ..recording.checks import without_failures
 from ..recording.recording import recordings_of
-from ..recording.session_clock import remaining
+from ..recording.session_clock import subset
 from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from ..trajectory import FloatArray
@@ -154,7 +154,7 @@ class Bench:
         if kept is None:
             raise InputError(fault)
         self._plant = plant
-        self._recordings = without_failures(remaining(recordings, kept))
+        self._recordings = without_failures(subset(recordings, kept))
         if not self._recordings:
             raise InputError("check: there are no recordings; give a session that has some")
         only = self._recordings[0]
@@ -234,11 +234,14 @@ class Bench:
         for (row, start), bare_start in zip(self._along, bare, strict=True):
             form, mask = row.form, row.mask & _moves(row.form)
             errors[0].append(form.residual(self._plant, start)[mask])
-            known = form.measured(self._plant) - form.own(self._plant).inertia * form.acceleration
+            known = (
+                form.measured_effort(self._plant)
+                - form.own(self._plant).inertia * form.acceleration
+            )
             velocity = np.diff(form.position) / form.dt
             place = 0.5 * (form.position[1:] + form.position[:-1])
             for found, run in zip(errors[1:], runs, strict=True):
-                needed = form.given(run.effort(velocity, place), np.zeros_like(place))
+                needed = form.applied_effort(run.effort(velocity, place), np.zeros_like(place))
                 found.append((known - needed)[mask])
             if self._plant.effects:
                 without.append(form.residual(self._bare, bare_start)[mask])
@@ -305,7 +308,7 @@ class Bench:
         """What the contact brings along, which is no part of a plant: the whole recording tells."""
         every = [Part(row.index, 0, len(self._recordings[row.index]))]
         mask = rows_of(row.form, self._recordings[row.index], row.index, every)
-        return started(plant, [row.of(mask)], Nuisances()).start(row.index)
+        return fit_starts(plant, [row.of(mask)], Nuisances()).start(row.index)
 
     @cached_property
     def _shot(self) -> list[tuple[ShootingForm, Mask, Start]]:

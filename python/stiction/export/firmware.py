@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from .contact_source import ContactSource, plant_numbers, prologue, spaced
-from .fragments import Fragments, known
+from .contact_source import ContactSource, collapse_blank_lines, plant_numbers, prologue
+from .fragments import Fragments, names_of
 
 if TYPE_CHECKING:
     from ..plant import Plant
@@ -39,7 +39,7 @@ class Firmware:
     def of(cls, plant: Plant, curves: Mapping[str, Any]) -> Firmware:
         """Of a plant and the constants of its feed-forward."""
         fragments = Fragments({**plant_numbers(plant), **curves})
-        there = plant.friction.law in known("laws")
+        there = plant.friction.law in names_of("laws")
         step, types = "", ""
         held: tuple[str, ...] = ()
         if there:
@@ -50,4 +50,4 @@ class Firmware:
         text = step + "\n".join(map(fragments.expand, ("feedforward", "gravity", "observer")))
         header = fragments.expand("header").replace("@types@\n", types)
         source = prologue(text) + fragments.constants(text) + "\n" + text
-        return cls(spaced(source), spaced(header), there, held)
+        return cls(collapse_blank_lines(source), collapse_blank_lines(header), there, held)

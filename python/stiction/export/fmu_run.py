@@ -19,13 +19,13 @@ from .fmi_description import IDENTIFIER
 if TYPE_CHECKING:
     from .runs import Windows
 
-__all__ = ["gone"]
+__all__ = ["run_windows"]
 
 INPUT, LOAD, POSITION, VELOCITY = 1, 2, 4, 5
 """Numbers of variables."""
 
 
-def gone(archive: bytes, windows: Windows) -> FloatArray:
+def run_windows(archive: bytes, windows: Windows) -> FloatArray:
     """Where the FMU gets to in windows along a recording, its contact led to where they start.
 
     Returns

@@ -36,7 +36,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, Final
 
-__all__ = ["Fragments", "fragment", "known"]
+__all__ = ["Fragments", "fragment", "names_of"]
 
 WORDS: Final = re.compile(r"\b[A-Za-z_]\w*\b")
 COMMENTS: Final = re.compile(r"/\*.*?\*/", re.S)
@@ -63,7 +63,7 @@ def fragment(path: str) -> str | None:
 
 
 @cache
-def known(kind: str) -> tuple[str, ...]:
+def names_of(kind: str) -> tuple[str, ...]:
     """Names of the fragments of one kind: laws, effects or elements."""
     folder = files(__package__).joinpath("c", kind)
     names = [file.name.removesuffix(".c") for file in folder.iterdir() if file.name.endswith(".c")]

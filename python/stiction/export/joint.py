@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..plant import Plant
     from ..stated import Effect
 
-__all__ = ["Joint", "beside", "joint_of", "sidecar", "speeds_up_to", "told"]
+__all__ = ["Joint", "beside", "joint_of", "losses_of", "sidecar", "speeds_up_to"]
 
 SPEEDS: Final = 200
 PROBED: Final = 10.0
@@ -85,7 +85,7 @@ def joint_of(plant: Plant, speed: float) -> Joint:
     )
 
 
-def told(plant: Plant, joint: Joint, *, limited: bool = False) -> tuple[str, ...]:
+def losses_of(plant: Plant, joint: Joint, *, limited: bool = False) -> tuple[str, ...]:
     """What a joint of these numbers cannot hold, a sentence each.
 
     ``limited`` says whether the target has the limit of the drive.

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from ..drive import servo_numbers
-from ..wording import listed
-from .contact_source import ContactSource, plant_numbers, prologue, spaced
+from ..wording import commas
+from .contact_source import ContactSource, collapse_blank_lines, plant_numbers, prologue
 from .fragments import Fragments
 
 if TYPE_CHECKING:
@@ -92,7 +92,9 @@ class MachineSource:
         states = 3 if "BENDS" in fragments.flags else 2
         temperature = "TEMPERATURE" in fragments.flags
         watches = fragments.numbers["WATCHED"] > 0.0
-        return cls(spaced(source), contact.effects, sampled, states, temperature, watches)
+        return cls(
+            collapse_blank_lines(source), contact.effects, sampled, states, temperature, watches
+        )
 
 
 def _servo(plant: Plant) -> dict[str, Any]:
@@ -133,7 +135,7 @@ def _sampled(plant: Plant, fragments: Fragments) -> str:
         return f"{plant.friction.law} is stepped, and no equation over time"
     remember = [name for hook in ("remember", "creep") for name in fragments.hooks.get(hook, ())]
     if remember:
-        return f"{listed(list(dict.fromkeys(remember)))} remembers from sample to sample"
+        return f"{commas(list(dict.fromkeys(remember)))} remembers from sample to sample"
     if fragments.numbers["SERVO"] and fragments.numbers["SERVO_INTEGRAL"] != 0.0:
         return "the servo sums up from sample to sample"
     late = {"DELAYS", "SLOWS", "LAGS"} & fragments.flags

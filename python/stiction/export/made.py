@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import given
-from ..atomic_files import replacing, write_text
+from ..atomic_files import atomic_write, write_text
 from ..errors import InputError
 
 if TYPE_CHECKING:
@@ -63,11 +63,11 @@ class Export:
             A folder that cannot be made, a file that cannot be written.
         """
         where = given.path(folder, "Export.save")
-        with given.written(where):
+        with given.explain_write_errors(where):
             where.mkdir(parents=True, exist_ok=True)
             for name, content in self.files.items():
                 if isinstance(content, bytes):
-                    with replacing(where / name) as file:
+                    with atomic_write(where / name) as file:
                         file.write(content)
                 else:
                     write_text(where / name, content)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..plant import Plant
     from ..weak_form import Start
 
-__all__ = ["EffortRun", "MotionRun", "Windows", "dry_friction", "hanging"]
+__all__ = ["EffortRun", "MotionRun", "Windows", "dry_friction", "gravity_effort"]
 
 
 @dataclass(frozen=True)
@@ -99,12 +99,12 @@ def dry_friction(plant: Plant, friction: float, damping: float) -> tuple[EffortR
 
     def effort(velocity: FloatArray, position: FloatArray) -> FloatArray:
         resisted: FloatArray = friction * np.sign(velocity) + damping * velocity
-        return resisted + hanging(plant, position)
+        return resisted + gravity_effort(plant, position)
 
     return (EffortRun("", effort),)
 
 
-def hanging(plant: Plant, position: FloatArray) -> FloatArray:
+def gravity_effort(plant: Plant, position: FloatArray) -> FloatArray:
     """Effort that bears the mass which the bodies of a simulator have to be given; N·m or N."""
     zero = plant.body.get("gravity_zero_rad")
     angle = position - (0.0 if zero is None else zero.value)

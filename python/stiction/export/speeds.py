@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ..plant import Plant
     from ..recording import Recording
 
-__all__ = ["speed_of", "speed_seen"]
+__all__ = ["recorded_speed", "speed_of"]
 
 USUAL: Final = {"rotary": 10.0, "linear": 0.2}
 """rad/s, and m/s of a machine that goes straight, such as a ball screw."""
@@ -36,7 +36,7 @@ def speed_of(plant: Plant) -> float:
     return max(USUAL[plant.motion], *(FALLEN * each for each in falls), 0.0)
 
 
-def speed_seen(recordings: Sequence[Recording]) -> float | None:
+def recorded_speed(recordings: Sequence[Recording]) -> float | None:
     """The greatest speed of recordings, but for its last percent; None where nothing moves.
 
     Parameters

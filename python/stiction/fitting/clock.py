@@ -14,7 +14,7 @@ from ..parameter import Parameter
 from ..plant import Plant
 from .rows import Nuisances, Rows
 
-__all__ = ["bounded", "follows"]
+__all__ = ["bounded_plants", "follows"]
 
 EASE: Final = 100.0
 """How much longer a sample might be: a hundredth of the parts that are allowed, as many of them as
@@ -38,7 +38,7 @@ def follows(plant: Plant, rows: Sequence[Rows]) -> bool:
     return True
 
 
-def bounded(
+def bounded_plants(
     plant: Plant, paths: Sequence[str], rows: Sequence[Rows], nuisances: Nuisances
 ) -> list[Plant]:
     """Plants with one number bounded each, of one that is too stiff for its own samples.

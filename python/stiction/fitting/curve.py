@@ -20,7 +20,7 @@ from ..json_text import json_of
 from ..parameter import Parameter
 from ..plant import Plant
 from ..trajectory import FloatArray
-from ..wording import counted, listed
+from ..wording import commas, plural
 from .levenberg import levenberg_marquardt
 from .result import FitParameter
 
@@ -81,7 +81,7 @@ class CurveFit:
     def message(self) -> str:
         """What was fitted and what is left, in a sentence."""
         return (
-            f"{self.plant.friction.law} fitted to {counted(len(self.speed), 'point')} of speed and "
+            f"{self.plant.friction.law} fitted to {plural(len(self.speed), 'point')} of speed and "
             f"friction: {self.rms:.3g} {self.plant.effort_unit} rms left, "
             f"{100.0 * self.relative:.2g} % of the friction"
         )
@@ -102,7 +102,7 @@ class CurveFit:
         remarks = list(self.notes)
         if self.untold:
             remarks.append(
-                f"not fitted to a curve of steady friction, at defaults: {listed(self.untold)}"
+                f"not fitted to a curve of steady friction, at defaults: {commas(self.untold)}"
             )
         return ["", *remarks] if remarks else []
 
@@ -197,10 +197,10 @@ class CurveFit:
         """
         where = given.path(folder, "CurveFit.save")
         files = [where / "plant.toml", where / "curve.json"]
-        with given.written(where):
+        with given.explain_write_errors(where):
             where.mkdir(parents=True, exist_ok=True)
         self.plant.save(files[0])
-        with given.written(files[1]):
+        with given.explain_write_errors(files[1]):
             write_text(files[1], json_of(self.to_dict()) + "\n")
         return files
 
@@ -344,7 +344,7 @@ def _points(speed: npt.ArrayLike, friction: npt.ArrayLike) -> tuple[FloatArray, 
     across, up = across[moving], up[moving]
     if len(across) < FEWEST:
         raise InputError(
-            f"fit_curve: there are {counted(len(across), 'point')} in motion; give {FEWEST} or more"
+            f"fit_curve: there are {plural(len(across), 'point')} in motion; give {FEWEST} or more"
         )
     both_ways = np.min(across) < 0.0 < np.max(across)
     if np.all(up >= 0.0) and (both_ways or np.all(across < 0.0)):

@@ -15,7 +15,7 @@ from ..recording.guess.evidence import columns_of
 from ..recording.guess.kinds import kinds_of
 from ..recording.units import MOTION_OF_QUANTITY, SI_UNIT, Unit, find_unit, to_si
 from ..trajectory import FloatArray
-from ..wording import listed
+from ..wording import commas
 from .curve import CurveFit, fit_curve
 
 __all__ = ["curve_table", "fit_curve_file"]
@@ -75,7 +75,7 @@ def fit_curve_file(
         if unit is not None and unit.quantity in MOTION_OF_QUANTITY
     }
     if len(motions) > 1:
-        told = listed(f"{role} in {unit.name}" for role, unit in units.items() if unit is not None)
+        told = commas(f"{role} in {unit.name}" for role, unit in units.items() if unit is not None)
         raise InputError(
             f"{path}: {told} do not go together; state units of one kind of motion with --columns"
         )
@@ -101,9 +101,9 @@ def _by_name(table: Table, role: str) -> Column:
     kind = "velocity" if role == "velocity" else "drive"
     fitting = [column.name for column in columns_of([table]) if kind in kinds_of(column)[:1]]
     if len(fitting) != 1:
-        why = "no column is known to be" if not fitting else f"{listed(fitting)} could each be"
+        why = "no column is known to be" if not fitting else f"{commas(fitting)} could each be"
         raise InputError(
-            f"{table.path}: {why} the {role}; the columns here are {listed(table.columns)}; state "
+            f"{table.path}: {why} the {role}; the columns here are {commas(table.columns)}; state "
             f'it with --columns "velocity=NAME [rad/s], effort=NAME [Nm]"'
         )
     return Column(fitting[0])
@@ -126,7 +126,7 @@ def _unit(table: Table, role: str, column: Column) -> Unit | None:
     if unit.quantity not in _QUANTITIES[role]:
         raise InputError(
             f"{where} has the unit {unit.name}, which is no unit of {role}; give one of "
-            f"{listed(SI_UNIT[each] for each in _QUANTITIES[role])}"
+            f"{commas(SI_UNIT[each] for each in _QUANTITIES[role])}"
         )
     return unit
 

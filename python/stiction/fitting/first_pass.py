@@ -26,12 +26,12 @@ from .forms import (
     wider_of,
     windows_of,
 )
-from .minimise import Solution, launch, or_from, stopped
+from .minimise import Solution, launch, or_from, with_interruption
 from .pushes import Watch
 from .rows import Nuisances, Rows
-from .start import clinging, complete, free_paths, lightly_held
+from .start import complete, free_paths, with_light_friction, yielding_starts
 
-__all__ = ["WORTH_WIDER", "FirstPass", "Seen", "first_pass", "launched", "share_left"]
+__all__ = ["WORTH_WIDER", "FirstPass", "Seen", "first_pass", "fit_from_data", "remaining_share"]
 
 WORTH_CLINGING: Final = 0.9
 """Share of what else is left that a contact may leave at most which never breaks away."""
@@ -136,7 +136,7 @@ def first_pass(
     InputError
         No start along which the plant gives numbers.
     """
-    start, found = launched(plant, seen.train, most=most)
+    start, found = fit_from_data(plant, seen.train, most=most)
     known = FirstPass(seen, found, start)
     if found.interrupted:
         return known
@@ -147,10 +147,10 @@ def first_pass(
         return _wider(plant, known, again, most=most)
     except KeyboardInterrupt:
         # Before what comes after had anything to keep.
-        return replace(known, solution=stopped(known.solution))
+        return replace(known, solution=with_interruption(known.solution))
 
 
-def launched(
+def fit_from_data(
     plant: Plant,
     rows: Sequence[Rows],
     *,
@@ -160,7 +160,7 @@ def launched(
 ) -> tuple[Plant, Solution]:
     """Fit a plant to rows from what the data give to start from.
 
-    Where much is left, a contact that never breaks away is tried as well (see ``clinging``). That
+    Where much is left, a contact that never breaks away is tried too (``yielding_starts``). That
     comes after the others have ended, for it is slow to show where it leads. It must leave clearly
     less beside constants: such a contact keeps what it brought along for a whole recording, and
     so hides an offset that the other one leaves for all to see.
@@ -189,12 +189,12 @@ def launched(
     if found.interrupted or found.power > hopeless:
         return starts[0], found
     try:
-        others = [within(start) for start in clinging(plant, starts, forms)]
+        others = [within(start) for start in yielding_starts(plant, starts, forms)]
         if others:
             found = _or_clinging(others, found, rows, most=most)
     except KeyboardInterrupt:
         # Before there was anything to try.
-        found = stopped(found)
+        found = with_interruption(found)
     return starts[0], found
 
 
@@ -202,23 +202,23 @@ def _or_clinging(
     others: Sequence[Plant], found: Solution, rows: Sequence[Rows], *, most: int
 ) -> Solution:
     """The solution, or one with a contact that never breaks away where that leaves clearly less."""
-    before = share_left(found, rows)
+    before = remaining_share(found, rows)
     if before < LEAST_LEFT:
         return found
     other = or_from(others, found, rows, most=most)
-    if share_left(other, rows) < WORTH_CLINGING * before:
+    if remaining_share(other, rows) < WORTH_CLINGING * before:
         return other
-    kept = stopped(found) if other.interrupted else found
+    kept = with_interruption(found) if other.interrupted else found
     return replace(kept, evaluations=other.evaluations)
 
 
-def share_left(solution: Fitted, rows: Sequence[Rows]) -> float:
+def remaining_share(solution: Fitted, rows: Sequence[Rows]) -> float:
     """Share of the measured effort that is left beside a constant in each recording."""
     left, measured = 0.0, 0.0
     for each in rows:
         own = each.residual(solution.plant, solution.nuisances)[each.mask]
         left += each.weight**2 * float(np.sum((own - np.mean(own)) ** 2))
-        effort = each.form.measured(solution.plant)[each.mask]
+        effort = each.form.measured_effort(solution.plant)[each.mask]
         measured += each.weight**2 * float(effort @ effort)
     return float(np.sqrt(left / max(measured, 1e-300)))
 
@@ -245,7 +245,7 @@ def _simulated(
         begun = [followable(each, other.forms) for each in begun]
         fitted = launch(begun, paths, other.train, most=most)
         if servo:
-            light = lightly_held(plant, start, [rows.form for rows in seen.train])
+            light = with_light_friction(plant, start, [rows.form for rows in seen.train])
             fitted = or_from([light], fitted, other.train, most=most)
         better = (
             tried is None
@@ -295,13 +295,13 @@ def _wider(
     phase(_logger, "fitting it again, through wider kernels")
     try:
         other = again(found.plant, Through(support=support), seen.watch)
-        start, wide = launched(plant, other.train, most=most)
+        start, wide = fit_from_data(plant, other.train, most=most)
     except InputError:
         # Too little is left within wider edges, or it leads nowhere: what is known stands.
         return known
     wide = _after(found, wide)
     drowned = found.plant.inertia * DROWNED < wide.plant.inertia
-    less = share_left(wide, other.train) < WORTH_WIDER * share_left(found, seen.train)
+    less = remaining_share(wide, other.train) < WORTH_WIDER * remaining_share(found, seen.train)
     if drowned and less and _grows(wide, seen.train) and _lost(wide, other.train) is None:
         return FirstPass(other, wide, start)
     return replace(known, solution=_kept(found, wide))
@@ -330,7 +330,7 @@ def _after(found: Solution, other: Solution) -> Solution:
 def _kept(found: Solution, other: Solution) -> Solution:
     """The one that was found, with what was done after it."""
     found = replace(found, evaluations=other.evaluations)
-    return stopped(found) if other.interrupted else found
+    return with_interruption(found) if other.interrupted else found
 
 
 def _lost(solution: Solution, rows: Sequence[Rows]) -> int | None:

@@ -18,7 +18,7 @@ from ..recording.session_clock import ages_of, starts_of
 from ..shooting import MOST_OVERLAP, ShootingForm
 from ..trajectory import FloatArray
 from ..weak_form import WeakForm
-from .readings import made_by_readings
+from .readings import residual_of_readings
 from .rows import Nuisances, Rows
 
 __all__ = [
@@ -27,16 +27,16 @@ __all__ = [
     "LEAST_LEFT",
     "Through",
     "as_session",
-    "as_stated",
     "astray",
     "can_be_shot",
     "followable",
     "forms_of",
     "horizon_of",
+    "residual_sentence",
+    "restore_bounds",
     "shows_its_ring",
-    "softened",
+    "soften",
     "stiffen",
-    "told",
     "wider_of",
     "windows_of",
 ]
@@ -195,7 +195,7 @@ def _share_noise(forms: Sequence[WeakForm], sealed: Collection[int]) -> None:
         count = float(np.median([form.count for form in noisy]))
         if quiet.count == 0.0 or np.isclose(quiet.count, count, rtol=ALIKE):
             quiet.count = count
-            quiet.read_with(float(np.median([form.noise for form in noisy])))
+            quiet.denoise(float(np.median([form.noise for form in noisy])))
 
 
 def horizon_of(
@@ -233,7 +233,7 @@ def horizon_of(
     if _fine(plant, [each.form for each in rows]) or not shows_its_ring(plant, forms):
         return None
     left = [each.residual(plant, nuisances)[each.mask] for each in rows]
-    measured = [each.form.measured(plant)[each.mask] for each in rows]
+    measured = [each.form.measured_effort(plant)[each.mask] for each in rows]
     if _size(left) < LEAST_LEFT * _size(measured):
         return None
     drifts = float(np.median([_time(plant, each.form) for each in rows]))
@@ -271,7 +271,7 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm], rows: Sequence[Rows]) ->
         # The contact yields by its effect.
         return None
     moved = [plant.inertia * each.form.acceleration[each.mask] for each in rows]
-    if _size(moved) < SHOWS * _size([each.form.measured(plant)[each.mask] for each in rows]):
+    if _size(moved) < SHOWS * _size([each.form.measured_effort(plant)[each.mask] for each in rows]):
         return None
     return HORIZONS_S[1]
 
@@ -324,7 +324,7 @@ def astray(
             continue
         weights = Kernel(shot.form.kernel.support, spacing).weights
         left = finite(each.residual(plant, nuisances))
-        read = made_by_readings(each.form, plant, nuisances.start(each.index))
+        read = residual_of_readings(each.form, plant, nuisances.start(each.index))
         inside = slice(len(weights) // 2, len(left) - len(weights) // 2)
         time = each.form.time[inside]
         counted = shot.mask & (shot.form.time >= time[0]) & (shot.form.time <= time[-1])
@@ -334,7 +334,7 @@ def astray(
             wide = np.convolve(efforts, weights, "valid")
             found.append(np.interp(shot.form.time[counted], time, wide))
         own.append(finite(shot.residual(*other))[counted])
-        measured.append(shot.form.measured(plant)[counted])
+        measured.append(shot.form.measured_effort(plant)[counted])
         inertial.append(plant.inertia * shot.form.acceleration[counted])
     if not led or _size(led) < MATTERS * _size(measured):
         return False
@@ -375,7 +375,7 @@ def wider_of(
     if NARROW * min(form.kernel.support for form in forms) > widest:
         return None
     left = [each.residual(plant, nuisances)[each.mask] for each in rows]
-    measured = [each.form.measured(plant)[each.mask] for each in rows]
+    measured = [each.form.measured_effort(plant)[each.mask] for each in rows]
     return widest if _size(left) > MUCH_LEFT * _size(measured) else None
 
 
@@ -408,13 +408,13 @@ def followable(plant: Plant, forms: Sequence[WeakForm]) -> Plant:
     softer = parameters["initial_stiffness"].value / begun if begun > 0.0 else 1.0
     if softer < 1.0:
         parameters = {
-            **softened(parameters, softer),
+            **soften(parameters, softer),
             "initial_stiffness": parameters["initial_stiffness"],
         }
     return replace(plant, friction=replace(plant.friction, parameters=parameters))
 
 
-def softened(parameters: Mapping[str, Parameter], softer: float) -> dict[str, Parameter]:
+def soften(parameters: Mapping[str, Parameter], softer: float) -> dict[str, Parameter]:
     """Parameters of a law with all stiffnesses that many times as large, without their bounds.
 
     A law that ends at a stiffness of its own ends below the one that it begins with.
@@ -427,11 +427,11 @@ def softened(parameters: Mapping[str, Parameter], softer: float) -> dict[str, Pa
     }
 
 
-def as_stated(plant: Plant, given: Plant) -> Plant:
+def restore_bounds(plant: Plant, given: Plant) -> Plant:
     """The plant with the bounds of body and friction that were given.
 
-    Those that ``followable`` and ``clock.bounded`` set are ends of what can be simulated, and say
-    nothing of the machine.
+    Those that ``followable`` and ``clock.bounded_plants`` set are ends of what can be simulated,
+    and say nothing of the machine.
     """
 
     def part(
@@ -473,7 +473,7 @@ def stiffen(forms: Sequence[WeakForm], plant: Plant) -> None:
             form.go_by(plant)
 
 
-def told(forms: Sequence[WeakForm], plant: Plant) -> str:
+def residual_sentence(forms: Sequence[WeakForm], plant: Plant) -> str:
     """Which residual was used and why, in one sentence; ``plant`` is the one that was fitted."""
     if isinstance(forms[0], LoopForm):
         return (

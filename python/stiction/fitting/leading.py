@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from .minimise import Solution, minimise, stopped
+from .minimise import Solution, minimise, with_interruption
 from .rows import Rows
 
-__all__ = ["led_by_itself"]
+__all__ = ["refit_windows"]
 
 MOST_LED: Final = 2
 """Times that windows begin anew: what the plant before was late by has gone a hundredfold then."""
@@ -17,7 +17,7 @@ ENOUGH: Final = 0.05
 """Change of the power from which on they do once more: the next one is a hundredth of it."""
 
 
-def led_by_itself(
+def refit_windows(
     found: Solution, rows: Sequence[Rows], *, most: int, converged: float
 ) -> Solution:
     """A solution, fitted on with windows that begin in the motion of its own plant.
@@ -55,7 +55,7 @@ def led_by_itself(
             )
         except KeyboardInterrupt:
             # Before it had anything to keep.
-            return stopped(found)
+            return with_interruption(found)
         settled = abs(further.power - found.power) <= ENOUGH * found.power
         evaluations = found.evaluations + further.evaluations
         found = replace(further, begin=found.begin, evaluations=evaluations)

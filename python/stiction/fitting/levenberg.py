@@ -10,7 +10,7 @@ import numpy as np
 
 from ..trajectory import FloatArray
 
-__all__ = ["FIRST_DAMPING", "Minimum", "escaped", "levenberg_marquardt"]
+__all__ = ["FIRST_DAMPING", "Minimum", "escape", "levenberg_marquardt"]
 
 FIRST_DAMPING: Final = 0.1
 """Damping to start with, in units of the scaled normal matrix's diagonal."""
@@ -182,7 +182,7 @@ def _corrected(
     return slopes + np.outer(missed, along), normal
 
 
-def escaped(
+def escape(
     residual: Callable[[FloatArray], FloatArray],
     jacobian: Callable[[FloatArray], FloatArray],
     found: Minimum,

@@ -16,8 +16,8 @@ from ..plant import Plant
 from ..progress import steps
 from ..trajectory import FloatArray
 from ..workers import side_by_side
-from .levenberg import FIRST_DAMPING, Minimum, escaped, levenberg_marquardt
-from .rows import Nuisances, Rows, Start, numbers, primed, start_quantities, timing_bound
+from .levenberg import FIRST_DAMPING, Minimum, escape, levenberg_marquardt
+from .rows import Nuisances, Rows, Start, add_starts, numbers, start_quantities, timing_bound
 from .slopes import places_of, slopes
 from .variables import Variables, records
 
@@ -30,7 +30,7 @@ __all__ = [
     "launch",
     "minimise",
     "or_from",
-    "stopped",
+    "with_interruption",
 ]
 
 MOST_EVALUATIONS: Final = 60
@@ -192,7 +192,7 @@ def launch(
             # Before that start had anything to keep.
             if not first:
                 raise
-            first[-1] = stopped(first[-1])
+            first[-1] = with_interruption(first[-1])
         if first[-1].interrupted:
             break
     spent = sum(solution.evaluations for solution in first)
@@ -209,16 +209,16 @@ def launch(
                 break
     best = min(first, key=lambda solution: solution.power)
     if any(solution.interrupted for solution in first):
-        return stopped(replace(best, evaluations=spent))
+        return with_interruption(replace(best, evaluations=spent))
     if best.success:
         return replace(best, evaluations=spent)
-    known = primed(best.plant, rows, best.nuisances)
+    known = add_starts(best.plant, rows, best.nuisances)
     converged = CONVERGED if rows[0].form.simulated else LAUNCHED
     whole = _further(best, rows, most, nuisances=known, converged=converged)
     return replace(whole, evaluations=whole.evaluations + spent)
 
 
-def stopped(best: Solution) -> Solution:
+def with_interruption(best: Solution) -> Solution:
     """The best so far of a fit that was interrupted in another part."""
     return replace(best, success=False, interrupted=True, message=INTERRUPTED)
 
@@ -240,7 +240,7 @@ def _further(
         )
     except KeyboardInterrupt:
         # Before it had anything to keep.
-        return replace(stopped(solution), evaluations=0)
+        return replace(with_interruption(solution), evaluations=0)
     return replace(further, begin=solution.begin)
 
 
@@ -286,12 +286,12 @@ def or_from(
                 spent += again.evaluations
         except KeyboardInterrupt:
             # Before that start had anything to keep.
-            better = stopped(better)
+            better = with_interruption(better)
             break
         if again.power < better.power:
             better = again
         if again.interrupted:
-            better = stopped(better)
+            better = with_interruption(better)
             break
     return replace(better, evaluations=spent, begin=solution.begin)
 
@@ -331,7 +331,7 @@ class _Minimiser:
         self.timed = timed
         self.variables = Variables.of(plant, paths)
         self.begin = self.variables.vector(np.array([plant.parameters[p].value for p in paths]))
-        given = primed(plant, rows) if nuisances is None else nuisances
+        given = add_starts(plant, rows) if nuisances is None else nuisances
         self.starts, self.leader = places_of(given), given.leader
         self.evaluations = 0
         self._slopes: FloatArray | None = None
@@ -400,7 +400,7 @@ class _Minimiser:
         try:
             found = self.descend(begin, bounds, scale)
             for _ in range(escapes):
-                beyond = escaped(self.residual, self.jacobian, found, bounds)
+                beyond = escape(self.residual, self.jacobian, found, bounds)
                 if beyond is None:
                     break
                 found = self.descend(beyond, bounds, scale)

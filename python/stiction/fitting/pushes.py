@@ -15,7 +15,7 @@ from ..trajectory import FloatArray
 from ..weak_form import WeakForm
 from .rows import Mask, Push, rows_of
 
-__all__ = ["Watch", "left_out", "told"]
+__all__ = ["Watch", "omission_words", "push_checks"]
 
 WINDOWS_S: Final = (0.1, 0.3, 0.8)
 """Lengths of the windows whose momentum is compared: what is shorter than the first is a spike, no
@@ -70,15 +70,15 @@ OUTLYING: Final = 4.0
 """Robust standard deviations beyond which a row says nothing of the machine."""
 
 
-def left_out(push: Push) -> str:
+def omission_words(push: Push) -> str:
     """Why rows of a push are left out, in words."""
     return LEFT_OUT if push.sure else UNSURE
 
 
-def told(pushes: Sequence[Push], names: Sequence[str]) -> list[tuple[str, Check]]:
+def push_checks(pushes: Sequence[Push], names: Sequence[str]) -> list[tuple[str, Check]]:
     """The pushes as what was found in each recording, by its name."""
     return [
-        (names[push.recording], Check("push", "note", push.words(), left_out(push), ""))
+        (names[push.recording], Check("push", "note", push.words(), omission_words(push), ""))
         for push in pushes
     ]
 
@@ -182,7 +182,7 @@ class Watch:
 
     def _lacks(self, form: WeakForm, mask: Mask) -> FloatArray:
         """What the mean effort of each window lacks; shape (windows, rows)."""
-        lacks = form.measured(self.plant) - self._terms(form) @ self._coefficients
+        lacks = form.measured_effort(self.plant) - self._terms(form) @ self._coefficients
         return np.stack([_mean(form, lacks, mask, length) for length in WINDOWS_S])
 
     def _turns(self, form: WeakForm) -> Mask:
@@ -230,7 +230,7 @@ class Watch:
         return bool(nothing.sum() > OF_THOSE * known.sum())
 
     def _effort(self, form: WeakForm, mask: Mask) -> FloatArray:
-        return _mean(form, form.measured(self.plant), mask)
+        return _mean(form, form.measured_effort(self.plant), mask)
 
     def _columns(self, form: WeakForm, mask: Mask) -> FloatArray:
         return _mean(form, self._terms(form), mask)

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from ..accompanied import accompanied
+from ..accompanied import nearby_motion
 from ..errors import InputError
 from ..motion import GAUSSIAN, smooth
 from ..plant import Plant
@@ -17,10 +17,10 @@ from ..weak_form import Start, WeakForm
 
 __all__ = [
     "Residual",
-    "as_read",
-    "made_by_readings",
     "position_noise",
-    "slid_of",
+    "read_sensor",
+    "residual_of_readings",
+    "sliding_motion",
     "true_motion",
 ]
 
@@ -46,7 +46,7 @@ def position_noise(form: WeakForm) -> float:
     return float(np.sqrt(max(form.noise**2 - form.count**2 / 12.0, 0.0)))
 
 
-def as_read(
+def read_sensor(
     form: WeakForm, motion: FloatArray, white: float, source: np.random.Generator
 ) -> FloatArray:
     """A motion as the sensor reads it, with this noise beside its rounding; shape (rows,)."""
@@ -62,15 +62,15 @@ def true_motion(form: WeakForm) -> FloatArray:
     """The measured motion without its rounding: what stands for the true one; shape (rows,)."""
     if form.adapts:
         return form.position
-    for times in STEADIER if form.steadied > 0.0 else ():
-        found = smooth(form.readings, form.dt, times * form.steadied, drifts=True)
+    for times in STEADIER if form.smoothing_support > 0.0 else ():
+        found = smooth(form.readings, form.dt, times * form.smoothing_support, drifts=True)
         off = GAUSSIAN * float(np.median(np.abs(form.readings - found)))
         if off <= BESIDE_NOISE * form.noise:
             return found
     return smooth(form.position, form.dt, max(form.dt, SMOOTHING_SHARE * form.kernel.support))
 
 
-def slid_of(
+def sliding_motion(
     form: WeakForm, plant: Plant, start: Start
 ) -> tuple[FloatArray, Residual, FloatArray] | None:
     """A motion near the measured one that a plant with a rigid contact makes, residual and load.
@@ -84,7 +84,7 @@ def slid_of(
     if form.springy or form.prescribed or plant.servo:
         return None
     try:
-        motion, load = accompanied(form, plant, start, position=true_motion(form))
+        motion, load = nearby_motion(form, plant, start, position=true_motion(form))
     except InputError as error:
         _logger.info("followed instead of simulated: %s", error)
         return None
@@ -94,15 +94,15 @@ def slid_of(
     inertia = form.own(plant).inertia
 
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
-        driving = form.driving(readings)
+        driving = form.driving_motion(readings)
         short = form.short(plant, start, position=driving, load=load)
-        acted = form.given(np.zeros_like(load), load + added[1:] * moves)
+        acted = form.applied_effort(np.zeros_like(load), load + added[1:] * moves)
         return short + acted - inertia * form.accelerations(readings, driving)
 
     return motion, residual, load
 
 
-def made_by_readings(form: WeakForm, plant: Plant, start: Start = None) -> FloatArray | None:
+def residual_of_readings(form: WeakForm, plant: Plant, start: Start = None) -> FloatArray | None:
     """What the readings alone leave of the residual of a plant that is right; shape (rows,).
 
     A motion near the measured one that the plant makes by itself, read once by the sensor. None
@@ -115,9 +115,9 @@ def made_by_readings(form: WeakForm, plant: Plant, start: Start = None) -> Float
     start : dict, optional
         Friction state at the first row.
     """
-    slid = slid_of(form, plant, start)
+    slid = sliding_motion(form, plant, start)
     if slid is None:
         return None
     motion, residual, _ = slid
-    readings = as_read(form, motion, position_noise(form), np.random.default_rng(0))
+    readings = read_sensor(form, motion, position_noise(form), np.random.default_rng(0))
     return residual(readings, np.zeros(len(motion)))

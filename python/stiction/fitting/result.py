@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from .. import given
 from ..atomic_files import write_text
-from ..compared import compared_by
+from ..compared import comparison_of
 from ..frozen import ByPath, Frozen, freeze
 from ..json_text import json_of
 from ..plant import Plant
@@ -179,7 +179,7 @@ class FitResult:
                 yield from ((name, waves[name]) for name in names)
 
     def _headline(self) -> list[str]:
-        by = compared_by(self.plant)
+        by = comparison_of(self.plant)
         lines = [
             self.message,
             f"{by.error} where fitted: {by.share(self.train_relative, 3)} (relative 2-norm), "
@@ -203,7 +203,7 @@ class FitResult:
         if not math.isfinite(self.r2):
             return ""
         if self.r2 < 0.0:
-            return f"; worse than a constant {compared_by(self.plant).quantity} would do"
+            return f"; worse than a constant {comparison_of(self.plant).quantity} would do"
         return f", r² {self.r2:.5f}"
 
     def _remarks(self) -> list[str]:
@@ -245,7 +245,7 @@ class FitResult:
             No path, or a file that cannot be written.
         """
         path = given.path(path, "FitResult.save")
-        with given.written(path):
+        with given.explain_write_errors(path):
             write_text(path, self.to_json() + "\n")
         return path
 

@@ -25,11 +25,11 @@ __all__ = [
     "Push",
     "Rows",
     "Start",
-    "begun",
+    "add_starts",
     "numbers",
-    "primed",
     "require_motion",
     "rows_of",
+    "start_guess",
     "start_quantities",
 ]
 
@@ -39,7 +39,7 @@ TIMING_SHARE: Final = 0.5
 """Bound of the timing offset in samples: more than this is a delay of the machine."""
 TURNS: Final = ("turned", "turned_again")
 """Start quantities of springs with memory: where the contact turned round before. No row tells of
-them beside a contact that never did; see `turned` of the starts."""
+them beside a contact that never did; see `fit_turns` of the starts."""
 TOLD: Final = 0.01
 """A start quantity is fitted where it changes any row by this share of the residual."""
 GAP_SHARE: Final = 0.25
@@ -77,7 +77,7 @@ class Nuisances:
         starts = {index: start for index, start in self.starts.items() if index in recordings}
         return replace(self, starts=starts)
 
-    def joined(self, others: Nuisances) -> Nuisances:
+    def merge(self, others: Nuisances) -> Nuisances:
         """The same with the starts of others where it has none."""
         return replace(self, starts={**others.starts, **self.starts})
 
@@ -110,19 +110,19 @@ class Rows:
         other.mask = mask
         return other
 
-    def led_by(self, nuisances: Nuisances) -> Rows:
+    def with_leader(self, nuisances: Nuisances) -> Rows:
         """The same with windows that begin as they did for a plant with these nuisances."""
         other = copy(self)
-        other.form = self.form.led_by(nuisances.leader)
+        other.form = self.form.with_leader(nuisances.leader)
         return other
 
-    def led(self, plant: Plant, nuisances: Nuisances) -> WeakForm:
+    def form_for(self, plant: Plant, nuisances: Nuisances) -> WeakForm:
         """The recording as a plant has to be driven along it, from where its windows begin."""
-        return self.form.seen_by(plant).led_by(nuisances.leader)
+        return self.form.for_plant(plant).with_leader(nuisances.leader)
 
     def residual(self, plant: Plant, nuisances: Nuisances) -> FloatArray:
         """Measured minus needed effort of every row; shape (n,)."""
-        left = self.led(plant, nuisances).residual(plant, nuisances.start(self.index))
+        left = self.form_for(plant, nuisances).residual(plant, nuisances.start(self.index))
         return left + nuisances.timing * self.late
 
     def jacobian(self, plant: Plant, paths: Sequence[str], nuisances: Nuisances) -> FloatArray:
@@ -132,7 +132,7 @@ class Rows:
         """
         follows = plant.following(paths)
         every = [*paths, *(path for path, _, _ in follows)]
-        form = self.led(plant, nuisances)
+        form = self.form_for(plant, nuisances)
         found = form.jacobian(plant, every, nuisances.start(self.index))
         columns = found[:, : len(paths)]
         for column, (_, place, factor) in enumerate(follows, len(paths)):
@@ -200,8 +200,8 @@ def require_motion(rows: Sequence[Rows], plant: Plant) -> None:
     """
     if not rows:
         raise NotEnoughData("no rows are left to fit after the warm-up; give longer recordings")
-    seen = [(each.form.seen_by(plant), each.mask) for each in rows]
-    if not any(np.any(form.reached[mask]) and form.stirs for form, mask in seen):
+    seen = [(each.form.for_plant(plant), each.mask) for each in rows]
+    if not any(np.any(form.noisy_rows[mask]) and form.stirs for form, mask in seen):
         raise NotEnoughData(
             "nothing moves beyond the noise of its position in the rows to fit; record a motion, "
             "or check which column is position"
@@ -252,7 +252,7 @@ def start_quantities(plant: Plant) -> tuple[str, ...]:
     return tuple(quantity.name for quantity in plant.friction.record.start)
 
 
-def begun(plant: Plant, form: WeakForm) -> Start:
+def start_guess(plant: Plant, form: WeakForm) -> Start:
     """Where the start of a recording is looked for: a measured effort tells the force."""
     force = float(form.effort[0]) if form.prescribed else 0.0
     return {name: force if name == "force" else 0.0 for name in start_quantities(plant)}
@@ -269,19 +269,19 @@ def timing_bound(plant: Plant, rows: Sequence[Rows]) -> float:
     return TIMING_SHARE * min(each.form.dt for each in rows)
 
 
-def primed(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances | None = None) -> Nuisances:
+def add_starts(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances | None = None) -> Nuisances:
     """Nuisances with a start, as begun if it was not there, for all that the rows tell of."""
     before = nuisances or Nuisances()
-    new = {each.index: begun(plant, each.form) for each in rows}
+    new = {each.index: start_guess(plant, each.form) for each in rows}
     starts: dict[int, Start] = {}
-    for index, name in told_starts(plant, rows, before.leader):
+    for index, name in observable_starts(plant, rows, before.leader):
         known = new[index] | (before.start(index) or {})
         starts.setdefault(index, {})[name] = known[name]
         starts[index] |= {turn: known[turn] for turn in TURNS if known.get(turn)}
     return replace(before, starts=starts)
 
 
-def told_starts(
+def observable_starts(
     plant: Plant, rows: Sequence[Rows], leader: Plant | None = None
 ) -> list[tuple[int, str]]:
     """Starts that the rows tell of: index of the recording and quantity."""

@@ -11,7 +11,7 @@ from ..plant import Plant
 from ..progress import phase
 from ..recording import Recording
 
-__all__ = ["LEFT_WHERE_WRONG", "turned_round"]
+__all__ = ["LEFT_WHERE_WRONG", "sign_error"]
 
 _logger = logging.getLogger(__name__)
 
@@ -22,7 +22,7 @@ LEFT_WHERE_RIGHT: Final = 0.35
 """Share that it may leave once it is: an eighth of the power."""
 
 
-def turned_round(
+def sign_error(
     plant: Plant,
     recordings: Sequence[Recording],
     left_by: Callable[[Plant, list[Recording]], float],

@@ -21,33 +21,32 @@ from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.checks import without_failures
 from ..recording.names import names_of
 from ..recording.recording import recordings_of
-from ..recording.session_clock import remaining
+from ..recording.session_clock import subset
 from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from ..session import Session, both_of
 from ..trajectory import FloatArray
-from ..wording import counted
+from ..wording import plural
 from ..workers import with_workers
-from .clock import bounded
-from .first_pass import first_pass, launched, share_left
-from .forms import KERNELS, Through, as_session, as_stated, forms_of
-from .leading import led_by_itself
+from .clock import bounded_plants
+from .first_pass import first_pass, fit_from_data, remaining_share
+from .forms import KERNELS, Through, as_session, forms_of, restore_bounds
+from .leading import refit_windows
 from .minimise import (
     CONVERGED,
     MOST_EVALUATIONS,
     Solution,
     from_elsewhere,
     minimise,
-    stopped,
+    with_interruption,
 )
-from .pushes import Watch
-from .pushes import told as pushes_told
+from .pushes import Watch, push_checks
+from .recording_starts import fit_starts, fit_turns
 from .result import FitParameter, FitResult
-from .rows import Nuisances, Rows, primed, require_motion, rows_of
-from .sign import LEFT_WHERE_WRONG, turned_round
+from .rows import Nuisances, Rows, add_starts, require_motion, rows_of
+from .sign import LEFT_WHERE_WRONG, sign_error
 from .slopes import slopes
 from .start import complete, free_paths
-from .starts import started, turned
 from .statistics import (
     correlations,
     covariance,
@@ -59,7 +58,7 @@ from .statistics import (
 from .variables import RATIOS, Variables, states_bound, unit_of, with_effort_in
 from .waves import amplitude_of, parts_of, waves_of
 
-__all__ = ["evaluate", "fit", "reweighted", "settled"]
+__all__ = ["evaluate", "fit", "reweight", "second_pass"]
 
 _logger = logging.getLogger(__name__)
 
@@ -176,20 +175,20 @@ def fit(
         found = _fitted(machine, recordings, max_evaluations)
         if not (found.success and found.train_relative > LEFT_WHERE_WRONG):
             return found
-        hint = turned_round(machine, recordings, left_by_fit)
+        hint = sign_error(machine, recordings, fit_remainder)
     return replace(found, split="\n".join(filter(None, (hint, found.split))))
 
 
-def left_by_fit(plant: Plant, recordings: list[Recording]) -> float:
+def fit_remainder(plant: Plant, recordings: list[Recording]) -> float:
     """Share of the effort (2-norm) that a fit along the readings leaves, beside constants."""
     seen = _Seen(plant, recordings)
-    _, found = launched(plant, seen.train, most=MOST_EVALUATIONS)
-    return share_left(found, seen.train)
+    _, found = fit_from_data(plant, seen.train, most=MOST_EVALUATIONS)
+    return remaining_share(found, seen.train)
 
 
 def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> FitResult:
     recordings, faults = _without_faults(recordings)
-    phase(_logger, "looking through %s", counted(len(recordings), "recording"))
+    phase(_logger, "looking through %s", plural(len(recordings), "recording"))
     seen = _Seen(plant, recordings)
     if not free_paths(plant) and not free_paths(complete(plant, [r.form for r in seen.train])[0]):
         raise InputError(f"{plant.source}: every parameter is fixed; free at least one to fit")
@@ -203,11 +202,11 @@ def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> 
     seen, train = first.seen, first.seen.train
     begin, evaluations = first.solution.begin, first.solution.evaluations
     phase(_logger, "fitting it again, each recording with a weight of its own")
-    solution = settled(first.solution, train, most=max_evaluations)
+    solution = second_pass(first.solution, train, most=max_evaluations)
     if solution is not first.solution:
         evaluations += solution.evaluations
     names = names_of(recordings)
-    pushed = [f"{name}: {c.what}; {c.means}." for name, c in pushes_told(seen.pushes, names)]
+    pushed = [f"{name}: {c.what}; {c.means}." for name, c in push_checks(seen.pushes, names)]
 
     def told(found: Solution) -> FitResult:
         return evaluate(
@@ -226,7 +225,7 @@ def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> 
     except KeyboardInterrupt:
         if solution.interrupted:
             raise
-        return told(stopped(solution))
+        return told(with_interruption(solution))
 
 
 def _without_faults(recordings: list[Recording]) -> tuple[list[Recording], list[str]]:
@@ -238,10 +237,10 @@ def _without_faults(recordings: list[Recording]) -> tuple[list[Recording], list[
     if kept is None:
         told = fault.replace("cannot be used", "are fitted, though they have a fault")
         return without_failures(recordings), [told]
-    return without_failures(remaining(recordings, kept)), [fault] if fault else []
+    return without_failures(subset(recordings, kept)), [fault] if fault else []
 
 
-def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
+def second_pass(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
     """The second pass, with recordings weighted by what the first left in each.
 
     A fit that was interrupted stays as it is. Fit and diagnosis both end here, so that the same
@@ -250,40 +249,42 @@ def settled(first: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
     if first.interrupted:
         return first
     try:
-        known = turned(first.plant, rows, first.nuisances)
-        reweighted(rows, first.plant, known)
+        known = fit_turns(first.plant, rows, first.nuisances)
+        reweight(rows, first.plant, known)
         second = minimise(
             first.plant,
             first.variables.paths,
             rows,
             most=most,
-            nuisances=primed(first.plant, rows, known),
+            nuisances=add_starts(first.plant, rows, known),
         )
     except KeyboardInterrupt:
         # Before the second pass had anything to keep.
-        return stopped(first)
+        return with_interruption(first)
     found = _followed(from_elsewhere(second, rows, most=most), rows, most=most)
-    return led_by_itself(found, rows, most=most, converged=CONVERGED)
+    return refit_windows(found, rows, most=most, converged=CONVERGED)
 
 
 def _followed(found: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
-    """The solution, or what leaves as little and its own samples can follow (see ``bounded``)."""
+    """The solution, or what leaves as little and its samples can follow (``bounded_plants``)."""
     if found.interrupted:
         return found
     others = []
-    for plant in bounded(found.plant, found.variables.paths, rows, found.nuisances)[:MOST_BOUNDED]:
+    for plant in bounded_plants(found.plant, found.variables.paths, rows, found.nuisances)[
+        :MOST_BOUNDED
+    ]:
         try:
             other = minimise(
                 plant, found.variables.paths, rows, most=most, nuisances=found.nuisances
             )
         except KeyboardInterrupt:
-            return stopped(found)
+            return with_interruption(found)
         others.append(replace(other, begin=found.begin))
     best = min(others, key=lambda other: other.power, default=found)
     return best if best.power < AS_WELL * found.power else found
 
 
-def reweighted(rows: Sequence[Rows], plant: Plant, nuisances: Nuisances) -> None:
+def reweight(rows: Sequence[Rows], plant: Plant, nuisances: Nuisances) -> None:
     """Weights each recording by one over the residual that is left in it."""
     sizes = [_size(each.residual(plant, nuisances)[each.mask]) for each in rows]
     floor = WEIGHT_FLOOR * max(sizes)
@@ -348,7 +349,7 @@ def evaluate(
     own = [j[:, : len(paths)] for j in jacobians]
     flat = undetermined_directions(own, paths)
     values, starts = variables.values(solution.vector), variables.values(begin)
-    measured = [each.weight * each.form.measured(plant)[each.mask] for each in train]
+    measured = [each.weight * each.form.measured_effort(plant)[each.mask] for each in train]
     pure = [unit_of(plant, path) == "1" for path in paths]
     found = echoes(own, measured, residuals, values, paths, pure)
     flat += [group for group in found if group not in flat]
@@ -377,9 +378,9 @@ def evaluate(
     fitted = _errors(plant, train, nuisances)
     trained = {each.index for each in train}
     others = [each for each in held if each.index not in trained]
-    begun = started(plant, others, nuisances)
+    begun = fit_starts(plant, others, nuisances)
     heldout = _errors(plant, held, begun) if held else None
-    stated = as_stated(plant, given)
+    stated = restore_bounds(plant, given)
     told = assumed_gain(given.drive, train[0].form.input_unit, given.si_effort_unit)
     return FitResult(
         plant=stated,
@@ -418,7 +419,7 @@ def _sides(
 ) -> list[str]:
     """Where each variable stands: "lower", "upper" or "" for inside its bounds."""
     lower, upper = variables.bounds()
-    clamped = variables.clamped(vector)
+    clamped = variables.bounds_hit(vector)
     sides: list[str] = []
     for value, start, low, high, error in zip(vector, begin, lower, upper, errors, strict=True):
         # Near means near compared with where the fit came from and with what the data tell:

@@ -15,10 +15,10 @@ from ..plant import Plant
 from ..stated import Effect
 from ..weak_form import WeakForm
 from .likeliest import likeliest
-from .rows import begun
+from .rows import start_guess
 from .variables import records
 
-__all__ = ["clinging", "complete", "free_paths", "lightly_held"]
+__all__ = ["complete", "free_paths", "with_light_friction", "yielding_starts"]
 
 LARGEST: Final = 0.999
 """Quantile of the input in a recording that counts as its greatest: single samples do not."""
@@ -112,7 +112,9 @@ def complete(plant: Plant, forms: Sequence[WeakForm]) -> list[Plant]:
     return [whole]
 
 
-def clinging(plant: Plant, starts: Sequence[Plant], forms: Sequence[WeakForm]) -> list[Plant]:
+def yielding_starts(
+    plant: Plant, starts: Sequence[Plant], forms: Sequence[WeakForm]
+) -> list[Plant]:
     """A start whose contact yields up to Coulomb friction instead of breaking away there.
 
     Break-away is a kink: from a contact that breaks away at every reversal no slope leads to one
@@ -137,7 +139,7 @@ def clinging(plant: Plant, starts: Sequence[Plant], forms: Sequence[WeakForm]) -
     if plant.servo or not silent >= YIELDS_OR_BREAKS_AWAY:
         return []
     span = max(float(np.ptp(form.position)) for form in forms)
-    most = max(float(np.max(np.abs(form.measured(plant)))) for form in forms)
+    most = max(float(np.max(np.abs(form.measured_effort(plant)))) for form in forms)
     coulomb = _regression(plant, forms)[1]
 
     def clings(start: Plant) -> Plant:
@@ -167,7 +169,7 @@ def clinging(plant: Plant, starts: Sequence[Plant], forms: Sequence[WeakForm]) -
     return _likeliest([clings(start) for start in starts], forms, 1)
 
 
-def lightly_held(plant: Plant, whole: Plant, forms: Sequence[WeakForm]) -> Plant:
+def with_light_friction(plant: Plant, whole: Plant, forms: Sequence[WeakForm]) -> Plant:
     """A completed plant with dry and viscous friction of a tenth of the usual effort each.
 
     For machines whose effort is not measured: what a regression takes for their friction may be
@@ -179,7 +181,7 @@ def lightly_held(plant: Plant, whole: Plant, forms: Sequence[WeakForm]) -> Plant
         As the file states it, and with what ``complete`` added.
     forms : sequence of WeakForm
     """
-    effort = np.concatenate([form.measured(whole) for form in forms])
+    effort = np.concatenate([form.measured_effort(whole) for form in forms])
     speed = np.concatenate([form.velocity for form in forms])
     dry = HELD * float(np.sqrt(np.mean(effort**2)))
     levels = {
@@ -271,7 +273,7 @@ def _regression(plant: Plant, forms: Sequence[WeakForm]) -> tuple[float, float, 
         mass, weight = form.own(plant).payload
         zero = plant.body["gravity_zero_rad"].value if "gravity_zero_rad" in plant.body else 0.0
         known = mass * form.acceleration + weight * np.sin(angle - zero)
-        efforts.append((form.measured(plant) - known)[sliding])
+        efforts.append((form.measured_effort(plant) - known)[sliding])
     matrix, effort = np.vstack(blocks), np.concatenate(efforts)
     if np.ptp(matrix[:, 1]) == 0.0:
         # Moved in one direction alone: a constant would take half of the friction.
@@ -335,7 +337,7 @@ def _likeliest(
     """Those that leave the least residual, the best first."""
 
     def left(plant: Plant, form: WeakForm) -> float:
-        seen = form.seen_by(plant)
-        return float(np.sum(seen.residual(plant, begun(plant, seen)) ** 2))
+        seen = form.for_plant(plant)
+        return float(np.sum(seen.residual(plant, start_guess(plant, seen)) ** 2))
 
     return likeliest(plants, forms, left, number)

@@ -200,7 +200,7 @@ class Variables:
             values[child] = vector[child] * values[parent]
         return np.asarray(np.clip(values, self.lower, self.upper))
 
-    def clamped(self, vector: FloatArray) -> dict[int, str]:
+    def bounds_hit(self, vector: FloatArray) -> dict[int, str]:
         """Which shares would lead past a bound of their parameter, and past which: it stays there.
 
         Returns
@@ -222,7 +222,7 @@ class Variables:
         """Derivatives by the vector from derivatives by the parameters."""
         columns = jacobian.copy()
         values = self.values(vector)
-        clamped = self.clamped(vector)
+        clamped = self.bounds_hit(vector)
         for child, parent in self.ratio_of.items():
             if child in clamped:
                 columns[:, child] = 0.0

@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import given
 from ..begins import begin_of
-from ..compared import compared_by
+from ..compared import comparison_of
 from ..errors import InputError
 from ..fitting import FitParameter, FitResult, fit
 from ..fitting.start import free_paths
@@ -25,7 +25,7 @@ from ..recording.recording import recordings_of
 from ..residual import EffortResidual, effort_residual, free_run
 from ..session import Session
 from ..trajectory import FloatArray
-from ..wording import counted, listed
+from ..wording import commas, plural
 from .entry_file import Entry, EntryNumber, span
 
 __all__ = ["UnitComparison", "UnitNumber", "compare", "plant_like"]
@@ -128,13 +128,13 @@ class UnitComparison:
                 [e for e in own if e.said == "beyond the interval"],
             ),
         )
-        parts = [f"{listed(e.path for e in group)}: {word}" for word, group in groups if group]
-        name, many = self.entry.name, counted(len(own), "number")
+        parts = [f"{commas(e.path for e in group)}: {word}" for word, group in groups if group]
+        name, many = self.entry.name, plural(len(own), "number")
         first = (
             f"differs from {name}: {'; '.join(parts)}" if parts else f"agrees with {name} in {many}"
         )
         load = [each.path for each in told if each.carried and each.said != "alike"]
-        told_all = f"{first}; what it carries differs: {listed(load)}" if load else first
+        told_all = f"{first}; what it carries differs: {commas(load)}" if load else first
         if parts and self.hardly_more:
             return (
                 f"{told_all}; but the entry as it is leaves hardly more: these recordings do not "
@@ -150,7 +150,7 @@ class UnitComparison:
     @property
     def left(self) -> str:
         """What the entry leaves unexplained in the recordings, and its plant fitted, in words."""
-        by = compared_by(self.result.plant)
+        by = comparison_of(self.result.plant)
         kept, fitted = by.share(self.kept, 3), by.share(self.fitted, 3)
         return f"{by.error}: {kept} with numbers of the entry, {fitted} with those of the unit"
 
@@ -262,13 +262,13 @@ def compare(entry: Entry, session: Session | Recording | Sequence[Recording]) ->
     """
     given.instance(entry, Entry, "compare: entry", "an entry, as stiction.library.entry returns it")
     stated = session.plant if isinstance(session, Session) else None
-    plant, held = with_drive_held(plant_like(entry, stated))
+    plant, held = fix_drive(plant_like(entry, stated))
     result = fit(plant, session)
     inertia = result.parameters.get("body.inertia")
     lost = inertia is not None and inertia.at_bound == "lower"
     numbers = tuple(
         UnitNumber(
-            path, each, entry.numbers[path], LOST if lost else said(each, entry.numbers[path])
+            path, each, entry.numbers[path], LOST if lost else verdict_of(each, entry.numbers[path])
         )
         for path, each in result.parameters.items()
         if path in entry.numbers
@@ -281,7 +281,7 @@ def compare(entry: Entry, session: Session | Recording | Sequence[Recording]) ->
     return UnitComparison(entry, result, numbers, seconds, held, kept, fitted)
 
 
-def with_drive_held(plant: Plant) -> tuple[Plant, tuple[str, ...]]:
+def fix_drive(plant: Plant) -> tuple[Plant, tuple[str, ...]]:
     """A plant whose drive stays as it is, and the names of effects that are held for it.
 
     Along a measured motion a drive that gives nothing leaves nothing. The loop of a servo does not
@@ -361,7 +361,7 @@ def _fixed(parameters: Mapping[str, Parameter]) -> dict[str, Parameter]:
     return {name: replace(each, fixed=True) for name, each in parameters.items()}
 
 
-def said(own: FitParameter, library: EntryNumber) -> Said:
+def verdict_of(own: FitParameter, library: EntryNumber) -> Said:
     """What is to be said of two numbers."""
     low, high = own.ci95
     if not (math.isfinite(low) and math.isfinite(high)) or own.at_bound:

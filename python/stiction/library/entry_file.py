@@ -14,11 +14,11 @@ import numpy as np
 from .. import given
 from ..errors import InputError
 from ..frozen import Frozen, freeze
-from ..keys import choice, known
+from ..keys import check_keys, choice
 from ..parameter import number
 from ..plant import Plant
 from ..plant_file import read_toml, section
-from ..wording import counted, did_you_mean, listed
+from ..wording import commas, did_you_mean, plural
 
 __all__ = ["Entry", "EntryNumber", "entries", "entry", "read_entry"]
 
@@ -181,8 +181,8 @@ class Entry:
         ]
         if self.made:
             lines.append(
-                f"fitted to {counted(self.made['recordings'], 'recording')} of "
-                f"{self.made['seconds']:.4g} s, {counted(self.units, 'unit')}, by stiction "
+                f"fitted to {plural(self.made['recordings'], 'recording')} of "
+                f"{self.made['seconds']:.4g} s, {plural(self.units, 'unit')}, by stiction "
                 f"{self.made['version']}: {self.made['command']} (seed {self.made['seed']})"
             )
         if self.floor:
@@ -235,7 +235,7 @@ def entry(name: str) -> Entry:
             return each
     names = [each.name for each in entries()]
     near = did_you_mean(wanted, names)
-    raise InputError(f"library: there is no entry '{wanted}'{near}; there are {listed(names)}")
+    raise InputError(f"library: there is no entry '{wanted}'{near}; there are {commas(names)}")
 
 
 def read_entry(path: Path) -> Entry:
@@ -247,22 +247,22 @@ def read_entry(path: Path) -> Entry:
         It is not what an entry has to be.
     """
     table, source = read_toml(path, least="machine and [plant]"), str(path)
-    known(table, _TABLES, source)
+    check_keys(table, _TABLES, source)
     for name in ("machine", "kind", "source", "numbers", "plant"):
         if name not in table:
-            raise InputError(f"{source}: {name} is missing; an entry has {listed(_TABLES)}")
+            raise InputError(f"{source}: {name} is missing; an entry has {commas(_TABLES)}")
     plant = Plant.from_dict(section(table, "plant", source), source=f"{source}: [plant]")
     told = section(table, "source", source)
-    known(told, _SOURCE, f"{source}: [source]")
+    check_keys(told, _SOURCE, f"{source}: [source]")
     kind = choice(table["kind"], _KINDS, f"{source}: kind")
     made = section(table, "made", source)
-    known(made, _MADE, f"{source}: [made]")
+    check_keys(made, _MADE, f"{source}: [made]")
     missing = [name for name in _SOURCE if not told.get(name)]
     missing += [name for name in _MADE if kind == "recordings" and name not in made]
     if missing:
-        raise InputError(f"{source}: {listed(missing)} is missing; state where numbers come from")
+        raise InputError(f"{source}: {commas(missing)} is missing; state where numbers come from")
     floor = section(table, "floor", source)
-    known(floor, _FLOOR, f"{source}: [floor]")
+    check_keys(floor, _FLOOR, f"{source}: [floor]")
     notes = table.get("notes", [])
     if not isinstance(notes, list) or not all(isinstance(each, str) for each in notes):
         raise InputError(f"{source}: notes is not a list of sentences; write one")
@@ -284,7 +284,7 @@ def _number(plant: Plant, path: str, table: Any, source: str) -> EntryNumber:
     where = f"{source}: [numbers.'{path}']"
     if not isinstance(table, Mapping):
         raise InputError(f"{where} is not a table; write ci95 and unit")
-    known(table, _NUMBER, where)
+    check_keys(table, _NUMBER, where)
     stated = plant.parameters
     if path in stated:
         value = stated[path].value

@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..trajectory import FloatArray
 from .rig import RigLike, build_motor
 
-__all__ = ["STATES", "Bench", "above_0", "as_read", "fits", "samples_of", "whole_samples"]
+__all__ = ["STATES", "Bench", "above_0", "fits", "read_encoder", "samples_of", "whole_samples"]
 
 MOST_SAMPLES: Final = 10_000_000
 """Of an experiment: a gigabyte, and some minutes."""
@@ -61,7 +61,7 @@ class Bench:
     def reading(self) -> float:
         """Position as the encoder reads it now, rad."""
         recorded = self._columns["position"]
-        return float(as_read(recorded[-1][-1], self.encoder_count)) if recorded else 0.0
+        return float(read_encoder(recorded[-1][-1], self.encoder_count)) if recorded else 0.0
 
     def apply(self, efforts: FloatArray) -> None:
         """Apply one torque a sample, N·m."""
@@ -102,12 +102,12 @@ def as_record(
         "effort": effort,
         "position": position,
         "velocity": velocity,
-        "measured": as_read(position, encoder_count),
+        "measured": read_encoder(position, encoder_count),
         "states": dict(states),
     }
 
 
-def as_read(position: FloatArray, count: float) -> FloatArray:
+def read_encoder(position: FloatArray, count: float) -> FloatArray:
     """Position to the nearest encoder count; as it is where the count is 0."""
     return np.asarray(np.round(position / count) * count if count > 0.0 else position)
 

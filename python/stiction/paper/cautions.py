@@ -8,7 +8,7 @@ import numpy as np
 
 from .graphical import Recorded, Steps
 
-__all__ = ["assumed", "stairs"]
+__all__ = ["assumptions_of", "stairs"]
 
 _STAIRS: Final = 0.85
 """Share of readings equal to the last; noise of an eighth of a count and more gives fewer."""
@@ -28,7 +28,7 @@ def stairs(records: list[Recorded]) -> tuple[str, ...]:
     )
 
 
-def assumed(steps: Steps, spring: tuple[str, ...]) -> dict[str, str]:
+def assumptions_of(steps: Steps, spring: tuple[str, ...]) -> dict[str, str]:
     """Parameters that no recording shows by themselves, and why."""
     why: dict[str, str] = {}
     if steps.branch is None:

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_arguments
 from ..errors import InputError
 from ..trajectory import FloatArray
 from .bench import Bench, fits, whole_samples
-from .result import Known, MotionResult, Number, arcsec, counted_off
+from .result import Known, MotionResult, Number, arcsec, enumerate_values
 from .rig import ARC_SECOND, RigLike, is_illustrative
 
 __all__ = [
@@ -126,7 +126,7 @@ class PulseTrains(MotionResult):
     rest_hardening: FloatArray
 
 
-@checked
+@check_arguments
 def experiment_1(
     *,
     target: float = 24.0 * ARC_SECOND,
@@ -234,12 +234,12 @@ def _numbers_1(run: RampAndCut, standard: bool) -> dict[str, Number]:
     def known(*figures: Known) -> tuple[Known, ...]:
         return figures if standard else ()
 
-    numbers = counted_off(
+    numbers = enumerate_values(
         "torque at cut",
         (Number(float(torque), "N·m") for torque in run.cut_torque),
         known(0.215, 0.200, 0.192, 0.188),
     )
-    numbers |= counted_off(
+    numbers |= enumerate_values(
         "rest position", map(arcsec, run.rest_position.tolist()), known(6.1, 7.6, 8.3)
     )
     if run.ring_frequency.size:
@@ -256,7 +256,7 @@ def _numbers_1(run: RampAndCut, standard: bool) -> dict[str, Number]:
     return numbers
 
 
-@checked
+@check_arguments
 def experiment_2(
     *,
     target: float = 12.0 * ARC_SECOND,
@@ -334,7 +334,7 @@ def experiment_2(
     )
 
 
-@checked
+@check_arguments
 def experiment_3(
     *,
     sizes: Sequence[float] = PULSE_SIZES,
@@ -392,11 +392,11 @@ def experiment_3(
     rest_hardening = hardening[ends] if hardening.size else np.empty(0)
     standard = is_illustrative(rig) and (sizes, pulses) == (PULSE_SIZES, 20)
     figures: Sequence[Known] = (5.4, 12.6, 13.7, 14.6) if standard else ()
-    numbers = counted_off(
+    numbers = enumerate_values(
         "hardening after train", map(arcsec, rest_hardening[pulses - 1 :: pulses].tolist()), figures
     )
     rest_position = record["measured"][ends]
-    numbers |= counted_off(
+    numbers |= enumerate_values(
         "rest position after train", map(arcsec, rest_position[pulses - 1 :: pulses].tolist())
     )
     return PulseTrains(

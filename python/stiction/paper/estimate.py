@@ -21,7 +21,7 @@ from ..given import mapping, names
 from ..motor import Motor
 from ..parameter import number
 from ..trajectory import FloatArray
-from .cautions import assumed, stairs
+from .cautions import assumptions_of, stairs
 from .graphical import Recorded, Steps, branch_curve, read_off
 from .readings import Evidence, count_of, evidence, noise_of
 from .result import MotionResult, Number, Result
@@ -444,7 +444,7 @@ class _Fit:
                 *(
                     f"{name} rests on the form of the model alone: {why}; record "
                     f"{EXPERIMENTS[name]}"
-                    for name, why in assumed(steps, NAMES[:3]).items()
+                    for name, why in assumptions_of(steps, NAMES[:3]).items()
                     if parameters[name].determined and name not in self._fixed
                 ),
                 *stairs(self._records),

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from .._native import FrictionModel
-from ..arguments import checked
+from ..arguments import check_arguments
 from ..errors import InputError
 from ..motor import Motor
 from ..trajectory import FloatArray
@@ -53,7 +53,7 @@ class LocalVariation(Result):
     path: tuple[FloatArray, ...]
 
 
-@checked
+@check_arguments
 def local_variation(*, places: int = 12, share: float = 0.5, periods: int = 2) -> LocalVariation:
     """Ramp the torque at places round the shaft, several times at each.
 

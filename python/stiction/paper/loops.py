@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._native import FrictionModel
-from ..arguments import checked
+from ..arguments import check_arguments
 from ..errors import InputError
 from ..trajectory import FloatArray
 from .bench import above_0
@@ -42,7 +42,7 @@ class LoopAreas(Result):
     loops: tuple[tuple[FloatArray, FloatArray], ...]
 
 
-@checked
+@check_arguments
 def loop_areas(
     *,
     distances: Sequence[float] = DISTANCES,

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..frozen import Frozen, freeze
 from ..trajectory import FloatArray
-from ..wording import counted, listed
+from ..wording import commas, plural
 from .rig import ARC_SECOND
 
 if TYPE_CHECKING:
@@ -72,8 +72,8 @@ class Result:
         """What happened, in words."""
         lost = self._lost()
         if lost:
-            return f"no finite number came out for {listed(lost)}"
-        return f"the experiment ran to its end: {counted(len(self.numbers), 'number')} read off"
+            return f"no finite number came out for {commas(lost)}"
+        return f"the experiment ran to its end: {plural(len(self.numbers), 'number')} read off"
 
     def _lost(self) -> list[str]:
         """What is not finite, by name."""
@@ -171,7 +171,7 @@ def arcsec(value: float, prototype: Known = None) -> Number:
     return Number(float(value) / ARC_SECOND, "arcsec", prototype)
 
 
-def counted_off(
+def enumerate_values(
     name: str, values: Iterable[Number], prototypes: Sequence[Known] = ()
 ) -> dict[str, Number]:
     """``{"name 1": first, "name 2": second, …}``, with the prototype's figures as far as known."""

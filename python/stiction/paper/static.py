@@ -19,13 +19,13 @@ import numpy as np
 
 from .. import catalogue
 from .._native import FrictionModel
-from ..arguments import checked
+from ..arguments import check_arguments
 from ..errors import InputError
 from ..trajectory import FloatArray
 from .bench import fits
 from .dynamic import STEP
 from .paths import FORCE_STEP, RAMP_RATE, ForcePath, motor_path
-from .result import Known, MotionResult, Number, Result, arcsec, counted_off
+from .result import Known, MotionResult, Number, Result, arcsec, enumerate_values
 from .rig import RigLike, build_friction, is_illustrative
 
 __all__ = [
@@ -178,7 +178,7 @@ class DahlTest(Result):
     position: FloatArray
 
 
-@checked
+@check_arguments
 def static_test(
     case: int = 1,
     *,
@@ -309,7 +309,7 @@ def static_test(
     )
 
 
-@checked
+@check_arguments
 def hardening_cycles(
     *,
     amplitude: float = 0.3,
@@ -374,7 +374,7 @@ def hardening_cycles(
         source="Wear 242 (2000), Fig. 15h",
         shows="Hardening is isotropic: the first direction takes all the permanent displacement, "
         "what follows in either direction next to none.",
-        numbers=counted_off(
+        numbers=enumerate_values(
             "permanent displacement, half cycle",
             map(arcsec, permanent.tolist()),
             (29.63, -0.07, *[0.0] * half_cycles) if standard else (),
@@ -386,7 +386,7 @@ def hardening_cycles(
     )
 
 
-@checked
+@check_arguments
 def nested_loops(*, rig: RigLike = None, dt: float = FORCE_STEP) -> NestedLoops:
     """Loops within loops of the spring alone: every reverse point is met again and forgotten.
 
@@ -455,7 +455,7 @@ def nested_loops(*, rig: RigLike = None, dt: float = FORCE_STEP) -> NestedLoops:
     )
 
 
-@checked
+@check_arguments
 def dahl_on_static_1(*, stiffness: float = 2063.0, coulomb: float = 0.5) -> DahlTest:
     """Dahl's law on static test 1: loops that never close.
 

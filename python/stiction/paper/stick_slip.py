@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_arguments
 from ..errors import InputError
 from ..trajectory import FloatArray
-from .bench import above_0, as_read, samples_of
+from .bench import above_0, read_encoder, samples_of
 from .result import MotionResult, Number
 from .rig import RigLike, build_motor
 
@@ -44,7 +44,7 @@ class StickSlip(MotionResult):
     breakaways: int
 
 
-@checked
+@check_arguments
 def stick_slip(
     speed: float = 0.1,
     *,
@@ -131,6 +131,6 @@ def stick_slip(
         effort=effort,
         position=position,
         velocity=velocity,
-        measured=as_read(position, encoder_count),
+        measured=read_encoder(position, encoder_count),
         states={},
     )

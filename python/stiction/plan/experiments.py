@@ -12,7 +12,7 @@ import numpy as np
 from ..plant import Plant
 from ..trajectory import FloatArray
 from .limits import Sizes
-from .moves import Motion, tapered
+from .moves import Motion, cosine_taper
 
 __all__ = ["EXPERIMENTS", "Experiment"]
 
@@ -85,7 +85,7 @@ def _tracking(
     waves = [
         np.sin(2.0 * math.pi * f * time + source.uniform(0.0, 2.0 * math.pi)) / f for f in orders
     ]
-    return _within(np.sum(waves, axis=0) * tapered(len(time)), sizes, dt, share)
+    return _within(np.sum(waves, axis=0) * cosine_taper(len(time)), sizes, dt, share)
 
 
 def _ramps(
@@ -170,7 +170,7 @@ def _sines(
             frequency = min(max(times * share * fastest, 0.15), FASTEST / dt)
             samples = round(3.0 / frequency / dt)
             wave = np.sin(2.0 * math.pi * frequency * np.arange(samples) * dt)
-            motion.add(_within(amplitude * wave * tapered(samples, 0.2), sizes, dt, share))
+            motion.add(_within(amplitude * wave * cosine_taper(samples, 0.2), sizes, dt, share))
             motion.rest(0.2)
     return motion.positions()
 
@@ -253,7 +253,7 @@ def _chirp(
     rate = math.log(high / low) / CHIRP_S
     phase = 2.0 * math.pi * low * np.expm1(rate * time) / rate
     wave: FloatArray = (
-        force * np.sin(phase + source.uniform(0.0, 2.0 * math.pi)) * tapered(len(time))
+        force * np.sin(phase + source.uniform(0.0, 2.0 * math.pi)) * cosine_taper(len(time))
     )
     return np.concatenate([np.zeros(round(0.5 / dt)), wave, np.zeros(round(0.5 / dt))])
 

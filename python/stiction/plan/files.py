@@ -12,7 +12,7 @@ from ..errors import InputError, UnknownName
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["PlannedSignal", "signal_named", "write_plan"]
+__all__ = ["PlannedSignal", "find_signal", "write_plan"]
 
 
 class PlannedSignal(Protocol):
@@ -32,7 +32,7 @@ class PlannedSignal(Protocol):
 _Signal = TypeVar("_Signal", bound=PlannedSignal)
 
 
-def signal_named(signals: Sequence[_Signal], name: str) -> _Signal:
+def find_signal(signals: Sequence[_Signal], name: str) -> _Signal:
     """A signal by its name.
 
     Raises

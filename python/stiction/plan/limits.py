@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..parameter import Parameter, number
 from ..plant import Plant
 from ..presliding import presliding
-from ..wording import listed
+from ..wording import commas
 
 __all__ = ["Limits", "Sizes", "sizes_of", "with_inertia"]
 
@@ -161,7 +161,7 @@ def _efforts(plant: Plant, limits: Limits) -> _Efforts:
     if not math.isfinite(most):
         most = EFFORT_TIMES * (friction + weight)
     if most < LEAST_EFFORT * (friction + weight):
-        taken = listed(
+        taken = commas(
             [f"friction {friction:.3g}", *([f"gravity {weight:.3g}"] if weight > 0.0 else [])]
         )
         still, least = most <= friction + weight, LEAST_EFFORT * (friction + weight)

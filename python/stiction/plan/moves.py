@@ -8,7 +8,7 @@ import numpy as np
 
 from ..trajectory import FloatArray
 
-__all__ = ["Motion", "tapered"]
+__all__ = ["Motion", "cosine_taper"]
 
 
 class Motion:
@@ -65,7 +65,7 @@ class Motion:
         return path
 
 
-def tapered(samples: int, share: float = 0.1) -> FloatArray:
+def cosine_taper(samples: int, share: float = 0.1) -> FloatArray:
     """A window that rises and falls by half cosines over a share of its length."""
     edge = max(2, round(share * samples))
     window = np.ones(samples)

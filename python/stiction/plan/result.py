@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .. import given
-from ..atomic_files import replacing
+from ..atomic_files import atomic_write
 from ..plant import Plant
 from ..recording.recording import SPLIT_ROLES
 from ..trajectory import FloatArray
-from ..wording import counted
-from .files import signal_named, write_plan
+from ..wording import plural
+from .files import find_signal, write_plan
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -87,7 +87,7 @@ class Signal:
         """
         path = given.path(where, "Signal.save") / f"{self.name}.csv"
         rows = np.column_stack([self.time, self.values])
-        with given.written(path), replacing(path) as file:
+        with given.explain_write_errors(path), atomic_write(path) as file:
             file.write(f"time_s,{self.column}\n".encode())
             np.savetxt(file, rows, fmt="%.9g", delimiter=",")
         return path
@@ -138,7 +138,7 @@ class Plan:
         UnknownName
             An ``InputError`` and a ``KeyError``: there is no such signal.
         """
-        return signal_named(self.signals, name)
+        return find_signal(self.signals, name)
 
     def schedule(self) -> list[dict[str, Any]]:
         """What to record when: file, role, kind and start of every recording, pauses included."""
@@ -260,7 +260,7 @@ class Plan:
             ).rstrip()
             for row in rows
         ]
-        head = f"{counted(len(self.signals), 'signal')}, {total:.0f} s in all"
+        head = f"{plural(len(self.signals), 'signal')}, {total:.0f} s in all"
         told = "position, speed and effort are the greatest that the plant comes to"
         return "\n".join(
             [f"{head}; {told}:", "", *lines, *([""] if self.notes else []), *self.notes]

@@ -17,7 +17,7 @@ from ..plant import Plant
 from ..progress import phase
 from ..recording.recording import SPLIT_ROLES
 from ..trajectory import FloatArray
-from ..wording import did_you_mean, listed
+from ..wording import commas, did_you_mean
 from .experiments import EXPERIMENTS, Experiment
 from .limits import Limits, Sizes, sizes_of, with_inertia
 from .result import Plan, Signal
@@ -86,7 +86,7 @@ def plan(
         if name not in known:
             raise InputError(
                 f"only: there is no experiment '{name}'{did_you_mean(name, known)}; there are "
-                f"{listed(known)}"
+                f"{commas(known)}"
             )
     limits = Limits(position, speed, effort)
     stated = plant
@@ -101,7 +101,7 @@ def plan(
                 if plant.servo
                 else "how far the drive alone moves a machine hangs on its inertia"
             )
-            notes.append(f"{listed(inputs)} are left out: {why}")
+            notes.append(f"{commas(inputs)} are left out: {why}")
     for experiment in EXPERIMENTS:
         if only and experiment.name not in only:
             continue
@@ -137,7 +137,7 @@ def _guessed(plant: Plant) -> list[str]:
         return []
     return [
         f"{plant.source} states no level of friction: signals are sized by the catalogue's "
-        f"{listed(silent)}; fit the plant to any recording first"
+        f"{commas(silent)}; fit the plant to any recording first"
     ]
 
 

@@ -14,7 +14,7 @@ from .columns import CANONICAL
 from .table import Table
 from .units import FloatArray
 
-__all__ = ["Aligned", "aligned", "on_main_clock", "time_of"]
+__all__ = ["Aligned", "align", "on_main_clock", "time_of"]
 
 HELD: Final = ("input", "enabled")
 """Channels that hold from one row of theirs to the next; all others are interpolated."""
@@ -57,7 +57,7 @@ class Aligned:
     notes: tuple[str, ...]
 
 
-def aligned(
+def align(
     table: Table,
     values: Mapping[str, FloatArray],
     names: Mapping[str, str],

@@ -119,7 +119,7 @@ class Column:
                 )
         name = value.get("name")
         if isinstance(name, int) and not isinstance(name, bool) and name > 0:
-            name = numbered(name)
+            name = default_name(name)
         if not isinstance(name, str) or not name:
             raise InputError(
                 f"{where}: the name of the column is {_given(name)}; "
@@ -139,7 +139,7 @@ class Column:
         return cls(name, unit, scale, _finite(value.get("offset", 0.0), "offset", where))
 
 
-def numbered(place: int) -> str:
+def default_name(place: int) -> str:
     """What a column without a name is called.
 
     Parameters
@@ -159,7 +159,7 @@ class Columns(Mapping[str, Column]):
     def __init__(self, by_role: Mapping[str, Column] | None = None, *, where: str = "columns"):
         columns = taken.mapping(by_role, where, "a mapping of roles to columns")
         for role, column in columns.items():
-            taken.instance(column, Column, f"{where}: {taken.shown(role)}", "a Column")
+            taken.instance(column, Column, f"{where}: {taken.brief(role)}", "a Column")
         self._by_role: Frozen[str, Column] = Frozen(columns)
         self.where = where
 

@@ -10,12 +10,12 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError
-from ..wording import listed
+from ..wording import commas
 from .expansion import Expansion
 from .table import Table
 from .units import FloatArray
 
-__all__ = ["Gathered", "damaged", "missing"]
+__all__ = ["Gathered", "damage_error", "missing_package"]
 
 _CLOCK: Final = "time"
 
@@ -96,7 +96,7 @@ class Gathered:
             self._whole[group] = (read[0], dict(zip(self._names[group], read[1:], strict=True)))
         groups = {g: (t, s) for g, (t, s) in self._whole.items() if s and len(t)}
         if not groups:
-            held = f" ({listed(f'{n} {why}' for n, why in self.unusable.items())})"
+            held = f" ({commas(f'{n} {why}' for n, why in self.unusable.items())})"
             raise InputError(
                 f"{self._path}: no {what} of it holds a signal that is read"
                 f"{held if self.unusable else ''}; record joint states, or numbers over time"
@@ -131,7 +131,9 @@ class Gathered:
         )
 
 
-def missing(path: Path, kind: str, package: str, extra: str, error: Exception) -> InputError:
+def missing_package(
+    path: Path, kind: str, package: str, extra: str, error: Exception
+) -> InputError:
     """What is said where the library that reads a kind of file is not installed."""
     return InputError(
         f"{path}: {kind} is read through {package}; install it with "
@@ -139,7 +141,7 @@ def missing(path: Path, kind: str, package: str, extra: str, error: Exception) -
     )
 
 
-def damaged(path: Path, kind: str, error: Exception) -> Exception:
+def damage_error(path: Path, kind: str, error: Exception) -> Exception:
     """What to raise of an error that a library met in a file: its own where it is the disk's."""
     if isinstance(error, (InputError, MemoryError)) or (
         isinstance(error, OSError) and error.errno is not None

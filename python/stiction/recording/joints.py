@@ -14,9 +14,9 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError
-from ..wording import counted, did_you_mean, listed
+from ..wording import commas, did_you_mean, plural
 from .column_words import what_it_says
-from .columns import numbered
+from .columns import default_name
 from .guess.evidence import Column, columns_of, rate_of
 from .table import Table
 from .units import FloatArray, bracketed_unit
@@ -72,7 +72,7 @@ class Joints:
         if joint not in self.labels:
             raise InputError(
                 f"{table.path}: there is no joint '{joint}'{did_you_mean(joint, self.labels)}; "
-                f"the file has {counted(len(self.labels), 'joint')}: {listed(self.labels)}"
+                f"the file has {plural(len(self.labels), 'joint')}: {commas(self.labels)}"
             )
         kept = {
             name: values
@@ -81,7 +81,7 @@ class Joints:
         }
         return replace(table, columns=kept, cells=tuple(c for c in table.cells if c.column in kept))
 
-    def moving(self, tables: Sequence[Table]) -> str:
+    def moving_joint(self, tables: Sequence[Table]) -> str:
         """The first joint that moves in most of the files.
 
         Parameters
@@ -110,7 +110,7 @@ def joints_of(tables: Sequence[Table]) -> Joints | None:
     tables : sequence of Table
     """
     names = list(tables[0].columns)
-    if names == [numbered(place) for place in range(1, len(names) + 1)]:
+    if names == [default_name(place) for place in range(1, len(names) + 1)]:
         return _by_numbers(tables)
     families = _chosen(_families(names))
     if not families:

@@ -9,13 +9,13 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError
-from ..given import shown
-from ..wording import counted, listed
-from .clocks import aligned
-from .columns import CANONICAL, ROLES, Column, Columns, numbered
+from ..given import brief
+from ..wording import commas, plural
+from .clocks import align
+from .columns import CANONICAL, ROLES, Column, Columns, default_name
 from .repair import check_lengths
 from .table import Table
-from .turns import unwrapped
+from .turns import unwrap
 from .units import (
     MOTION_OF_QUANTITY,
     SI_UNIT,
@@ -129,7 +129,7 @@ def read_channels(
         _go_on(values, names, notes)
     unit = chosen["time"].unit
     factor = (1.0 if unit is None else unit.factor or 1.0) * chosen["time"].column.scale
-    placed = aligned(table, values, names, factor)
+    placed = align(table, values, names, factor)
     values, first = placed.values, placed.first
     notes += placed.notes
     check_lengths(
@@ -153,11 +153,11 @@ def _go_on(values: dict[str, FloatArray], names: Mapping[str, str], notes: list[
     for role in ("position", "reference"):
         if role not in values:
             continue
-        values[role], number = unwrapped(values[role])
+        values[role], number = unwrap(values[role])
         if number:
             notes.append(
                 f"{role}: column '{names[role]}' begins anew after a turn "
-                f"({counted(number, 'time')}), and was made to go on"
+                f"({plural(number, 'time')}), and was made to go on"
             )
         if number and role == "reference" and len(values[role]) == len(values["position"]):
             apart = np.nanmedian(values["position"] - values[role]) / (2.0 * np.pi)
@@ -182,7 +182,7 @@ def _integrated(time: FloatArray, velocity: FloatArray) -> FloatArray:
 def _by_name(table: Table, columns: Columns) -> Columns:
     """The same columns, of which those that go by their number have the name in the header."""
     names = [*table.columns]
-    numbers = {numbered(place): name for place, name in enumerate(names, start=1)}
+    numbers = {default_name(place): name for place, name in enumerate(names, start=1)}
     named = {
         role: replace(column, name=numbers[column.name])
         for role, column in columns.items()
@@ -193,7 +193,7 @@ def _by_name(table: Table, columns: Columns) -> Columns:
 
 def _check_choice(name: str, value: str | None, allowed: tuple[str, ...]) -> None:
     if value is not None and not (isinstance(value, str) and value in allowed):
-        raise InputError(f"{name} is {shown(value)}; give one of {', '.join(allowed)}")
+        raise InputError(f"{name} is {brief(value)}; give one of {', '.join(allowed)}")
 
 
 def _choose(
@@ -333,7 +333,7 @@ def _canonical(
     for role, names in found.items():
         if len(names) > 1:
             raise InputError(
-                f"{table.path}: the columns {listed(names)} could each be the {role}; "
+                f"{table.path}: the columns {commas(names)} could each be the {role}; "
                 f'name one, as in {role} = "{names[0]}" under [columns]'
             )
     return {role: names[0] for role, names in found.items() if names}
@@ -360,7 +360,7 @@ def _clock(table: Table, chosen: Mapping[str, _Chosen], notes: list[str]) -> Col
     """The one column that is called as a clock is (``time``, ``t``) and goes as one does."""
     from .guess.evidence import columns_of
     from .guess.kinds import kinds_of
-    from .guess.units import stated, time_unit
+    from .guess.units import time_unit, unit_in_name
 
     taken = {choice.column.name for choice in chosen.values()}
     clocks = [
@@ -375,7 +375,7 @@ def _clock(table: Table, chosen: Mapping[str, _Chosen], notes: list[str]) -> Col
     if len(clocks) != 1:
         return None
     (clock,) = clocks
-    unit = stated(clock, ROLES["time"]) or time_unit(clock)
+    unit = unit_in_name(clock, ROLES["time"]) or time_unit(clock)
     notes.append(f"time: column '{clock.name}' was taken by its name ({unit.reason})")
     return Column(clock.name, unit.unit, unit.scale)
 
@@ -402,7 +402,7 @@ def _check_complete(table: Table, chosen: Mapping[str, _Chosen], drive: str | No
 def _lacks(table: Table, role: str, canonical: str) -> str:
     return (
         f"{table.path}: no column is known to be the {role}; the columns here are "
-        f'{listed(table.columns)}; name one under [columns], as in {role} = "...", or call it '
+        f'{commas(table.columns)}; name one under [columns], as in {role} = "...", or call it '
         f"{canonical}"
     )
 

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError
-from ..given import shown
+from ..given import brief
 from ..parameter import number
 from .units import FloatArray
 
@@ -53,7 +53,7 @@ def _row(time: FloatArray, given: float | str, where: str, *, last: bool) -> int
         found = _ROW.fullmatch(given)
         if found is None or int(found[1]) > len(time):
             raise InputError(
-                f"{where} = {shown(given)}: give a row from 'row 1' to 'row {len(time)}', or "
+                f"{where} = {brief(given)}: give a row from 'row 1' to 'row {len(time)}', or "
                 "seconds as a number"
             )
         return int(found[1]) - 1

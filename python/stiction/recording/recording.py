@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..frozen import Frozen
-from ..given import instance, mapping, numbers, real, shown, whole
+from ..given import brief, instance, mapping, numbers, real, whole
 from ..given import path as file_path
 from ..parameter import number
 from ..wording import did_you_mean
@@ -652,7 +652,7 @@ def _finite(given: Any, name: str, wanted: str) -> float:
     except InputError:
         value = math.nan
     if not math.isfinite(value):
-        raise InputError(f"Recording: {name} is {shown(given)}; give {wanted}")
+        raise InputError(f"Recording: {name} is {brief(given)}; give {wanted}")
     return value
 
 

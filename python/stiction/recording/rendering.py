@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..wording import counted
+from ..wording import plural
 
 if TYPE_CHECKING:
     from .recording import Recording
@@ -47,7 +47,7 @@ def _heading(recording: Recording) -> str:
     name = f" {recording.path.name}" if recording.path else ""
     labels = ", ".join(filter(None, (recording.role, recording.kind)))
     return (
-        f"Recording{name}: {counted(len(recording), 'row')} over {recording.duration:.6g} s, "
+        f"Recording{name}: {plural(len(recording), 'row')} over {recording.duration:.6g} s, "
         f"median step {recording.dt:.6g} s" + (f" ({labels})" if labels else "")
     )
 

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
-from ..wording import counted
+from ..wording import plural
 from .units import FloatArray
 
 BAD_SHARE: Final = 0.05
@@ -85,7 +85,7 @@ def check_lengths(source: str, lengths: Mapping[str, int]) -> None:
     for name, length in others:
         if length != expected:
             raise InputError(
-                f"{source}: {name} has {counted(length, 'row')}, and {first} has {expected}; "
+                f"{source}: {name} has {plural(length, 'row')}, and {first} has {expected}; "
                 "give channels of one recording, of equal length"
             )
 
@@ -115,7 +115,7 @@ def mend(
     rows = len(values["time"])
     if rows < FEWEST_ROWS:
         raise InputError(
-            f"{source}: the recording has {counted(rows, 'row')}, and at least {FEWEST_ROWS} are "
+            f"{source}: the recording has {plural(rows, 'row')}, and at least {FEWEST_ROWS} are "
             "needed; record longer or sample faster"
         )
     repairs: list[Repair] = []
@@ -193,7 +193,7 @@ def _mend_time(time: FloatArray, source: str, place: Place, repairs: list[Repair
             "respaced",
             number,
             first,
-            f"time: {counted(number, what, what.replace('stamp that was', 'stamps that were'))} "
+            f"time: {plural(number, what, what.replace('stamp that was', 'stamps that were'))} "
             f"{verb} spaced anew between their neighbours, the first at {place(first)}",
         )
     )
@@ -279,7 +279,7 @@ def _clock_fault(time: FloatArray, good: _Mask, place: Place) -> str:
     missing = ~np.isfinite(time)
     if missing.sum() >= BAD_SHARE * len(time) or _longest_run(missing) > ISOLATED_ROWS:
         return (
-            f"{counted(int(missing.sum()), 'time stamp is', 'time stamps are')} missing or "
+            f"{plural(int(missing.sum()), 'time stamp is', 'time stamps are')} missing or "
             f"infinite in {len(time)}, the first at {place(int(missing.argmax()))}; "
             "time must be stamped on every row"
         )

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError
-from ..wording import counted
+from ..wording import plural
 from .table import Table
 
 __all__ = ["complete"]
@@ -40,7 +40,7 @@ def complete(table: Table) -> Table:
             whole = int(np.argmin(right)) if not np.all(right) else len(right)
             raise InputError(
                 f"{table.path}: column '{name.strip()}' says that the file has "
-                f"{counted(number, 'row')}, and {whole} of {len(column)} stand as they were "
+                f"{plural(number, 'row')}, and {whole} of {len(column)} stand as they were "
                 "written: the file was cut short or edited; write it again, or delete that column "
                 "where rows were left out on purpose"
             )

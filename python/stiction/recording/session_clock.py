@@ -10,7 +10,7 @@ from ..errors import InputError
 from .names import names_of, places_in_session
 from .recording import Recording
 
-__all__ = ["ages_of", "origin_of", "remaining", "starts_of"]
+__all__ = ["ages_of", "origin_of", "starts_of", "subset"]
 
 
 def starts_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
@@ -80,7 +80,7 @@ def ages_of(recordings: Sequence[Recording]) -> tuple[float, ...]:
     )
 
 
-def remaining(recordings: Sequence[Recording], places: Sequence[int]) -> list[Recording]:
+def subset(recordings: Sequence[Recording], places: Sequence[int]) -> list[Recording]:
     """Some of the recordings, each called as among all of them.
 
     What follows one from cold that is not among them begins cold itself.

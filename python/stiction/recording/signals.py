@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from ..errors import InputError
-from ..wording import counted, listed
+from ..wording import commas, plural
 from .clocks import time_of
 from .column_words import what_it_says
-from .columns import numbered
+from .columns import default_name
 from .formats import read_table
 from .table import Table
 
@@ -45,7 +45,7 @@ def read_signals(paths: Sequence[str | os.PathLike[str]]) -> Table:
     """
     if not 1 < len(paths) <= _MOST:
         raise InputError(
-            f"a recording of several files has {counted(len(paths), 'file')}; give 2 to {_MOST}"
+            f"a recording of several files has {plural(len(paths), 'file')}; give 2 to {_MOST}"
         )
     tables = [read_table(path) for path in paths]
     shorts = _short_names([table.path for table in tables])
@@ -54,7 +54,7 @@ def read_signals(paths: Sequence[str | os.PathLike[str]]) -> Table:
         time = time_of(table)
         if time is None:
             raise InputError(
-                f"{table.path}: no column of it is known to be the time ({listed(table.columns)}), "
+                f"{table.path}: no column of it is known to be the time ({commas(table.columns)}), "
                 "and of several files each needs its own; call one time_s"
             )
         others = [other for other in tables if other is not table]
@@ -76,7 +76,7 @@ def _joined(tables: Sequence[Table]) -> Table:
     if len(columns) < number:
         raise InputError(
             f"{tables[0].path}: two of the files of this recording have columns of one name "
-            f"({listed(columns)}); rename the files, or the columns"
+            f"({commas(columns)}); rename the files, or the columns"
         )
 
     def merged(what: str) -> dict[str, Any]:
@@ -106,7 +106,7 @@ def _short_names(paths: Sequence[Path]) -> list[str]:
     short = ["_".join(words[start : len(words) - end]) for words in names]
     if all(short) and len(set(short)) == len(short):
         return short
-    return [f"{numbered(place)} of {path.stem}" for place, path in enumerate(paths, 1)]
+    return [f"{default_name(place)} of {path.stem}" for place, path in enumerate(paths, 1)]
 
 
 def _shared(names: Sequence[Sequence[str]]) -> int:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from ..errors import InputError, NotEnoughData
-from ..wording import counted, listed
+from ..wording import commas, plural
 from .blocks import Part, blocks, check_lengths_of
 from .names import names_of
 from .recording import SPLIT_ROLES, Recording
@@ -114,14 +114,14 @@ class Split:
         words = [
             self.names[index]
             if index in whole
-            else f"{counted(pieces[index], 'block')} of {self.names[index]}"
+            else f"{plural(pieces[index], 'block')} of {self.names[index]}"
             for index in pieces
         ]
-        return f"{listed(words)} ({lasting:.4g} s)"
+        return f"{commas(words)} ({lasting:.4g} s)"
 
     def _without(self, role: str) -> str:
         if role == "select" and self.folds:
-            return f"select: {counted(len(self.folds), 'fold')} over train"
+            return f"select: {plural(len(self.folds), 'fold')} over train"
         return f"{role}: nothing"
 
 
@@ -280,7 +280,7 @@ class _Dealer:
                 )
         if faults:
             raise InputError(
-                f"session: {listed(faults)}; held-out data must not be fitted on, drop one of the "
+                f"session: {commas(faults)}; held-out data must not be fitted on, drop one of the "
                 "two"
             )
 
@@ -391,7 +391,7 @@ class _Dealer:
         return Counter(self.recordings[index].kind for index in self._trained())
 
     def _listed(self, indices: Sequence[int]) -> str:
-        return listed(self.names[index] for index in indices)
+        return commas(self.names[index] for index in indices)
 
 
 def _turned(turn: int) -> int:

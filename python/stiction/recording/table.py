@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..given import instance, mapping, whole, word
-from ..wording import counted, did_you_mean, listed, printable
+from ..wording import commas, did_you_mean, plural, printable
 from .text.lines import LineNumbers
 from .units import FloatArray, bracketed_unit
 
@@ -139,24 +139,24 @@ class Table:
         if name in self.unusable:
             raise InputError(
                 f"{self.path}: '{name}', asked for as {field_name}, {self.unusable[name]}; "
-                f"the columns here are {listed(self.columns)}"
+                f"the columns here are {commas(self.columns)}"
             )
         if name not in self.columns:
             raise InputError(
                 f"{self.path}: there is no column '{name}', asked for as {field_name}"
-                f"{did_you_mean(name, self.columns)}; the columns here are {listed(self.columns)}"
+                f"{did_you_mean(name, self.columns)}; the columns here are {commas(self.columns)}"
             )
         for cell in self.cells:
             if cell.column == name:
                 raise InputError(
                     f"{self.path}: {self.place(cell.row)}, column '{name}' holds "
-                    f"{shown(cell.text)}, which is not a number; correct the cell, or empty it "
+                    f"{quote(cell.text)}, which is not a number; correct the cell, or empty it "
                     "to have it filled from its neighbours"
                 )
         return self.columns[name]
 
 
-def shown(text: str) -> str:
+def quote(text: str) -> str:
     """Foreign text, quoted and short enough to stand in one sentence."""
     return repr(text if len(text) <= 40 else text[:37] + "...")
 
@@ -209,9 +209,9 @@ def table_of_arrays(path: Path, arrays: dict[str, FloatArray | str], what: str) 
     columns = {name: array for name, array in arrays.items() if not isinstance(array, str)}
     unusable = {name: reason for name, reason in arrays.items() if isinstance(reason, str)}
     if not columns:
-        held = listed(f"{name} {reason}" for name, reason in unusable.items())
+        held = commas(f"{name} {reason}" for name, reason in unusable.items())
         raise InputError(
-            f"{path}: none of its {counted(len(unusable), what)} is a vector of numbers "
+            f"{path}: none of its {plural(len(unusable), what)} is a vector of numbers "
             f"({held}); save time, input and position as vectors"
         )
     return Table(path, columns, unusable=unusable)

@@ -9,7 +9,7 @@ import numpy as np
 
 from .units import FloatArray
 
-__all__ = ["unwrapped"]
+__all__ = ["unwrap"]
 
 _TURN: Final = 2.0 * math.pi
 _SLACK: Final = 1e-3
@@ -25,7 +25,7 @@ _LEAST: Final = 0.02
 """Of a turn, where nothing else moves."""
 
 
-def unwrapped(angle: FloatArray) -> tuple[FloatArray, int]:
+def unwrap(angle: FloatArray) -> tuple[FloatArray, int]:
     """An angle that goes on where it began anew, and how often it did.
 
     Parameters

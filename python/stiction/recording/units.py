@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..trajectory import FloatArray as FloatArray
-from ..wording import did_you_mean, listed
+from ..wording import commas, did_you_mean
 
 Motion = Literal["rotary", "linear"]
 
@@ -246,4 +246,4 @@ def ending_unit(name: str, quantities: tuple[str, ...]) -> Unit | None:
 
 def unit_names(quantities: tuple[str, ...]) -> str:
     """All units of some quantities, for the end of an error sentence."""
-    return listed(unit.name for unit in _TABLE if unit.quantity in quantities)
+    return commas(unit.name for unit in _TABLE if unit.quantity in quantities)

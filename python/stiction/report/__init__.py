@@ -13,7 +13,7 @@ from .. import given
 from ..atomic_files import subfolder, write_text
 from ..begins import save_begins
 from ..best_effort import Failure, attempt
-from .files import made, refused, without_others
+from .files import folder_error, make_folder, without_others
 
 if TYPE_CHECKING:
     from ..diagnosis import Diagnosis
@@ -53,7 +53,7 @@ def write(diagnosis: Diagnosis, folder: Path) -> Path:
     from ..diagnosis import Diagnosis
 
     given.instance(diagnosis, Diagnosis, "report.write: diagnosis", "what st.diagnose returns")
-    folder = made(given.path(folder, "report.write: folder"))
+    folder = make_folder(given.path(folder, "report.write: folder"))
     try:
         write_text(folder / "findings.json", diagnosis.to_json() + "\n")
         diagnosis.plant.save(folder / "plant.toml")
@@ -71,7 +71,7 @@ def write(diagnosis: Diagnosis, folder: Path) -> Path:
         page = attempt("the page", lambda: _rendered(diagnosis, drawings, remarks))
         write_text(folder / REPORT, _bare(diagnosis, page) if isinstance(page, Failure) else page)
     except OSError as error:
-        raise refused(folder, "cannot be written to", error) from None
+        raise folder_error(folder, "cannot be written to", error) from None
     return folder / REPORT
 
 

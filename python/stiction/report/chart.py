@@ -114,7 +114,7 @@ class Panel:
     legend: bool = False
 
     @property
-    def labelled(self) -> list[Line | Span | Area]:
+    def legend_marks(self) -> list[Line | Span | Area]:
         """Marks that a legend has."""
         return [m for m in self.marks if isinstance(m, Line | Span | Area) and m.label]
 

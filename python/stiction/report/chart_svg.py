@@ -204,7 +204,7 @@ def _heading(panel: Panel, place: _Place) -> Iterator[str]:
 def _legend(panel: Panel, left: float, top: float, right: float) -> tuple[str, float]:
     """Swatches and labels in rows, and how high they are."""
     parts, x, y = [], left, top + 0.5 * LINE * SMALL
-    for mark in panel.labelled:
+    for mark in panel.legend_marks:
         wide = SWATCH + 5.0 + text_width(mark.label, SMALL)
         if x > left and x + wide > right:
             x, y = left, y + LINE * SMALL

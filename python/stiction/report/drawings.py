@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Protocol
 from markupsafe import Markup
 
 from ..best_effort import Failure, attempt
-from ..compared import compared_by
+from ..compared import comparison_of
 from ..progress import phase, steps
 from . import figures, motion_figures
 from .chart_svg import write_svg
-from .numbers import isolated, percent, plain
+from .numbers import isolate, percent, plain
 from .scale import scale_of
 from .svg import inline
 
@@ -121,7 +121,7 @@ def orders(diagnosis: Diagnosis) -> list[Order]:
             found.append(Order("before-after", _headline))
         if motion_figures.simulated_trace(diagnosis) is not None:
             found.append(Order("motion", _motion))
-        if pictures.traces and not compared_by(diagnosis.plant).loop:
+        if pictures.traces and not comparison_of(diagnosis.plant).loop:
             found.append(Order("curves", _curves))
         for index, (cause, _) in enumerate(zip(diagnosis.effects, pictures.causes, strict=False)):
             found.append(Order(cause_name(index, cause.name), partial(_cause, index=index)))
@@ -168,7 +168,7 @@ def _headline(diagnosis: Diagnosis) -> _Shown:
         "rows that were fitted, as none are left to test on"
     )  # fmt: skip
     band = scale_of(diagnosis).text(figures.FLOOR_TIMES * pictures.floor)
-    by = compared_by(diagnosis.plant)
+    by = comparison_of(diagnosis.plant)
     what = f"Measured {by.quantity}, and what"
     model = "the loop, simulated from its goal alone, misses" if by.loop else "the model leaves"
     if diagnosis.effects:
@@ -180,7 +180,7 @@ def _headline(diagnosis: Diagnosis) -> _Shown:
     return _Shown(
         figures.headline,
         label,
-        f"{shown}, in {isolated(stretch.name)}: {rows}. Gaps are rows used otherwise or left "
+        f"{shown}, in {isolate(stretch.name)}: {rows}. Gaps are rows used otherwise or left "
         f"out. Grey band: what noise alone would leave, ±{band} (twice its rms).",
     )
 
@@ -197,7 +197,7 @@ def _motion(diagnosis: Diagnosis) -> _Shown:
     return _Shown(
         motion_figures.motion,
         f"Position over time, measured and simulated{both}, and their difference.",
-        f"Position, measured and simulated{both} ({how}), in {isolated(trace.name)}; beneath, what "
+        f"Position, measured and simulated{both} ({how}), in {isolate(trace.name)}; beneath, what "
         "the simulation misses of it.",
     )
 
@@ -286,6 +286,6 @@ def _closed_loop(diagnosis: Diagnosis) -> _Shown:
         figures.closed_loop,
         f"Tracking error over time, measured and simulated{both}, and their difference.",
         "Position less reference, measured and simulated under the same controller, in "
-        f"{isolated(pictures.tracking.name)}; beneath, what is left between measured and simulated "
+        f"{isolate(pictures.tracking.name)}; beneath, what is left between measured and simulated "
         f"position{both}. Gaps are rows used otherwise or left out.",
     )

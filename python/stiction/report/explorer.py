@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from markupsafe import Markup
 
-from ..compared import compared_by
+from ..compared import comparison_of
 from ..diagnosis.pictures import ROLES
 from ..plot import thinned
 from .numbers import percent
 from .packing import Packed, pack
-from .scale import Scale, scale_of, suited
+from .scale import Scale, scale_for, scale_of
 from .titles import effect_title
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ class Explorer:
     licence: str
 
     @property
-    def allowed(self) -> Markup:
+    def content_policy(self) -> Markup:
         """Sources of a content security policy: these scripts by their SHA-256, and no other."""
         digests = (b64encode(sha256(each.encode()).digest()).decode() for each in self.scripts)
         return Markup(" ".join(f"'sha256-{digest}'" for digest in digests))
@@ -117,9 +117,9 @@ def _columns(diagnosis: Diagnosis, traces: Sequence[Trace]) -> _Columns:
     names = ("position", "velocity", "effort", "inertial", "before", "after")
     own = {name: np.concatenate([getattr(trace, name) for trace in traces]) for name in names}
     unit = pictures.position_unit
-    position = suited([_greatest(own["position"])], unit)
-    speed = suited([_greatest(own["velocity"])], f"{unit}/s")
-    effort = suited([_greatest(own["effort"])], pictures.effort_unit)
+    position = scale_for([_greatest(own["position"])], unit)
+    speed = scale_for([_greatest(own["velocity"])], f"{unit}/s")
+    effort = scale_for([_greatest(own["effort"])], pictures.effort_unit)
     residual = scale_of(diagnosis)
     count = min((trace.step for trace in traces if trace.step > 0.0), default=0.0)
     fine = pictures.floor / FINER if np.isfinite(pictures.floor) else 0.0
@@ -141,7 +141,7 @@ def _columns(diagnosis: Diagnosis, traces: Sequence[Trace]) -> _Columns:
     for number, name in enumerate(traces[0].contributions):
         values = np.concatenate([trace.contributions[name] for trace in traces])
         found[f"effect-{number}"] = packed(values, residual, fine)
-    missed = suited(_missed(traces), unit)
+    missed = scale_for(_missed(traces), unit)
     return _Columns(traces, found, position, speed, effort, residual, missed)
 
 
@@ -167,7 +167,7 @@ def _told(diagnosis: Diagnosis, columns: _Columns) -> dict[str, Any]:
     """Names, units, and where each column stands."""
     pictures = diagnosis.pictures
     assert pictures is not None
-    by = compared_by(diagnosis.plant)
+    by = comparison_of(diagnosis.plant)
     recordings, begin, offset = [], 0, 0.0
     for trace in columns.traces:
         end = begin + len(trace.time)

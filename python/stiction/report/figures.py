@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..compared import compared_by
+from ..compared import comparison_of
 from ..errors import InputError
 from ..plot import ACCENT, FAINT, INK, MEASURED, SIMULATED, SMALL, TEXT
 from .axis import Axis, around
 from .chart import Area, Bars, Chart, Line, Mark, Panel, Span, Words
 from .chart_parts import INCH, extent, time_axis, trace_line, width_of
-from .labels import shortened, told_apart
+from .labels import distinct_labels, shorten
 from .numbers import NO_BREAK, digits, percent
-from .scale import Scale, loop_scale_of, prefixed, scale_of, suited
+from .scale import Scale, loop_scale_of, prefix_for, scale_for, scale_of
 
 if TYPE_CHECKING:
     from ..diagnosis.omnibus import View
@@ -35,7 +35,7 @@ __all__ = [
     "coordinates",
     "errors",
     "headline",
-    "most_shown",
+    "largest_views",
     "quantity_of",
 ]
 
@@ -81,9 +81,9 @@ def headline(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     left = [("before", stretch.before, BEFORE), ("after", stretch.after, AFTER)]
     if not diagnosis.effects:
         left = [("left", stretch.after, AFTER)]
-    by = compared_by(diagnosis.plant)
+    by = comparison_of(diagnosis.plant)
     unit = pictures.position_unit if by.loop else pictures.effort_unit
-    given = suited([extent([stretch.measured])], unit)
+    given = scale_for([extent([stretch.measured])], unit)
     time, size = time_axis(stretch.time, narrow), SMALL if narrow else TEXT
     measured = trace_line(stretch.time, given.factor * stretch.measured, MEASURED, 0.9, narrow)
     upright = Axis(0.0, 1.0, given.on_axis(by.quantity), _up(narrow))
@@ -154,7 +154,7 @@ def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     pictures = _pictures(diagnosis)
     # Sorted by what is left: what still needs a name stands first.
     before = {view.coordinate.name: view for view in pictures.before.views}
-    views = most_shown(pictures)
+    views = largest_views(pictures)
     columns = 2 if narrow else 3
     both, scale = bool(diagnosis.effects), scale_of(diagnosis)
     shown = (*views, *(before.values() if both else ()))
@@ -184,12 +184,12 @@ def coordinates(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     return Chart(width_of(narrow), panels, columns, legend=True, upright=upright)
 
 
-def most_shown(pictures: Pictures) -> list[View]:
+def largest_views(pictures: Pictures) -> list[View]:
     """What is left over the coordinates in which most shows or showed, most left first."""
     before = {view.coordinate.name: view.share for view in pictures.before.views}
 
     def shows(view: View) -> tuple[bool, float]:
-        return view.flagged(), max(view.share, before.get(view.coordinate.name, view.share))
+        return view.is_flagged(), max(view.share, before.get(view.coordinate.name, view.share))
 
     chosen = sorted(pictures.after.views, key=shows, reverse=True)[:MOST_PANELS]
     names = {view.coordinate.name for view in chosen}
@@ -233,7 +233,7 @@ def candidates(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
             4 if narrow else 6,
             written=lambda value: f"{value:g}{NO_BREAK}%",
         ),
-        y=_list([shortened(row.name.replace("_", " "), longest) for row in rows]),
+        y=_list([shorten(row.name.replace("_", " "), longest) for row in rows]),
         marks=marks,
         height=BAR * len(rows),
         legend=True,
@@ -300,8 +300,10 @@ def closed_loop(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     if tracking is None:
         raise InputError("no loop was replayed, so there is nothing to draw")
     both, scale = bool(diagnosis.effects), loop_scale_of(diagnosis)
-    simulated = [("before", tracking.before, tracking.left_before, BEFORE)] if both else []
-    simulated.append(("after" if both else "simulated", tracking.after, tracking.left, AFTER))
+    simulated = [("before", tracking.before, tracking.error_before, BEFORE)] if both else []
+    simulated.append(
+        ("after" if both else "simulated", tracking.after, tracking.error_after, AFTER)
+    )
 
     def line(values: np.ndarray, colour: str, width: float, label: str) -> Line:
         trace = trace_line(tracking.time, scale.factor * values, colour, width, narrow)
@@ -450,7 +452,7 @@ def _upright(view: View, pictures: Pictures, scale: Scale) -> tuple[str, Scale]:
     name, unit = quantity_of(view.coordinate.upright, pictures)
     if unit == "%":
         return name, Scale(100.0, unit)
-    return name, suited([extent([view.mean])], unit)
+    return name, scale_for([extent([view.mean])], unit)
 
 
 def _across(view: View) -> tuple[float, str]:
@@ -458,7 +460,7 @@ def _across(view: View) -> tuple[float, str]:
 
     Small ones keep the unit that the machine moves in, so that figures can be compared.
     """
-    return prefixed(extent([view.at]), at_least=1.0)
+    return prefix_for(extent([view.at]), at_least=1.0)
 
 
 def quantity_of(axis: str, pictures: Pictures) -> tuple[str, str]:
@@ -484,7 +486,7 @@ def _error_rows(diagnosis: Diagnosis, longest: int) -> list[tuple[str, float, fl
     stretches = _pictures(diagnosis).stretches
     if len(stretches) > 1:
         shown = stretches[:MOST_RECORDINGS]
-        names = told_apart([stretch.name for stretch in shown], longest)
+        names = distinct_labels([stretch.name for stretch in shown], longest)
         for name, stretch in zip(names, shown, strict=True):
             rows.append((name, _rms(stretch.before), _rms(stretch.after)))
     return [row for row in rows if math.isfinite(row[1]) and math.isfinite(row[2])]

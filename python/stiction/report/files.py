@@ -9,7 +9,7 @@ from typing import Final
 
 from ..errors import InputError
 
-__all__ = ["made", "refused", "without_others"]
+__all__ = ["folder_error", "make_folder", "without_others"]
 
 OWN: Final = re.compile(
     r"(before-after|candidates|closed-loop|coordinates|curves|errors|motion|cause-\d+-\w+)\.svg"
@@ -17,7 +17,7 @@ OWN: Final = re.compile(
 """What a report calls its figures."""
 
 
-def made(folder: Path) -> Path:
+def make_folder(folder: Path) -> Path:
     """The folder, made where it is not there.
 
     Raises
@@ -28,11 +28,11 @@ def made(folder: Path) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise refused(folder, "cannot be made a folder", error) from None
+        raise folder_error(folder, "cannot be made a folder", error) from None
     return folder
 
 
-def refused(folder: Path, what: str, error: OSError) -> InputError:
+def folder_error(folder: Path, what: str, error: OSError) -> InputError:
     """The sentence for a folder that cannot be used."""
     return InputError(f"{folder}: {what} ({error.strerror or error}); give another folder")
 

@@ -6,10 +6,10 @@ from collections import Counter
 from collections.abc import Sequence
 from itertools import takewhile
 
-__all__ = ["shortened", "told_apart"]
+__all__ = ["distinct_labels", "shorten"]
 
 
-def shortened(name: str, longest: int) -> str:
+def shorten(name: str, longest: int) -> str:
     """A name that is not too long, without characters that show nothing or turn text round."""
     shown = "".join(c if c.isprintable() else "?" for c in name)
     if len(shown) > longest:
@@ -18,23 +18,23 @@ def shortened(name: str, longest: int) -> str:
     return shown
 
 
-def told_apart(names: Sequence[str], longest: int) -> list[str]:
+def distinct_labels(names: Sequence[str], longest: int) -> list[str]:
     """Names as they can be drawn, each still another one.
 
     Where one is too long, what all begin or end with is left out of all; whatever still looks alike
     is counted.
     """
     if len(names) < 2 or all(len(name) <= longest for name in names):
-        return [shortened(name, longest) for name in names]
+        return [shorten(name, longest) for name in names]
     start = _shared(names)
     end = _shared([name[start:][::-1] for name in names])
     shown = []
     for name in names:
         own = name[start : len(name) - end]
-        shown.append(shortened(f"{'…' if start else ''}{own}{'…' if end else ''}", longest))
+        shown.append(shorten(f"{'…' if start else ''}{own}{'…' if end else ''}", longest))
     alike = Counter(shown)
     return [
-        name if alike[name] < 2 else f"{k + 1}: {shortened(full, longest - 4)}"
+        name if alike[name] < 2 else f"{k + 1}: {shorten(full, longest - 4)}"
         for k, (name, full) in enumerate(zip(shown, names, strict=True))
     ]
 

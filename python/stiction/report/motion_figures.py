@@ -14,7 +14,7 @@ from .axis import Axis, around
 from .chart import Chart, Line, Panel
 from .chart_parts import extent, time_axis, trace_line, width_of
 from .numbers import digits
-from .scale import Scale, suited
+from .scale import Scale, scale_for
 
 if TYPE_CHECKING:
     from ..diagnosis.pictures import Trace
@@ -75,9 +75,9 @@ def motion(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     models = [("after" if both else "simulated", trace.simulated[1], SIMULATED)]
     if both:
         models.insert(0, ("before", trace.simulated[0], ACCENT))
-    whole = suited([extent([trace.position])], unit)
+    whole = scale_for([extent([trace.position])], unit)
     missed = [(name, trace.position - own, colour) for name, own, colour in models]
-    scale = suited([extent([own]) for _, own, _ in missed], unit)
+    scale = scale_for([extent([own]) for _, own, _ in missed], unit)
 
     def line(values: FloatArray, colour: str, width: float, label: str) -> Line:
         return replace(trace_line(trace.time, values, colour, width, narrow), label=label)
@@ -137,7 +137,7 @@ def curves(diagnosis: Diagnosis, *, narrow: bool = False) -> Chart:
     standing = _over_position(rows, plants, pictures.position_unit)
     if max(float(np.ptp(values)) for _, values in standing.models) > LEAST_PULL * sliding:
         drawn.append(standing)
-    scale = suited([sliding], pictures.effort_unit)
+    scale = scale_for([sliding], pictures.effort_unit)
     panels = [_curve_panel(curve, names, scale, narrow) for curve in drawn]
     return Chart(width_of(narrow), panels, 1 if narrow else len(panels), legend=True)
 
@@ -198,7 +198,7 @@ def _over_position(rows: _Rows, plants: Sequence[Plant], unit: str) -> _Curve:
 def _curve_panel(
     curve: _Curve, names: Sequence[tuple[str, str]], scale: Scale, narrow: bool
 ) -> Panel:
-    across = suited([extent([curve.points[0]])], curve.unit)
+    across = scale_for([extent([curve.points[0]])], curve.unit)
 
     def line(of: FloatArrays, colour: str, label: str, width: float = 1.3) -> Line:
         return Line(across.factor * of[0], scale.factor * of[1], colour, width, label=label)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from ..wording import counted
+from ..wording import plural
 
 __all__ = [
     "NO_BREAK",
     "between",
     "digits",
     "duration",
-    "isolated",
+    "isolate",
     "percent",
     "percent_between",
     "plain",
@@ -34,7 +34,7 @@ def plain(name: str) -> str:
     return name.replace("_", " ")
 
 
-def isolated(name: str) -> str:
+def isolate(name: str) -> str:
     """A name within a sentence: whatever direction it is written in, the sentence keeps its own."""
     return f"\u2068{name}\u2069"
 
@@ -90,7 +90,7 @@ def duration(seconds: float) -> str:
     """A length of time in s, or in min where it is long."""
     if seconds < 300.0:
         return f"{digits(seconds)}{NO_BREAK}s"
-    return counted(round(seconds / 60.0), "minute")
+    return plural(round(seconds / 60.0), "minute")
 
 
 def tick(value: float) -> str:

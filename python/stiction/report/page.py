@@ -103,10 +103,10 @@ def _built(
         return None
     body = environment.get_template(f"{section.name}.html").render(content=section.content)
     kind = str(section.content.get("verdict", ""))
-    return _Rendered(section.name, section.title, Markup(labelled(body)), kind)
+    return _Rendered(section.name, section.title, Markup(label_cells(body)), kind)
 
 
-def labelled(page: str) -> str:
+def label_cells(page: str) -> str:
     """A page whose cells carry the words of their column, for a phone stacks them."""
 
     def table(found: re.Match[str]) -> str:

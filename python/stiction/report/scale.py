@@ -12,7 +12,7 @@ from .numbers import quantity
 if TYPE_CHECKING:
     from ..diagnosis.result import Diagnosis
 
-__all__ = ["Scale", "effort_unit_of", "loop_scale_of", "prefixed", "scale_of", "suited"]
+__all__ = ["Scale", "effort_unit_of", "loop_scale_of", "prefix_for", "scale_for", "scale_of"]
 
 _PREFIXES: Final = (
     (1e7, 1e-6, "M"),
@@ -56,9 +56,9 @@ def scale_of(diagnosis: Diagnosis) -> Scale:
     ]
     stiffness = None if diagnosis.baseline is None else diagnosis.baseline.stiffness
     if stiffness:
-        position = suited([size / stiffness for size in sizes], diagnosis.plant.position_unit)
+        position = scale_for([size / stiffness for size in sizes], diagnosis.plant.position_unit)
         return Scale(position.factor / stiffness, position.unit)
-    return suited(sizes, effort_unit_of(diagnosis))
+    return scale_for(sizes, effort_unit_of(diagnosis))
 
 
 def effort_unit_of(diagnosis: Diagnosis) -> str:
@@ -77,18 +77,18 @@ def loop_scale_of(diagnosis: Diagnosis) -> Scale:
         for size in (each.train_rms, each.heldout_rms)
         if size is not None
     ]
-    return suited(sizes, diagnosis.plant.position_unit)
+    return scale_for(sizes, diagnosis.plant.position_unit)
 
 
-def suited(sizes: Iterable[float], unit: str) -> Scale:
+def scale_for(sizes: Iterable[float], unit: str) -> Scale:
     """The unit that writes the largest of these SI values without many zeros; "" for none."""
     if unit in ("", "1"):
         return Scale(1.0, "")
-    factor, prefix = prefixed(max((size for size in sizes if math.isfinite(size)), default=1.0))
+    factor, prefix = prefix_for(max((size for size in sizes if math.isfinite(size)), default=1.0))
     return Scale(factor, prefix + unit)
 
 
-def prefixed(largest: float, *, at_least: float = 0.0) -> tuple[float, str]:
+def prefix_for(largest: float, *, at_least: float = 0.0) -> tuple[float, str]:
     """Factor and prefix of the unit that suits values up to this one, taken as ``at_least``."""
     size = max(largest, at_least)
     return next((factor, prefix) for least, factor, prefix in _PREFIXES if size >= least)

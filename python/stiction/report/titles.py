@@ -1,11 +1,12 @@
-"""What effects are called in the field, and the sentence that a page is headed by."""
+"""The sentence that a page is headed by, with effects as they are called in the field."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from ..compared import compared_by
-from ..diagnosis.words import joined
+from ..compared import comparison_of
+from ..diagnosis.presentation import PRESENTATIONS
+from ..diagnosis.words import join_words
 from .numbers import NO_BREAK, percent, plain
 
 if TYPE_CHECKING:
@@ -13,32 +14,6 @@ if TYPE_CHECKING:
 
 __all__ = ["effect_title", "headline"]
 
-NAMES: Final = {
-    "back_emf": "back-EMF",
-    "creep_hardening": "creep with hardening",
-    "current_loop_lag": "lag of the current loop",
-    "direction_asymmetry": "friction that differs by direction",
-    "drive_deadband": "dead band of the drive",
-    "drive_saturation": "saturation of the drive",
-    "dwell_strengthening": "strengthening at rest",
-    "encoder_eccentricity": "eccentric encoder",
-    "goal_rate_limit": "rate limit of the setpoint",
-    "load_dependent_friction": "load-dependent friction",
-    "position_dependent_friction": "position-dependent friction",
-    "rate_dependent_breakaway": "rate-dependent break-away",
-    "reverse_point_memory": "reversal-point memory",
-    "run_in": "running-in",
-    "shaft_compliance": "compliant shaft",
-    "stribeck": "Stribeck friction",
-    "temperature_dependent_friction": "temperature-dependent friction",
-    "torque_bias": "constant offset of the effort",
-    "torque_constant_ripple": "torque ripple",
-    "torque_constant_saturation": "saturation of the torque constant",
-    "viscous_quadratic": "quadratic viscous friction",
-    "voltage_limit": "voltage limit",
-    "warm_up": "warming up",
-}
-"""Names of effects that are not their words."""
 VERDICTS: Final = {
     "data_fault": "The data cannot be used",
     "not_testable": "These data cannot be tested",
@@ -61,7 +36,8 @@ FINE: Final = 0.1
 
 def effect_title(name: str) -> str:
     """An effect as an engineer would call it; an unknown one by its own words."""
-    return NAMES.get(name, plain(name))
+    entry = PRESENTATIONS.get(name)
+    return plain(name) if entry is None or not entry.title else entry.title
 
 
 def headline(diagnosis: Diagnosis) -> str:
@@ -89,7 +65,7 @@ def _found(diagnosis: Diagnosis) -> str:
         *others, last = (diagnosis.effects[0].name, *diagnosis.effects[0].look_alikes)
         return OR.format(", ".join(effect_title(each) for each in others), effect_title(last))
     if diagnosis.verdict == "missing_effect":
-        return MISSING.format(joined([effect_title(each.name) for each in diagnosis.effects]))
+        return MISSING.format(join_words([effect_title(each.name) for each in diagnosis.effects]))
     return VERDICTS[diagnosis.verdict]
 
 
@@ -106,7 +82,7 @@ def _error(diagnosis: Diagnosis) -> str:
         for share in (held_out if tested else fitted)
     )
     what = "Held-out error" if tested else "Error on the rows fitted"
-    whole = compared_by(diagnosis.plant).whole
+    whole = comparison_of(diagnosis.plant).whole
     if not before or not after:
         return ""
     number = before.removesuffix(f"{NO_BREAK}%")

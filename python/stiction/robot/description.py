@@ -12,7 +12,7 @@ from typing import Final
 from ..errors import InputError
 from ..given import regular
 
-__all__ = ["Description", "JointLimits", "Mimic", "described"]
+__all__ = ["Description", "JointLimits", "Mimic", "read_urdf"]
 
 _LARGEST: Final = 2**24
 _MOVING: Final = ("revolute", "continuous", "prismatic")
@@ -72,7 +72,7 @@ class Description:
         return tuple(name for name in self.kinds if name not in self.mimics)
 
 
-def described(urdf: Path) -> Description:
+def read_urdf(urdf: Path) -> Description:
     """Read the joints of a URDF.
 
     Parameters

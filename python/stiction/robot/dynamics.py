@@ -12,8 +12,8 @@ import numpy as np
 
 from ..errors import InputError
 from ..trajectory import FloatArray
-from ..wording import did_you_mean, listed
-from .description import Description, described
+from ..wording import commas, did_you_mean
+from .description import Description, read_urdf
 
 __all__ = ["PER_LINK", "Arm", "Drives"]
 
@@ -76,7 +76,7 @@ class Arm:
         gravity: Sequence[float] | None = None,
     ) -> None:
         self._pin = _pinocchio()
-        self.description = described(urdf)
+        self.description = read_urdf(urdf)
         self._model = self._built(urdf)
         if gravity is not None:
             self._model.gravity.linear = np.asarray(gravity, dtype=float)
@@ -192,7 +192,7 @@ class Arm:
             if name not in self._joints:
                 raise InputError(
                     f"{urdf}: has no joint '{name}' that moves"
-                    f"{did_you_mean(name, self._joints)}; it has {listed(self._joints)}"
+                    f"{did_you_mean(name, self._joints)}; it has {commas(self._joints)}"
                 )
         matrix = np.zeros((self.links, len(joints)))
         offset = np.zeros(self.links)

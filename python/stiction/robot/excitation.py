@@ -132,7 +132,7 @@ def excitation(load: ArmLoad, limits: ArmLimits, source: np.random.Generator) ->
             best, cost, width = other, found, width * 1.5
         else:
             width = max(width * 1.5**-0.25, 1e-3)
-    sized = search.sized(best)
+    sized = search.scale_to_limits(best)
     if sized is None:
         raise InputError(
             "no motion of all joints together stays within these limits; widen the effort"
@@ -157,7 +157,7 @@ class _Search:
 
     def cost(self, drawn: FloatArray) -> float:
         """Logarithm of the condition number, infinite where nothing stays within the limits."""
-        sized = self.sized(drawn)
+        sized = self.scale_to_limits(drawn)
         if sized is None:
             return math.inf
         sines, cosines, period = sized
@@ -167,7 +167,7 @@ class _Search:
         # Half of it: these are squares of the singular values.
         return 0.5 * math.log(values[-1] / max(values[0], 1e-15 * values[-1]))
 
-    def sized(self, drawn: FloatArray) -> tuple[FloatArray, FloatArray, float] | None:
+    def scale_to_limits(self, drawn: FloatArray) -> tuple[FloatArray, FloatArray, float] | None:
         """Sines, cosines and period of a candidate as large and fast as the limits allow."""
         limits = self._limits
         both = drawn @ self._within.T

@@ -8,7 +8,7 @@ from xml.sax.saxutils import quoteattr
 
 from ..errors import InputError
 from ..export import Export, targets
-from ..export.joint import joint_of, told
+from ..export.joint import joint_of, losses_of
 from ..export.speeds import speed_of
 from ..keys import choice
 from ..plant import Plant
@@ -101,5 +101,5 @@ def _numbers(
         joint = joint_of(plant, speed_of(plant) if speed is None else speed)
         numbers[f"{name}.damping"] = joint.damping
         numbers[f"{name}.friction"] = joint.friction
-        lost += [f"{name}: {sentence}" for sentence in told(plant, joint)]
+        lost += [f"{name}: {sentence}" for sentence in losses_of(plant, joint)]
     return numbers, lost

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from .result import RobotDiagnosis
     from .robot import Joint, Robot
 
-__all__ = ["extended", "robot_text"]
+__all__ = ["extended_text", "robot_text"]
 
 
-def extended(diagnosis: RobotDiagnosis, folder: Path) -> str:
+def extended_text(diagnosis: RobotDiagnosis, folder: Path) -> str:
     """The text of robot.toml: as it was given, with what was found of each joint."""
     robot = diagnosis.fit.session.robot
     found = {joint.name: joint.diagnosis.plant.to_dict() for joint in diagnosis.joints}

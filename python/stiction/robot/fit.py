@@ -18,8 +18,8 @@ from ..recording.repair import FEWEST_ROWS
 from ..recording.split import Split, split
 from ..session import Session
 from ..trajectory import FloatArray
-from .motion import JointMotion, measured
-from .regression import ArmFit, fitted, rows_of
+from .motion import JointMotion, motion_of
+from .regression import ArmFit, fit_arm, rows_of
 from .session import RobotSession, Run
 
 __all__ = ["JointSession", "RobotFit", "fit_robot"]
@@ -217,12 +217,12 @@ def fit_robot(session: RobotSession) -> RobotFit:
     gains = np.array([joint.effort_per_input for joint in session.robot.joints])
     motions, rows = [], []
     for index, run in enumerate(steps(session.runs, "recording")):
-        motion = measured(run.joints)
+        motion = motion_of(run.joints)
         motions.append(motion)
         free = _free(dealt, index, motion, run)
         rows.append(rows_of(arm, motion, motion.input * gains, free, run.payload))
     phase(_logger, "fitting the links")
-    return RobotFit(session, fitted(arm, rows), tuple(motions), dealt)
+    return RobotFit(session, fit_arm(arm, rows), tuple(motions), dealt)
 
 
 def _free(dealt: Split, index: int, motion: JointMotion, run: Run) -> list[tuple[int, int]]:

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from .motion import measured
+from .motion import motion_of
 from .regression import Rows, rows_of
 from .session import RobotSession
 
@@ -41,7 +41,7 @@ def gains_of(session: RobotSession) -> list[float | None]:
     rows: list[Rows] = []
     spacing = []
     for run in session.runs:
-        motion = measured(run.joints)
+        motion = motion_of(run.joints)
         spacing.append(motion.dt * motion.every)
         everything = [(0, len(motion.time))]
         rows.append(rows_of(arm, motion, motion.input, everything, run.payload))

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from ..errors import InputError
-from ..given import shown
-from ..keys import known
+from ..given import brief
+from ..keys import check_keys
 from ..parameter import number
 from ..plan.limits import MARGIN
 from ..trajectory import FloatArray
-from ..wording import listed
+from ..wording import commas
 from .description import JointLimits
 
 if TYPE_CHECKING:
@@ -65,13 +65,13 @@ def limits_table(table: Mapping[str, Any], where: str) -> dict[str, Any]:
     InputError
         An unknown key, positions that are no two rising numbers, a limit not above 0.
     """
-    known(table, _KEYS, where)
+    check_keys(table, _KEYS, where)
     found: dict[str, Any] = {}
     if "position" in table:
         told = table["position"]
         if not isinstance(told, list) or len(told) != 2:
             raise InputError(
-                f"{where} position = {shown(told)}: give from and to, as in [-1.5, 1.5]"
+                f"{where} position = {brief(told)}: give from and to, as in [-1.5, 1.5]"
             )
         low, high = (number(one, f"{where} position") for one in told)
         if not (math.isfinite(low) and math.isfinite(high) and low < high):
@@ -139,7 +139,7 @@ def arm_limits(
             )
         )
     notes = [
-        f"{robot.source} states no limits of position of {listed(endless)}: moved by half a turn "
+        f"{robot.source} states no limits of position of {commas(endless)}: moved by half a turn "
         "either way at most; narrow limits.position where cables would wind up"
     ]
     return ArmLimits(*np.array(rows).T), notes if endless else []

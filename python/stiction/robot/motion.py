@@ -12,7 +12,7 @@ from ..motion import evenly, noise_of
 from ..recording import Recording
 from ..trajectory import FloatArray
 
-__all__ = ["JointMotion", "measured"]
+__all__ = ["JointMotion", "motion_of"]
 
 ORDER: Final = 4
 """Of the Butterworth low pass, which runs forward and backward: no delay."""
@@ -66,12 +66,12 @@ class JointMotion:
         """Samples at either end that tell no acceleration."""
         return min(int(ENDS / (self.cutoff * self.dt)) + 1, len(self.time) // 4)
 
-    def passed(self, values: FloatArray) -> FloatArray:
+    def filter(self, values: FloatArray) -> FloatArray:
         """Values through the low pass along the first axis, and those that are kept of them."""
-        return filtered(values, self.cutoff, self.dt)[:: self.every]
+        return low_pass(values, self.cutoff, self.dt)[:: self.every]
 
 
-def measured(joints: Sequence[Recording]) -> JointMotion:
+def motion_of(joints: Sequence[Recording]) -> JointMotion:
     """The motion of an arm.
 
     Parameters
@@ -87,13 +87,13 @@ def measured(joints: Sequence[Recording]) -> JointMotion:
     read = np.stack([onto(one.position) for one in joints], axis=1)
     driven = np.stack([onto(one.input) for one in joints], axis=1)
     cutoff = _cutoff(read, dt)
-    position = filtered(read, cutoff, dt)
+    position = low_pass(read, cutoff, dt)
     velocity = np.gradient(position, dt, axis=0)
     acceleration = np.gradient(velocity, dt, axis=0)
     return JointMotion(time, stamps, position, velocity, acceleration, driven, cutoff)
 
 
-def filtered(values: FloatArray, cutoff: float, dt: float) -> FloatArray:
+def low_pass(values: FloatArray, cutoff: float, dt: float) -> FloatArray:
     """Values through the low pass, forward and backward, along the first axis."""
     from scipy.signal import butter, sosfiltfilt
 
@@ -109,7 +109,7 @@ def _cutoff(read: FloatArray, dt: float) -> float:
     possible = [f for f in CUTOFFS if f <= NYQUIST_SHARE / dt] or [NYQUIST_SHARE / dt / 2.0]
     noise = np.array([noise_of(column) for column in read.T])
     for cutoff in possible:
-        moved = filtered(read, cutoff, dt)
+        moved = low_pass(read, cutoff, dt)
         second = np.diff(moved, 2, axis=0) / dt**2
         size = np.sqrt(np.mean(second**2, axis=0))
         # White noise up to the cutoff, twice differentiated.

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Final
 from ..atomic_files import write_text
 from ..best_effort import Failure, attempt
 from ..report import REPORT
-from ..report.files import made, refused
+from ..report.files import folder_error, make_folder
 from ..report.numbers import digits, percent
-from ..wording import listed
-from .extended import extended
+from ..wording import commas
+from .extended import extended_text
 
 if TYPE_CHECKING:
     from .agreement import Agreement
@@ -48,23 +48,23 @@ def write(diagnosis: RobotDiagnosis, folder: Path) -> Path:
     InputError
         The folder cannot be made or written to.
     """
-    folder = made(folder)
+    folder = make_folder(folder)
     try:
         write_text(folder / "findings.json", diagnosis.to_json() + "\n")
-        write_text(folder / "robot.toml", extended(diagnosis, folder))
+        write_text(folder / "robot.toml", extended_text(diagnosis, folder))
         for joint in diagnosis.joints:
             joint.diagnosis.save(folder / joint.folder)
         page = attempt("the page", lambda: _rendered(diagnosis))
         write_text(folder / REPORT, _bare(diagnosis, page) if isinstance(page, Failure) else page)
     except OSError as error:
-        raise refused(folder, "cannot be written to", error) from None
+        raise folder_error(folder, "cannot be written to", error) from None
     return folder / REPORT
 
 
 def _rendered(diagnosis: RobotDiagnosis) -> str:
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    from ..report.page import labelled
+    from ..report.page import label_cells
 
     environment = Environment(
         loader=PackageLoader("stiction.report"),
@@ -89,7 +89,7 @@ def _rendered(diagnosis: RobotDiagnosis) -> str:
         compared=sum(row.agrees is not None for row in rows),
         report=REPORT,
     )
-    return labelled(page)
+    return label_cells(page)
 
 
 def _joint(joint: JointFindings) -> dict[str, Any]:
@@ -153,7 +153,7 @@ def _agreement(row: Agreement) -> dict[str, Any]:
 
 
 def _bare(diagnosis: RobotDiagnosis, failure: Failure) -> str:
-    names = listed(joint.folder for joint in diagnosis.joints)
+    names = commas(joint.folder for joint in diagnosis.joints)
     return (
         '<!doctype html><html lang="en"><head><meta charset="utf-8"><title>stiction diagnosis'
         f"</title></head><body><h1>stiction diagnosis</h1><p>{escape(diagnosis.sentence)}</p>"

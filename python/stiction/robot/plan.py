@@ -19,7 +19,7 @@ from ..presliding import presliding
 from ..progress import phase
 from ..recording.recording import SPLIT_ROLES
 from ..trajectory import FloatArray
-from ..wording import did_you_mean, listed
+from ..wording import commas, did_you_mean
 from .excitation import ArmLoad, Excitation, excitation
 from .limits import ArmLimits, arm_limits
 from .robot import Robot
@@ -132,7 +132,7 @@ def _asked(only: Sequence[str]) -> tuple[str, ...]:
         if name not in known:
             raise InputError(
                 f"only: a robot has no experiment '{name}'{did_you_mean(name, known)}; it has "
-                f"{listed(known)}"
+                f"{commas(known)}"
             )
     return tuple(name for name in known if not only or name in only)
 
@@ -151,7 +151,7 @@ def _load(robot: Robot, limits: ArmLimits) -> tuple[ArmLoad, list[str]]:
     notes = []
     if silent:
         notes.append(
-            f"{robot.source} states no level of friction of {listed(silent)}: a fifth of the "
+            f"{robot.source} states no level of friction of {commas(silent)}: a fifth of the "
             "effort is set aside for it"
         )
     rotors = np.array([joint.rotor_inertia for joint in robot.joints])

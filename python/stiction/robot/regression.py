@@ -10,12 +10,12 @@ import numpy as np
 
 from ..errors import NotEnoughData
 from ..trajectory import FloatArray
-from ..wording import listed
+from ..wording import commas
 from .consistency import consistent, exist, feasible
 from .dynamics import PER_LINK, Arm
 from .motion import JointMotion
 
-__all__ = ["PLAIN", "ArmFit", "Rows", "fitted", "rows_of"]
+__all__ = ["PLAIN", "ArmFit", "Rows", "fit_arm", "rows_of"]
 
 PLAIN: Final = ("viscous", "coulomb", "bias")
 """Friction of a joint beside which its structure is measured."""
@@ -129,22 +129,22 @@ def rows_of(
     for start, stop in free:
         allowed[start:stop] = True
     allowed[: motion.ends] = allowed[-motion.ends :] = False
-    still = motion.passed((~moving).astype(float)) > 0.05
+    still = motion.filter((~moving).astype(float)) > 0.05
     return Rows(
         links,
-        motion.passed(motion.acceleration),
+        motion.filter(motion.acceleration),
         passed,
-        motion.passed(effort),
+        motion.filter(effort),
         ~still & allowed[thin, None],
         payload,
     )
 
 
 def _as_kept(motion: JointMotion, values: FloatArray) -> FloatArray:
-    return np.stack([motion.passed(one) for one in values])
+    return np.stack([motion.filter(one) for one in values])
 
 
-def fitted(arm: Arm, rows: Sequence[Rows]) -> ArmFit:
+def fit_arm(arm: Arm, rows: Sequence[Rows]) -> ArmFit:
     """Fit links, rotors and plain friction of all joints together.
 
     Parameters
@@ -162,7 +162,7 @@ def fitted(arm: Arm, rows: Sequence[Rows]) -> ArmFit:
     systems = [_system(arm, rows, joint, payloads) for joint in range(joints)]
     never = [name for name, (left, _) in zip(arm.names, systems, strict=True) if len(left) < 50]
     if never:
-        raise NotEnoughData(f"{listed(never)} moves in no row that is fitted to")
+        raise NotEnoughData(f"{commas(never)} moves in no row that is fitted to")
     own = systems[0][0].shape[1] - 3 * joints
     known = np.concatenate([feasible(arm.prior), *(_hanging(mass) for mass in payloads)])
     begin = np.concatenate([known, np.full(joints, _rotor(arm))])

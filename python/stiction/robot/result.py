@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from .. import given
 from ..diagnosis.result import SCHEMA, Cause, Diagnosis, Verdict
-from ..wording import counted, listed
+from ..wording import commas, plural
 from .agreement import Agreement
 from .fit import RobotFit
 
@@ -130,9 +130,9 @@ class RobotDiagnosis:
         if not lacking and not unsaid:
             said = ["Nothing is missing in any joint that could be tested"]
         if unsaid:
-            said.append(f"something without a name is left in {listed(unsaid)}")
+            said.append(f"something without a name is left in {commas(unsaid)}")
         if untested:
-            said.append(f"{listed(untested)} could not be tested")
+            said.append(f"{commas(untested)} could not be tested")
         return "; ".join(said) + "."
 
     def to_dict(self) -> dict[str, Any]:
@@ -263,14 +263,14 @@ def _told(joint: JointFindings) -> str:
 
 def _agreed(number: int, apart: Sequence[Agreement]) -> str:
     if not apart:
-        return f"{counted(number, 'parameter')} agree between recordings."
+        return f"{plural(number, 'parameter')} agree between recordings."
     unknown = sum(not row.reason for row in apart)
     return (
-        f"Of {counted(number, 'parameter')} {len(apart)} differ between recordings; for {unknown} "
+        f"Of {plural(number, 'parameter')} {len(apart)} differ between recordings; for {unknown} "
         "of these the data show no reason."
     )
 
 
 def _names_of(causes: Sequence[Cause]) -> str:
     """Names, and which of them the data leave open."""
-    return listed(f"{'' if cause.decided else 'perhaps '}{cause.name}" for cause in causes)
+    return commas(f"{'' if cause.decided else 'perhaps '}{cause.name}" for cause in causes)

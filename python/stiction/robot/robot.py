@@ -12,13 +12,13 @@ from typing import Any, Final
 from .. import given
 from ..drive import INPUTS
 from ..errors import InputError
-from ..keys import choice, known
+from ..keys import check_keys, choice
 from ..parameter import number
 from ..plant import Plant
 from ..plant_file import read_toml, section
 from ..recording import Columns
 from ..recording.units import Motion
-from .description import JointLimits, described
+from .description import JointLimits, read_urdf
 from .dynamics import Arm
 from .limits import limits_table
 
@@ -164,15 +164,15 @@ class Robot:
             As for ``load``.
         """
         table = given.mapping(table, source, "the tables of a robot file")
-        known(table, ("robot",), source)
+        check_keys(table, ("robot",), source)
         own = section(table, "robot", source)
         where = f"{source}: [robot]"
-        known(own, _KEYS, where)
+        check_keys(own, _KEYS, where)
         named = own.get("urdf")
         if not isinstance(named, str) or not named or "\0" in named:
-            raise InputError(f'{where} urdf = {given.shown(named)}; write urdf = "arm.urdf"')
+            raise InputError(f'{where} urdf = {given.brief(named)}; write urdf = "arm.urdf"')
         urdf = given.path(folder, "Robot.from_dict: folder") / named
-        kinds = described(urdf).kinds
+        kinds = read_urdf(urdf).kinds
         entries = own.get("joints", [])
         if not isinstance(entries, list) or not entries:
             raise InputError(
@@ -211,7 +211,7 @@ class Robot:
         InputError
             The URDF is gone.
         """
-        return described(self.urdf).limits
+        return read_urdf(self.urdf).limits
 
     @cached_property
     def arm(self) -> Arm:
@@ -239,15 +239,15 @@ def describes_robot(path: Path) -> bool:
 
 def _joint(entry: object, kinds: Mapping[str, str], where: str) -> Joint:
     if not isinstance(entry, Mapping):
-        raise InputError(f"{where} is {given.shown(entry)}; write a table [[robot.joints]]")
-    known(entry, _JOINT, where)
+        raise InputError(f"{where} is {given.brief(entry)}; write a table [[robot.joints]]")
+    check_keys(entry, _JOINT, where)
     if "name" not in entry:
         raise InputError(f'{where}: name is missing; write name = "…", as in the URDF')
     name = choice(entry["name"], kinds, f"{where} name")
     where = f"{where} ('{name}')"
     motion: Motion = "linear" if kinds[name] == "prismatic" else "rotary"
     drive = section(entry, "drive", where)
-    known(drive, _DRIVE, f"{where} drive")
+    check_keys(drive, _DRIVE, f"{where} drive")
     if "input" not in drive:
         raise InputError(
             f'{where}: drive is missing; write drive = {{ input = "current_a", gain = 1.0 }}'
@@ -255,7 +255,7 @@ def _joint(entry: object, kinds: Mapping[str, str], where: str) -> Joint:
     effort = "force_n" if motion == "linear" else "torque_nm"
     inputs = [name for name in INPUTS if name in ("current_a", "voltage_v", effort)]
     columns = section(entry, "columns", where)
-    known(columns, _COLUMNS, f"{where} columns")
+    check_keys(columns, _COLUMNS, f"{where} columns")
     if "input" not in columns or not {"position", "velocity"} & set(columns):
         raise InputError(
             f"{where}: columns lacks the input, or position and velocity both; write "
@@ -306,7 +306,7 @@ def _locked(table: Mapping[str, Any], where: str) -> dict[str, float]:
 def _gravity(value: object, where: str) -> tuple[float, float, float] | None:
     if value is None:
         return None
-    told = f"{where} = {given.shown(value)}: give three numbers in m/s², as in [0.0, 0.0, -9.81]"
+    told = f"{where} = {given.brief(value)}: give three numbers in m/s², as in [0.0, 0.0, -9.81]"
     if not isinstance(value, list) or len(value) != 3:
         raise InputError(told)
     x, y, z = (number(part, where) for part in value)

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from .. import given
 from ..errors import InputError
-from ..keys import known
+from ..keys import check_keys
 from ..parameter import number
 from ..plant_file import read_toml, section
 from ..progress import phase, steps
@@ -19,7 +19,7 @@ from ..recording.names import names_of
 from ..recording.recording import recording_of, recordings_of
 from ..recording.signals import read_signals
 from ..session_entries import Entry, beside, entries_of
-from ..wording import counted
+from ..wording import plural
 from .robot import Joint, Robot
 
 __all__ = ["RobotSession", "Run", "load_session", "robot_of"]
@@ -93,7 +93,7 @@ class RobotSession:
         for run in self.runs:
             if len(run.joints) != len(self.robot.joints):
                 raise InputError(
-                    f"robot session: a recording has {counted(len(run.joints), 'joint')}, and the "
+                    f"robot session: a recording has {plural(len(run.joints), 'joint')}, and the "
                     f"robot has {len(self.robot.joints)}"
                 )
 
@@ -148,7 +148,7 @@ def load_session(path: str | Path) -> RobotSession:
     """
     path = given.path(path, "load_session")
     table = read_toml(path, least='plant = "…" and one [[recordings]]')
-    known(table, _TABLES, str(path))
+    check_keys(table, _TABLES, str(path))
     file = robot_of(path)
     if file is None:
         raise InputError(
@@ -156,7 +156,7 @@ def load_session(path: str | Path) -> RobotSession:
         )
     robot = Robot.load(file)
     columns = section(table, "columns", str(path))
-    known(columns, _SHARED, f"{path}: [columns]")
+    check_keys(columns, _SHARED, f"{path}: [columns]")
     entries = table.get("recordings", [])
     if not isinstance(entries, list) or not all(isinstance(e, dict) for e in entries):
         raise InputError(f"{path}: recordings is not a list of tables; write [[recordings]]")

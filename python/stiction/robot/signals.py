@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .. import given
-from ..atomic_files import replacing, write_text
-from ..plan.files import signal_named, write_plan
+from ..atomic_files import atomic_write, write_text
+from ..plan.files import find_signal, write_plan
 from ..plan.result import PAUSE_S
 from ..recording.recording import SPLIT_ROLES
 from ..trajectory import FloatArray
-from ..wording import counted
+from ..wording import plural
 from .extended import robot_text
 from .robot import Robot
 
@@ -85,7 +85,7 @@ class RobotSignal:
         pairs = zip(self.names, self.units, strict=True)
         head = ",".join(["time_s", *(f"{name}_{unit}" for name, unit in pairs)])
         rows = np.column_stack([self.time, self.positions])
-        with given.written(path), replacing(path) as file:
+        with given.explain_write_errors(path), atomic_write(path) as file:
             file.write(f"{head}\n".encode())
             np.savetxt(file, rows, fmt="%.9g", delimiter=",")
         return path
@@ -141,7 +141,7 @@ class RobotPlan:
         UnknownName
             An ``InputError`` and a ``KeyError``: there is no such signal.
         """
-        return signal_named(self.signals, name)
+        return find_signal(self.signals, name)
 
     def schedule(self) -> list[dict[str, Any]]:
         """What to record when: file, role, kind and start of every recording, pauses included."""
@@ -244,9 +244,7 @@ class RobotPlan:
     def __repr__(self) -> str:
         """A table of the signals, and how well the motion of all joints tells what is fitted."""
         total = sum(signal.duration for signal in self.signals)
-        head = (
-            f"{counted(len(self.signals), 'signal')}, {total:.0f} s in all, all from home to home"
-        )
+        head = f"{plural(len(self.signals), 'signal')}, {total:.0f} s in all, all from home to home"
         rows = [("signal", "length / s", "moves"), *map(_row, self.signals)]
         widths = [max(len(row[k]) for row in rows) for k in range(2)]
         lines = [f"{a:<{widths[0]}}  {b:>{widths[1]}}  {c}" for a, b, c in rows]

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import stiction as st
-from stiction.diagnosis.base import based
+from stiction.diagnosis.base import fit_baseline
 from stiction.diagnosis.decide import SMALLEST
-from stiction.diagnosis.model import fitted, likeliest_of, stepped, with_effect
-from stiction.diagnosis.regression import bounded
+from stiction.diagnosis.model import fit_model, likeliest_of, step_beside, with_effect
+from stiction.diagnosis.regression import bounded_gains
 from stiction.diagnosis.rounds import _candidates, friction_of
 from stiction.diagnosis.selection import Search
 from stiction.diagnosis.signatures import Signatures
@@ -41,7 +41,9 @@ class Entry:
         """Gains within their bounds, and the power that they take away."""
         normal, product = self.columns.T @ self.columns, self.columns.T @ residual
         best = np.linalg.lstsq(normal, product, rcond=1e-10)[0]
-        (gains,) = bounded(normal[None], product[None], best[None], self.low[None], self.high[None])
+        (gains,) = bounded_gains(
+            normal[None], product[None], best[None], self.low[None], self.high[None]
+        )
         return gains, float(2.0 * gains @ product - gains @ normal @ gains)
 
 
@@ -110,7 +112,7 @@ def library(path):
     """
     session = st.load(path)
     try:
-        evidence, base = based(session.plant, session.recordings)
+        evidence, base = fit_baseline(session.plant, session.recordings)
         tried = _candidates(evidence, base, (), Search([base]))
     except st.InputError:
         return None
@@ -155,12 +157,12 @@ def _refitted(evidence, model, tried, signatures, k, gains):
     candidate = signatures.candidates[k]
     begun = [
         with_effect(
-            stepped(model, share * signatures.explained(k, gains)), candidate, share * gains
+            step_beside(model, share * signatures.contribution(k, gains)), candidate, share * gains
         )
         for share in SHARES
     ]
     start = likeliest_of(evidence, begun, model.nuisances)
-    more = fitted(evidence, start, model.nuisances)
+    more = fit_model(evidence, start, model.nuisances)
     if not more.power < model.power:
         return None
     return _seen(evidence, more, [each for each in tried if each.name != candidate.name])

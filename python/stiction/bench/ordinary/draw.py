@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .hidden import HIDDEN, Plain, with_hidden
+from .hidden import HIDDEN, Plain, with_effect
 from .machine import Machine, simulate
 from .signals import KINDS, FloatArray, signal
 
@@ -135,7 +135,7 @@ class Ordinary:
     foreign_columns: bool = False
 
     @property
-    def reached(self) -> float:
+    def relative_rms(self) -> float:
         """rms of the hidden effort, share of the dry friction."""
         power = np.mean([np.mean(log.hidden**2) for log in self.logs])
         return float(math.sqrt(power)) / self.machine.coulomb
@@ -157,7 +157,7 @@ def _made(spec: Decided, rng: np.random.Generator) -> Ordinary:
     if spec.hidden:
         plain = _plain(spec, machine, drive)
         hide = _stream(spec.seed, spec.hidden)
-        machine = with_hidden(machine, spec.hidden, spec.size, plain, hide)
+        machine = with_effect(machine, spec.hidden, spec.size, plain, hide)
     logs = _logs(spec, machine, drive)
     controller = _controller(spec, machine) if spec.loop == "pd" and rng.random() < 0.6 else {}
     roles = ("train", "select", "test") if spec.recordings >= 3 and rng.random() < 0.4 else ()

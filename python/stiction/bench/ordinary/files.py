@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ...atomic_files import replacing, write_text
+from ...atomic_files import atomic_write, write_text
 from .draw import Log, Ordinary
 from .signals import FloatArray
 
@@ -171,7 +171,7 @@ def _cell(value: float) -> str:
 
 
 def _npz(path: Path, table: dict[str, FloatArray]) -> None:
-    with replacing(path) as file:
+    with atomic_write(path) as file:
         np.savez_compressed(file, **table)  # type: ignore[arg-type]
 
 
@@ -180,7 +180,7 @@ def _mat(path: Path, table: dict[str, FloatArray]) -> None:
 
     made = BytesIO()
     savemat(made, {name: column[:, None] for name, column in table.items()})
-    with replacing(path) as file:
+    with atomic_write(path) as file:
         file.write(_MAT_HEADER + made.getvalue()[len(_MAT_HEADER) :])
 
 
@@ -197,7 +197,7 @@ def _parquet(path: Path, table: dict[str, FloatArray]) -> None:
     pyarrow: Any = import_module("pyarrow")
     parquet: Any = import_module("pyarrow.parquet")
     columns = {name: list(column) for name, column in table.items()}
-    with replacing(path) as file:
+    with atomic_write(path) as file:
         parquet.write_table(pyarrow.table(columns), file)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from .machine import Effects, Machine
 from .signals import FloatArray
 
-__all__ = ["HIDDEN", "Plain", "with_hidden"]
+__all__ = ["HIDDEN", "Plain", "with_effect"]
 
 
 def _either(rng: np.random.Generator) -> float:
@@ -119,7 +119,7 @@ class Plain:
         self.dt = dt
 
 
-def with_hidden(
+def with_effect(
     machine: Machine, name: str, size: float, plain: Plain, rng: np.random.Generator
 ) -> Machine:
     """The machine with an effect of about this size, share of its dry friction."""

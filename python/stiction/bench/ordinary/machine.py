@@ -126,7 +126,7 @@ class _Body:
         state += [0.0] if self.lagging else []
         return state + ([position, 0.0] if self.shaft else [])
 
-    def given(self, value: float) -> float:
+    def effort_of(self, value: float) -> float:
         """Effort that the drive makes of an input, without its lag."""
         effects = self.machine.effects
         asked = value * self.machine.gain
@@ -307,7 +307,7 @@ def simulate(
             pieces = [(part * dt, held[-2 - int(whole)]), ((1.0 - part) * dt, pieces[0][1])]
         missing = 0.0
         for length, value in pieces:
-            body.commanded = body.given(value)
+            body.commanded = body.effort_of(value)
             steps = max(1, math.ceil(length / finest))
             if body.bristle:
                 # It turns over as fast as the body may be by the end of this.

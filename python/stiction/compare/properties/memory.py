@@ -68,7 +68,7 @@ def branches(subject: Subject) -> Measured:
     )
 
 
-def recovered(subject: Subject) -> Measured:
+def return_point_memory(subject: Subject) -> Measured:
     """A reverse point that is met again after a loop and after a loop within it."""
     if subject.rigid:
         return Measured(None, {}, "rigid before it slides")
@@ -84,7 +84,7 @@ def recovered(subject: Subject) -> Measured:
     )  # fmt: skip
 
 
-def wiped(subject: Subject) -> Measured:
+def wipe_out(subject: Subject) -> Measured:
     """The way on after closed loops, beside the way of a contact that never made them."""
     if subject.rigid:
         return Measured(None, {}, "rigid before it slides")
@@ -143,7 +143,7 @@ RECOVERED: Final = Property(
     "Is a reverse point met again when the force comes back?",
     f"Gap below {_RECOVERED:g} of the width of the loop, for a loop and for one inside it: a law "
     "with memory meets the point to rounding, one without misses it by per cents.",
-    recovered,
+    return_point_memory,
 )
 WIPED: Final = Property(
     "loops_wiped_out",
@@ -151,7 +151,7 @@ WIPED: Final = Property(
     "Is a closed loop forgotten, as if it had never been?",
     f"After a closed inner loop the way on differs by less than {_WIPED:g} of the outer loop from "
     "that of a contact that never made it.",
-    wiped,
+    wipe_out,
 )
 LINEAR: Final = Property(
     "linear_near_reversal",

@@ -10,8 +10,8 @@ from ...errors import InputError
 from ...json_text import json_of
 from ..fmi_description import IDENTIFIER, Described, Variable, build_description, fmi2, fmi3
 from ..fmu_archive import archive, binary_of
-from ..fmu_run import gone
-from ..fragments import known
+from ..fmu_run import run_windows
+from ..fragments import names_of
 from ..joint import beside
 from ..machine_source import MachineSource
 from ..made import Export
@@ -36,7 +36,7 @@ def write(plant: Plant, speed: float) -> Export:
             "export its friction with --to c"
         )
     law = plant.friction.law
-    if law not in known("laws"):
+    if law not in names_of("laws"):
         raise InputError(f"{plant.source}: fmu: {law} has no C yet; --to c has its feed-forward")
     numbers = _numbers(plant)
     made = MachineSource.of(plant, INTERFACE, numbers)
@@ -67,7 +67,7 @@ def runs(made: Export, plant: Plant) -> tuple[MotionRun]:
     """The FMU of version 3.0 in co-simulation, its contact led to where each window starts."""
     whole = made.files["plant.fmu"]
     assert isinstance(whole, bytes)
-    return (MotionRun("", lambda windows: gone(whole, windows)),)
+    return (MotionRun("", lambda windows: run_windows(whole, windows)),)
 
 
 _TOKEN: Final = '"@token@"'

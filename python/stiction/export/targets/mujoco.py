@@ -10,9 +10,9 @@ import numpy as np
 
 from ...errors import InputError
 from ...trajectory import FloatArray
-from ..joint import joint_of, sidecar, told
+from ..joint import joint_of, losses_of, sidecar
 from ..made import Export
-from ..runs import MotionRun, Windows, hanging
+from ..runs import MotionRun, Windows, gravity_effort
 
 if TYPE_CHECKING:
     from ...mujoco import Joint
@@ -29,7 +29,7 @@ CREEPS = (
 def write(plant: Plant, speed: float) -> Export:
     """A model of one joint that turns or slides freely."""
     joint, inertia = joint_of(plant, speed), float(plant.inertia)
-    lost = [*told(plant, joint, limited=True), CREEPS]
+    lost = [*losses_of(plant, joint, limited=True), CREEPS]
     held = ["inertia as armature", "Coulomb and viscous friction"]
     limit = float(plant.drive.get("limit", np.inf))
     limited = ""
@@ -135,7 +135,7 @@ def _gone(
         for sample in range(windows.length):
             data.ctrl[0] = windows.input[start + sample]
             for _ in range(parts):
-                borne = float(hanging(plant, data.qpos)[0])
+                borne = float(gravity_effort(plant, data.qpos)[0])
                 data.qfrc_applied[0] = windows.load[start + sample] - borne
                 step(data, row)
                 row = None

@@ -48,7 +48,7 @@ def check(recording: Recording) -> tuple[Check, ...]:
     """
     instance(recording, Recording, "check: recording", "a Recording")
     return (
-        *readings.missing(recording),
+        *readings.missing_cells(recording),
         *readings.stress(recording),
         clock.jitter(recording),
         clock.gaps(recording),
@@ -57,7 +57,7 @@ def check(recording: Recording) -> tuple[Check, ...]:
         *readings.constant(recording),
         *readings.spikes(recording),
         readings.repeats(recording),
-        *readings.stuck(recording),
+        *readings.stuck_channels(recording),
         *readings.clipping(recording),
         readings.saturation(recording),
         readings.refresh(recording),

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ...wording import counted
+from ...wording import plural
 from ..recording import Recording
 from ..units import FloatArray
 from .finding import Check
@@ -76,7 +76,7 @@ def gaps(recording: Recording, *, lost: float = LOST, share: float = 0.05) -> Ch
     missing = float(np.sum(steps[wide] - usual[wide]))
     at = float(recording.time[int(np.argmax(steps * wide))])
     what = (
-        f"{counted(number, 'gap')} of together {missing:.3g} s, the longest of "
+        f"{plural(number, 'gap')} of together {missing:.3g} s, the longest of "
         f"{float(steps[wide].max()):.3g} s at {at:.6g} s"
     )
     if missing > share * recording.duration:

@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ...motion import FEWEST_SAMPLES, SUPPORTS_S, Kernel, evenly, held
-from ...wording import counted
+from ...motion import FEWEST_SAMPLES, SUPPORTS_S, Kernel, evenly, zero_order_hold
+from ...wording import plural
 from ..names import names_of
 from ..recording import Recording
 from ..units import FloatArray
@@ -123,7 +123,7 @@ def impulse_checks(recordings: Sequence[Recording]) -> list[tuple[str, Check]]:
         row = each.rows[0]
         what = (
             f"input leaves its neighbours and comes back within {LONGEST} samples, in "
-            f"{counted(len(each.rows), 'row')}, first at {recording.time[row]:.6g} s to "
+            f"{plural(len(each.rows), 'row')}, first at {recording.time[row]:.6g} s to "
             f"{recording.input[row]:.4g}"
         )
         if each.got:
@@ -221,8 +221,8 @@ def _got(
         return None, False
     kernel = Kernel(support, dt)
     x = np.interp(time, stamps, without_spikes(position))
-    usual = held(time, stamps, _without(values, rows))
-    apart = held(time, stamps, values) - usual
+    usual = zero_order_hold(time, stamps, _without(values, rows))
+    apart = zero_order_hold(time, stamps, values) - usual
     speed = kernel.mean(np.gradient(x, dt)[1:])
     moving = np.abs(speed) > MOVING * float(np.sqrt(np.mean(speed**2)))
     if np.count_nonzero(moving) < len(kernel.weights):

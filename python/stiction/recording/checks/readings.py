@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from ...motion import count_of
-from ...wording import counted
+from ...wording import plural
 from ..recording import Recording
 from ..units import FloatArray
 from .finding import Check
@@ -28,7 +28,7 @@ _REST: Final = 5
 """Rows; shorter ones are repeated readings."""
 
 
-def missing(recording: Recording) -> list[Check]:
+def missing_cells(recording: Recording) -> list[Check]:
     """Cells that were filled in on reading, and channels where too many are missing."""
     found = [
         Check(
@@ -122,7 +122,7 @@ def spikes(
             continue
         at = recording.time[rows[0]]
         what = (
-            f"{name} leaves its neighbours for one sample {counted(len(rows), 'time')}, "
+            f"{name} leaves its neighbours for one sample {plural(len(rows), 'time')}, "
             f"first at {at:.6g} s to {values[rows[0]]:.4g}"
         )
         means = "a reading failed: no machine goes there and back within one sample"
@@ -165,7 +165,7 @@ def repeats(
     number = int(np.sum(apart[held] - 1))
     moving = int(np.sum(size > least)) + number
     if number < fewest or number <= share * moving:
-        return Check(name, "fine", f"{counted(number, 'reading')} of position repeated in motion")
+        return Check(name, "fine", f"{plural(number, 'reading')} of position repeated in motion")
     return Check(
         name,
         "note",
@@ -175,7 +175,7 @@ def repeats(
     )
 
 
-def stuck(
+def stuck_channels(
     recording: Recording,
     *,
     fewest: int = 5,
@@ -208,7 +208,7 @@ def stuck(
         if not frozen:
             continue
         what = (
-            f"{name} does not change over {counted(frozen, 'row')} and then jumps, or stops "
+            f"{name} does not change over {plural(frozen, 'row')} and then jumps, or stops "
             f"dead, first at {recording.time[first]:.6g} s"
         )
         fault = frozen > share * len(values)
@@ -280,7 +280,7 @@ def _held_against_efforts(
         return []
     number = sum(last - first for first, last in frozen)
     what = (
-        f"position does not change over {counted(number, 'row')} under efforts that move the "
+        f"position does not change over {plural(number, 'row')} under efforts that move the "
         f"machine elsewhere, first at {recording.time[frozen[0][0]]:.6g} s"
     )
     fault = number > share * len(position)
@@ -341,9 +341,7 @@ def clipping(
             number = _clipped(mended, float(extreme), fewest, visits)
             if not number:
                 continue
-            what = (
-                f"{name} is cut off at its {word} value {extreme:.6g} in {counted(number, 'row')}"
-            )
+            what = f"{name} is cut off at its {word} value {extreme:.6g} in {plural(number, 'row')}"
             means = "the true value is beyond the range and unknown there"
             remedy = (
                 "widen the range of the sensor or amplifier, or move less far, and record again"

@@ -12,7 +12,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...errors import InputError
-from ...wording import counted
+from ...wording import plural
 from ..table import Table
 from ..text.head import find_head
 from ..text.lines import blocks
@@ -49,7 +49,7 @@ def rows_below(path: Path, head: Head, *, commas: bool) -> Table:
         rows = _rows(path, head, commas=False)
     if not len(rows.lines):
         raise InputError(
-            f"{path}: the file has a header ({counted(len(head.names), 'column')}) and no rows "
+            f"{path}: the file has a header ({plural(len(head.names), 'column')}) and no rows "
             "under it; record it again or name another"
         )
     begins = rows.begins

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ...errors import InputError
-from ..gathered import damaged, missing
+from ..gathered import damage_error, missing_package
 from ..hdf5 import Hdf5
 from ..table import Table, table_of_arrays
 from ..units import FloatArray
@@ -31,13 +31,13 @@ def read(path: Path) -> Table:
     try:
         h5py: Any = import_module("h5py")
     except ImportError as error:
-        raise missing(path, "HDF5", "h5py", "mat73", error) from error
+        raise missing_package(path, "HDF5", "h5py", "mat73", error) from error
     found: dict[str, FloatArray | str] = {}
     try:
         with h5py.File(path, "r") as file:
             Hdf5(path, h5py, found, matrices=True).add("", file)
     except Exception as error:
-        raise damaged(path, "HDF5", error) from error
+        raise damage_error(path, "HDF5", error) from error
     return table_of_arrays(path, found, "data set")
 
 

@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from ...errors import InputError
-from ...wording import counted, listed, printable
+from ...wording import commas, plural, printable
 from ..expansion import Expansion
 from ..table import CELLS_KEPT, Cell, Table
 from .format import Format
@@ -30,7 +30,7 @@ def read(path: Path) -> Table:
     content = _content(path, expansion)
     records = _records(path, content)
     names = list(dict.fromkeys(name for record in records for name in record))
-    wanted = f"{len(records)} records of {counted(len(names), 'name')}"
+    wanted = f"{len(records)} records of {plural(len(names), 'name')}"
     expansion.numbers(wanted, len(records) * len(names))
     columns = {name: np.full(len(records), np.nan) for name in names}
     cells: list[Cell] = []
@@ -99,8 +99,8 @@ def _records(path: Path, content: Any) -> list[dict[str, Any]]:
             return list(content[tables[0]])
         if tables:
             raise InputError(
-                f"{path}: the object holds {counted(len(tables), 'list')} of records "
-                f"({listed(tables)}), and it may hold one; save the others apart"
+                f"{path}: the object holds {plural(len(tables), 'list')} of records "
+                f"({commas(tables)}), and it may hold one; save the others apart"
             )
     raise InputError(f"{path}: there is no list of records in this file; {_SHAPE}")
 

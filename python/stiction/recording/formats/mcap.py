@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from ...errors import InputError
 from ..expansion import most_bytes
-from ..gathered import Gathered, damaged, missing
+from ..gathered import Gathered, damage_error, missing_package
 from ..messages import add_message, is_read, why_not
 from ..table import Table
 from .format import Format
@@ -36,14 +36,14 @@ def read(path: Path) -> Table:
         reader: Any = import_module("mcap.reader")
         ros: Any = import_module("mcap_ros2.decoder")
     except ImportError as error:
-        raise missing(path, "MCAP", "mcap and mcap-ros2-support", "mcap", error) from error
+        raise missing_package(path, "MCAP", "mcap and mcap-ros2-support", "mcap", error) from error
     found = Gathered(path)
     try:
         with path.open("rb") as file:
             stream = reader.NonSeekingReader(file, record_size_limit=most_bytes())
             _read_topics(stream, ros.DecoderFactory(), found)
     except Exception as error:
-        raise damaged(path, "MCAP", error) from error
+        raise damage_error(path, "MCAP", error) from error
     return found.table("topic")
 
 

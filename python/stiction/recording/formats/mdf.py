@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from ...errors import InputError
-from ..gathered import Gathered, damaged, missing
+from ..gathered import Gathered, damage_error, missing_package
 from ..table import Table
 from ..units import FloatArray, known_unit
 from .format import Format
@@ -32,14 +32,14 @@ def read(path: Path) -> Table:
     try:
         asammdf: Any = import_module("asammdf")
     except ImportError as error:
-        raise missing(path, "MDF", "asammdf", "mdf", error) from error
+        raise missing_package(path, "MDF", "asammdf", "mdf", error) from error
     found = Gathered(path)
     try:
         with path.open("rb") as file, asammdf.MDF(file) as stored:
             for place, group in enumerate(stored.groups):
                 _add(found, stored, place, group, several=len(stored.groups) > 1)
     except Exception as error:
-        raise damaged(path, "MDF", error) from error
+        raise damage_error(path, "MDF", error) from error
     return found.table("group")
 
 

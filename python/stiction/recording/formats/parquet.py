@@ -15,7 +15,7 @@ import numpy as np
 
 from ...errors import InputError
 from ..expansion import Expansion
-from ..gathered import damaged, missing
+from ..gathered import damage_error, missing_package
 from ..table import Table, table_of_arrays, vector
 from ..units import FloatArray
 from .format import Format
@@ -87,7 +87,7 @@ def read_arrow(path: Path) -> Table:
         arrow: Any = import_module("pyarrow")
         ipc: Any = import_module("pyarrow.ipc")
     except ImportError as error:
-        raise missing(path, "an Arrow file", "pyarrow", "parquet", error) from error
+        raise missing_package(path, "an Arrow file", "pyarrow", "parquet", error) from error
     found: dict[str, FloatArray | str] = {}
     expansion = Expansion(path)
     try:
@@ -110,7 +110,7 @@ def read_arrow(path: Path) -> Table:
                 else:
                     found[field.name] = _column(stored.column(place))
     except Exception as error:
-        raise damaged(path, "an Arrow file", error) from error
+        raise damage_error(path, "an Arrow file", error) from error
     return table_of_arrays(path, found, "column")
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ...errors import InputError
-from ..gathered import Gathered, damaged, missing
+from ..gathered import Gathered, damage_error, missing_package
 from ..messages import add_message, is_read, why_not
 from ..table import Table
 from .format import Format
@@ -37,7 +37,7 @@ def read(path: Path) -> Table:
         types: Any = import_module("rosbags.typesys")
         bags: Any = import_module("rosbags.rosbag1")
     except ImportError as error:
-        raise missing(path, "a ROS bag", "rosbags", "ros", error) from error
+        raise missing_package(path, "a ROS bag", "rosbags", "ros", error) from error
     found = Gathered(path)
     try:
         if first:
@@ -45,7 +45,7 @@ def read(path: Path) -> Table:
         else:
             _read_second(path, types, found)
     except Exception as error:
-        raise damaged(path, "a ROS bag", error) from error
+        raise damage_error(path, "a ROS bag", error) from error
     return found.table("topic")
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...errors import InputError
 from ..column_words import what_it_says
-from ..gathered import Gathered, damaged, missing
+from ..gathered import Gathered, damage_error, missing_package
 from ..table import Table
 from ..units import FloatArray, known_unit
 from .format import Format
@@ -34,7 +34,7 @@ def read(path: Path) -> Table:
     try:
         nptdms: Any = import_module("nptdms")
     except ImportError as error:
-        raise missing(path, "TDMS", "nptdms", "tdms", error) from error
+        raise missing_package(path, "TDMS", "nptdms", "tdms", error) from error
     found = Gathered(path)
     try:
         # Of the file itself: the library would look for an index beside it.
@@ -46,7 +46,7 @@ def read(path: Path) -> Table:
             for group in groups:
                 _add(found, group, "" if len(groups) == 1 else group.name)
     except Exception as error:
-        raise damaged(path, "TDMS", error) from error
+        raise damage_error(path, "TDMS", error) from error
     return found.table("group")
 
 

@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from ...errors import InputError
-from ..gathered import Gathered, damaged, missing
+from ..gathered import Gathered, damage_error, missing_package
 from ..table import Table
 from .format import Format
 
@@ -34,7 +34,7 @@ def read(path: Path) -> Table:
     try:
         pyulog: Any = import_module("pyulog")
     except ImportError as error:
-        raise missing(path, "ULog", "pyulog", "ulog", error) from error
+        raise missing_package(path, "ULog", "pyulog", "ulog", error) from error
     found = Gathered(path)
     # Nothing in it is packed: as numbers an eighth of a byte each would be eight times as much.
     found.room("its topics", path.stat().st_size)
@@ -53,7 +53,7 @@ def read(path: Path) -> Table:
             }
             found.whole(group, 1e-6 * np.asarray(each.data[_CLOCK], dtype=np.float64), signals)
     except Exception as error:
-        raise damaged(path, "ULog", error) from error
+        raise damage_error(path, "ULog", error) from error
     return found.table("topic")
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from .overrule import overruled
+from .overrule import overrule
 from .result import ColumnGuess, Guess
 from .roles import guess
 
-__all__ = ["ColumnGuess", "Guess", "guess", "overruled"]
+__all__ = ["ColumnGuess", "Guess", "guess", "overrule"]

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from ...wording import counted
+from ...wording import plural
 from ..mapping import PRESCRIBED
 from ..units import Motion
 from .evidence import Column, goes_both_ways
@@ -139,9 +139,9 @@ def _fault(column: Column, motion: Motion, position: Column | None) -> str:
         return f"it reaches {high:.6g}: a signed number stored without its sign"
     if quantity not in ("current", "torque", "force") or column.said.wanted:
         return ""
-    held = column.rows_held
+    held = column.hold_length
     if held >= STALE_ROWS:
-        return f"it changes only every {counted(round(held), 'row')}: it was read too slowly"
+        return f"it changes only every {plural(round(held), 'row')}: it was read too slowly"
     unsigned = low >= 0.0 and low < ZERO * high
     if unsigned and position is not None and goes_both_ways(position):
         return "it is never negative while the machine moves both ways: a magnitude without sign"

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...motion import count_of
 from ..column_words import Said, what_it_says
-from ..table import Table, shown
+from ..table import Table, quote
 from ..units import FloatArray
 
 RISING: Final = 0.95
@@ -99,7 +99,7 @@ class Column:
         return float(np.median(rough))
 
     @property
-    def rows_held(self) -> float:
+    def hold_length(self) -> float:
         """Rows from one change to the next, usually."""
         lengths: list[float] = []
         for array in self.arrays:
@@ -125,7 +125,7 @@ def _column(name: str, tables: Sequence[Table], rows: Sequence[int]) -> Column:
         cell = next((cell for cell in table.cells if cell.column == name), None)
         if cell is not None:
             where = f"{table.path.name}, {table.place(cell.row)}"
-            return Column(name, said, trouble=f"holds text ({shown(cell.text)} in {where})")
+            return Column(name, said, trouble=f"holds text ({quote(cell.text)} in {where})")
         array = table.columns[name]
         if len(array) != number:
             trouble = f"has {len(array)} rows, and the others have {number}"

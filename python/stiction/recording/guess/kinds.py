@@ -34,7 +34,7 @@ def kinds_of(column: Column) -> tuple[str, ...]:
     return (kind,) if kind else ()
 
 
-def quantity_said(column: Column) -> str | None:
+def stated_quantity(column: Column) -> str | None:
     """Of a drive or load: what it is measured in, by unit or word."""
     if column.said.unit is not None:
         return column.said.unit.quantity

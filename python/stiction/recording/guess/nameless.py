@@ -46,7 +46,7 @@ def motion_of(
     return best[1], best[2], rate_of(best[1], clock, best[2])[1]
 
 
-def explained(
+def explained_share(
     position: Column, velocity: Column | None, clock: Sequence[FloatArray], column: Column
 ) -> float:
     """Share of a column that acceleration, friction and gravity of the motion explain.

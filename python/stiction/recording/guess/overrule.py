@@ -7,13 +7,13 @@ from dataclasses import replace
 from typing import Final
 
 from ...errors import InputError
-from ...wording import did_you_mean, listed
+from ...wording import commas, did_you_mean
 from ..columns import CANONICAL, ROLES, Column, Columns
 from ..mapping import PRESCRIBED
 from ..units import MOTION_OF_QUANTITY, Motion, find_unit, unit_names
 from .result import DRIVE_OF, ColumnGuess, Guess
 
-__all__ = ["overruled"]
+__all__ = ["overrule"]
 
 _NEEDS_UNIT: Final = ("time", "position", "input", "effort")
 """Roles whose unit, where nothing tells it, would be an answer in a unit that nobody knows."""
@@ -21,7 +21,7 @@ _TELLS_MOTION: Final = ("position", "effort", "velocity", "reference", "load")
 _STATED: Final = "stated"
 
 
-def overruled(found: Guess, columns: Columns) -> Guess:
+def overrule(found: Guess, columns: Columns) -> Guess:
     """A guess in which stated columns have the roles, units and scales that were stated.
 
     Parameters
@@ -42,7 +42,7 @@ def overruled(found: Guess, columns: Columns) -> Guess:
         if column.name not in known:
             raise InputError(
                 f"{columns.where}: {role} = '{column.name}' is no column of the file"
-                f"{did_you_mean(column.name, known)}; it has {listed(known)}"
+                f"{did_you_mean(column.name, known)}; it has {commas(known)}"
             )
     told = []
     for each in found.columns:

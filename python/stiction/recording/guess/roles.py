@@ -9,19 +9,19 @@ from typing import Final
 
 import numpy as np
 
-from ...wording import listed
+from ...wording import commas
 from ..clocks import on_main_clock
 from ..columns import ROLES
 from ..mapping import PRESCRIBED
-from ..table import Table, shown
+from ..table import Table, quote
 from ..units import MOTION_OF_QUANTITY, UNITS, FloatArray, Motion
 from . import units
 from .drive import Drive, choose_drive, quantity_of, runs_backward
 from .evidence import Column, alike, columns_of, counts_in_a_turn, rate_of, round_figure
-from .kinds import by_name, kinds_of, quantity_said
-from .nameless import explained, motion_of
+from .kinds import by_name, kinds_of, stated_quantity
+from .nameless import explained_share, motion_of
 from .result import DRIVE_OF, ColumnGuess, Guess
-from .units import UnitGuess, stated
+from .units import UnitGuess, unit_in_name
 
 ALIKE: Final = 0.9
 """Correlation of two columns that may be a position and its reference."""
@@ -128,7 +128,7 @@ class _Guesser:
     ) -> None:
         if column.constant:
             why += f", though it is {column.arrays[0][0]:.6g} in every row"
-        seconds = tuple(f"column {shown(other.name)}" for other in others if other is not column)
+        seconds = tuple(f"column {quote(other.name)}" for other in others if other is not column)
         self.given[column.name] = ColumnGuess(
             column.name,
             role,
@@ -170,7 +170,7 @@ class _Guesser:
                 "none, add a column of seconds"
             )
             return
-        unit = stated(chosen, ("time",)) or units.time_unit(chosen)
+        unit = unit_in_name(chosen, ("time",)) or units.time_unit(chosen)
         self._give(chosen, "time", unit, why, sure)
         self.clock = [array * unit.factor for array in chosen.arrays]
 
@@ -195,13 +195,13 @@ class _Guesser:
         position, velocity, fit = found
         self.kinds[position.name], self.kinds[velocity.name] = ("position",), ("velocity",)
         self.reasons[position.name] = (
-            f"no name tells; {shown(velocity.name)} is its rate of change (correlation {fit:.3f})"
+            f"no name tells; {quote(velocity.name)} is its rate of change (correlation {fit:.3f})"
         )
         self.reasons[velocity.name] = (
-            f"no name tells; it is the rate of change of {shown(position.name)}"
+            f"no name tells; it is the rate of change of {quote(position.name)}"
         )
         for other in self._nameless():
-            share = explained(position, velocity, self.clock, other)
+            share = explained_share(position, velocity, self.clock, other)
             self.shares[other.name] = share
         return position
 
@@ -260,30 +260,30 @@ class _Guesser:
             written = column.said.unit
             if written is not None and written.quantity in MOTION_OF_QUANTITY:
                 kind = MOTION_OF_QUANTITY[written.quantity]
-                return kind, f"column {shown(column.name)} is in {written.unit}"
+                return kind, f"column {quote(column.name)} is in {written.unit}"
         for column in motions[:1]:
             number = counts_in_a_turn(column.count, 2.0 * math.pi)
             if number:
-                return "rotary", f"readings of {shown(column.name)} have {number} steps to a turn"
+                return "rotary", f"readings of {quote(column.name)} have {number} steps to a turn"
         for column in motions:
             if column.said.motion is not None and column.said.word not in _WEAK:
-                return column.said.motion, f"by the name {shown(column.name)}"
+                return column.said.motion, f"by the name {quote(column.name)}"
         for column in self.columns:
-            quantity = quantity_said(column)
+            quantity = stated_quantity(column)
             if not column.trouble and quantity in ("torque", "force"):
                 kind = MOTION_OF_QUANTITY[quantity]
-                return kind, f"column {shown(column.name)} is a {quantity}"
+                return kind, f"column {quote(column.name)} is a {quantity}"
         if any(self.kinds[column.name] == ("normal_force",) for column in self.columns):
             return "linear", "a normal force or stress belongs to sliding"
         for column in motions[:1]:
             # Printed digits are round too.
             fine = 0.0 < column.count <= FINE_SCALE and column.span < 2.0
             if fine and not column.from_text and round_figure(column.count):
-                told = f"readings of {shown(column.name)} come in steps of {column.count:.3g}"
+                told = f"readings of {quote(column.name)} come in steps of {column.count:.3g}"
                 return "linear", f"{told}, a round figure as linear scales have"
         for column in motions:
             if column.said.motion is not None:
-                return column.said.motion, f"by the name {shown(column.name)}"
+                return column.said.motion, f"by the name {quote(column.name)}"
         return "rotary", "nothing tells; most drives turn"
 
     def _motion_columns(
@@ -310,16 +310,16 @@ class _Guesser:
             smooth, rough = sorted((position, twin), key=lambda c: c.roughness)
             if smooth.roughness < SMOOTHER * rough.roughness:
                 position, reference = rough, smooth
-                why = f"{self._by_name(position)}, and rougher than {shown(reference.name)}"
-        unit = stated(position, ROLES["position"]) or units.position_unit(
+                why = f"{self._by_name(position)}, and rougher than {quote(reference.name)}"
+        unit = unit_in_name(position, ROLES["position"]) or units.position_unit(
             position, motion, velocity, self.clock
         )
         self._give(position, "position", unit, why, others)
         if reference is not None:
-            own = stated(reference, ROLES["reference"]) or units.reference_unit(
+            own = unit_in_name(reference, ROLES["reference"]) or units.reference_unit(
                 reference, position, unit
             )
-            smoother = why.endswith(shown(reference.name))
+            smoother = why.endswith(quote(reference.name))
             why = (
                 "smoother than the position it resembles" if smoother else self._by_name(reference)
             )
@@ -363,7 +363,7 @@ class _Guesser:
         if chosen.column is None:
             return chosen
         quantity = chosen.quantity
-        unit = stated(chosen.column, (quantity,)) or units.drive_unit(chosen.column, quantity)
+        unit = unit_in_name(chosen.column, (quantity,)) or units.drive_unit(chosen.column, quantity)
         why = self._by_name(chosen.column)
         if chosen.name == PRESCRIBED:
             if position is not None and runs_backward(position, chosen.column):
@@ -384,7 +384,7 @@ class _Guesser:
                 "that drives the machine, with its sign"
             )
             if drive.refused:
-                sentence += f" ({listed(map(shown, drive.refused))} did not qualify)"
+                sentence += f" ({commas(map(quote, drive.refused))} did not qualify)"
             if referenced:
                 sentence += (
                     "; of a servo that is given positions name the goal instead of a reference, "
@@ -400,14 +400,14 @@ class _Guesser:
         if column is None or kind in self._roles():
             return
         if kind == "temperature":
-            unit = stated(column, ("temperature",)) or units.temperature_unit(column)
+            unit = unit_in_name(column, ("temperature",)) or units.temperature_unit(column)
         elif kind == "friction_coefficient":
             if column.low < -2.0 or column.high > 2.0:
                 self.refused[column.name] = "a friction coefficient lies between -2 and 2"
                 return
-            unit = stated(column, ("ratio",)) or UnitGuess("1", 1.0, "1: a ratio")
+            unit = unit_in_name(column, ("ratio",)) or UnitGuess("1", 1.0, "1: a ratio")
         else:
-            told = stated(column, ROLES[kind])
+            told = unit_in_name(column, ROLES[kind])
             if told is None and kind == "load":
                 self.refused[column.name] = (
                     "its unit is not known: name it by hand as load if it is an external torque "
@@ -415,7 +415,7 @@ class _Guesser:
                 )
                 return
             unit = told or UnitGuess("N", 1.0, "N: the SI unit", ("MPa",))
-        if kind == "load" and MOTION_OF_QUANTITY[quantity_said(column) or "torque"] != motion:
+        if kind == "load" and MOTION_OF_QUANTITY[stated_quantity(column) or "torque"] != motion:
             self.refused[column.name] = f"a load in {unit.unit} is none of a {motion} machine"
             return
         self._give(column, kind, unit, self._by_name(column))
@@ -460,7 +460,7 @@ class _Guesser:
         quantity = quantity_of(column) or "voltage"
         if column.trouble or self.kinds[column.name][:1] != ("drive",) or quantity not in DRIVE_OF:
             return ColumnGuess(column.name, None, reason=why)
-        unit = stated(column, (quantity,)) or units.drive_unit(column, quantity)
+        unit = unit_in_name(column, (quantity,)) or units.drive_unit(column, quantity)
         return ColumnGuess(column.name, None, unit.unit, unit.scale, why, candidate="input")
 
     def _nameless_told(self, column: Column, share: float) -> ColumnGuess:

@@ -47,7 +47,7 @@ class UnitGuess:
         return (UNITS[self.unit].factor or 1.0) * self.scale
 
 
-def stated(column: Column, quantities: Sequence[str]) -> UnitGuess | None:
+def unit_in_name(column: Column, quantities: Sequence[str]) -> UnitGuess | None:
     """The unit that the name gives, if it measures one of these quantities."""
     written = column.said.unit
     if written is None or written.quantity not in quantities:
@@ -133,7 +133,7 @@ def velocity_unit(
         SI values of the position over its cells.
     """
     units = _RATE_UNITS[motion]
-    told = stated(column, ("angular velocity", "velocity"))
+    told = unit_in_name(column, ("angular velocity", "velocity"))
     ratio, fit = (0.0, 0.0) if position is None else rate_of(position, clock, column)
     if abs(fit) < 0.5:
         seen = "it does not follow the changes of position; check it, or drop it"

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Final
 
 from ...errors import InputError
-from ..columns import numbered
+from ..columns import default_name
 from ..units import bracketed_unit, known_unit
 from .cells import BLANKS, fits, is_number, split
 from .lines import blocks, check_length
@@ -56,7 +56,7 @@ def find_head(path: Path) -> Head:
     header, body = _split_header(lines[at:], comments, delimiter)
     if header is None:
         width = max(len(_without_empty(_cells(text, delimiter))) for _, text in body[:_SAMPLED])
-        names = [numbered(place) for place in range(1, width + 1)]
+        names = [default_name(place) for place in range(1, width + 1)]
         # There is no line of names: what is wrong with a row is told by the first of them.
         header = (body[0][0], "")
     else:
@@ -228,7 +228,7 @@ def _names(path: Path, header: _Line, delimiter: str) -> list[str]:
                 f"{path}: line {line} names two columns '{name}'; give each its own name"
             )
         known.add(name)
-    return [name or numbered(place) for place, name in enumerate(names, start=1)]
+    return [name or default_name(place) for place, name in enumerate(names, start=1)]
 
 
 def _units(names: list[str], line: _Line, delimiter: str) -> dict[str, str]:

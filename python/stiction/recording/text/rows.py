@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from ...errors import InputError
-from ...wording import counted
+from ...wording import plural
 from ..expansion import BYTES_OF_A_NUMBER, check_expansion, most_bytes
 from ..table import CELLS_KEPT, Cell, is_missing
 from ..units import FloatArray
@@ -149,7 +149,7 @@ class Rows:
         if self._broken is not None:
             number, length = self._broken
             raise InputError(
-                f"{self._path}: line {number} has {counted(length, 'cell')}, and the header "
+                f"{self._path}: line {number} has {plural(length, 'cell')}, and the header "
                 f"(line {self._head.line}) names {width}; write nan where a value is missing"
             )
         if len(cells) > width:
@@ -171,7 +171,7 @@ class Rows:
         )
         return (
             f"{self._path}: line {line} has {cells} cells, and the header (line "
-            f"{self._head.line}) names {counted(width, 'column')}; {remedy}"
+            f"{self._head.line}) names {plural(width, 'column')}; {remedy}"
         )
 
     def _add_cells(self, taken: list[tuple[int, list[str]]]) -> None:
@@ -215,7 +215,7 @@ class Rows:
     def _append(self, columns: list[FloatArray], lines: range | IntArray) -> None:
         rows = len(self.lines) + len(lines)
         size = rows * self._width * BYTES_OF_A_NUMBER
-        check_expansion(self._path, f"{rows} rows of {counted(self._width, 'column')}", size)
+        check_expansion(self._path, f"{rows} rows of {plural(self._width, 'column')}", size)
         part = slice(len(self.lines), rows)
         for whole, column in zip(self._room(rows), columns, strict=True):
             whole[part] = column

@@ -6,9 +6,9 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from ...wording import counted
+from ...wording import plural
 from ..numbers import duration, quantity
-from ..scale import effort_unit_of, suited
+from ..scale import effort_unit_of, scale_for
 from .section import Section
 
 if TYPE_CHECKING:
@@ -59,8 +59,8 @@ def _passed(checks: Sequence[Mapping[str, str]]) -> str:
         return ""
     fine = sum(check["verdict"] == "fine" for check in checks)
     if fine == len(checks):
-        return f"All {counted(fine, 'check')} passed."
-    return f"{fine} of {counted(len(checks), 'check')} passed."
+        return f"All {plural(fine, 'check')} passed."
+    return f"{fine} of {plural(len(checks), 'check')} passed."
 
 
 def _grouped(checks: Sequence[Mapping[str, str]]) -> list[dict[str, Any]]:
@@ -85,7 +85,7 @@ def _split(split: Mapping[str, Any] | None) -> dict[str, Any] | None:
         if not parts:
             folds = split.get("folds") or ()
             if role == "select" and folds:
-                what = f"{counted(len(folds), 'fold')} over train, each left out in turn"
+                what = f"{plural(len(folds), 'fold')} over train, each left out in turn"
                 roles.append({"role": role, "purpose": purpose, "what": what, "lasting": ""})
             continue
         lasting = sum(part["seconds"][1] - part["seconds"][0] for part in parts)
@@ -107,14 +107,14 @@ def _through(through: Mapping[str, Any] | None) -> str:
     told = []
     if through.get("support"):
         told.append(
-            f"The kernel is {suited([through['support']], 's').text(through['support'])} wide."
+            f"The kernel is {scale_for([through['support']], 's').text(through['support'])} wide."
         )
     if through.get("horizon"):
-        horizon = suited([through["horizon"]], "s").text(through["horizon"])
+        horizon = scale_for([through["horizon"]], "s").text(through["horizon"])
         told.append(f"Each simulation lasts {horizon}.")
     before, after = through.get("timing_s") or (0.0, 0.0)
     if before or after:
-        scale = suited([before, after], "s")
+        scale = scale_for([before, after], "s")
         times = f"{scale.factor * before:.3g} → {scale.text(after)}".replace("-", "−")
         told.append(f"The input is stamped {times} early as fitted with it, before → after.")
     return " ".join(told)
@@ -126,7 +126,7 @@ def _pieces(names: Sequence[str]) -> str:
         name if number == 1 else f"{number} blocks of {name}" for name, number in pieces.items()
     ]
     more = len(words) - SHOWN
-    return ", ".join(words[:SHOWN]) + (f" and {counted(more, 'other')}" if more > 0 else "")
+    return ", ".join(words[:SHOWN]) + (f" and {plural(more, 'other')}" if more > 0 else "")
 
 
 def _noise(entry: Mapping[str, Any], position: str, effort: str) -> dict[str, str]:
@@ -135,5 +135,5 @@ def _noise(entry: Mapping[str, Any], position: str, effort: str) -> dict[str, st
         "recording": entry["recording"],
         "position": quantity(entry["position"], position, 2),
         "count": quantity(count, position, 3) if count else "none seen",
-        "effort": suited([entry["effort"]], effort).text(entry["effort"], 2),
+        "effort": scale_for([entry["effort"]], effort).text(entry["effort"], 2),
     }

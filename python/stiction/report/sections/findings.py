@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 from ...catalogue import EffectRecord, effects
-from ...diagnosis.directions import found
+from ...diagnosis.directions import describe_effect
 from ...diagnosis.orders import order_words
-from ...diagnosis.words import joined
+from ...diagnosis.words import join_words
 from ..drawings import cause_name
 from ..numbers import percent, percent_between, plain, quantity
 from ..scale import effort_unit_of
@@ -73,7 +73,7 @@ def _cause(cause: Cause, record: EffectRecord | None, diagnosis: Diagnosis) -> d
     summary = cause.what
     if record is not None:
         model = {} if diagnosis.extended is None else diagnosis.extended.parameters
-        meaning = found(record, {**model, **cause.parameters})
+        meaning = describe_effect(record, {**model, **cause.parameters})
         if summary.startswith(f"{meaning}: "):
             # The values stand in the table, with their units and intervals.
             summary = meaning
@@ -90,7 +90,7 @@ def _cause(cause: Cause, record: EffectRecord | None, diagnosis: Diagnosis) -> d
         "decided": cause.decided,
         "doubt": cause.doubt,
         "doubtful": cause.doubtful,
-        "counted": cause.counted,
+        "counted": cause.track_record,
         "look_alikes": [plain(name) for name in cause.look_alikes],
         "what": f"{summary}{_how_often(effect, plant, cause)}",
         "means": cause.means,
@@ -113,6 +113,6 @@ def _how_often(effect: Effect | None, plant: Plant, cause: Cause) -> str:
         return ""
     if plant.motion == "linear":
         lengths = [2.0 * math.pi / given[n].value for n in ("order", "order_2") if n in given]
-        return f", every {joined([quantity(each, 'm') for each in lengths])}"
-    times = "once" if orders == ["1"] else f"{joined(orders)} times"
+        return f", every {join_words([quantity(each, 'm') for each in lengths])}"
+    times = "once" if orders == ["1"] else f"{join_words(orders)} times"
     return f", {times} a turn"

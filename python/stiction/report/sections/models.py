@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ...compared import compared_by
+from ...compared import comparison_of
 from ..numbers import percent, plain
 from ..scale import Scale, scale_of
 from .parameters import meanings_of, row
@@ -49,7 +49,7 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
         "errors": _errors(before, after, scale),
         "noise": scale.text(after.noise_floor_rms),
         "remarks": _remarks(before, after, both=both),
-        "whole": compared_by(after.plant).whole,
+        "whole": comparison_of(after.plant).whole,
         "picture": drawings.get("errors"),
     }
     return Section("models", "The model before and after" if both else "The model", content)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..numbers import digits
-from ..scale import suited
+from ..scale import scale_for
 from .section import Section
 
 if TYPE_CHECKING:
@@ -47,5 +47,5 @@ def _errors(traces: list[Trace], unit: str) -> list[str]:
         for place, simulated in enumerate(trace.simulated or ()):
             squares[place].append((trace.position - simulated)[rows] ** 2)
     sizes = [float(np.sqrt(np.mean(np.concatenate(each)))) for each in squares]
-    scale = suited(sizes, unit)
+    scale = scale_for(sizes, unit)
     return [digits(scale.factor * sizes[0]), scale.text(sizes[1])]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ...compared import compared_by
+from ...compared import comparison_of
 from ...diagnosis.words import THE_LAW
 from ..numbers import percent
 from ..scale import scale_of
@@ -43,14 +43,14 @@ def build(diagnosis: Diagnosis, drawings: Drawings) -> Section | None:
             "before": percent(max(before.get(view.coordinate.name, view).share, 0.0)),
             "after": percent(max(view.share, 0.0)),
             "limit": percent(max(view.threshold, 0.0)),
-            "flagged": view.flagged(),
+            "flagged": view.is_flagged(),
         }
         for view in views
     ]
     content = {
         "left": left,
         "rows": rows,
-        "small": any(view.flagged(0.0) for view in views),
+        "small": any(view.is_flagged(0.0) for view in views),
         "both": bool(diagnosis.effects),
         "level": _level(diagnosis),
         "ceiling": _ceiling(diagnosis),
@@ -64,7 +64,7 @@ def _ceiling(diagnosis: Diagnosis) -> str:
     if diagnosis.ceiling is None:
         return ""
     told = diagnosis.ceiling.words(bool(diagnosis.effects))
-    return f"{told[0].upper()}{told[1:]} (rms, share of {compared_by(diagnosis.plant).whole})."
+    return f"{told[0].upper()}{told[1:]} (rms, share of {comparison_of(diagnosis.plant).whole})."
 
 
 def _level(diagnosis: Diagnosis) -> dict[str, Any] | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from ...compared import compared_by
+from ...compared import comparison_of
 from ..numbers import digits, percent, percent_between
 from ..scale import scale_of
 from ..titles import headline
@@ -70,7 +70,7 @@ def _errors(diagnosis: Diagnosis) -> dict[str, Any] | None:
     relative = [
         model.heldout_relative if tested else model.train_relative for model in (before, after)
     ]
-    scale, by = scale_of(diagnosis), compared_by(diagnosis.plant)
+    scale, by = scale_of(diagnosis), comparison_of(diagnosis.plant)
     floor, earlier = after.noise_floor_rms, before.noise_floor_rms
     return {
         "rows": "on held-out rows" if tested else "on the rows fitted",

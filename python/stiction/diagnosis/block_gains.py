@@ -9,18 +9,18 @@ import numpy as np
 
 from ..fitting.rows import Mask
 from ..trajectory import FloatArray
-from .influence import limited
+from .influence import limit_influence
 from .model import Model
-from .regression import refitted
+from .regression import refit_residuals
 
 __all__ = [
     "TOUCHED",
-    "gained_again",
-    "hardly_excited",
+    "count_active_recordings",
     "heldout_gain",
+    "lacks_excitation",
     "log_gain",
     "paired_z",
-    "recordings_acted_in",
+    "training_gain",
     "without_the_best",
     "z_of",
 ]
@@ -33,14 +33,14 @@ TOUCHED: Final = 0.01
 """Blocks with less than this share of an effect's mean power are none of its business."""
 
 
-def gained_again(base: Model, model: Model) -> float:
+def training_gain(base: Model, model: Model) -> float:
     """Share of the fitted power that a model removes, no block counting for too much."""
-    before, after = limited(base.blocks[0], model.blocks[0])
+    before, after = limit_influence(base.blocks[0], model.blocks[0])
     total = float(before.sum())
     return 1.0 - float(after.sum()) / total if total > 0.0 else 0.0
 
 
-def hardly_excited(base: Model, contributed: FloatArray, least: float) -> bool:
+def lacks_excitation(base: Model, contributed: FloatArray, least: float) -> bool:
     """Whether blocks held out can gain less than a share by a contribution that fitted ones show.
 
     What it does in a block, shape (n,), beyond what the base makes up for, is the most that can be
@@ -50,7 +50,7 @@ def hardly_excited(base: Model, contributed: FloatArray, least: float) -> bool:
     plan = base.evidence.plans[0]
     if plan.whole is not None:
         return False
-    own = refitted(base.columns, contributed, plan.fit)
+    own = refit_residuals(base.columns, contributed, plan.fit)
     block = base.evidence.cells.block
     shares = []
     for rows in (plan.held, plan.fit):
@@ -58,7 +58,7 @@ def hardly_excited(base: Model, contributed: FloatArray, least: float) -> bool:
             np.bincount(block[rows], each[rows] ** 2).astype(np.float64)
             for each in (base.residual, own)
         )
-        before, after = limited(power, np.maximum(power - done, 0.0))
+        before, after = limit_influence(power, np.maximum(power - done, 0.0))
         shares.append(1.0 - float(after.sum()) / max(float(before.sum()), 1e-300))
     return shares[0] < min(least, 0.5 * shares[1])
 
@@ -68,7 +68,7 @@ def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tupl
 
     ``touched`` says which blocks the second figure is taken over, all without it.
     """
-    before, after = limited(base.blocks[1], model.blocks[1])
+    before, after = limit_influence(base.blocks[1], model.blocks[1])
     seen = before > 0.0
     total = float(before.sum())
     gained = float((before - after)[seen].sum())
@@ -87,7 +87,7 @@ def without_the_best(base: Model, model: Model, contributed: FloatArray) -> floa
     cells = base.evidence.cells
     of_block = np.zeros(len(base.blocks[1]), dtype=np.int64)
     of_block[cells.block] = cells.recording
-    before, after = limited(base.blocks[1], model.blocks[1])
+    before, after = limit_influence(base.blocks[1], model.blocks[1])
     whole, left = (np.bincount(of_block, power) for power in (before, after))
     explained = np.bincount(cells.recording, contributed**2, len(whole))
     rows = np.bincount(cells.recording, minlength=len(whole))
@@ -106,12 +106,12 @@ def paired_z(worse: Model, better: Model) -> float:
     """What one model leaves more than another, over its standard error over blocks of 1 s."""
     difference = np.zeros(len(better.blocks[0]))
     for more, less in zip(worse.blocks, better.blocks, strict=True):
-        after, before = limited(more, less)
+        after, before = limit_influence(more, less)
         difference += after - before
     return z_of(difference[difference != 0.0])
 
 
-def recordings_acted_in(base: Model, contributed: FloatArray) -> int:
+def count_active_recordings(base: Model, contributed: FloatArray) -> int:
     """Number of recordings held out in which an effect acts."""
     recording = base.evidence.cells.recording
     held = np.zeros(len(contributed), dtype=bool)
@@ -139,7 +139,7 @@ def log_gain(base: Model, model: Model) -> float:
     """Logarithm of the power before over that after, on train and held out, added."""
     total = 0.0
     for whole, less in zip(base.blocks, model.blocks, strict=True):
-        before, after = limited(whole, less)
+        before, after = limit_influence(whole, less)
         if before.sum() > 0.0 and after.sum() > 0.0:
             total += math.log(float(before.sum()) / float(after.sum()))
     return total

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from ..trajectory import FloatArray
 from .model import Model
-from .regression import refitted
+from .regression import refit_residuals
 
-__all__ = ["confirmed", "gone_where_it_acts", "in_few_blocks"]
+__all__ = ["confirms", "in_few_blocks", "vanishes_where_active"]
 
 CLEAR: Final = 4.0
 """Size of what is expected on rows held out over its standard error there: far from noise."""
@@ -39,7 +39,7 @@ ACTS: Final = 0.05
 """Share of the most that it does in any block, from which on a block tells what is left."""
 
 
-def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool = False) -> bool:
+def confirms(base: Model, model: Model, contributed: FloatArray, *, whole: bool = False) -> bool:
     """Whether a contribution has about the same strength on rows held out as on those fitted.
 
     Where rows are held out by turns, in folds, there are none that were never fitted, and nothing
@@ -63,13 +63,13 @@ def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool
         return False
     fitted, held, block = plan.fit, plan.held, evidence.cells.block
     # What the base cannot make up for; its slopes are learnt where it was fitted.
-    own = refitted(base.columns, contributed, fitted)
+    own = refit_residuals(base.columns, contributed, fitted)
     count = int(block.max()) + 1
     learnt_from = np.bincount(block[fitted], own[fitted] ** 2, count)
     before, after = (each.residual[held] for each in (base, model))
     if _are_few(learnt_from):
         most = LEFT if whole else LEFT_OF_ANY
-        return gone_where_it_acts(
+        return vanishes_where_active(
             block[held], own[held], before, after, evidence.overlap, most=most
         )
     if not _is_clear(block[held], own[held], after, evidence.overlap):
@@ -78,7 +78,7 @@ def confirmed(base: Model, model: Model, contributed: FloatArray, *, whole: bool
     return learnt > 0.0 and AS_EXPECTED[0] < seen / learnt < AS_EXPECTED[1]
 
 
-def gone_where_it_acts(
+def vanishes_where_active(
     block: NDArray[Any],
     explained: FloatArray,
     before: FloatArray,

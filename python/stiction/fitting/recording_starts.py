@@ -11,10 +11,10 @@ import numpy as np
 
 from ..plant import Plant
 from ..trajectory import FloatArray
-from .minimise import Solution, alone, minimise, stopped
-from .rows import TURNS, Nuisances, Rows, Start, primed, start_quantities
+from .minimise import Solution, alone, minimise, with_interruption
+from .rows import TURNS, Nuisances, Rows, Start, add_starts, start_quantities
 
-__all__ = ["started", "turned", "with_turns"]
+__all__ = ["fit_starts", "fit_turns", "with_turns"]
 
 EVALUATIONS: Final = 6
 """A force alone is a number on which rows depend nearly in a straight line."""
@@ -34,7 +34,7 @@ WORTH: Final = 0.9
 a turn."""
 
 
-def started(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisances:
+def fit_starts(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisances:
     """Nuisances with the start of each of these recordings, fitted to its own rows alone.
 
     What a contact brings along belongs to a recording and not to the machine: where a recording was
@@ -62,7 +62,7 @@ def started(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisanc
     found = dict(nuisances.starts)
     for each in rows if start_quantities(plant) else ():
         known = found.get(each.index)
-        own = primed(plant, [each]).starts.get(each.index, {}) if known is None else known
+        own = add_starts(plant, [each]).starts.get(each.index, {}) if known is None else known
         if own:
             most = TURN_EVALUATIONS if TURNS[0] in own else EVALUATIONS
             begin = replace(nuisances, starts={each.index: own})
@@ -71,7 +71,7 @@ def started(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisanc
     return replace(nuisances, starts=found)
 
 
-def turned(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisances:
+def fit_turns(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances) -> Nuisances:
     """Nuisances with the turn of contacts that were bent further before their recording began.
 
     Where the machine stood still between two recordings its contact remembers the first one: it
@@ -112,13 +112,13 @@ def with_turns(found: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
     if found.interrupted:
         return found
     try:
-        known = turned(found.plant, rows, found.nuisances)
+        known = fit_turns(found.plant, rows, found.nuisances)
         if known.starts == found.nuisances.starts:
             return found
-        begun = primed(found.plant, rows, known)
+        begun = add_starts(found.plant, rows, known)
         return minimise(found.plant, found.variables.paths, rows, most=most, nuisances=begun)
     except KeyboardInterrupt:
-        return stopped(found)
+        return with_interruption(found)
 
 
 def _turned(plant: Plant, rows: Rows, known: Start, nuisances: Nuisances) -> Start:

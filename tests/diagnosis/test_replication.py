@@ -11,9 +11,9 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis.confirmed import confirmed
+from stiction.diagnosis.block_gains import lacks_excitation
 from stiction.diagnosis.evidence import Plan
-from stiction.diagnosis.gains import hardly_excited
+from stiction.diagnosis.replication import confirms
 
 BLOCKS, ROWS = 40, 200
 FITTED = np.repeat(np.arange(BLOCKS) < 28, ROWS)
@@ -41,7 +41,7 @@ def asked(
     evidence = SimpleNamespace(plans=plans, cells=SimpleNamespace(block=BLOCK), overlap=6.0)
     base = SimpleNamespace(evidence=evidence, columns=own, residual=there + noise)
     model = SimpleNamespace(residual=there - explained + noise)
-    return confirmed(base, model, explained, whole=whole)
+    return confirms(base, model, explained, whole=whole)
 
 
 def test_one_block_held_out_confirms_what_was_learnt() -> None:
@@ -119,8 +119,8 @@ def test_what_does_little_where_it_is_to_be_confirmed_is_hardly_excited_there(
         evidence = SimpleNamespace(plans=plans, cells=SimpleNamespace(block=BLOCK))
         return SimpleNamespace(evidence=evidence, columns=columns, residual=left)
 
-    assert hardly_excited(base(False), cause, 0.025) == hardly
-    assert not hardly_excited(base(True), cause, 0.025)
+    assert lacks_excitation(base(False), cause, 0.025) == hardly
+    assert not lacks_excitation(base(True), cause, 0.025)
 
 
 @pytest.mark.slow
