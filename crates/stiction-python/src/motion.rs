@@ -98,6 +98,7 @@ impl Motion {
 impl Motion {
     #[new]
     #[pyo3(signature = (position, current, dt, *, load=None, temperature=None, enabled=None, transmitted=None, averaged=false))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn new(
         position: &Bound<'_, PyAny>,
         current: &Bound<'_, PyAny>,
