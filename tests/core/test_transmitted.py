@@ -68,11 +68,11 @@ def test_a_recording_keeps_it_beside_its_load() -> None:
 
 def test_a_recording_with_fewer_rows_keeps_what_held_in_between() -> None:
     time = np.arange(1003) * DT
-    slow = st.Recording(time, np.arange(1003.0), np.sin(time)).decimated(4)
+    slow = st.Recording(time, np.arange(1003.0), np.sin(time)).decimate(4)
     assert len(slow) == 250
     assert np.array_equal(slow.time, time[:1000:4])
     assert slow.input == pytest.approx(np.arange(1000.0).reshape(-1, 4).mean(axis=1), rel=1e-12)
     assert slow.position is not None
     assert np.array_equal(slow.position, np.sin(time)[:1000:4])
     with pytest.raises(st.InputError, match="every = 6 leaves less than 200"):
-        st.Recording(time, time, time).decimated(6)
+        st.Recording(time, time, time).decimate(6)

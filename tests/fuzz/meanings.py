@@ -280,7 +280,7 @@ OF_TARGET: dict[str, Drawer] = {
     "Recording.with_input.values": lambda d: d.array(n=260),
     "Recording.with_load.values": lambda d: "0.1 * x.time",
     "Recording.with_load.transmitted": lambda d: "0.2 * x.time",
-    "Recording.decimated.every": lambda d: d.whole(1, 3),
+    "Recording.decimate.every": lambda d: d.whole(1, 3),
     "Recording.without_ends.rows": lambda d: d.whole(0, 40),
     "robot.Robot.load.path": lambda d: d.file("robot.toml"),
     "robot.Robot.from_dict.table": _robot_table,

@@ -374,7 +374,7 @@ class Recording:
         object.__setattr__(again, "start_s", self.start_s + began if self.start_s else 0.0)
         return again
 
-    def decimated(self, every: int) -> Recording:
+    def decimate(self, every: int) -> Recording:
         """The same recording with one row for as many of these.
 
         What holds from a row to the next, input and load, is the mean of what held in between;
@@ -395,15 +395,15 @@ class Recording:
         --------
         >>> import numpy as np, stiction as st
         >>> time = np.arange(1000) * 1e-3
-        >>> slow = st.Recording(time, np.sin(time), time).decimated(4)
+        >>> slow = st.Recording(time, np.sin(time), time).decimate(4)
         >>> len(slow), round(slow.dt, 6)
         (250, 0.004)
         """
-        every = whole(every, "Recording.decimated: every", least=1)
+        every = whole(every, "Recording.decimate: every", least=1)
         rows = len(self) // every
         if rows < FEWEST_ROWS:
             raise InputError(
-                f"Recording.decimated: every = {every} leaves less than {FEWEST_ROWS} of "
+                f"Recording.decimate: every = {every} leaves less than {FEWEST_ROWS} of "
                 f"{len(self)} rows; give fewer"
             )
         steps = np.diff(self.time, append=2.0 * self.time[-1] - self.time[-2])

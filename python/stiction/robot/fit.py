@@ -256,5 +256,5 @@ def _loaded(
     loaded = recording.with_load(load, transmitted).without_ends(ends)
     # A rate that clocks jitter about is still that rate.
     every = max(1, min(int(1.01 / (RATE * loaded.dt)), len(loaded) // FEWEST_ROWS))
-    loaded = loaded.decimated(every)
+    loaded = loaded.decimate(every)
     return loaded.with_role(role if role is not None else recording.role)
