@@ -173,8 +173,8 @@ def test_what_a_killed_program_left_is_cleared_by_the_next_and_not_what_is_being
 ) -> None:
     code = (
         "import os, signal, sys; from pathlib import Path; "
-        "from stiction.atomic_files import replacing\n"
-        "with replacing(Path(sys.argv[1])) as file:\n"
+        "from stiction.atomic_files import atomic_write\n"
+        "with atomic_write(Path(sys.argv[1])) as file:\n"
         "    file.write(b'half'); file.flush(); os.kill(os.getpid(), signal.SIGKILL)"
     )
     path = tmp_path / "file.txt"

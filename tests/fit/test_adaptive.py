@@ -47,8 +47,7 @@ def test_a_stop_stays_where_it_is() -> None:
     time = np.arange(2000) * DT
     stop = np.where(time < 1.0, 0.5 * (1.0 - time) ** 2, 0.0)
     made = smooth_adaptively(rounded(stop), DT, NOISE)
-    assert np.max(np.abs(made[1020:])) < 0.02 * COUNT
-    assert np.max(np.abs(made[1040:])) == 0.0
+    assert np.max(np.abs(made[1020:])) == 0.0
     sudden = np.where(time < 1.0, time - 1.0, 0.0)
     assert np.max(np.abs(smooth_adaptively(rounded(sudden), DT, NOISE) - sudden)) < COUNT
 
@@ -93,22 +92,8 @@ def test_the_core_makes_of_readings_what_filters_of_scipy_do(
     time = np.arange(number) * DT
     position = 0.3 * np.sin(7.0 * time) ** 3 + 0.01 * np.round(3.0 * time)
     read = rounded(position + NOISE * np.random.default_rng(number).standard_normal(number))
-    found, smoothed = by_the_core(read, NOISE, halves), by_scipy(read, NOISE, halves)
-    # Of all motions this near the shortest: it bends up under what is above it alone, and down over
-    # what is below. In a convex set no other condition is needed.
-    steps = np.arange(-halves[-1], halves[-1] + 1)
-    share = np.linalg.norm(np.linalg.pinv(np.vander(steps, 3, increasing=True))[0])
-    took = np.pad((read - smoothed) ** 2, halves[-1], "edge")
-    rms = np.sqrt(np.convolve(took, np.full(len(steps), 1.0 / len(steps)), "valid"))
-    spread = share * np.minimum(rms, NOISE)
-    beside = found - smoothed
-    near = 1e-6 * NOISE
-    assert np.all(np.abs(beside) < spread + near)
-    assert beside[0] == pytest.approx(0.0, abs=1e-12)
-    assert beside[-1] == pytest.approx(0.0, abs=1e-12)
-    bends = np.diff(found, 2)
-    assert np.all(np.abs(beside - spread)[1:-1][bends > 1e-12] < near)
-    assert np.all(np.abs(beside + spread)[1:-1][bends < -1e-12] < near)
+    found = by_the_core(read, NOISE, halves)
+    np.testing.assert_allclose(found, by_scipy(read, NOISE, halves), rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("halves", [[], [1, 2], [0, 2, 2], [0, 99]])

@@ -14,112 +14,17 @@ const BLENDED: usize = 4;
 ///
 /// Parabolas are fitted to windows of 2·half + 1 samples. About every sample the widest one is taken whose
 /// estimate agrees with those of all narrower ones: near a stop a narrow one, in slow motion a wide one.
-/// Beyond the ends the last reading goes on. Of all motions as near to that as the widest window lets through of
-/// the noise that was taken away thereabouts, it is the one that goes the shortest way: such noise turns none round.
+/// Beyond the ends the last reading goes on.
 ///
 /// Source: Lepski, Theory Probab. Appl. 35 (1990); intersection of intervals after Goldenshluger,
-/// Nemirovski, Math. Methods Statist. 6 (1997); taut string of Davies, Kovac, Ann. Statist. 29 (2001).
+/// Nemirovski, Math. Methods Statist. 6 (1997).
 ///
 /// `noise` is the standard deviation of the readings; `halves` rise from 0.
 pub fn adaptively_smoothed(readings: &[f64], noise: f64, halves: &[usize]) -> Vec<f64> {
-    let (false, [_, .., widest]) = (readings.is_empty(), halves) else { return readings.to_vec() };
-    let smoothed = Width::widest().run(Smoothing { readings, noise, halves });
-    let share = parabola(*widest)[0].sqrt();
-    let spreads: Vec<f64> =
-        taken_away(readings, &smoothed, *widest).map(|rms| rms.min(noise.abs()) * share).collect();
-    shortest_within(&smoothed, &spreads)
-}
-
-/// Rms about each value of what smoothing took away, over the widest window; beyond the ends the first and
-/// the last go on.
-fn taken_away<'a>(
-    readings: &'a [f64],
-    smoothed: &'a [f64],
-    half: usize,
-) -> impl Iterator<Item = f64> + 'a {
-    let number = readings.len();
-    let mut sums = vec![0.0; number + 2 * half + 1];
-    for k in 0..number + 2 * half {
-        let at = k.saturating_sub(half).min(number - 1);
-        sums[k + 1] = sums[k] + (readings[at] - smoothed[at]).powi(2);
+    if readings.is_empty() || halves.len() < 2 {
+        return readings.to_vec();
     }
-    let width = 2 * half + 1;
-    (0..number).map(move |k| ((sums[k + width] - sums[k]) / width as f64).max(0.0).sqrt())
-}
-
-/// The shortest way from the first value to the last one that keeps within a spread of each of them.
-///
-/// A contact that yields loses more force on a way back than it gains on the same way ahead once it slides: each
-/// turn that noise makes takes some of it, and at rest they add up.
-fn shortest_within(values: &[f64], spreads: &[f64]) -> Vec<f64> {
-    let (Some(first), Some(last)) = (values.first(), values.last()) else { return Vec::new() };
-    let mut way = Way { made: vec![*first] };
-    let (mut above, mut below) = (Chain::at((0, *first)), Chain::at((0, *first)));
-    let inside = values.iter().zip(spreads).enumerate().take(values.len() - 1);
-    for (k, (value, spread)) in inside.skip(1) {
-        above.bend((k, value + spread), &mut below, &mut way, 1.0);
-        below.bend((k, value - spread), &mut above, &mut way, -1.0);
-    }
-    if values.len() > 1 {
-        above.bend((values.len() - 1, *last), &mut below, &mut way, 1.0);
-        above.points[above.first + 1..].iter().for_each(|point| way.to(*point));
-    }
-    way.made
-}
-
-type Point = (usize, f64);
-
-fn slope(from: Point, to: Point) -> f64 {
-    (to.1 - from.1) / (to.0 - from.0) as f64
-}
-
-/// Where a string that begins in its first point would lie on the bounds of one side.
-struct Chain {
-    points: Vec<Point>,
-    first: usize,
-}
-
-impl Chain {
-    fn at(point: Point) -> Self {
-        Self { points: vec![point], first: 0 }
-    }
-
-    /// The next bound of this side: `side` is 1 above, -1 below. Where the string cannot pass it otherwise, it goes
-    /// by the points of the other side, and both begin in the last of those.
-    #[inline(always)]
-    fn bend(&mut self, next: Point, other: &mut Self, way: &mut Way, side: f64) {
-        while let [.., before, end] = self.points[self.first..] {
-            if side * slope(before, end) < side * slope(end, next) {
-                break;
-            }
-            self.points.pop();
-        }
-        self.points.push(next);
-        while let ([begin, _], [_, turn, ..]) =
-            (&self.points[self.first..], &other.points[other.first..])
-        {
-            if turn.0 == next.0 || side * slope(*begin, next) > side * slope(*begin, *turn) {
-                break;
-            }
-            way.to(*turn);
-            other.first += 1;
-            (self.points, self.first) = (vec![*turn, next], 0);
-        }
-    }
-}
-
-/// Straight pieces from point to point.
-struct Way {
-    made: Vec<f64>,
-}
-
-impl Way {
-    fn to(&mut self, point: Point) {
-        let from = (self.made.len() - 1, self.made[self.made.len() - 1]);
-        let rise = slope(from, point);
-        self.made.extend((1..point.0 - from.0).map(|k| from.1 + rise * k as f64));
-        self.made.push(point.1);
-    }
+    Width::widest().run(Smoothing { readings, noise, halves })
 }
 
 /// Positions behind readings that flicker: motion inside a backlash of `width` does not get through.
