@@ -101,7 +101,7 @@ class Gathered:
                 f"{self._path}: no {what} of it holds a signal that is read"
                 f"{held if self.unusable else ''}; record joint states, or numbers over time"
             )
-        # What a damaged file has for stamps is refused later, with its rows, and begins nothing.
+        # Stamps that are no numbers are refused later, with their rows: no clock starts there.
         stamps = np.concatenate([time[np.isfinite(time)] for time, _ in groups.values()])
         start = float(stamps.min()) if stamps.size else 0.0
         columns_: dict[str, FloatArray] = {}
@@ -110,7 +110,7 @@ class Gathered:
         for group, (time, signals) in groups.items():
             before = f"{group}." if group else ""
             clock = f"{before}{_CLOCK}"
-            with np.errstate(invalid="ignore"):  # of bits that no clock writes
+            with np.errstate(invalid="ignore"):  # a damaged file may hold signalling NaN
                 columns_[clock] = np.ascontiguousarray(time - start)
             units[clock] = "s"
             for name, values in signals.items():

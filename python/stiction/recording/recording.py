@@ -431,7 +431,7 @@ class Recording:
         held = numbers(values, f"Recording.{method}: {name}").copy()
         if held.shape != self.time.shape:
             raise InputError(
-                f"Recording.{method}: values has shape {held.shape} where {self.time.shape} is "
+                f"Recording.{method}: {name} has shape {held.shape} where {self.time.shape} is "
                 "needed; give one value a row"
             )
         held.flags.writeable = False

@@ -78,8 +78,8 @@ pub fn step<S: Scalar>(
         (walk, gain, value, softening + 1.0)
     };
     let (mut low, mut high) = (0.0, uncrept.re().abs());
-    // No miss is told nearer than its terms are: a strong damper's are far above the force that is left.
-    let told = 4.0 * f64::EPSILON * high;
+    // The miss is known to the rounding of its terms; a strong damper's are far above the force that is left.
+    let rounding = 4.0 * f64::EPSILON * high;
     let mut force = uncrept;
     for _ in 0..60 {
         let (_, _, value, rise) = needed(force);
@@ -92,7 +92,7 @@ pub fn step<S: Scalar>(
         }
         let next = force - miss / rise;
         let inside = next.re() * s >= low && next.re() * s <= high;
-        let settled = miss.re().abs() <= told;
+        let settled = miss.re().abs() <= rounding;
         let value = if inside { next.re() } else { 0.5 * (low + high) * s };
         // The derivatives of a Newton pass are those of the root also where round-off takes its value
         // past the bracket.

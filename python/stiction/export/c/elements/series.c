@@ -39,7 +39,7 @@ static void creep_in_series(const stiction_law *law, const motion *m, real span,
     const int past_zero = eased > R(0) && side
         * (walk(&law->spring, way - eased * side).force + DAMPING * m->velocity) < R(0);
     real force = uncrept, low = R(0), high = r_fabs(uncrept), gain;
-    const real told = R(4) * EPSILON * high; /* no miss is told nearer than its terms are */
+    const real rounding = R(4) * EPSILON * high; /* of the terms of the miss */
     int k, settled = 0;
     for (k = 0;; ++k) {
         const real most = limit(force), mean = first_mean(z);
@@ -68,7 +68,7 @@ static void creep_in_series(const stiction_law *law, const motion *m, real span,
             low = r_fabs(force) > low ? r_fabs(force) : low;
         }
         next = side * (force - miss / rise);
-        settled = r_fabs(miss) <= told || side == R(0);
+        settled = r_fabs(miss) <= rounding || side == R(0);
         force = side * (next >= low && next <= high ? next : R(0.5) * (low + high));
     }
     end->series = force;
