@@ -29,6 +29,9 @@ LENGTHS: Final = 40.0
 RIGID: Final = 1e-6
 """Length of a law that has none, rad or m."""
 SAMPLES: Final = 400
+LONGEST_S: Final = 1e6
+"""The longest sample that a motor takes, s: a slide of 400 of them, twelve years, is steady enough
+where a length that data left open was fitted as kilometres."""
 STAYS: Final = 4
 """Samples at each place: the velocity of a motion is that of the samples around."""
 SLOW: Final = 1e-3
@@ -146,9 +149,8 @@ class _Slide:
 
     def friction(self, speed: float) -> float:
         """Friction at a speed, less what the same place asks for at rest."""
-        travel = max(self._way, self._time * abs(speed))
-        places = np.copysign(travel, speed) * self._places
+        duration = min(max(self._way / abs(speed), self._time) / SAMPLES, LONGEST_S)
+        places = duration * SAMPLES * speed * self._places
         self._motor.reset(float(places[0]), speed)
-        duration = float(abs(places[0])) / SAMPLES / abs(speed)
         _, ambient, found, _ = self._motor.follow(Motion(places, self._still, duration))
         return float(found[-1] - (ambient[-1] - self._at_rest))

@@ -77,3 +77,11 @@ def test_curves_refuse_what_is_no_speed():
             plant({"law": "coulomb"}).friction_curve(wrong)
         with pytest.raises(st.InputError, match="positions"):
             plant({"law": "coulomb"}).position_effort(wrong)
+
+
+@pytest.mark.parametrize("decay_distance", [1.0, 6e4, 1e6])
+def test_a_length_that_never_acts_leaves_the_curve(decay_distance):
+    # Data that hold no pre-sliding leave it open, and a fit ends anywhere.
+    law = {"law": "hsieh_pan", "coulomb": 0.08, "breakaway": 0.08, "decay_distance": decay_distance}
+    curve = plant({**law, "viscous": 0.005}).friction_curve([-1e-4, 1e-4, 2.0])
+    assert curve == pytest.approx([-0.08, 0.08, 0.09], rel=1e-3)
