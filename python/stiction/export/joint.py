@@ -37,6 +37,8 @@ class Joint:
         N·m or N.
     damping : float
         N·m·s/rad or N·s/m.
+    forward, backward : float
+        Dry friction of each direction by itself, N·m or N.
     off : float
         Greatest distance from the curve, N·m or N.
     at : float
@@ -49,6 +51,8 @@ class Joint:
 
     friction: float
     damping: float
+    forward: float
+    backward: float
     off: float
     at: float
     static: float
@@ -67,17 +71,14 @@ def joint_of(plant: Plant, speed: float) -> Joint:
     forth = steady.friction_curve(plant, one_way)
     back = -steady.friction_curve(plant, -one_way)
     mean = 0.5 * (forth + back)
-    columns = np.column_stack([np.ones(SPEEDS), one_way])
-    friction, damping = np.linalg.lstsq(columns, mean, rcond=None)[0]
-    if damping < 0.0:
-        friction, damping = float(np.mean(mean)), 0.0
-    if friction < 0.0:
-        friction, damping = 0.0, max(float(one_way @ mean / (one_way @ one_way)), 0.0)
+    friction, damping = _line(one_way, mean)
     off = np.abs(mean - friction - damping * one_way)
     worst = int(np.argmax(off))
     return Joint(
-        float(friction),
-        float(damping),
+        friction,
+        damping,
+        _line(one_way, forth)[0],
+        _line(one_way, back)[0],
         float(off[worst]),
         float(one_way[worst]),
         steady.static_level(plant),
@@ -85,10 +86,24 @@ def joint_of(plant: Plant, speed: float) -> Joint:
     )
 
 
-def losses_of(plant: Plant, joint: Joint, *, limited: bool = False) -> tuple[str, ...]:
+def _line(speeds: FloatArray, friction: FloatArray) -> tuple[float, float]:
+    """Dry friction and damping nearest to the friction of one direction, neither below 0."""
+    columns = np.column_stack([np.ones(len(speeds)), speeds])
+    dry, damping = np.linalg.lstsq(columns, friction, rcond=None)[0]
+    if damping < 0.0:
+        dry, damping = np.mean(friction), 0.0
+    if dry < 0.0:
+        dry, damping = 0.0, max(speeds @ friction / (speeds @ speeds), 0.0)
+    return float(dry), float(damping)
+
+
+def losses_of(
+    plant: Plant, joint: Joint, *, limited: bool = False, directed: bool = False
+) -> tuple[str, ...]:
     """What a joint of these numbers cannot hold, a sentence each.
 
-    ``limited`` says whether the target has the limit of the drive.
+    ``limited`` says whether the target has the limit of the drive, ``directed`` whether it has the
+    dry friction of each direction.
     """
     unit, lost = plant.effort_unit, []
     per = f"{plant.position_unit}/s"
@@ -103,9 +118,13 @@ def losses_of(plant: Plant, joint: Joint, *, limited: bool = False) -> tuple[str
             f"break-away: {joint.static:.3g} {unit} at the slowest speed, where it has "
             f"{joint.friction:.3g} {unit}"
         )
-    if joint.one_sided > worth:
+    if joint.one_sided > worth and not directed:
         lost.append(f"friction of the two directions differs by {joint.one_sided:.3g} {unit}")
-    return (*lost, *beside(plant, lambda effect: _changes(plant, effect), limited=limited))
+
+    def held(effect: Effect) -> bool:
+        return _changes(plant, effect, directed=directed)
+
+    return (*lost, *beside(plant, held, limited=limited))
 
 
 def beside(
@@ -126,11 +145,13 @@ def beside(
     return tuple(lost)
 
 
-def _changes(plant: Plant, effect: Effect) -> bool:
-    """Whether an effect changes the numbers of a joint."""
+def _changes(plant: Plant, effect: Effect, *, directed: bool) -> bool:
+    """Whether an effect changes the numbers of a joint, those of each direction where it is."""
     without = replace(plant, effects=tuple(e for e in plant.effects if e.name != effect.name))
     one, other = (joint_of(each, PROBED) for each in (plant, without))
     changed = abs(one.friction - other.friction) + PROBED * abs(one.damping - other.damping)
+    if directed:
+        changed += abs(one.forward - other.forward) + abs(one.backward - other.backward)
     return changed > steady.SEEN * (other.friction + PROBED * other.damping)
 
 

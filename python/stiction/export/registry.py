@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import math
 import pkgutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from ..errors import InputError
 from ..keys import choice
-from ..parameter import number
 from .made import Export
-from .speeds import speed_of
+from .speeds import greatest_speed
 from .targets import __name__ as _package
 from .targets import __path__ as _path
 
@@ -39,12 +36,16 @@ class Target:
     runs : callable or None
         Of what was written and the plant: the ways in which the target is run to check it; None
         where it cannot be.
+    write_robot : callable or None
+        Of the plants of all joints and their greatest speeds, by joint: all of them as one; None
+        where each joint is written by itself.
     """
 
     name: str
     summary: str
     write: Callable[[Plant, float], Export]
     runs: Callable[[Export, Plant], Sequence[MotionRun | EffortRun]] | None = None
+    write_robot: Callable[[Mapping[str, Plant], Mapping[str, float]], Export] | None = None
 
 
 @cache
@@ -52,23 +53,19 @@ def targets() -> dict[str, Target]:
     """All targets by name.
 
     A module of ``stiction.export.targets`` has ``SUMMARY`` and ``write(plant, speed)``, and may
-    have ``runs(export, plant)``.
+    have ``runs(export, plant)`` and ``write_robot(plants, speeds)``.
     """
     found = {}
     for module in pkgutil.iter_modules(_path):
         own = import_module(f"{_package}.{module.name}")
-        found[module.name] = Target(module.name, own.SUMMARY, own.write, getattr(own, "runs", None))
+        optional = (getattr(own, name, None) for name in ("runs", "write_robot"))
+        found[module.name] = Target(module.name, own.SUMMARY, own.write, *optional)
     return dict(sorted(found.items()))
 
 
 def export(plant: Plant, to: str, *, speed: float | None) -> Export:
     """A plant written for a target; see ``Plant.export``."""
     known = targets()
-    at = speed_of(plant) if speed is None else number(speed, f"{plant.source}: speed")
-    if not (math.isfinite(at) and at > 0.0):
-        raise InputError(
-            f"{plant.source}: speed = {at:g} is none; give the greatest speed at which friction "
-            "matters, above 0, in rad/s or m/s"
-        )
+    at = greatest_speed(plant, speed)
     made = known[choice(to, tuple(known), f"{plant.source}: to")].write(plant, at)
     return replace(made, plant=plant)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from ..errors import InputError
+from ..parameter import number
+
 if TYPE_CHECKING:
     from ..plant import Plant
     from ..recording import Recording
 
-__all__ = ["recorded_speed", "speed_of"]
+__all__ = ["greatest_speed", "recorded_speed", "speed_of"]
 
 USUAL: Final = {"rotary": 10.0, "linear": 0.2}
 """rad/s, and m/s of a machine that goes straight, such as a ball screw."""
@@ -34,6 +38,28 @@ def speed_of(plant: Plant) -> float:
     stated = plant.parameters
     falls = [stated[n].value for n in stated if n.endswith((".stribeck_velocity", "beck.velocity"))]
     return max(USUAL[plant.motion], *(FALLEN * each for each in falls), 0.0)
+
+
+def greatest_speed(plant: Plant, asked: float | None) -> float:
+    """The speed that is asked for, or else that of the plant.
+
+    Returns
+    -------
+    float
+        rad/s or m/s.
+
+    Raises
+    ------
+    InputError
+        One that is no number above 0.
+    """
+    at = speed_of(plant) if asked is None else number(asked, f"{plant.source}: speed")
+    if not (math.isfinite(at) and at > 0.0):
+        raise InputError(
+            f"{plant.source}: speed = {at:g} is none; give the greatest speed at which friction "
+            "matters, above 0, in rad/s or m/s"
+        )
+    return at
 
 
 def recorded_speed(recordings: Sequence[Recording]) -> float | None:

@@ -9,7 +9,7 @@ from xml.sax.saxutils import quoteattr
 from ..errors import InputError
 from ..export import Export, targets
 from ..export.joint import joint_of, losses_of
-from ..export.speeds import speed_of
+from ..export.speeds import greatest_speed
 from ..keys import choice
 from ..plant import Plant
 from .result import folder_names
@@ -27,7 +27,8 @@ def export_robot(robot: Robot, to: str, *, speed: float | None = None) -> Mappin
         As a diagnosis writes it.
     to : str
         Target. Of ``urdf`` and ``mujoco`` there is one export for the whole arm: its URDF with
-        <dynamics> in each joint, and a <joint> of MJCF for each; of all others one for each joint.
+        <dynamics> in each joint, and a <joint> of MJCF for each; of ``ros2`` the parameters of one
+        controller; of all others one for each joint.
     speed : float, optional
         Greatest speed at which friction matters, rad/s or m/s.
 
@@ -50,6 +51,10 @@ def export_robot(robot: Robot, to: str, *, speed: float | None = None) -> Mappin
         return {"": _urdf(robot, plants, speed)}
     if to == "mujoco":
         return {"": _mjcf(plants, speed)}
+    whole = targets()[to].write_robot
+    if whole is not None:
+        speeds = {name: greatest_speed(plant, speed) for name, plant in plants.items()}
+        return {"": whole(plants, speeds)}
     folders = folder_names(robot.names)
     return {folders[name]: plant.export(to, speed=speed) for name, plant in plants.items()}
 
@@ -98,7 +103,7 @@ def _numbers(
     numbers: dict[str, float] = {}
     lost: list[str] = []
     for name, plant in plants.items():
-        joint = joint_of(plant, speed_of(plant) if speed is None else speed)
+        joint = joint_of(plant, greatest_speed(plant, speed))
         numbers[f"{name}.damping"] = joint.damping
         numbers[f"{name}.friction"] = joint.friction
         lost += [f"{name}: {sentence}" for sentence in losses_of(plant, joint)]
