@@ -13,21 +13,16 @@ import numpy as np
 
 from ...errors import InputError
 from ...trajectory import FloatArray
-from ..curves import Curves
 from ..firmware import Firmware
-from ..joint import beside
 from ..made import Export
 from ..runs import EffortRun
 
 if TYPE_CHECKING:
     from ...plant import Plant
-    from ...stated import Effect
 
 SUMMARY = (
     "friction step by step, feed-forward and disturbance observer in one C99 file, for firmware"
 )
-MOST: Final = 48
-
 HEAD: Final = """\
 /* {what}. Made from a plant file by stiction; made again, not edited.
  *
@@ -45,28 +40,16 @@ HEAD: Final = """\
 
 def write(plant: Plant, speed: float) -> Export:
     """Law and effects as C, curves as points with lines between them, an observer."""
-    curves = Curves.of(plant, speed, MOST)
-    made = Firmware.of(
-        plant,
-        {
-            "SPEEDS": str(len(curves.speeds)),
-            "PLACES": str(len(curves.places)),
-            "SPEED_AT": curves.speeds.tolist(),
-            "FRICTION_AT": curves.friction.tolist(),
-            "PLACE_AT": curves.places.tolist(),
-            "EFFORT_AT": curves.efforts.tolist(),
-        },
-    )
-    held, lost = _held(plant, curves, made), _lost(plant, curves, made)
+    made = Firmware.of(plant, speed)
     head = HEAD.format(
         what=plant.friction.law + "".join(f" + {effect.name}" for effect in plant.effects),
         unit=plant.position_unit,
         effort=_plain(plant.effort_unit),
-        held=_listed(held),
-        lost=_listed(lost) or " * nothing",
+        held=_listed(made.held),
+        lost=_listed(made.lost) or " * nothing",
     )
     files = {"stiction_feedforward.c": head + made.source, "stiction_feedforward.h": made.header}
-    return Export("c", files, held, lost, curves.numbers)
+    return Export("c", files, made.held, made.lost, made.numbers)
 
 
 def runs(made: Export, plant: Plant) -> tuple[EffortRun]:
@@ -101,29 +84,6 @@ def _compiled(made: Export) -> tuple[ctypes._NamedFuncPointer, ctypes._NamedFunc
     for function in found:
         function.restype, function.argtypes = ctypes.c_double, [ctypes.c_double]
     return found
-
-
-def _held(plant: Plant, curves: Curves, made: Firmware) -> tuple[str, ...]:
-    step = "friction step by step: " + " + ".join((plant.friction.law, *made.held))
-    inertia = () if plant.prescribed_motion else ("inertia",)
-    steps = (step,) if made.steps else ()
-    return (*steps, *curves.held, *inertia, "a disturbance observer")
-
-
-def _lost(plant: Plant, curves: Curves, made: Firmware) -> tuple[str, ...]:
-    if not made.steps:
-        law = plant.friction.law
-        return (f"friction step by step: {law} has no C, its feed-forward alone", *curves.lost)
-
-    def held(effect: Effect) -> bool:
-        return effect.name in made.held or effect.name in curves.effects
-
-    ahead = tuple(
-        f"{name}: in stiction_step, not in the feed-forward"
-        for name in made.held
-        if name not in curves.effects
-    )
-    return (*beside(plant, held, limited=False, yielding=True), *ahead, *curves.lines)
 
 
 def _listed(sentences: tuple[str, ...]) -> str:
