@@ -39,6 +39,8 @@ Act = Callable[[int, float, float], float]
 """Input of the drive, from the number of the sample, the reading and the measured velocity."""
 Ahead = Callable[[FloatArray, float], FloatArray]
 """Input of each sample, shape (n,), from the reference, shape (n,), and the sample time."""
+Fed = Callable[[float, float], float]
+"""Input of a sample, from the reading at its start and the sample time."""
 
 
 @dataclass(frozen=True)
@@ -245,6 +247,7 @@ def replay(
     clock: float = 0.0,
     path: float = 0.0,
     ahead: Ahead | None = None,
+    fed: Fed | None = None,
 ) -> ClosedLoop:
     """Simulate the loop of controller, drive and machine from the measured start.
 
@@ -266,6 +269,10 @@ def replay(
     ahead : callable, optional
         What is added to the controller's input: of the reference, shape (n,), and the sample time,
         the input of each sample, shape (n,). A feed-forward is one.
+    fed : callable, optional
+        What is added to it besides: of the reading at the start of a sample, rad or m, and the
+        sample time, the input of that sample; called once for each, in their order. A compensation
+        by the measured motion is one.
 
     Returns
     -------
@@ -279,7 +286,7 @@ def replay(
     """
     (recording,) = without_failures([recording])
     if plant.servo:
-        if ahead is not None:
+        if ahead is not None or fed is not None:
             raise InputError(
                 f"{plant.source}: the drive of a servo takes a goal and nothing beside it"
             )
@@ -319,7 +326,9 @@ def replay(
     motor = started(plant, begin["reading"], begin["velocity"], start, clock=clock, path=path)
     act = controller.acting(reference, dt, **begin, total=total)
     if ahead is not None:
-        act = _beside(act, ahead(reference, dt), controller.limit)
+        act = _beside(act, ahead(reference, dt).tolist(), controller.limit)
+    if fed is not None:
+        act = _after(act, fed, dt, controller.limit)
     bounds = _bounds(reference, measured)
     try:
         simulated, inputs = _simulated(
@@ -373,12 +382,20 @@ def _simulated(
     return positions, inputs
 
 
-def _beside(act: Act, added: FloatArray, limit: float) -> Act:
+def _beside(act: Act, own: list[float], limit: float) -> Act:
     """A controller with an input added to its own, within its limit."""
-    own: list[float] = added.tolist()
 
     def both(k: int, reading: float, speed: float) -> float:
         return min(max(act(k, reading, speed) + own[k], -limit), limit)
+
+    return both
+
+
+def _after(act: Act, fed: Fed, dt: float, limit: float) -> Act:
+    """A controller with an input added that goes by the reading, within its limit."""
+
+    def both(k: int, reading: float, speed: float) -> float:
+        return min(max(act(k, reading, speed) + fed(reading, dt), -limit), limit)
 
     return both
 

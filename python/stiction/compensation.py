@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from . import closed_loop, given
+from . import closed_loop, given, steady
 from .begins import Begin, begin_of
 from .closed_loop import ClosedLoop
 from .errors import InputError
 from .frozen import path_of
 from .intervals import draw_values, intervals_of
+from .parameter import number
 from .plant import Plant
 from .recording import Recording
 from .recording.names import names_of
@@ -22,13 +24,27 @@ from .trajectory import FloatArray
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Compensated", "Compensation", "compensate", "feed_forward"]
+__all__ = ["Compensated", "Compensation", "compensate", "feed_forward", "observer"]
 
 SHARES: Final = (0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0)
 """Of the whole feed-forward, that are simulated."""
 WHOLE: Final = SHARES.index(1.0)
 DRAWS: Final = 20
 """Machines within the intervals of the parameters, unless stated."""
+REST_S: Final = 2.0
+"""Rest of the reference after its end, in which a limit cycle shows, s."""
+KICKED: Final = 2.0
+"""Push at its start, in levels of break-away: what sticks is to move, or no cycle would begin."""
+KICK_S: Final = 0.1
+"""How long it pushes, s."""
+TURNS: Final = 4
+"""Reversals in the second half of it that make a cycle, and no drift or one overshoot."""
+LASTS: Final = 0.5
+"""Share of the motion of its third quarter that a cycle still has in the fourth: none fades."""
+COUNTS: Final = 2.0
+"""Counts of the encoder that a reading at rest may change by."""
+SEEN: Final = 1e-6
+"""Share of the range of the reference that counts as motion where there is no encoder."""
 POINTS: Final = 400
 """Speeds of each direction at which the curve of friction is known; lines between them."""
 
@@ -47,6 +63,11 @@ class Compensated:
     unit : str
     stepped : numpy.ndarray, shape (n,)
         As ``errors``, with the contact stepped along the reference as feed-forward.
+    by_observer : numpy.ndarray, shape (shares, n)
+        As ``errors``, with shares of what the contact bears when it is stepped along the measured
+        motion.
+    cycles : tuple of bool
+        Of each of those shares, whether the machine goes on to and fro where the reference rests.
     """
 
     name: str
@@ -54,6 +75,8 @@ class Compensated:
     errors: FloatArray
     unit: str
     stepped: FloatArray
+    by_observer: FloatArray
+    cycles: tuple[bool, ...]
 
     @property
     def rms(self) -> FloatArray:
@@ -102,6 +125,28 @@ class Compensation:
         return float(np.sqrt(np.mean(every**2)))
 
     @property
+    def observer_rms(self) -> FloatArray:
+        """As ``rms``, with the contact stepped along the measured motion."""
+        every = np.concatenate([each.by_observer for each in self.recordings], axis=1)
+        found: FloatArray = np.sqrt(np.mean(every**2, axis=1))
+        return found
+
+    @property
+    def cycles(self) -> tuple[bool, ...]:
+        """Of shares of that, whether any recording ends in a limit cycle, or a loop runs away."""
+        ends = zip(*(each.cycles for each in self.recordings), strict=True)
+        away = np.isnan(self.observer_rms)
+        return tuple(any(each) or bool(ran) for each, ran in zip(ends, away, strict=True))
+
+    @property
+    def observer_margin(self) -> float | None:
+        """Least share of a compensation by the measured motion that makes a limit cycle.
+
+        None where none of those simulated does, and 0 where the loop has one without any.
+        """
+        return next((s for s, cycle in zip(self.shares, self.cycles, strict=True) if cycle), None)
+
+    @property
     def best(self) -> float:
         """The share that leaves the least error."""
         return self.shares[int(np.nanargmin(self.rms))]
@@ -126,7 +171,8 @@ class Compensation:
     @property
     def message(self) -> str:
         """What came out, in words."""
-        return " ".join(filter(None, (self._stated, self._with_states, self._spread)))
+        said = (self._stated, self._with_states, self._by_observer, self._spread)
+        return " ".join(filter(None, said))
 
     @property
     def _with_states(self) -> str:
@@ -135,6 +181,26 @@ class Compensation:
             return "With the contact stepped along the reference a loop runs away."
         error, unit = self.stepped, self.recordings[0].unit
         return f"With the contact stepped along the reference it is {error:.3g} {unit} rms."
+
+    @property
+    def _by_observer(self) -> str:
+        """What it is worth to step the contact along the measured motion, and how much hurts."""
+        error, unit, margin = (
+            self.observer_rms[WHOLE],
+            self.recordings[0].unit,
+            self.observer_margin,
+        )
+        text = (
+            "With the contact stepped along the measured motion a loop runs away"
+            if np.isnan(error)
+            else f"Along the measured motion it is {error:.3g} {unit} rms"
+        )
+        if margin is None:
+            return f"{text}, without a limit cycle up to {self.shares[-1]:g} times as much."
+        if margin == 0.0:
+            return f"{text}; the loop goes to and fro at rest without any compensation."
+        # Margins in amplitude, as those of gains are.
+        return f"{text}; {margin:g} times as much makes a limit cycle at rest."
 
     @property
     def _spread(self) -> str:
@@ -183,6 +249,11 @@ class Compensation:
             "best": self.best,
             "margin": self.margin,
             "stepped": self.stepped,
+            "observer": {
+                "rms": self.observer_rms.tolist(),
+                "cycles": list(self.cycles),
+                "margin": self.observer_margin,
+            },
             "machines": {
                 "drawn": len(self.machines),
                 "hurt": self.hurt,
@@ -241,6 +312,51 @@ def feed_forward(
             curve = plant.friction_curve(sign * known)
             friction[there] = np.interp(np.abs(speeds[there]), known, curve)
     return (friction + plant.position_effort(reference)) / plant.gain
+
+
+def observer(plant: Plant, share: float = 1.0) -> closed_loop.Fed:
+    """A compensation by the measured motion: a contact that is stepped along the readings.
+
+    Its states follow the machine's own as those of an observer do whose model is right. Where it
+    bears more than the machine has, the machine cannot stick: it makes a limit cycle.
+
+    Parameters
+    ----------
+    plant : Plant
+        With a gain.
+    share : float
+        Of what the contact bears, that is added to the input.
+
+    Returns
+    -------
+    callable
+        For ``closed_loop.replay(..., fed=...)``: of the reading, rad or m, and the sample time, s,
+        the input that is added. It remembers: make a new one for each run.
+
+    Raises
+    ------
+    InputError
+        No plant, or a share that is no number.
+    """
+    given.instance(plant, Plant, "observer: plant", "a Plant")
+    share = number(share, "observer: share")
+    contact = plant.friction_model()
+    zero = plant.body.get("gravity_zero_rad")
+    hangs, weight = plant.gravity, plant.weight
+    hung_at = 0.0 if zero is None else zero.value
+    before: float | None = None
+
+    def fed(reading: float, dt: float) -> float:
+        nonlocal before
+        if before is None:
+            contact.reset(reading)
+            before = reading
+        borne = contact.step((reading - before) / dt, dt)
+        before = reading
+        borne += weight + hangs * math.sin(reading - hung_at)
+        return share * borne / plant.gain
+
+    return fed
 
 
 def compensate(
@@ -303,7 +419,8 @@ def compensate(
             time, unit = run.time, run.unit
         run = _followed(plant, plant, recording, begin, 1.0, stepped=True)
         stepped = np.full_like(errors[0], np.nan) if run is None else run.reference - run.simulated
-        found.append(Compensated(name, time, np.array(errors), unit, stepped))
+        observed, cycles = _follow_with_observer(plant, recording, begin, len(time))
+        found.append(Compensated(name, time, np.array(errors), unit, stepped, observed, cycles))
     machines = np.empty((draws if within else 0, 2))
     source = np.random.default_rng(seed)
     for row in machines:
@@ -343,6 +460,54 @@ def _followed(
         if share == 0.0 and not spared:
             raise
         return None
+
+
+def _follow_with_observer(
+    plant: Plant, recording: Recording, begin: Begin | None, rows: int
+) -> tuple[FloatArray, tuple[bool, ...]]:
+    """Tracking errors with shares of a compensation by the measured motion, and whether it cycles.
+
+    The reference rests after its end, where a machine is pushed out of its place. Of friction that
+    is borne by more than there is the push does not die away.
+    """
+    longer = _resting(recording, KICKED * steady.static_level(plant))
+    errors, cycles = np.full((len(SHARES), rows), np.nan), []
+    for k, share in enumerate(SHARES):
+        try:
+            run = closed_loop.replay(plant, longer, fed=observer(plant, share), **begin_of(begin))
+        except InputError:
+            cycles.append(False)
+            continue
+        errors[k] = (run.reference - run.simulated)[:rows]
+        cycles.append(_cycles(run.simulated[rows:], plant.count, np.ptp(run.reference)))
+    return errors, tuple(cycles)
+
+
+def _resting(recording: Recording, push: float) -> Recording:
+    """A recording whose last row goes on for a while, a load pushing at first."""
+    time = np.asarray(recording.time)
+    dt = float(time[-1] - time[0]) / (len(time) - 1)
+    more = round(REST_S / dt)
+
+    def longer(values: FloatArray) -> FloatArray:
+        return np.concatenate([values, np.full(more, values[-1])])
+
+    channels: dict[str, Any] = {k: longer(values) for k, values in recording.channels.items()}
+    load = channels.setdefault("load", np.zeros(len(time) + more))
+    load[len(time) : len(time) + round(KICK_S / dt)] += push
+    stamps = np.concatenate([time, time[-1] + dt * np.arange(1, more + 1)])
+    parts = [None if p is None else longer(p) for p in (recording.input, recording.position)]
+    return Recording(stamps, *parts, settings=recording.settings, **channels)
+
+
+def _cycles(position: FloatArray, count: float, reach: float) -> bool:
+    """Whether a machine goes to and fro for good, by its positions while the reference rests."""
+    third, fourth = np.array_split(position, 4)[2:]
+    steps = np.diff(np.concatenate([third, fourth]))
+    steps = steps[steps != 0.0]
+    turns = int(np.sum(np.sign(steps[1:]) != np.sign(steps[:-1])))
+    least = COUNTS * count if count else SEEN * reach
+    return turns >= TURNS and bool(np.ptp(fourth) > max(least, LASTS * np.ptp(third)))
 
 
 def _rms(runs: Sequence[ClosedLoop | None]) -> float:

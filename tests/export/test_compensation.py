@@ -14,6 +14,7 @@ from stiction.compensation import (
     Compensation,
     compensate,
     feed_forward,
+    observer,
 )
 
 from .test_steady import plant
@@ -66,6 +67,43 @@ def test_states_of_a_law_are_worth_something_where_the_reference_turns():
     assert f"stepped along the reference it is {found.stepped:.3g} rad" in found.message
     dry = compensate(plant(DRY, controller=PD), recording(4.0))
     assert dry.stepped == pytest.approx(dry.rms[dry.shares.index(1.0)], rel=0.05)
+
+
+# A rigid contact holds what does not move, so that it takes more to keep it going.
+@pytest.mark.parametrize(
+    ("friction", "margin"),
+    [
+        ({"law": "lugre", "coulomb": 0.3, "breakaway": 0.3, "viscous": 0.02}, 1.25),
+        ({"law": "maxwell_slip", "coulomb": 0.3}, 1.25),
+        (DRY, 2.0),
+    ],
+    ids=["lugre", "maxwell_slip", "rigid"],
+)
+def test_more_friction_than_there_is_makes_a_limit_cycle(friction, margin):
+    found = compensate(plant(friction, controller=PD), recording())
+    # What bears no more than the contact has feeds in no more energy than that takes.
+    assert found.observer_margin == margin
+    assert all(found.cycles[found.shares.index(margin) :])
+    assert f"{margin:g} times as much makes a limit cycle" in found.message
+    assert found.observer_rms[found.shares.index(1.0)] < 0.3 * found.observer_rms[0]
+    assert found.observer_rms[0] == pytest.approx(found.rms[0], rel=1e-12)
+
+
+def test_an_observer_bears_what_the_contact_does():
+    own = plant(DRY, COGGING, **HANGING, drive={"input": "current_a", "gain": 0.5})
+    fed = observer(own, 0.5)
+    # At rest the contact bears the cogging itself, and gravity is all that is left.
+    assert fed(0.4, DT) == pytest.approx(0.2 * np.sin(0.4))
+    moving = fed(0.4 + 2.0 * DT, DT)
+    place = own.position_effort([0.4 + 2.0 * DT])[0]
+    assert moving == pytest.approx(0.3 + 0.02 * 2.0 + place, rel=1e-9)
+
+
+def test_a_loop_without_friction_to_bear_makes_no_limit_cycle():
+    smooth = plant({"law": "coulomb", "coulomb": 0.0, "viscous": 0.02}, controller=PD)
+    found = compensate(smooth, recording())
+    assert found.observer_margin is None
+    assert "without a limit cycle up to 2 times as much" in found.message
 
 
 def test_the_loop_follows_best_with_what_is_known():
@@ -122,7 +160,8 @@ def test_machines_within_the_intervals_say_how_far_it_may_be_off():
 
 
 def test_a_machine_that_runs_away_is_counted_as_that():
-    unit = Compensated("run", np.zeros(1), np.ones((len(SHARES), 1)), "rad", np.ones(1))
+    errors, still = np.ones((len(SHARES), 1)), (False,) * len(SHARES)
+    unit = Compensated("run", np.zeros(1), errors, "rad", np.ones(1), errors, still)
     rows = np.array([[1.0, 0.5], [1.0, np.nan], [np.nan, np.nan]])
     found = Compensation((unit,), machines=rows)
     assert found.hurt == 1

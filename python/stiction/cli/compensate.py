@@ -48,7 +48,9 @@ def compensate(
     The plant, as a diagnosis extended it, follows the recorded references. A feed-forward adds what
     friction and place will take along the reference to the input; half of it, the whole and twice
     as much are simulated, and the contact itself stepped along the references, with the states of
-    its law. `stiction export --to c` or `--to table` write it for a controller.
+    its law, and along the simulated readings, as an observer in a controller is. Of that one it is
+    said how much of it makes a limit cycle. `stiction export --to c` or `--to table` write it for a
+    controller.
 
     Parameters
     ----------
@@ -124,9 +126,21 @@ def _saved(found: Compensation, where: Path, stems: list[str]) -> list[str]:
 
 def _table(found: Compensation) -> list[str]:
     unit = found.recordings[0].unit
-    every = [*((f"{share:g}", rms) for share, rms in zip(found.shares, found.rms, strict=True))]
+
+    def told(error: float) -> str:
+        return f"{error:.4g} {unit}" if np.isfinite(error) else "ran away"
+
+    every = zip(found.shares, found.rms, found.observer_rms, found.cycles, strict=True)
     rows = [
-        f"{what:>13}  {'ran away' if not np.isfinite(error) else f'{error:.4g} {unit}'}"
-        for what, error in [*every, ("1, stepped", found.stepped)]
+        f"{share:>13g}  {told(ahead):<16}{told(observed)}{', limit cycle' if cycles else ''}"
+        for share, ahead, observed, cycles in every
     ]
-    return ["", "feed-forward × tracking error, rms", *rows, ""]
+    head = f"{'share':>13}  {'feed-forward':<16}by the measured motion"
+    return [
+        "",
+        "tracking error, rms",
+        head,
+        *rows,
+        f"{'1, stepped':>13}  {told(found.stepped)}",
+        "",
+    ]

@@ -26,8 +26,8 @@ from .tree import (
 __all__ = [
     "LIMITS",
     "Counters",
-    "changed",
     "constant_name",
+    "find_changes",
     "length",
     "names",
     "root",
@@ -91,7 +91,7 @@ def _nodes(of: Any) -> Iterator[Any]:
             yield from _nodes(getattr(of, part.name))
 
 
-def changed(
+def find_changes(
     function: Function, aliases: dict[str, Expression], signatures: dict[str, tuple[Kind, ...]]
 ) -> set[str]:
     """Variables of a function that it writes to after they were declared."""

@@ -134,7 +134,7 @@ class _Parser:
         constant = self.takes("const") or constant
         return Kind("real" if name == "STICTION_REAL" else name, constant=constant)
 
-    def pointed(self, base: Kind) -> Kind:
+    def pointer(self, base: Kind) -> Kind:
         if not self.takes("*"):
             return base
         self.takes("const")
@@ -163,7 +163,7 @@ class _Parser:
                 found = self.typedef(same)
                 structs += found
             else:
-                base = self.pointed(self.base())
+                base = self.pointer(self.base())
                 name = self.name()
                 if self.here().text == "[":
                     arrays.append(self.table(name, base))
@@ -236,7 +236,7 @@ class _Parser:
     def parameter(self) -> tuple[str, Kind]:
         base = self.base()
         if not self.takes("("):
-            kind = self.pointed(base)
+            kind = self.pointer(base)
             return self.name(), kind
         self.expect("*")
         name = self.name()
@@ -244,7 +244,7 @@ class _Parser:
         self.expect("(")
         given = []
         while not self.takes(")"):
-            given.append(self.pointed(self.base()))
+            given.append(self.pointer(self.base()))
             self.takes(",")
         return name, Kind(base.name, given=tuple(given))
 
@@ -344,7 +344,7 @@ class _Parser:
         base = self.base()
         found = []
         while True:
-            kind = self.pointed(base)
+            kind = self.pointer(base)
             name = self.name()
             kind = self.array(kind)
             value = self.expression() if self.takes("=") else None
@@ -380,7 +380,7 @@ class _Parser:
             return Unary(sign, self.unary())
         if sign == "(" and self.begins_type(1):
             self.take()
-            kind = self.pointed(self.base())
+            kind = self.pointer(self.base())
             self.expect(")")
             if self.takes("{"):
                 self.expect("0")

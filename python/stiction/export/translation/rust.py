@@ -10,8 +10,8 @@ from typing import Final
 from .names import (
     LIMITS,
     Counters,
-    changed,
     constant_name,
+    find_changes,
     length,
     names,
     root,
@@ -208,7 +208,7 @@ class _Writer:
             dict(function.given),
             aliases,
             {name for name, kind in function.given if kind.pointer},
-            changed(function, aliases, self.signatures),
+            find_changes(function, aliases, self.signatures),
             Counters.of(function),
             function.kind,
         )
@@ -260,7 +260,7 @@ class _Writer:
                 return ["return;"]
             case Return(value):
                 assert value is not None
-                return [f"return {self.fitted(value, self.scope.result)};"]
+                return [f"return {self.number(value, self.scope.result)};"]
         raise TranslationError(type(of).__name__)
 
     def declare(self, of: Declare) -> list[str]:
@@ -272,7 +272,7 @@ class _Writer:
             found = self.value(of.value)
             kind = found.kind if found.kind.name == "bool" else kind
         self.scope.kinds[of.name] = kind
-        value = self.zero(kind) if of.value is None else self.fitted(of.value, kind)
+        value = self.zero(kind) if of.value is None else self.number(of.value, kind)
         mutable = "mut " if of.name in self.scope.changed else ""
         return [f"let {mutable}{variable(of.name)}: {self.type_of(kind)} = {value};"]
 
@@ -280,8 +280,8 @@ class _Writer:
         place = self.value(to)
         if place.kind.name in WIDTHS and sign[0] in WRAPPING:
             whole = Binary(sign[0], to, value)
-            return f"{place.text} = {self.fitted(whole, place.kind)};"
-        return f"{place.text} {sign} {self.fitted(value, place.kind)};"
+            return f"{place.text} = {self.number(whole, place.kind)};"
+        return f"{place.text} {sign} {self.number(value, place.kind)};"
 
     def branch(self, of: If) -> list[str]:
         lines = [f"if {self.holds(of.condition).text} {{", *self.block(of.then, 1)]
@@ -318,7 +318,7 @@ class _Writer:
             case Literal(text, kind):
                 return _Text(text, kind)
             case Name(name):
-                return self.named(name)
+                return self.look_up(name)
             case Unary(sign, inner):
                 return self.unary(sign, inner)
             case Binary(sign, left, right):
@@ -340,7 +340,7 @@ class _Writer:
                 return _Text(f"{type_name(kind.name)}::ZERO", kind)
         raise TranslationError(type(of).__name__)
 
-    def named(self, name: str) -> _Text:
+    def look_up(self, name: str) -> _Text:
         scope = self.scope
         if name in scope.aliases:
             return self.value(scope.aliases[name])
@@ -374,7 +374,7 @@ class _Writer:
         if sign != "-":
             raise TranslationError(f"{sign} outside of what a function is given")
         kind = INT if found.kind.name == "bool" else found.kind
-        return _Text(f"-{self.fitted(inner, kind, PREFIX)}", kind, PREFIX)
+        return _Text(f"-{self.number(inner, kind, PREFIX)}", kind, PREFIX)
 
     def holds(self, of: Expression) -> _Text:
         """A condition."""
@@ -391,16 +391,16 @@ class _Writer:
         kind = self.both(left, right)
         compares = binds == BINDS["=="]
         if kind.name in WIDTHS and sign in WRAPPING:
-            one_text = self.fitted(left, kind, ATOM)
-            return _Text(f"{one_text}.{WRAPPING[sign]}({self.fitted(right, kind)})", kind)
+            one_text = self.number(left, kind, ATOM)
+            return _Text(f"{one_text}.{WRAPPING[sign]}({self.number(right, kind)})", kind)
         if sign in ("<<", ">>"):
             kind = self.value(left).kind
-        one_text = self.fitted(left, kind, binds + compares)
+        one_text = self.number(left, kind, binds + compares)
         if sign[0] == "<" and re.search(r" as \w+$", one_text):
             # What follows a type would be taken for its parameters.
             one_text = f"({one_text})"
         other_kind = self.value(right).kind if sign in ("<<", ">>") else kind
-        other_text = self.fitted(right, other_kind, binds + 1)
+        other_text = self.number(right, other_kind, binds + 1)
         return _Text(f"{one_text} {sign} {other_text}", BOOL if compares else kind, binds)
 
     def both(self, left: Expression, right: Expression) -> Kind:
@@ -415,13 +415,13 @@ class _Writer:
             texts, kind = (one.text, two.text), one.kind
         else:
             kind = self.both(then, other)
-            texts = (self.fitted(then, kind), self.fitted(other, kind))
+            texts = (self.number(then, kind), self.number(other, kind))
         asked = self.holds(condition).text
         return _Text(f"if {asked} {{ {texts[0]} }} else {{ {texts[1]} }}", kind, CHOICE)
 
     def cast(self, kind: Kind, inner: Expression) -> _Text:
         if kind.name == "real" or isinstance(inner, Literal):
-            text = self.fitted(inner, kind, 1)
+            text = self.number(inner, kind, 1)
             return _Text(text, kind, CAST if " as " in text else self.bound(inner))
         found = self.value(inner)
         return _Text(f"{found.within(CAST)} as {type_name(kind.name)}", kind, CAST)
@@ -431,7 +431,7 @@ class _Writer:
         found = self.value(inner)
         return found.binds if found.kind.name == "real" else ATOM
 
-    def fitted(self, of: Expression, kind: Kind, least: int = 0) -> str:
+    def number(self, of: Expression, kind: Kind, least: int = 0) -> str:
         """An expression as a number of a type."""
         if isinstance(of, Literal):
             return _literal(of.text, kind)
@@ -448,7 +448,7 @@ class _Writer:
 
     def call(self, name: str, given: tuple[Expression, ...]) -> _Text:
         if name.startswith("r_"):
-            numbers = ", ".join(self.fitted(each, REAL) for each in given)
+            numbers = ", ".join(self.number(each, REAL) for each in given)
             return _Text(f"math::{name.removeprefix('r_')}({numbers})", REAL)
         kinds, result = self.signatures.get(name, ()), self.results.get(name)
         if name in self.scope.kinds:
@@ -478,7 +478,7 @@ class _Writer:
         if kind.given is not None:
             return self.value(of).text
         if not kind.pointer:
-            return self.fitted(of, kind)
+            return self.number(of, kind)
         if isinstance(of, Name) and of.name in self.scope.given:
             return variable(of.name)
         if isinstance(of, Cast) and of.of == Literal("0", INT):
