@@ -28,6 +28,8 @@ KEYWORDS: Final = {
 """What a motor is made with, by the path of its parameter."""
 ALIKE: Final = 1e-9
 """Share of the range of motion within which a run over a window is the same as the simulation."""
+DIVISIONS: Final = (2, 4, 8, 16, 32)
+"""Of a sample too long for a derivative by the input, that are tried for one that is not."""
 
 
 class Simulation:
@@ -174,12 +176,8 @@ class Simulation:
             divides its samples in another way: the derivative would be that of another run.
         """
         motor, samples = self._with(values), len(current)
-        state = motor.state
-        begin, speed = float(state["position"]), float(state["velocity"])
-        # The window takes its velocity from the first two positions.
-        positions = begin + speed * self._dt * np.minimum(np.arange(samples + 1.0), 1.0)
-        motion = Motion(positions, current, self._dt, load=load)
-        self._same(motor, motion, current, load)
+        self._check(motor, current, load)
+        motion = _motion_of(motor, current, load, self._dt)
         found = motor.shoot_response(motion, position, samples, samples)
         return found[:, 0]
 
@@ -191,18 +189,20 @@ class Simulation:
         held = np.abs(current) <= motor.settings()["input_limit"]
         return np.where(held, motor.settings()["torque_constant"], 0.0)
 
-    def _same(self, motor: Motor, motion: Motion, current: FloatArray, load: FloatArray) -> None:
+    def _check(self, motor: Motor, current: FloatArray, load: FloatArray) -> None:
         """Refuses a window that does not run as the simulation does."""
-        run = motor.copy().simulate(current, self._dt, load=load, outputs=["position"]).position
-        last = np.zeros(len(current))
-        last[-1] = 1.0
-        shot = float(motor.shoot(motion, last, len(current))[0])
-        gone = float(run[-1]) - float(motor.state["position"])
-        if not abs(shot - gone) <= ALIKE * max(float(np.ptp(run)), abs(gone), 1e-300):
-            raise InputError(
-                "simulate: this contact is so stiff, or starts in such a state, that a derivative "
-                "by the input would be that of another run; give a shorter dt, or freeze the input"
-            )
+        if _runs_alike(motor, current, load, self._dt):
+            return
+        remedy = "freeze the input"
+        for parts in DIVISIONS:
+            dt = self._dt / parts
+            if _runs_alike(motor, np.repeat(current, parts), np.repeat(load, parts), dt):
+                remedy = f"give dt = {dt:.3g} or shorter, or freeze the input"
+                break
+        raise InputError(
+            f"simulate: with dt = {self._dt:.3g} this contact is so stiff, or starts in such a "
+            f"state, that a derivative by the input would be that of another run; {remedy}"
+        )
 
     def _with(self, values: FloatArray) -> Motor:
         """The motor with these values, in its state."""
@@ -231,6 +231,24 @@ class Simulation:
             state["ambient"] = motor.state["ambient"]
         motor.state = state
         return motor
+
+
+def _motion_of(motor: Motor, current: FloatArray, load: FloatArray, dt: float) -> Motion:
+    """Samples from where a motor stands; a window takes its velocity from the first positions."""
+    begin, speed = float(motor.state["position"]), float(motor.state["velocity"])
+    positions = begin + speed * dt * np.minimum(np.arange(len(current) + 1.0), 1.0)
+    return Motion(positions, current, dt, load=load)
+
+
+def _runs_alike(motor: Motor, current: FloatArray, load: FloatArray, dt: float) -> bool:
+    """Whether a window over these samples ends where the simulation of them does."""
+    run = motor.copy().simulate(current, dt, load=load, outputs=["position"]).position
+    last = np.zeros(len(current))
+    last[-1] = 1.0
+    motion = _motion_of(motor, current, load, dt)
+    shot = float(motor.shoot(motion, last, len(current))[0])
+    gone = float(run[-1]) - float(motor.state["position"])
+    return abs(shot - gone) <= ALIKE * max(float(np.ptp(run)), abs(gone), 1e-300)
 
 
 def over_batch(

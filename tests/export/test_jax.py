@@ -1,5 +1,7 @@
 """Derivatives through JAX: those of the core, and of differences."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -114,3 +116,23 @@ def test_refusals_are_sentences():
             simulate(plant, {}, current(), DT)
     finally:
         jax.config.update("jax_enable_x64", True)
+
+
+def test_how_short_samples_have_to_be_is_said():
+    stiff = st.Plant.from_dict(
+        {
+            "body": {"inertia": 0.0066},
+            "drive": {"input": "torque_nm", "gain": 1.0},
+            "friction": {"law": "maxwell_slip", "coulomb": 0.5, "initial_stiffness": 2000.0},
+        }
+    )
+
+    def gradient(dt):
+        effort = 0.6 * np.sin(40.0 * dt * np.arange(100))
+        return jax.grad(lambda u: jax.numpy.sum(simulate(stiff, {}, u, dt)[0]))(effort)
+
+    with pytest.raises(Exception, match=r"with dt = 0\.001 this contact is so stiff") as told:
+        gradient(1e-3)
+    enough = float(re.search(r"give dt = (\S+) or shorter", str(told.value))[1])
+    assert 1e-5 < enough < 1e-3
+    assert np.all(np.isfinite(gradient(enough)))

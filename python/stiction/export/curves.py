@@ -20,6 +20,8 @@ __all__ = ["Curves"]
 
 PLACES: Final = 241
 """Of a turn, from which points are chosen."""
+ROUNDING: Final = 1e-12
+"""Share of the level by which lines are off a curve that is made of lines."""
 LOOKED_AT: Final = 5401
 """Of three turns, at which lines are compared."""
 PROBED: Final = np.linspace(0.0, 6.0, 37)
@@ -92,11 +94,12 @@ class Curves:
 
     @staticmethod
     def _off(plant: Plant, numbers: dict[str, float]) -> tuple[str, ...]:
+        static = steady.static_level(plant)
         what = {"speed_off": "friction over speed", "position_off": "effort over position"}
         return tuple(
             f"lines between points of {what[name]} are off by {off:.3g} {plant.effort_unit} at most"
             for name, off in numbers.items()
-            if off > 0.0
+            if off > ROUNDING * static
         )
 
 
