@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from ..diagnosis import ALPHA, SMALLEST, SURROGATES
-from ..diagnosis import diagnose as run
-from ..diagnosis.added import add as added
-from ..diagnosis.result import Diagnosis
-from ..robot.session import robot_of
-from ..session import load_beside
 from .answer import answer, folder, print_on_failure, protect_writes
-from .drafts import Opened, Stated, is_data, open_session
 from .given import Quiet, Whole
 from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
-from .robot import diagnose_arm
-from .sessions import name_file_in_errors, refuse_overwrite, repairs_of
+
+if TYPE_CHECKING:
+    from ..diagnosis import Diagnosis
+    from .drafts import Opened
 
 __all__ = ["diagnose", "summarise"]
 
@@ -93,6 +89,14 @@ def diagnose(
     json
         Print JSON.
     """
+    from ..diagnosis import diagnose as run
+    from ..diagnosis.added import add as added
+    from ..robot.session import robot_of
+    from ..session import load_beside
+    from .drafts import Stated, is_data, open_session
+    from .robot import diagnose_arm
+    from .sessions import name_file_in_errors, refuse_overwrite, repairs_of
+
     names = [name.strip() for name in laws.split(",") if name.strip()]
     robot = None if is_data(session) else robot_of(session)
     if robot is not None:

@@ -17,7 +17,8 @@ from . import listing
 from .beside import doubt_by_forms
 from .candidates import FALL, Candidate, candidates, present, scales_of
 from .choose import ALIKE, Choice, choose, covers, parallel
-from .decide import LEAST_GAIN, LEAST_STRENGTH, SMALLEST, Trial, degeneracy
+from .decide import LEAST_GAIN, LEAST_STRENGTH, Trial, degeneracy
+from .defaults import ALPHA, SMALLEST
 from .evidence import Evidence
 from .exact_forms import several
 from .fewer import MIMIC, join, rebuild_models, remove_redundant, without
@@ -25,7 +26,7 @@ from .model import Known, Model, without_effect
 from .replay import centre, common_bias, reading_power
 from .restarts import from_before, from_the_first
 from .result import CandidateRow
-from .screen import ALPHA, Score
+from .screen import Score
 from .selection import Search
 from .sharpen import beside_a_second, free_shapes, has_free_shapes
 from .signatures import Signatures
