@@ -58,7 +58,7 @@ _LAZY = {
     "Ensemble": "ensemble",
     "EnsembleRun": "ensemble",
     "FitResult": "fitting",
-    "FrictionModel": "_native",
+    "FrictionModel": "friction_model",
     "InputError": "errors",
     "Motion": "_native",
     "Motor": "motor",

@@ -242,6 +242,42 @@ class EffectRecord:
         """Whether it acts beyond a limit alone: moved, that has another signature."""
         return any(shape.parameter == "limit" for shape in self.shapes)
 
+    @property
+    def constant(self) -> bool:
+        """Whether it is one effort everywhere, at rest too."""
+        return self.family == "offset" and "added effort" in self.hooks
+
+    @property
+    def two_levels(self) -> bool:
+        """Whether it gives friction a level for each direction."""
+        return self.family == "offset" and "friction level" in self.hooks
+
+    @property
+    def falls(self) -> bool:
+        """Whether it is the fall of friction with speed that laws state (Stribeck effect)."""
+        return "stribeck_velocity" in self.law_terms
+
+    @property
+    def friction_lags(self) -> bool:
+        """Whether friction follows the speed late by it."""
+        late = any(shape.scale == "kernel" for shape in self.shapes)
+        return late and "friction level" in self.hooks
+
+    @property
+    def over_speed(self) -> bool:
+        """Whether it is a part of the curve of friction over speed, and of nothing else."""
+        return self.falls or self.gains == ("quadratic",)
+
+    @property
+    def weighs(self) -> bool:
+        """Whether it is a weight off the axis, which a body or links of a robot hold as well."""
+        return "body.gravity_amplitude" in self.law_terms
+
+    @property
+    def misreads(self) -> bool:
+        """Whether it is an error of the position that is read."""
+        return "sensor map" in self.hooks
+
     def slope_misleads(self, *, loop: bool) -> bool:
         """Whether the slope at no gain does not tell how much a whole gain explains.
 

@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any
 
+from .wording import did_you_mean
+
 __all__ = ["lazy"]
 
 
@@ -29,7 +31,8 @@ def lazy(
 
     def get(name: str) -> Any:
         if name not in modules:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+            near = "" if name.startswith("_") else did_you_mean(name, modules)
+            raise AttributeError(f"module {package!r} has no attribute {name!r}{near}")
         value = getattr(import_module(f".{modules[name]}", package), name)
         # Here, and not left to the import: a module of the same name would stand in its place.
         setattr(sys.modules[package], name, value)

@@ -19,6 +19,7 @@ from .drive import check_servo, gain_name, servo_numbers, unscaled_unit
 from .errors import InputError
 from .frozen import ByPath, Frozen, freeze, path_of
 from .keys import choice
+from .keywords import explain_keywords
 from .motor import Motor
 from .parameter import Parameter, number
 from .recording.units import Motion
@@ -532,6 +533,7 @@ class Plant:
             "count": self.count,
         }
 
+    @explain_keywords
     def simulate(
         self,
         input: npt.ArrayLike,

@@ -15,6 +15,7 @@ from .errors import InputError
 from .file_kinds import kind_of_table
 from .frozen import Frozen, freeze
 from .keys import check_keys
+from .keywords import explain_constructor
 from .plant import Plant
 from .plant_file import read_toml, section
 from .progress import phase, steps
@@ -39,6 +40,7 @@ _TABLES = ("plant", "columns", "recordings")
 _FAULTS_TOLD = 8
 
 
+@explain_constructor
 @dataclass(frozen=True)
 class Session:
     """Recordings of one machine.

@@ -10,7 +10,7 @@ from cyclopts import Parameter
 from ..atomic_files import write_text
 from ..compare.defaults import DRAWS, PASSIVE_STEPS
 from .answer import answer, folder, json_of, protect_writes
-from .given import Quiet, Whole
+from .given import Quiet, Whole, separate
 from .progress import progress
 
 __all__ = ["compare"]
@@ -46,7 +46,7 @@ def compare(
     if out is not None:
         folder(out)
     with progress(quiet):
-        made = run(laws, steps=steps, draws=draws)
+        made = run([name for each in laws for name in separate(each)], steps=steps, draws=draws)
     text = repr(made)
     if out is not None:
         with progress(quiet), protect_writes(out):

@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from ..diagnosis import ALPHA, SMALLEST, SURROGATES
 from .answer import answer, folder, print_on_failure, protect_writes
-from .given import Quiet, Whole
+from .given import Quiet, Whole, separate
 from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
 
@@ -67,7 +67,7 @@ def diagnose(
     header
         Of recordings without names of columns: the names, as for stiction init.
     without
-        Effect that is not tried; may be given several times.
+        Effect that is not tried; may be given several times, or names with commas between.
     laws
         Other laws to compare with the plant's: "all", or names with commas between.
     surrogates
@@ -97,11 +97,12 @@ def diagnose(
     from .robot import diagnose_arm
     from .sessions import name_file_in_errors, refuse_overwrite, repairs_of
 
-    names = [name.strip() for name in laws.split(",") if name.strip()]
+    names = separate(laws)
+    left_out = [name for each in without for name in separate(each)]
     robot = None if is_data(session) else robot_of(session)
     if robot is not None:
         asked = {
-            "without": without,
+            "without": left_out,
             "laws": names,
             "surrogates": surrogates,
             "smallest": smallest,
@@ -126,7 +127,7 @@ def diagnose(
             found = run(
                 plant,
                 recordings,
-                without=without,
+                without=left_out,
                 laws=names,
                 surrogates=surrogates,
                 smallest=smallest,

@@ -16,6 +16,7 @@ from ..best_effort import Failure, attempt
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import residual_sentence
 from ..given import instance, share, whole
+from ..keywords import explain_keywords
 from ..plant import Plant
 from ..products import on_one_thread
 from ..progress import phase
@@ -74,6 +75,7 @@ _logger = logging.getLogger(__name__)
 
 
 @on_one_thread
+@explain_keywords
 def diagnose(
     plant: Plant | Session | None,
     session: Session | Sequence[Recording] | Recording | None = None,

@@ -18,6 +18,7 @@ from ..errors import InputError
 from ..frozen import Frozen
 from ..given import brief, instance, mapping, numbers, real, whole
 from ..given import path as file_path
+from ..keywords import explain_constructor
 from ..parameter import number
 from ..wording import did_you_mean
 from .columns import ROLES, Columns
@@ -49,6 +50,7 @@ _HELD: Final = ("input", "load", "transmitted")
 _OPTIONAL: Final = tuple(role for role in ROLES if role not in _MAIN)
 
 
+@explain_constructor
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Recording:
     """What was measured on a machine, in SI values.
