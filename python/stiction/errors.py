@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .wording import sentence
 
-__all__ = ["InputError", "NotEnoughData", "UnknownKeyword", "UnknownName"]
+__all__ = ["CallError", "InputError", "NotEnoughData", "UnknownName"]
 
 
 class InputError(ValueError):
@@ -34,5 +34,5 @@ class UnknownName(InputError, KeyError):  # noqa: N818 (it is raised and named a
     __str__ = Exception.__str__
 
 
-class UnknownKeyword(InputError, TypeError):  # noqa: N818 (it is raised and named as what is the matter)
-    """A call with a keyword that is not there, or without one that is needed."""
+class CallError(InputError, TypeError):
+    """A call with a keyword that is not there, without one that is needed, or in another order."""

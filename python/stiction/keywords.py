@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from typing import Any, Final, ParamSpec, TypeVar
 
-from .errors import UnknownKeyword
+from .errors import CallError, InputError
 from .wording import commas, did_you_mean
 
 __all__ = ["explain_constructor", "explain_keywords"]
@@ -20,7 +20,7 @@ _NO_COLUMNS: Final = (
     "time dt time_step timestep step ts h period sample_time fs rate frequency",
     "inertia mass j m",
     "torque_constant gain kt kv kf motor_constant",
-    "friction law model friction_model laws",
+    "friction law model friction_model frictionmodel laws",
     "plant machine motor robot",
     "session recordings recording data dataset",
     "without exclude skip ignore",
@@ -45,7 +45,7 @@ def explain_keywords(function: Callable[P, R]) -> Callable[P, R]:
     Returns
     -------
     callable
-        The same, which raises ``UnknownKeyword`` in place of the interpreter's TypeError.
+        The same, which raises ``CallError`` in place of the interpreter's TypeError.
     """
 
     @wraps(function)
@@ -58,7 +58,12 @@ def explain_keywords(function: Callable[P, R]) -> Callable[P, R]:
             told = _mistake(inspect.signature(function), args, kwargs, *called)
             if told is None:
                 raise
-        raise UnknownKeyword(told)
+        except InputError as error:
+            order = _exchange(inspect.signature(function), args, inspect.getdoc(function) or "")
+            if not order:
+                raise
+            told = f"{error}; {order}"
+        raise CallError(told)
 
     return call
 
@@ -88,7 +93,7 @@ def explain_constructor(cls: type[R]) -> type[R]:
             told = _mistake(signature, args, kwargs, cls.__name__, inspect.getdoc(cls) or "")
             if told is None:
                 raise
-        raise UnknownKeyword(told)
+        raise CallError(told)
 
     # What is compiled has no signature of its own to be found behind the wrapper.
     own = inspect.Parameter("own", inspect.Parameter.POSITIONAL_ONLY)
@@ -108,11 +113,13 @@ def _mistake(
 ) -> str | None:
     """What a call names or leaves out against the signature, None where it fits that."""
     try:
-        signature.bind(*given, **keywords)
+        bound = signature.bind(*given, **keywords).arguments
     except TypeError as error:
         why = str(error)
     else:
-        return None
+        if order := _exchange(signature, given, text):
+            return f"{named}: {order}"
+        return _misplaced(bound, signature.parameters, named, text)
     kinds = inspect.Parameter
     known = {
         name: each
@@ -136,6 +143,40 @@ def _mistake(
     if missing is not None:
         return f"{named}: {missing} is missing{_meaning(text, missing)}; {takes}"
     return f"{named}: {why}; {takes}"
+
+
+def _exchange(signature: inspect.Signature, given: tuple[object, ...], text: str) -> str:
+    """In which order a number and an array belong that were exchanged, "" where they were not."""
+    places = signature.bind_partial(*given).arguments
+    for name, value in places.items():
+        only_arrays = re.search(rf"^{name} : array_like", text, re.MULTILINE)
+        array = next((other for other, its in places.items() if _is_array(its)), None)
+        if only_arrays and array and isinstance(value, float | int):
+            shown = [each for each in places if each != "self"]
+            return f"{array} is an array: the order is {', '.join(shown)}"
+    return ""
+
+
+def _misplaced(
+    given: Mapping[str, object], parameters: Iterable[str], named: str, text: str
+) -> str | None:
+    """An array for a number, or an object in the place of another parameter; None without one."""
+    for name, value in given.items():
+        if re.search(rf"^{name} : float$", text, re.MULTILINE) and _is_array(value):
+            return f"{named}: {name} is no number; give one{_meaning(text, name)}"
+        kind = type(value)
+        meaning = _means(kind.__name__) if kind.__module__.partition(".")[0] == "stiction" else ()
+        meant = next((each for each in parameters if _means(each).intersection(meaning)), name)
+        if meant != name:
+            return (
+                f"{named}: {name} is a {kind.__name__}, and that belongs to {meant}; write "
+                f"{meant}=..."
+            )
+    return None
+
+
+def _is_array(value: object) -> bool:
+    return hasattr(type(value), "__len__")
 
 
 def _takes_any(signature: inspect.Signature) -> bool:

@@ -178,7 +178,17 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
         "it is called 'dt' here (duration of a sample in s",
     ),
     "no dt": (lambda: motor().simulate(np.ones(5)), "dt is missing (duration of a sample in s"),
-    "dt before the input": (lambda: motor().simulate(1e-3, np.ones(5)), "current is a single"),
+    "dt before the input": (
+        lambda: motor().simulate(1e-3, np.ones(5)), "dt is an array: the order is current, dt",
+    ),
+    "dt before the velocity": (
+        lambda: st.FrictionModel("lugre").simulate(1e-3, np.ones(5)),
+        "dt is an array: the order is velocity, dt",
+    ),
+    "an array for dt": (
+        lambda: st.FrictionModel("lugre").simulate(np.ones(5), np.ones(5)), "dt is no number",
+    ),
+    "a name that is not there": (lambda: st.laws()["stribeck"], "there is no law 'stribeck'"),
     "speed for velocity": (
         lambda: st.FrictionModel("lugre").simulate(speed=np.ones(5), dt=1e-3),
         "it is called 'velocity' here",
@@ -194,6 +204,10 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
     "current of a recording": (
         lambda: st.Recording(time=[0.0], current=[1.0], position=[0.0]),
         "it is called 'input' here (A, V, N·m or N)",
+    ),
+    "friction by place": (
+        lambda: st.Motor(0.1, st.FrictionModel("lugre")),
+        "torque_constant is a FrictionModel, and that belongs to friction; write friction=",
     ),
     "nothing to fit": (lambda: st.fit(), "plant is missing"),
     "law of a diagnosis": (
