@@ -22,6 +22,7 @@ from .keys import choice
 from .keywords import explain_keywords
 from .motor import Motor
 from .parameter import Parameter, number
+from .readers import FromFile
 from .recording.units import Motion
 from .stated import Effect, Friction, check_parameters
 from .trajectory import FloatArray, Trajectory
@@ -39,7 +40,7 @@ GRAVITY: Final = 9.80665
 
 
 @dataclass(frozen=True)
-class Plant:
+class Plant(metaclass=FromFile):
     """A single-axis machine; every parameter here is an attribute of the same name.
 
     Parameters

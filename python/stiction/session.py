@@ -19,6 +19,7 @@ from .keywords import explain_constructor
 from .plant import Plant
 from .plant_file import read_toml, section
 from .progress import phase, steps
+from .readers import FromFile
 from .recording import Columns, Recording
 from .recording.names import names_of
 from .recording.recording import recordings_of
@@ -42,7 +43,7 @@ _FAULTS_TOLD = 8
 
 @explain_constructor
 @dataclass(frozen=True)
-class Session:
+class Session(metaclass=FromFile):
     """Recordings of one machine.
 
     Parameters

@@ -226,6 +226,27 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
 }  # fmt: skip
 
 
+@pytest.mark.parametrize(
+    ("where", "name", "told"),
+    [
+        (st.Session, "open", "stiction.load(path) reads session, plant and recording files"),
+        (st.Session, "load", "stiction.load(path) reads"),
+        (st.Plant, "from_file", "stiction.load(path) reads"),
+        (st.Recording, "from_csv", "stiction.load(path) reads"),
+        (st.Plant, "from_dct", "stiction.load(path) reads"),
+        (st.Plant, "simulat", "did you mean 'simulate'?"),
+        (st, "diagnos", "did you mean 'diagnose'?"),
+        (st, "Sesion", "did you mean 'Session'?"),
+    ],
+)
+def test_a_name_that_is_not_there_is_answered_with_one_that_is(
+    where: object, name: str, told: str
+) -> None:
+    with pytest.raises(AttributeError) as refused:
+        getattr(where, name)
+    assert told in str(refused.value)
+
+
 @pytest.mark.parametrize("name", CALLS)
 def test_a_mistake_in_python_is_one_helpful_sentence(name: str) -> None:
     call, told = CALLS[name]

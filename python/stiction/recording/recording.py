@@ -20,6 +20,7 @@ from ..given import brief, instance, mapping, numbers, real, whole
 from ..given import path as file_path
 from ..keywords import explain_constructor
 from ..parameter import number
+from ..readers import FromFile
 from ..wording import did_you_mean
 from .columns import ROLES, Columns
 from .formats import read_table
@@ -52,7 +53,7 @@ _OPTIONAL: Final = tuple(role for role in ROLES if role not in _MAIN)
 
 @explain_constructor
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Recording:
+class Recording(metaclass=FromFile):
     """What was measured on a machine, in SI values.
 
     Row k is the state at ``time[k]``; the input of row k holds from there to row k + 1.
