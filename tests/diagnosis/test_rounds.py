@@ -385,7 +385,7 @@ def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: 
         residual=np.ones(number),
     )
     record = SimpleNamespace(
-        late=False, slope_misleads=lambda loop: False, shapes=(), family="angle"
+        late=False, limits=False, slope_misleads=lambda loop: False, shapes=(), family="angle"
     )
     candidate = SimpleNamespace(name="cogging", record=record, parameters=2)
     score: Any = SimpleNamespace(score=explained, threshold=0.01, candidate=candidate)
