@@ -1,0 +1,53 @@
+"""What following the readings leaves of a plant that is right, which an effect may mend."""
+
+from __future__ import annotations
+
+import logging
+from typing import Final
+
+from .block_gains import heldout_removed
+from .evidence import Evidence
+from .model import Model, fit_model
+from .screen import NULL_TIMES
+
+__all__ = ["doubt_by_discretisation"]
+
+NO_MORE: Final = (
+    "removes no more than it does of what following the readings leaves of a plant that lacks "
+    "nothing"
+)
+
+_logger = logging.getLogger(__name__)
+
+
+def doubt_by_discretisation(base: Model, model: Model) -> str:
+    """Why what an effect removes may be an error of the method, "" where it is more.
+
+    Between two stamps nobody read the motion: where the machine stopped or turned, and how fast it
+    went in between, is interpolated, and the error has the shape of the friction that acts there.
+    Surrogates are followed as the data are, so that it cancels in them. So the base makes the
+    session by itself, simulated near the measured motion and read without noise, and base and
+    effect are fitted to that as they were to the data: nothing is missing there, and of the rows
+    that decide the effect has to remove more from the data, by the usual factor.
+
+    Parameters
+    ----------
+    base, model : Model
+        Without the effect and with it.
+    """
+    alone = base.alone
+    if alone is None:
+        return ""
+    removed = heldout_removed(base, model)
+    fitted = _fitted(alone, base, base)
+    by_itself = heldout_removed(fitted, _fitted(alone, model, fitted))
+    _logger.info("following the readings makes %.3g of %.3g by itself", by_itself, removed)
+    return "" if removed > NULL_TIMES * by_itself else NO_MORE
+
+
+def _fitted(alone: Evidence, model: Model, begun: Model) -> Model:
+    """A plant fitted to the session that the base made."""
+    found = fit_model(alone, model.plant, begun.nuisances)
+    if found.solution.interrupted:
+        raise KeyboardInterrupt
+    return found
