@@ -4,11 +4,18 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
+import numpy as np
+
 from ..fitting.start import largest_command
 from .candidates import Candidate
 from .model import Model
+from .noise import input_noise
 
-__all__ = ["is_whole", "out_of_its_range", "partial_loss", "surely_a_part"]
+__all__ = ["OF_READING", "is_whole", "out_of_its_range", "partial_loss", "surely_a_part"]
+
+
+INPUT: Final = "input"
+"""Unit of what is measured in inputs."""
 
 
 class Whole(NamedTuple):
@@ -32,6 +39,12 @@ SURELY: Final = 2.0
 """Standard errors by which a gain is surely less."""
 BELOW_A_KERNEL: Final = "went below what a kernel shows"
 """What is late by so little is the reading of the motion, and nothing that is missing."""
+WITHIN_NOISE: Final = "lies within the noise of the input"
+"""So narrow a dead zone takes noise off the log where the machine coasts at an input of 0."""
+OF_READING: Final = (BELOW_A_KERNEL, WITHIN_NOISE)
+"""What imitates a reading, and nothing that is missing."""
+REACH_OF_NOISE: Final = 3.0
+"""Standard deviations that white noise stays within."""
 AT_THE_EDGE: Final = 0.98
 """A shape that has come this near to the end of where it may be stands there."""
 
@@ -43,8 +56,11 @@ def out_of_its_range(candidate: Candidate, model: Model) -> str:
     is late by far less than the kernel is wide is the reading of the motion. A speed whose grid
     begins below all speeds is no such change: over it one direction goes over into the other, and
     the friction of the two differs however slowly that comes about. And what is late and over below
-    the slowest speeds is no lag of sliding friction: there the curve of the contact is off.
+    the slowest speeds is no lag of sliding friction: there the curve of the contact is off. A dead
+    zone that noise of the input does not leave is a filter of that noise.
     """
+    if narrow := _within_noise(candidate, model):
+        return f"{narrow} {WITHIN_NOISE}"
     late = any(shape.scale == "kernel" for shape in candidate.record.shapes)
     effect = next(each for each in model.plant.effects if each.name == candidate.name)
     for shape in candidate.record.shapes:
@@ -60,6 +76,22 @@ def out_of_its_range(candidate: Candidate, model: Model) -> str:
         if shape.scale == "kernel" and stated.value <= stated.min / AT_THE_EDGE:
             return f"{shape.parameter} {BELOW_A_KERNEL}"
     return ""
+
+
+def _within_noise(candidate: Candidate, model: Model) -> str:
+    """The gain that is an input no greater than noise of its log, "" where there is none."""
+    units = {each.name: each.unit for each in candidate.record.parameters}
+    widths = [name for name in candidate.gains if units[name] == INPUT]
+    plant, evidence = model.plant, model.evidence
+    if not widths or plant.servo:
+        return ""
+    noises = evidence.each(
+        lambda rows: input_noise(rows, plant, model.nuisances), evidence.train
+    )
+    reach = REACH_OF_NOISE * float(np.median(noises))
+    (effect,) = (each for each in plant.effects if each.name == candidate.name)
+    narrow = (w for w in widths if abs(plant.gain * effect.parameters[w].value) <= reach)
+    return next(narrow, "")
 
 
 def is_whole(candidate: Candidate, model: Model) -> bool:
