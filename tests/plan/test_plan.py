@@ -334,3 +334,13 @@ def test_a_plant_without_inertia_gets_references_and_is_told_what_was_assumed() 
     # Stated, nothing is assumed, and the drive alone is planned for as well.
     stated = plan(st.Plant.from_dict({**table, "body": {"inertia": 0.004}}), only=("pulses",))
     assert "inertia" not in " ".join(stated.notes)
+
+
+def test_what_would_take_days_is_left_out():
+    # Next to no friction sizes an effort that hardly moves the machine.
+    friction = {"law": "prandtl_ishlinskii", "coulomb": 1e-12, "initial_stiffness": 1e-9}
+    made = plan(st.Plant.from_dict({"friction": friction, "body": {"inertia": 0.02}}))
+    names = {signal.name for signal in made.signals}
+    assert "ramps" not in names
+    assert names
+    assert "ramps is left out: it would take more than 1800 s, or 1e+07 samples" in made.notes

@@ -305,7 +305,7 @@ class _Drive:
         told = f"{self._name} is no actuator of BAM {RELEASE}, whose controllers are known:"
         if math.isfinite(self._kt) and math.isfinite(self._resistance):
             self.table = {"input": "voltage_v", "gain": self._kt / self._resistance}
-            self.viscous = self._kt**2 / self._resistance
+            self.viscous = self._kt * (self._kt / self._resistance)
             self.notes.append(
                 f"{told} the input is the motor's voltage, and kt²/R = {self.viscous:.4g} "
                 "N·m·s/rad of its own voltage stands in viscous friction"

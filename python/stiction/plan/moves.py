@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
 
 from ..trajectory import FloatArray
 
-__all__ = ["Motion", "cosine_taper"]
+__all__ = ["LONGEST_S", "MOST_SAMPLES", "Motion", "TooLongError", "cosine_taper"]
+
+LONGEST_S: Final = 1800.0
+MOST_SAMPLES: Final = 10_000_000
+"""Time and samples of a signal, at most: nobody records half an hour of one experiment."""
+
+
+class TooLongError(Exception):
+    """A machine that hardly moves: the signal would last longer than anybody records."""
 
 
 class Motion:
@@ -20,15 +29,22 @@ class Motion:
         Sample time, s.
     acceleration : float
         Greatest one.
+
+    Raises
+    ------
+    TooLongError
+        From what adds to it: all pieces together take more than a signal may.
     """
 
     def __init__(self, dt: float, acceleration: float) -> None:
         self.dt, self.acceleration = dt, acceleration
         self._speeds: list[FloatArray] = [np.zeros(1)]
+        self._left = min(LONGEST_S / dt, MOST_SAMPLES)
         self.at = 0.0
 
     def rest(self, seconds: float) -> None:
         """Stands still."""
+        self._spend(seconds / self.dt)
         self._add(np.zeros(max(1, round(seconds / self.dt))))
 
     def ramp(self, distance: float, speed: float) -> None:
@@ -39,6 +55,7 @@ class Motion:
         if speed * blend > length:
             speed *= length / (speed * blend)
             blend = 0.5 * math.pi * speed / self.acceleration
+        self._spend((blend + length / speed) / self.dt)
         samples = max(2, math.ceil(blend / self.dt))
         middle = max(0, round((length / speed - blend) / self.dt))
         rise = 0.5 - 0.5 * np.cos(math.pi * (np.arange(samples) + 0.5) / samples)
@@ -54,6 +71,18 @@ class Motion:
     def add(self, path: FloatArray) -> None:
         """Appends a path that starts at 0, relative to where it stands; shape (n,)."""
         self._add(np.diff(path, prepend=0.0) / self.dt)
+
+    def _spend(self, samples: float) -> None:
+        """Counts samples that a piece is about to take.
+
+        Raises
+        ------
+        TooLongError
+            There are not as many left.
+        """
+        self._left -= samples
+        if not self._left >= 0.0:
+            raise TooLongError
 
     def _add(self, speeds: FloatArray) -> None:
         self._speeds.append(speeds)

@@ -20,6 +20,7 @@ from ..trajectory import FloatArray
 from ..wording import commas, did_you_mean
 from .experiments import EXPERIMENTS, Experiment
 from .limits import Limits, Sizes, sizes_of, with_inertia
+from .moves import LONGEST_S, MOST_SAMPLES, TooLongError
 from .result import Plan, Signal
 
 __all__ = ["plan"]
@@ -114,16 +115,20 @@ def plan(
             continue
         phase(_logger, "planning %s", experiment.name)
         made = []
-        for k, role in enumerate(SPLIT_ROLES):
-            drawn = [seed, k, known.index(experiment.name)]
-            signal = _signal(plant, experiment, (sizes, limits), 1.0 / rate, role, drawn)
-            if signal is None:
-                break
-            made.append(signal)
-        else:
+        why = "nothing of it stays within the limits"
+        try:
+            for k, role in enumerate(SPLIT_ROLES):
+                drawn = [seed, k, known.index(experiment.name)]
+                signal = _signal(plant, experiment, (sizes, limits), 1.0 / rate, role, drawn)
+                if signal is None:
+                    break
+                made.append(signal)
+        except TooLongError:
+            why = f"it would take more than {LONGEST_S:g} s, or {MOST_SAMPLES:g} samples"
+        if len(made) == len(SPLIT_ROLES):
             signals += made
-            continue
-        notes.append(f"{experiment.name} is left out: nothing of it stays within the limits")
+        else:
+            notes.append(f"{experiment.name} is left out: {why}")
     if not signals:
         raise InputError(f"{plant.source}: no signal stays within these limits; widen one of them")
     return Plan(stated, tuple(signals), tuple(notes), True, f"{len(signals)} signals")
