@@ -41,7 +41,7 @@ MOST_BEYOND: Final = 3.0
 """Largest input over a limit: a drive is not asked for more, and what is beyond is a reading that
 was never there."""
 FEWEST_INSIDE: Final = 2
-"""Readings on the way behind a turn that tell how something builds up over it: one tells how much."""
+"""Readings on the way behind a turn that tell how something builds up: one tells how much."""
 AT_REST: Final = 0.1
 """Share of such a way that is still the turn itself."""
 SURELY: Final = 2.0
