@@ -17,7 +17,7 @@ __all__ = [
     "TOUCHED",
     "count_active_recordings",
     "heldout_gain",
-    "heldout_removed",
+    "heldout_reduction",
     "lacks_excitation",
     "log_gain",
     "paired_z",
@@ -79,7 +79,7 @@ def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tupl
     return gained / total, max(z_of(difference), _sign_z(difference))
 
 
-def heldout_removed(base: Model, model: Model) -> float:
+def heldout_reduction(base: Model, model: Model) -> float:
     """Held-out power that a model removes, no block counting for too much."""
     before, after = limit_influence(base.blocks[1], model.blocks[1])
     return float((before - after).sum())

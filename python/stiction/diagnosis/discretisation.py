@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from ..finite import finite
-from .block_gains import heldout_removed
+from .block_gains import heldout_reduction
 from .evidence import Evidence
 from .model import Model
 from .screen import NULL_TIMES
@@ -46,11 +46,11 @@ def doubt_by_discretisation(base: Model, model: Model) -> str:
     alone = base.alone
     if alone is None:
         return ""
-    removed = heldout_removed(base, model)
+    removed = heldout_reduction(base, model)
     if removed > FAR_MORE * _left_by(base, alone):
         return ""
     fitted = compared_fit(alone, base.plant, base.nuisances)
-    by_itself = heldout_removed(fitted, compared_fit(alone, model.plant, fitted.nuisances))
+    by_itself = heldout_reduction(fitted, compared_fit(alone, model.plant, fitted.nuisances))
     _logger.info("following the readings makes %.3g of %.3g by itself", by_itself, removed)
     return "" if removed > NULL_TIMES * by_itself else NO_MORE
 

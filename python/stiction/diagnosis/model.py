@@ -30,7 +30,7 @@ from .candidates import Candidate
 from .evidence import Evidence, Plan
 from .influence import limit_influence
 from .regression import step
-from .replay import NoReplayError, made_alone, reread
+from .replay import NoReplayError, simulate_alone, reread
 
 __all__ = [
     "LEAST_GIVEN",
@@ -306,11 +306,11 @@ class Model:
     def alone(self) -> Evidence | None:
         """The session as the plant would have made it by itself, read without noise.
 
-        None where it cannot be made (see ``made_alone``).
+        None where it cannot be made (see ``simulate_alone``).
         """
         plant, nuisances = self.plant, self.nuisances
         try:
-            return self.evidence.with_rows(lambda rows: made_alone(rows, plant, nuisances))
+            return self.evidence.with_rows(lambda rows: simulate_alone(rows, plant, nuisances))
         except NoReplayError:
             return None
 

@@ -27,7 +27,7 @@ __all__ = [
     "centre",
     "common_bias",
     "hangs_on_load",
-    "made_alone",
+    "simulate_alone",
     "noise_of",
     "reading_power",
     "reread",
@@ -288,7 +288,7 @@ def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) 
     return found
 
 
-def made_alone(rows: Rows, plant: Plant, nuisances: Nuisances) -> Rows:
+def simulate_alone(rows: Rows, plant: Plant, nuisances: Nuisances) -> Rows:
     """Rows of a recording that the plant makes by itself near the measured one, without noise.
 
     The sensor rounds it to its counts, and nothing else is between the plant and its readings: what
