@@ -18,7 +18,7 @@ from ..session import Session
 from ..trajectory import FloatArray
 from .advice import advise
 from .bets import Bets, bets_of
-from .bursts import Burst, burst_of
+from .bursts import Burst, burst_of, left_throughout
 from .candidates import scales_of
 from .ceiling import Ceiling, ceiling_of
 from .confirm import (
@@ -194,6 +194,12 @@ class Conclusion:
         return bool(
             lost_share(self.evidence, final, self.null) or self._unnamed(self.valid_selection)
         )
+
+    @property
+    def lacks_throughout(self) -> bool:
+        """Whether more than noise is left not in single moments alone."""
+        final = self.valid_selection.models[-1]
+        return left_throughout(final.residual, self._replays(final)[0])
 
     @cached_property
     def rivals(self) -> Sequence[Rival]:

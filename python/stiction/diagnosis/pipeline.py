@@ -368,7 +368,8 @@ def _seen_otherwise(
     """What is concluded, or what the other residual concludes where that leaves nothing.
 
     Readings that lead a rigid contact astray leave what has no name, at single moments most of all:
-    where the plant, simulated, follows the motion within its noise, nothing else was missing. And
+    where the plant, simulated, follows the motion within its noise, nothing else was missing. What
+    is left throughout is none of their making, and may be too fast for a simulation to show it. And
     where it is simulated from the first, slopes beside a base that has bent itself may show nothing
     of a cause that readings show.
     """
@@ -394,7 +395,11 @@ def _seen_otherwise(
         if other is None or all_blind(other.selection):
             return first
         second = concluded(other)
-        return first if second.interrupted or second.unsaid else second
+        if second.interrupted or second.unsaid:
+            return first
+        # Windows average away what is over within a seventh of a second.
+        nothing = other.evidence.simulated and not second.valid_selection.choices
+        return first if nothing and first.lacks_throughout else second
     except KeyboardInterrupt:
         first.interrupted = first.brief = True
         return first
