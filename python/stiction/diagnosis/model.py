@@ -30,7 +30,7 @@ from .candidates import Candidate
 from .evidence import Evidence, Plan
 from .influence import limit_influence
 from .regression import step
-from .replay import NoReplayError, simulate_alone, reread
+from .replay import NoReplayError, reread, simulate_alone
 
 __all__ = [
     "LEAST_GIVEN",

@@ -27,10 +27,10 @@ __all__ = [
     "centre",
     "common_bias",
     "hangs_on_load",
-    "simulate_alone",
     "noise_of",
     "reading_power",
     "reread",
+    "simulate_alone",
     "surrogate_residuals",
 ]
 
