@@ -7,10 +7,10 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .errors import InputError
+from .lazy import lazy
 
 if TYPE_CHECKING:
     from ._native import FrictionModel, Motion, __version__
@@ -58,7 +58,8 @@ _LAZY = {
     "Ensemble": "ensemble",
     "EnsembleRun": "ensemble",
     "FitResult": "fitting",
-    "FrictionModel": "_native",
+    "FrictionModel": "friction_model",
+    "InputError": "errors",
     "Motion": "_native",
     "Motor": "motor",
     "Plant": "plant",
@@ -77,14 +78,4 @@ _LAZY = {
 }
 
 
-def __getattr__(name: str) -> Any:
-    if name in _LAZY:
-        value = getattr(import_module(f".{_LAZY[name]}", __name__), name)
-        globals()[name] = value
-        return value
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    dunders = (name for name in globals() if name.startswith("__"))
-    return sorted({*dunders, *__all__})
+__getattr__, __dir__ = lazy(__name__, _LAZY)

@@ -29,11 +29,31 @@ _AT_CONTACT: Final = frozenset({"friction level", "added effort", "state relaxat
 
 @dataclass(frozen=True)
 class ParameterRecord:
-    """One parameter: name, symbol, meaning, units (rotary and linear), default, bounds.
+    """One parameter of a law or an effect.
 
-    ``follows`` is another parameter and a factor: where that one is stated and this one is not,
-    this one is the factor times it. ``neutral`` is the value at which the parameter does nothing,
-    where there is one. A fit leaves an ``optional`` parameter alone unless a plant states it.
+    Attributes
+    ----------
+    name : str
+        In Python and in plant files.
+    symbol : str or None
+        Of the literature, which is answered with the name.
+    meaning : str
+        In words.
+    unit, linear_unit : str
+        Of a machine that turns, and of one that slides.
+    default : float
+        Without a statement, in these units.
+    follows : tuple of (str, float), or None
+        Another parameter and a factor: where that one is stated and this one is not, this one is
+        the factor times it.
+    neutral : float or None
+        Value at which the parameter does nothing, where there is one.
+    typical : float
+        A value at which it does something.
+    bounds : tuple of (float, float)
+        Least and greatest value that is taken.
+    optional : bool
+        A fit leaves it alone unless a plant states it.
     """
 
     name: str
@@ -59,7 +79,15 @@ class ParameterRecord:
 
 @dataclass(frozen=True)
 class OptionRecord:
-    """A choice between named behaviours; the first is the default."""
+    """A choice between named behaviours.
+
+    Attributes
+    ----------
+    name, meaning : str
+        The keyword, and what is chosen by it.
+    choices : tuple of (str, str)
+        Word and meaning of each; the first is the default.
+    """
 
     name: str
     meaning: str
@@ -70,8 +98,21 @@ class OptionRecord:
 class LawRecord:
     """A friction law.
 
-    ``start`` holds what a contact may bring along from before a recording, see ``Motor.follow``; at
-    0 it was never moved. A law that ``remembers`` knows where it turned round: small loops close.
+    Attributes
+    ----------
+    name, summary : str
+        Its name, and a line on it.
+    source : str
+        Publication that the equations are of.
+    parameters : tuple of ParameterRecord
+    start : tuple of ParameterRecord
+        What a contact may bring along from before a recording, see ``Motor.follow``; at 0 it was
+        never moved.
+    remembers : bool
+        It knows where it turned round (nonlocal memory): minor loops close.
+    options : tuple of OptionRecord
+    outputs : tuple of str
+        States that a trajectory shows beside position, velocity and friction.
     """
 
     name: str
@@ -92,9 +133,18 @@ class LawRecord:
 class ShapeRecord:
     """A parameter in which an effect is not linear, and where a diagnosis looks for it.
 
-    ``scale`` says what ``grid`` is measured in: "one", the values themselves; "speed", the way from
-    the lowest usual speed of a session (0) to the highest (1), logarithmically; "order", what the
-    range of motion can show. A refit varies it where ``fitted``.
+    Attributes
+    ----------
+    parameter : str
+        Its name.
+    scale : str
+        What ``grid`` is measured in: "one", the values themselves; "speed", the way from the lowest
+        usual speed of a session (0) to the highest (1), logarithmically; "order", what the range of
+        motion can show.
+    grid : tuple of float
+        Values that are screened.
+    fitted : bool
+        Whether a refit varies it.
     """
 
     parameter: str
@@ -107,11 +157,38 @@ class ShapeRecord:
 class EffectRecord:
     """An effect that a plant may have beside its law.
 
-    ``second`` names the parameters of a second wave, in the order of gains and shapes: what repeats
-    with position is seldom a sine. ``law_terms`` are parameters of laws (``body.`` before them: of
-    the body; ``law.remembers``: that the law remembers reverse points) that are this effect: where
-    a plant states one of them, it has the effect already.
-    ``rotary_only`` effects need a machine that turns.
+    Attributes
+    ----------
+    name, summary : str
+        Its name, and a line on it.
+    means, remedy : str
+        What it is in the machine, and what to try against it.
+    family : str
+        Effects of one family are told apart least easily.
+    coordinate : str
+        Over what the residual shows it.
+    channels : tuple of str
+        Columns that a recording needs for it beside input and position.
+    look_alikes : tuple of str
+        Other effects that a recording may not tell from it.
+    experiment, plan : str
+        What tells it from these, in words and as an experiment of ``stiction plan``.
+    gains : tuple of str
+        Parameters in which the effort is linear.
+    shapes : tuple of ShapeRecord
+        Those in which it is not.
+    second : tuple of str
+        Parameters of a second wave, in the order of gains and shapes: what repeats with position is
+        seldom a sine.
+    law_terms : tuple of str
+        Parameters of laws (``body.`` before them: of the body; ``law.remembers``: that the law
+        remembers reverse points) that are this effect: where a plant states one of them, it has the
+        effect already.
+    rotary_only : bool
+        It needs a machine that turns.
+    hooks : tuple of str
+        Where it enters the equations.
+    parameters : tuple of ParameterRecord
     """
 
     name: str
@@ -164,6 +241,42 @@ class EffectRecord:
     def limits(self) -> bool:
         """Whether it acts beyond a limit alone: moved, that has another signature."""
         return any(shape.parameter == "limit" for shape in self.shapes)
+
+    @property
+    def constant(self) -> bool:
+        """Whether it is one effort everywhere, at rest too."""
+        return self.family == "offset" and "added effort" in self.hooks
+
+    @property
+    def two_levels(self) -> bool:
+        """Whether it gives friction a level for each direction."""
+        return self.family == "offset" and "friction level" in self.hooks
+
+    @property
+    def falls(self) -> bool:
+        """Whether it is the fall of friction with speed that laws state (Stribeck effect)."""
+        return "stribeck_velocity" in self.law_terms
+
+    @property
+    def friction_lags(self) -> bool:
+        """Whether friction follows the speed late by it."""
+        late = any(shape.scale == "kernel" for shape in self.shapes)
+        return late and "friction level" in self.hooks
+
+    @property
+    def over_speed(self) -> bool:
+        """Whether it is a part of the curve of friction over speed, and of nothing else."""
+        return self.falls or self.gains == ("quadratic",)
+
+    @property
+    def weighs(self) -> bool:
+        """Whether it is a weight off the axis, which a body or links of a robot hold as well."""
+        return "body.gravity_amplitude" in self.law_terms
+
+    @property
+    def misreads(self) -> bool:
+        """Whether it is an error of the position that is read."""
+        return "sensor map" in self.hooks
 
     def slope_misleads(self, *, loop: bool) -> bool:
         """Whether the slope at no gain does not tell how much a whole gain explains.

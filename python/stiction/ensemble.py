@@ -18,6 +18,7 @@ from ._native import Ensemble as _Ensemble
 from .errors import InputError, UnknownName
 from .frozen import Frozen, freeze, path_of
 from .keys import choice
+from .keywords import explain_keywords
 from .motor import Motor
 from .trajectory import FloatArray
 from .wording import commas
@@ -192,6 +193,7 @@ class Ensemble(_Ensemble):
         told = f"<p>{len(self)} machines with {escape(self._law)}</p>"
         return told + (table(("varied", "least", "greatest"), rows) if rows else "")
 
+    @explain_keywords
     def simulate(
         self,
         current: npt.ArrayLike,
@@ -280,6 +282,7 @@ class Ensemble(_Ensemble):
         return EnsembleRun(columns, time, reduce)
 
 
+@explain_keywords
 def simulate_ensemble(
     motor: Motor,
     currents: npt.ArrayLike,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .wording import sentence
 
-__all__ = ["InputError", "NotEnoughData", "UnknownName"]
+__all__ = ["CallError", "InputError", "NotEnoughData", "UnknownName"]
 
 
 class InputError(ValueError):
@@ -32,3 +32,7 @@ class UnknownName(InputError, KeyError):  # noqa: N818 (it is raised and named a
 
     # A KeyError shows its argument quoted, and this is a sentence.
     __str__ = Exception.__str__
+
+
+class CallError(InputError, TypeError):
+    """A call with a keyword that is not there, without one that is needed, or in another order."""

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Any, Never, TypeVar
 
-from .errors import InputError
+from .errors import InputError, UnknownName
+from .wording import commas, did_you_mean
 
 __all__ = ["Fixed"]
 
-K = TypeVar("K")
+K = TypeVar("K", bound=str)
 V = TypeVar("V")
 
 
@@ -33,6 +34,11 @@ class Fixed(dict[K, V]):
     def _refuse(self, *given: Any, **named: Any) -> Never:
         name = f"{given[0]} " if given and isinstance(given[0], str) else ""
         raise InputError(f"{name}cannot be set in place: {self._remedy}")
+
+    def __missing__(self, key: Any) -> Never:
+        raise UnknownName(
+            f"'{key}' is not there{did_you_mean(key, self)}; there are {commas(self)}"
+        )
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     clear = pop = popitem = setdefault = update = _refuse

@@ -9,12 +9,14 @@ from typing import Any
 from . import given, session
 from .errors import InputError
 from .file_kinds import kind_of, kind_of_table
+from .keywords import explain_keywords
 from .plant import Plant
 from .plant_file import read_toml
 
 __all__ = ["load"]
 
 
+@explain_keywords
 def load(
     path: str | Path,
     *,

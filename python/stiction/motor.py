@@ -12,6 +12,7 @@ import numpy.typing as npt
 from . import _native, given
 from ._native import FrictionModel
 from .errors import InputError
+from .keywords import explain_constructor, explain_keywords
 from .trajectory import FloatArray, Trajectory
 
 __all__ = ["Motor"]
@@ -26,6 +27,7 @@ MANY: Final = 1 << 20
 """Samples from which on memory is asked for beforehand."""
 
 
+@explain_constructor
 class Motor(_native.Motor):
     """A body driven by an input and resisted by friction: J·x'' = k·u + load − F.
 
@@ -65,6 +67,7 @@ class Motor(_native.Motor):
         of the servo, an effect that is stated twice, a missing friction.
     """
 
+    @explain_keywords
     def simulate(
         self,
         current: npt.ArrayLike,
@@ -125,6 +128,7 @@ class Motor(_native.Motor):
         steps = dt if type(dt) is float else _steps(dt)
         return Trajectory(columns, steps, length, start, statistics)
 
+    @explain_keywords
     def simulate_segments(
         self,
         durations: npt.ArrayLike,

@@ -7,7 +7,7 @@ body, and dry friction with true stick. Every other law and effect is a step of 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -24,8 +24,6 @@ __all__ = ["Equations", "Solution", "equations", "solve"]
 
 LAWS: Final = ("bouc_wen", "coulomb", "dahl", "elasto_plastic", "lugre")
 """Whose equations stand here."""
-EFFECTS: Final = ("cogging", "torque_bias", "viscous_quadratic")
-"""Added efforts that are a formula of position and velocity."""
 STATES: Final = {
     "bouc_wen": "dry_friction",
     "dahl": "dry_friction",
@@ -41,6 +39,31 @@ LOOKS: Final = 1000
 
 Signal = Callable[[float], float]
 """Of the time, s."""
+
+
+def _bias(numbers: Mapping[str, float], position: float, velocity: float) -> Iterator[float]:
+    yield numbers["bias"]
+
+
+def _drag(numbers: Mapping[str, float], position: float, velocity: float) -> Iterator[float]:
+    yield -numbers["quadratic"] * velocity * abs(velocity)
+
+
+def _waves(numbers: Mapping[str, float], position: float, velocity: float) -> Iterator[float]:
+    for tail in ("", "_2"):
+        angle = numbers[f"order{tail}"] * position
+        yield numbers[f"cosine{tail}"] * np.cos(angle)
+        yield numbers[f"sine{tail}"] * np.sin(angle)
+
+
+Formula = Callable[[Mapping[str, float], float, float], Iterator[float]]
+"""Terms of an effort, from the effect's parameters, position and velocity."""
+FORMULAS: Final[dict[str, Formula]] = {
+    "torque_bias": _bias,
+    "viscous_quadratic": _drag,
+    "cogging": _waves,
+}
+"""Added efforts that are a formula of position and velocity."""
 
 
 @dataclass(frozen=True)
@@ -126,15 +149,10 @@ class Equations:
         driven = self._gain * float(np.clip(self._input(time), -self._limit, self._limit))
         found = driven if self._load is None else driven + self._load(time)
         found -= plant.gravity * np.sin(position - self._zero) + plant.weight
-        if bias := self._added.get("torque_bias"):
-            found += bias["bias"]
-        if drag := self._added.get("viscous_quadratic"):
-            found -= drag["quadratic"] * velocity * abs(velocity)
-        if wave := self._added.get("cogging"):
-            for tail in ("", "_2"):
-                angle = wave[f"order{tail}"] * position
-                found += wave[f"cosine{tail}"] * np.cos(angle)
-                found += wave[f"sine{tail}"] * np.sin(angle)
+        for name, added in FORMULAS.items():
+            if numbers := self._added.get(name):
+                for part in added(numbers, position, velocity):
+                    found += part
         return float(found)
 
     def friction(self, time: float, state: FloatArray, mode: int = STUCK) -> float:
@@ -256,10 +274,11 @@ def equations(plant: Plant, input: Signal, load: Signal | None = None) -> Equati
             f"{plant.source}: the equations of {plant.friction.law} do not stand here, those of "
             f"{commas(LAWS)} do; {other}"
         )
-    foreign = [effect.name for effect in plant.effects if effect.name not in EFFECTS]
+    foreign = [effect.name for effect in plant.effects if effect.name not in FORMULAS]
     if foreign:
         raise InputError(
-            f"{plant.source}: {commas(foreign)} cannot be held, {commas(EFFECTS)} can; {other}"
+            f"{plant.source}: {commas(foreign)} cannot be held, {commas(sorted(FORMULAS))} can; "
+            f"{other}"
         )
     return Equations(plant, input, load)
 

@@ -19,8 +19,10 @@ from .drive import check_servo, gain_name, servo_numbers, unscaled_unit
 from .errors import InputError
 from .frozen import ByPath, Frozen, freeze, path_of
 from .keys import choice
+from .keywords import explain_keywords
 from .motor import Motor
 from .parameter import Parameter, number
+from .readers import FromFile
 from .recording.units import Motion
 from .stated import Effect, Friction, check_parameters
 from .trajectory import FloatArray, Trajectory
@@ -38,7 +40,7 @@ GRAVITY: Final = 9.80665
 
 
 @dataclass(frozen=True)
-class Plant:
+class Plant(metaclass=FromFile):
     """A single-axis machine; every parameter here is an attribute of the same name.
 
     Parameters
@@ -532,6 +534,7 @@ class Plant:
             "count": self.count,
         }
 
+    @explain_keywords
     def simulate(
         self,
         input: npt.ArrayLike,

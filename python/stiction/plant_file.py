@@ -116,9 +116,11 @@ def read_toml(path: Path, *, least: str = "[friction] law") -> dict[str, Any]:
 def _near(path: Path) -> str:
     """A file beside it that may be meant."""
     try:
-        names = [each.name for each in path.parent.iterdir() if each.suffix == ".toml"]
+        files = list(path.parent.iterdir())
     except OSError:
         return ""
+    # An ending that was left out may be that of a recording too.
+    names = [each.name for each in files if each.suffix == ".toml" or each.stem == path.name]
     return did_you_mean(path.name, names)
 
 

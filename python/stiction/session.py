@@ -15,9 +15,11 @@ from .errors import InputError
 from .file_kinds import kind_of_table
 from .frozen import Frozen, freeze
 from .keys import check_keys
+from .keywords import explain_constructor
 from .plant import Plant
 from .plant_file import read_toml, section
 from .progress import phase, steps
+from .readers import FromFile
 from .recording import Columns, Recording
 from .recording.names import names_of
 from .recording.recording import recordings_of
@@ -39,8 +41,9 @@ _TABLES = ("plant", "columns", "recordings")
 _FAULTS_TOLD = 8
 
 
+@explain_constructor
 @dataclass(frozen=True)
-class Session:
+class Session(metaclass=FromFile):
     """Recordings of one machine.
 
     Parameters

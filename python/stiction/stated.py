@@ -44,7 +44,22 @@ def check_name(name: str, records: Iterable[LawRecord | EffectRecord], where: st
 
 @dataclass(frozen=True)
 class Friction:
-    """A law with the parameters and options that the file states."""
+    """A law with the parameters and options that the file states.
+
+    Attributes
+    ----------
+    law : str
+        A name of ``stiction.laws()``.
+    parameters : Mapping of str to Parameter
+        What is stated; the rest takes the catalogue's defaults.
+    options : Mapping of str to str
+        Words that the law's record lists.
+
+    Raises
+    ------
+    InputError
+        An unknown law, or parameters that are none.
+    """
 
     law: str
     parameters: Mapping[str, Parameter] = field(default_factory=dict)
@@ -78,7 +93,20 @@ class Friction:
 
 @dataclass(frozen=True)
 class Effect:
-    """An effect with the parameters that the file states."""
+    """An effect with the parameters that the file states.
+
+    Attributes
+    ----------
+    name : str
+        A name of ``stiction.effects()``.
+    parameters : Mapping of str to Parameter
+        What is stated; the rest takes the catalogue's defaults.
+
+    Raises
+    ------
+    InputError
+        An unknown effect, or parameters that are none.
+    """
 
     name: str
     parameters: Mapping[str, Parameter] = field(default_factory=dict)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import given
 from .atomic_files import atomic_write
 from .errors import InputError
+from .keywords import explain_keywords
 from .motor import Motor
 from .parameter import number
 from .trajectory import FloatArray, Trajectory
@@ -24,6 +25,7 @@ PIECE: Final = 1 << 16
 """Samples simulated at once: a longer chunk is cut, so that memory does not grow with it."""
 
 
+@explain_keywords
 def stream(
     motor: Motor,
     currents: Iterable[npt.ArrayLike],

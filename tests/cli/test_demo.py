@@ -14,10 +14,8 @@ import pytest
 from tests.reference import make_demo_session
 
 from stiction import Diagnosis, Plant, demo_session, diagnose, effects
-from stiction.cli import demo as demo_verb
-from stiction.cli import paper as paper_verb
 from stiction.cli import run
-from stiction.cli.paper import Section
+from stiction.cli.paper_sections import Section
 from stiction.paper import stick_slip
 
 SLOWEST = 20.0  # s, of the diagnosis on two cores
@@ -44,7 +42,7 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> Demo:
         return kept[-1]
 
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(printed):
-        patch.setattr(demo_verb, "run", keeping)
+        patch.setattr("stiction.diagnosis.diagnose", keeping)
         assert run(["demo", "--out", str(folder)]) == 0
     findings = json.loads((folder / "findings.json").read_text(encoding="utf-8"))
     return Demo(kept[0], folder, printed.getvalue(), findings)
@@ -108,7 +106,7 @@ def test_json_is_all_that_json_prints(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(demo_verb, "run", lambda *given: demo.found)
+    monkeypatch.setattr("stiction.diagnosis.diagnose", lambda *given: demo.found)
     assert run(["demo", "--json", "-o", str(tmp_path)]) == 0
     assert json.loads(capsys.readouterr().out) == demo.findings
 
@@ -228,7 +226,7 @@ def test_the_paper_shows_how_stick_slip_ends(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     slow = Section("stick-slip", stick_slip(0.1, duration=1.0), ())
-    monkeypatch.setattr(paper_verb, "paper_command", lambda out: [slow])
+    monkeypatch.setattr("stiction.cli.paper_sections.paper_command", lambda out: [slow])
     assert run(["paper", "-o", str(tmp_path)]) == 0
     assert "slides smoothly after 1 break-away" in capsys.readouterr().out
     assert (tmp_path / "smooth-sliding.svg").exists()

@@ -36,7 +36,7 @@ def test_a_plan_leaves_what_was_filled_in(
     (where / name).write_text("# mine\n", encoding="utf-8")
     before = {file: file.stat().st_mtime_ns for file in where.rglob("*")}
     with monkeypatch.context() as patched:
-        patched.setattr("stiction.cli.plan.run", never)
+        patched.setattr("stiction.plan.plan", never)
         assert run(arguments) == 2
     told = capsys.readouterr()
     assert told.out == ""
@@ -51,13 +51,19 @@ def test_a_plan_leaves_what_was_filled_in(
     assert {file: file.stat().st_mtime_ns for file in where.rglob("*")} == before
 
 
-@pytest.mark.parametrize("verb", ["fit", "diagnose"])
+@pytest.mark.parametrize(
+    ("verb", "work"), [("fit", "fitting.fit"), ("diagnose", "diagnosis.diagnose")]
+)
 def test_results_are_not_written_over_the_plant_that_was_read(
-    verb: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    verb: str,
+    work: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     desk = Desk(tmp_path)
     before = desk.plant.read_text(encoding="utf-8")
-    monkeypatch.setattr(f"stiction.cli.{verb}.run", never)
+    monkeypatch.setattr(f"stiction.{work}", never)
     monkeypatch.chdir(tmp_path)
     assert run([verb, "session.toml", "-o", "."]) == 2
     told = capsys.readouterr()

@@ -13,7 +13,7 @@ import stiction as st
 from stiction import Plant
 from stiction.begins import load_begins, save_begins
 from stiction.cli import run
-from stiction.cli.simulate import stems_of
+from stiction.cli.recording_run import stems_of
 from stiction.residual import started
 
 DT = 1e-3

@@ -109,7 +109,7 @@ def test_an_interrupted_fit_is_written_and_says_so(
     def stopped(*given: Any) -> Any:
         return replace(fit(*given), success=False, interrupted=True)
 
-    monkeypatch.setattr("stiction.cli.fit.run", stopped)
+    monkeypatch.setattr("stiction.fitting.fit", stopped)
     assert run(["fit", str(session), "-o", str(tmp_path / "out")]) == 130
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {"plant.toml", "begins.toml", "fit.json", "fit.html"}
@@ -165,7 +165,7 @@ def test_where_nothing_can_be_written_nothing_is_fitted(
     def never(*_: object) -> None:
         raise AssertionError("fits for nothing")
 
-    monkeypatch.setattr("stiction.cli.fit.run", never)
+    monkeypatch.setattr("stiction.fitting.fit", never)
     assert run(["fit", str(session), "-o", str(session)]) == 2
     assert "cannot be made a folder" in capsys.readouterr().err
     monkeypatch.setattr(os, "access", lambda *_: False)

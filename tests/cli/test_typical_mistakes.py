@@ -101,6 +101,16 @@ COMMANDS: dict[str, tuple[str, str, str, list[str], str]] = {
     "input by quantity": (
         "plant.toml", '"torque_nm"', '"torque"', ["plan", "plant.toml"], "mean 'torque_nm'?",
     ),
+    "help as a verb": ("", "", "", ["help"], "did you mean '--help'?"),
+    "an ending left out": ("", "", "", ["diagnose", "run"], "did you mean 'run.csv'?"),
+    "effect among laws": ("", "", "", ["laws", "stribeck"], "see stiction effects stribeck"),
+    "law among effects": ("", "", "", ["effects", "lugre"], "see stiction laws lugre"),
+    "laws with commas": ("", "", "", ["compare", "lugre,dah"], "law 'dah' is unknown (did you"),
+    "effects with commas": (
+        "", "", "", ["diagnose", "session.toml", "--without", "cogging,stribek"],
+        "there is no effect stribek (did you mean 'stribeck'?)",
+    ),
+    "another shell": ("", "", "", ["completion", "powershel"], "did you mean 'powershell'?"),
     "below 0": (
         "plant.toml", "coulomb = 0.2", "coulomb = -0.2", ["plan", "plant.toml"], "out of bounds",
     ),
@@ -156,10 +166,85 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
     "unequal lengths": (lambda: st.Recording([0.0, 1.0], [1.0], [0.0, 0.0]), "1"),
     "figure for axes": (lambda: motor().simulate(np.ones(5), 1e-3).plot(3), "plot: ax"),
     "speed and friction apart": (lambda: st.fit_curve([1.0, 2.0], [1.0]), "of one length"),
+    "torque for current": (
+        lambda: motor().simulate(torque=np.ones(5), dt=1e-3),
+        "'torque' is unknown; it is called 'current' here (input of each sample",
+    ),
+    "voltage for current": (
+        lambda: motor().simulate(voltage=np.ones(5), dt=1e-3), "it is called 'current' here",
+    ),
+    "times for dt": (
+        lambda: motor().simulate(np.ones(5), time=np.arange(5.0)),
+        "it is called 'dt' here (duration of a sample in s",
+    ),
+    "no dt": (lambda: motor().simulate(np.ones(5)), "dt is missing (duration of a sample in s"),
+    "dt before the input": (
+        lambda: motor().simulate(1e-3, np.ones(5)), "dt is an array: the order is current, dt",
+    ),
+    "dt before the velocity": (
+        lambda: st.FrictionModel("lugre").simulate(1e-3, np.ones(5)),
+        "dt is an array: the order is velocity, dt",
+    ),
+    "an array for dt": (
+        lambda: st.FrictionModel("lugre").simulate(np.ones(5), np.ones(5)), "dt is no number",
+    ),
+    "a name that is not there": (lambda: st.laws()["stribeck"], "there is no law 'stribeck'"),
+    "speed for velocity": (
+        lambda: st.FrictionModel("lugre").simulate(speed=np.ones(5), dt=1e-3),
+        "it is called 'velocity' here",
+    ),
+    "position for velocity": (
+        lambda: st.FrictionModel("lugre").simulate(position=np.ones(5), dt=1e-3),
+        "it takes velocity, dt, load",
+    ),
+    "a symbol for inertia": (
+        lambda: st.Motor(J=0.1), "it is called 'inertia' here (kg·m² (rotary) or kg (linear))",
+    ),
+    "mass": (lambda: st.Motor(mass=0.1), "it is called 'inertia' here"),
+    "current of a recording": (
+        lambda: st.Recording(time=[0.0], current=[1.0], position=[0.0]),
+        "it is called 'input' here (A, V, N·m or N)",
+    ),
+    "friction by place": (
+        lambda: st.Motor(0.1, st.FrictionModel("lugre")),
+        "torque_constant is a FrictionModel, and that belongs to friction; write friction=",
+    ),
+    "nothing to fit": (lambda: st.fit(), "plant is missing"),
+    "law of a diagnosis": (
+        lambda: st.diagnose(st.Session([recording()]), law="lugre"), "called 'laws' here",
+    ),
+    "recordings, singular": (lambda: st.Session(recording=[recording()]), "'recordings' here"),
+    "jobs for threads": (
+        lambda: st.diagnose(None, st.Session([recording()]), n_jobs=2), "called 'threads' here",
+    ),
+    "a symbol that is looked up": (
+        lambda: motor().friction.parameters["sigma0"], "'sigma0' is not there; there are coulomb",
+    ),
     "friction that drives": (
         lambda: st.fit_curve(np.arange(1.0, 9.0), -np.ones(8)), "turn one of the two signs round",
     ),
 }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("where", "name", "told"),
+    [
+        (st.Session, "open", "stiction.load(path) reads session, plant and recording files"),
+        (st.Session, "load", "stiction.load(path) reads"),
+        (st.Plant, "from_file", "stiction.load(path) reads"),
+        (st.Recording, "from_csv", "stiction.load(path) reads"),
+        (st.Plant, "from_dct", "stiction.load(path) reads"),
+        (st.Plant, "simulat", "did you mean 'simulate'?"),
+        (st, "diagnos", "did you mean 'diagnose'?"),
+        (st, "Sesion", "did you mean 'Session'?"),
+    ],
+)
+def test_a_name_that_is_not_there_is_answered_with_one_that_is(
+    where: object, name: str, told: str
+) -> None:
+    with pytest.raises(AttributeError) as refused:
+        getattr(where, name)
+    assert told in str(refused.value)
 
 
 @pytest.mark.parametrize("name", CALLS)

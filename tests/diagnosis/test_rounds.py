@@ -385,7 +385,12 @@ def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: 
         residual=np.ones(number),
     )
     record = SimpleNamespace(
-        late=False, slope_misleads=lambda loop: False, shapes=(), family="angle", parameters=()
+        late=False,
+        limits=False,
+        slope_misleads=lambda loop: False,
+        shapes=(),
+        family="angle",
+        parameters=(),
     )
     candidate = SimpleNamespace(name="cogging", record=record, parameters=2, gains=())
     score: Any = SimpleNamespace(score=explained, threshold=0.01, candidate=candidate)

@@ -7,9 +7,10 @@ import pytest
 
 import stiction as st
 from stiction.diagnosis.candidates import Candidate, Scales, candidates
+from stiction.diagnosis.defaults import ALPHA
 from stiction.diagnosis.evidence import Plan
 from stiction.diagnosis.regression import project
-from stiction.diagnosis.screen import ALPHA, FORMS, Problem, Score, _threshold, screen
+from stiction.diagnosis.screen import FORMS, Problem, Score, _threshold, screen
 from stiction.diagnosis.signatures import Signatures
 from stiction.parameter import Parameter
 from stiction.stated import Effect

@@ -12,7 +12,13 @@ import pytest
 
 import stiction as st
 from stiction import plot
-from stiction.cli.paper import Section, _write_numbers, paper_command, render_json, render_text
+from stiction.cli.paper_sections import (
+    Section,
+    paper_command,
+    render_json,
+    render_text,
+    write_numbers,
+)
 from stiction.errors import InputError
 from stiction.paper.figures import static_comparison
 
@@ -157,6 +163,6 @@ def test_a_number_that_is_not_known_is_null_in_the_file(tmp_path):
         def to_dict(self):
             return {"measured": float("nan"), "limit": float("inf")}
 
-    _write_numbers(tmp_path, [Section("one", Open(), ())])
+    write_numbers(tmp_path, [Section("one", Open(), ())])
     (read,) = json.loads((tmp_path / "numbers.json").read_text("utf-8"))["experiments"]
     assert read == {"name": "one", "measured": None, "limit": None, "figures": []}

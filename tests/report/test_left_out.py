@@ -57,7 +57,7 @@ def answered(
 ) -> str:
     """The page that the command writes of the diagnosis; its exit and its files are looked at."""
     desk = Desk(folder)
-    monkeypatch.setattr("stiction.cli.diagnose.run", lambda *_, **__: whole())
+    monkeypatch.setattr("stiction.diagnosis.diagnose", lambda *_, **__: whole())
     out = folder / "out"
     assert run(["diagnose", str(desk.session), "-o", str(out)]) == 0
     told = capsys.readouterr()
@@ -240,7 +240,7 @@ def test_a_figure_of_a_comparison_that_fails_leaves_the_table(
 def test_a_figure_of_the_paper_that_fails_leaves_its_numbers(
     tmp_path: Path, left_out: list[str]
 ) -> None:
-    from stiction.cli.paper import render_json, render_text, write_figure
+    from stiction.cli.paper_sections import render_json, render_text, write_figure
     from stiction.paper import bearing_loops
 
     result = bearing_loops()
@@ -256,7 +256,7 @@ def test_where_no_file_can_be_written_the_answer_is_printed_all_the_same(
     verb: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     desk = Desk(tmp_path)
-    monkeypatch.setattr("stiction.cli.diagnose.run", lambda *_, **__: whole())
+    monkeypatch.setattr("stiction.diagnosis.diagnose", lambda *_, **__: whole())
     for name in ("findings.json", "fit.json"):
         (tmp_path / "out" / name).mkdir(parents=True)
     assert run([verb, str(desk.session), "-o", str(tmp_path / "out"), "--json"]) == 2

@@ -15,6 +15,8 @@ from typing import Final, Literal
 __all__ = [
     "ACTUATORS",
     "BESIDE",
+    "GOAL",
+    "LOAD",
     "MODELS",
     "RELEASE",
     "Actuator",
@@ -27,6 +29,10 @@ RELEASE: Final = "1.0.2"
 BESIDE: Final = ("kp", "vin", "mass", "length", "input")
 """Keys beside those of BAM, which passes over them: what its logs say of gain, supply and payload,
 and, last, the input of a drive that is no servo."""
+LOAD: Final = "load_dependent_friction"
+GOAL: Final = "goal_rate_limit"
+"""Effects of ours that BAM's models hold: what load friction of a gear grows with, and how fast its
+firmware lets a goal go (``max_velocity``)."""
 
 
 @dataclass(frozen=True)

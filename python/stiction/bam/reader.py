@@ -16,7 +16,7 @@ from ..errors import InputError
 from ..keys import choice
 from ..parameter import number
 from ..wording import commas
-from .format import ACTUATORS, BESIDE, MODELS, RELEASE, Actuator, Searched, search_space
+from .format import ACTUATORS, BESIDE, GOAL, MODELS, RELEASE, Actuator, Searched, search_space
 
 if TYPE_CHECKING:
     from ..plant import Plant
@@ -354,7 +354,7 @@ class _Drive:
             self.table["current_limit_a"] = known.current_limit
         if "max_velocity" in self._numbers:
             slowness = 1.0 / self._numbers["max_velocity"]
-            self.effects.append({"name": "goal_rate_limit", "slowness": slowness})
+            self.effects.append({"name": GOAL, "slowness": slowness})
 
     def _current(self, known: Actuator) -> None:
         """A PD controller of the current, which is one of the voltage as well."""

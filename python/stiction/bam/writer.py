@@ -12,7 +12,7 @@ from .. import steady
 from ..errors import InputError
 from ..export.joint import WORTH_SAYING, beside, speeds_up_to
 from ..trajectory import FloatArray
-from .format import ACTUATORS
+from .format import ACTUATORS, GOAL, LOAD
 
 if TYPE_CHECKING:
     from ..plant import Plant
@@ -22,8 +22,6 @@ __all__ = ["BamNumbers", "numbers_of"]
 
 EXACT: Final = ("coulomb", "load_dependent")
 """Laws whose numbers are those of BAM."""
-LOAD: Final = "load_dependent_friction"
-GOAL: Final = "goal_rate_limit"
 NO_BACK_EMF: Final = 1e-9
 """kt, N·m/A, of a drive whose own voltage is in viscous friction already."""
 NO_LIMIT: Final = 1e-9

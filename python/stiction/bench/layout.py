@@ -34,8 +34,6 @@ MOST: Final = 9999
 LONGEST: Final = 3600.0
 """s: of a session."""
 _RECIPE: Final = "recipe.json"
-_TWINS: Final = {"torque_bias": "direction_asymmetry", "direction_asymmetry": "torque_bias"}
-"""One thing at a dry contact: effort c more one way and less the other is a constant effort c."""
 _README: Final = """\
 {number} sessions of a simulated machine, of {least:g} to {most:g} s each: recordings, the plant
 file that somebody would state of the machine, and a session file that names the columns. What is
@@ -175,12 +173,14 @@ def _laid(each: Dealt, folder: Path, truth: Path) -> None:
 def _truth(case: str, made: Ordinary) -> dict[str, Any]:
     spec, machine = made.spec, made.machine
     families = {record.name: record.family for record in effects()}
+    # At a dry contact effort c more one way and less the other is a constant effort c.
+    one = [record.name for record in effects() if record.constant or record.two_levels]
     usual = vars(Effects())
-    twin = _TWINS.get(spec.hidden) if spec.contact == "dry" else None
+    twins = one if spec.contact == "dry" and spec.hidden in one else []
     hidden = {
         "name": spec.hidden,
         "class": families.get(spec.hidden, ""),
-        "same_as": [twin] if twin else [],
+        "same_as": [name for name in twins if name != spec.hidden],
         "size": made.relative_rms,
         "size_asked": spec.size,
         "effect": {k: v for k, v in vars(machine.effects).items() if v != usual[k]},

@@ -1,4 +1,8 @@
-"""The list of verbs: imported when they are asked for, so that help comes at once."""
+"""The list of verbs: imported when they are asked for, so that help comes at once.
+
+A verb's module is imported for its help, and imports at its top only what its signature and help
+need. What the verb works with is imported where it runs.
+"""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..wording import plural
 from .answer import answer, folder, print_on_failure, protect_writes
 from .app import VERBS
-from .given import Quiet, Whole
+from .given import Quiet, Whole, separate
 from .progress import progress
 
 __all__ = ["bench"]
@@ -62,7 +62,7 @@ def make(
     """
     from ..bench import make as lay_out
 
-    kinds = [case.strip() for case in cases.split(",") if case.strip()]
+    kinds = separate(cases)
     with progress(quiet):
         given = _bounds(seconds)
         try:

@@ -43,7 +43,7 @@ def laws(
     if name is None:
         answer(_table(records), _data(records), as_json=json)
         return
-    record = _find(name, records, "law")
+    record = _find(name, records, "law", catalogue.effects(), "effect")
     lines = [
         f"{record.name}: {record.summary}",
         f"source: {record.source}",
@@ -82,7 +82,7 @@ def effects(
     if name is None:
         answer(_table(records), _data(records), as_json=json)
         return
-    record = _find(name, records, "effect")
+    record = _find(name, records, "effect", catalogue.laws(), "law")
     lines = [
         f"{record.name}: {record.summary}",
         f"means: {record.means}",
@@ -115,11 +115,23 @@ def _table(records: Iterable[LawRecord | EffectRecord]) -> str:
     return "\n".join(f"{record.name:<{width}}  {record.summary}" for record in records)
 
 
-def _find(name: str, records: Sequence[_Record], what: str) -> _Record:
+def _find(
+    name: str,
+    records: Sequence[_Record],
+    what: str,
+    others: Sequence[LawRecord | EffectRecord],
+    other: str,
+) -> _Record:
+    """The record of a name; where it is one of the other list, that is said."""
     for record in records:
         if record.name == name:
             return record
     names = [record.name for record in records]
+    if name in (record.name for record in others):
+        raise InputError(
+            f"{what} '{name}' is unknown; the name is that of one {other}, see stiction "
+            f"{other}s {name}"
+        )
     raise InputError(
         f"{what} '{name}' is unknown{did_you_mean(name, names)}; known are {commas(names)}"
     )

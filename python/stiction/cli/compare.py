@@ -8,11 +8,9 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from ..atomic_files import write_text
-from ..compare import compare as run
-from ..compare.draws import DRAWS
-from ..compare.properties.passivity import PASSIVE_STEPS
+from ..compare.defaults import DRAWS, PASSIVE_STEPS
 from .answer import answer, folder, json_of, protect_writes
-from .given import Quiet, Whole
+from .given import Quiet, Whole, separate
 from .progress import progress
 
 __all__ = ["compare"]
@@ -41,15 +39,16 @@ def compare(
     json
         Print JSON.
     """
+    from ..compare import compare as run
+    from ..compare.page import page
+    from ..compare.text import as_markdown
+
     if out is not None:
         folder(out)
     with progress(quiet):
-        made = run(laws, steps=steps, draws=draws)
+        made = run([name for each in laws for name in separate(each)], steps=steps, draws=draws)
     text = repr(made)
     if out is not None:
-        from ..compare.page import page
-        from ..compare.text import as_markdown
-
         with progress(quiet), protect_writes(out):
             # The numbers first: no figure can cost them.
             write_text(out / "compare.json", json_of(made.to_dict()) + "\n")

@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 import logging
+import math
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
-import numpy as np
 from cyclopts import Parameter
 
-from .. import plot
-from .. import session as sessions
 from ..atomic_files import write_text
-from ..begins import load_begins
-from ..compensation import Compensation
-from ..compensation import compensate as simulated
 from ..errors import InputError
-from ..intervals import intervals_of
 from ..json_text import json_of
-from ..plant import Plant
 from ..progress import phase
-from ..recording.names import names_of
 from ..wording import commas
 from .answer import answer, folder, print_on_failure, protect_writes
 from .given import Quiet
 from .progress import progress
-from .simulate import begin_for, stems_of
+
+if TYPE_CHECKING:
+    from ..compensation import Compensation
+    from ..plant import Plant
 
 __all__ = ["compensate"]
 
@@ -64,6 +59,15 @@ def compensate(
     json
         Print JSON.
     """
+    import numpy as np
+
+    from .. import session as sessions
+    from ..begins import load_begins
+    from ..compensation import compensate as simulated
+    from ..plant import Plant
+    from ..recording.names import names_of
+    from .recording_run import begin_for, stems_of
+
     machine = Plant.load(plant)
     told = load_begins(plant, machine)
     known, note = (intervals, "") if intervals is not None else _beside(plant, machine)
@@ -93,6 +97,8 @@ def compensate(
 
 def _beside(plant: Path, machine: Plant) -> tuple[dict[str, tuple[float, float]] | None, str]:
     """Intervals that a diagnosis or a fit wrote beside the plant; why there are none, in words."""
+    from ..intervals import intervals_of
+
     path = next((path for name in RESULTS if (path := plant.parent / name).exists()), None)
     if path is None:
         return None, f"no interval: there is no {' or '.join(RESULTS)} beside {plant}"
@@ -114,9 +120,11 @@ def _beside(plant: Path, machine: Plant) -> tuple[dict[str, tuple[float, float]]
 
 def _saved(found: Compensation, where: Path, stems: list[str]) -> list[str]:
     """Writes the numbers before anything is drawn; what could not be drawn, in words."""
+    from ..plot import save_or_say
+
     write_text(where / "compensation.json", json_of(found.to_dict()) + "\n")
     said = [
-        plot.save_or_say(f"figure of {each.name}", each.plot, where / f"{stem}-tracking.svg")
+        save_or_say(f"figure of {each.name}", each.plot, where / f"{stem}-tracking.svg")
         for each, stem in zip(found.recordings, stems, strict=True)
     ]
     return [*filter(None, said), f"files: {where}"]
@@ -126,7 +134,7 @@ def _table(found: Compensation) -> list[str]:
     unit = found.recordings[0].unit
     every = [*((f"{share:g}", rms) for share, rms in zip(found.shares, found.rms, strict=True))]
     rows = [
-        f"{what:>13}  {'ran away' if not np.isfinite(error) else f'{error:.4g} {unit}'}"
+        f"{what:>13}  {'ran away' if not math.isfinite(error) else f'{error:.4g} {unit}'}"
         for what, error in [*every, ("1, stepped", found.stepped)]
     ]
     return ["", "feed-forward × tracking error, rms", *rows, ""]

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 from shlex import quote
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from .. import demo_session
-from ..diagnosis import diagnose as run
-from ..diagnosis.result import Diagnosis
-from ..session import Session
 from ..wording import plural
 from .answer import answer, folder, print_on_failure, protect_writes
 from .diagnose import summarise
 from .given import Quiet
 from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
+
+if TYPE_CHECKING:
+    from ..diagnosis import Diagnosis
+    from ..session import Session
 
 __all__ = ["demo"]
 
@@ -44,6 +44,9 @@ def demo(
     json
         Print JSON.
     """
+    from .. import demo_session
+    from ..diagnosis import diagnose as run
+
     if copy is not None:
         _copied(copy, as_json=json)
         return
@@ -60,6 +63,8 @@ def demo(
 
 def _told(session: Session, found: Diagnosis, where: Path, *, as_json: bool, quiet: bool) -> None:
     """Write the report and say what was found, and what was hidden."""
+    from .. import demo_session
+
     with (
         print_on_failure(str(found), found.to_dict(), as_json=as_json),
         progress(quiet),
@@ -79,6 +84,8 @@ def _told(session: Session, found: Diagnosis, where: Path, *, as_json: bool, qui
 
 def _copied(where: Path, *, as_json: bool) -> None:
     """Lay the session out and say what comes next."""
+    from .. import demo_session
+
     with protect_writes(where):
         files = demo_session.copy(where)
     recordings = [file for file in files if file.suffix == ".csv"]

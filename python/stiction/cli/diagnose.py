@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from ..diagnosis import ALPHA, SMALLEST, SURROGATES
-from ..diagnosis import diagnose as run
-from ..diagnosis.added import add as added
-from ..diagnosis.result import Diagnosis
-from ..robot.session import robot_of
-from ..session import load_beside
 from .answer import answer, folder, print_on_failure, protect_writes
-from .drafts import Opened, Stated, is_data, open_session
-from .given import Quiet, Whole
+from .given import Quiet, Whole, separate
 from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
-from .robot import diagnose_arm
-from .sessions import name_file_in_errors, refuse_overwrite, repairs_of
+
+if TYPE_CHECKING:
+    from ..diagnosis import Diagnosis
+    from .drafts import Opened
 
 __all__ = ["diagnose", "summarise"]
 
@@ -71,7 +67,7 @@ def diagnose(
     header
         Of recordings without names of columns: the names, as for stiction init.
     without
-        Effect that is not tried; may be given several times.
+        Effect that is not tried; may be given several times, or names with commas between.
     laws
         Other laws to compare with the plant's: "all", or names with commas between.
     surrogates
@@ -93,11 +89,20 @@ def diagnose(
     json
         Print JSON.
     """
-    names = [name.strip() for name in laws.split(",") if name.strip()]
+    from ..diagnosis import diagnose as run
+    from ..diagnosis.added import add as added
+    from ..robot.session import robot_of
+    from ..session import load_beside
+    from .drafts import Stated, is_data, open_session
+    from .robot import diagnose_arm
+    from .sessions import name_file_in_errors, refuse_overwrite, repairs_of
+
+    names = separate(laws)
+    left_out = [name for each in without for name in separate(each)]
     robot = None if is_data(session) else robot_of(session)
     if robot is not None:
         asked = {
-            "without": without,
+            "without": left_out,
             "laws": names,
             "surrogates": surrogates,
             "smallest": smallest,
@@ -122,7 +127,7 @@ def diagnose(
             found = run(
                 plant,
                 recordings,
-                without=without,
+                without=left_out,
                 laws=names,
                 surrogates=surrogates,
                 smallest=smallest,

@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import logging
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from .. import session as sessions
 from ..errors import InputError
-from ..export import Export, targets
-from ..export.speeds import recorded_speed
-from ..plant import Plant
 from ..progress import phase
-from ..robot.robot import describes_robot
-from ..session import Session
 from ..wording import commas
 from .answer import answer, folder, protect_writes
 from .given import Quiet
 from .progress import progress
-from .robot import export_arm
-from .sessions import name_file_in_errors
+
+if TYPE_CHECKING:
+    from ..export import Export
+    from ..plant import Plant
+    from ..session import Session
 
 __all__ = ["export"]
 
@@ -60,6 +57,13 @@ def export(
     json
         Print JSON.
     """
+    from .. import session as sessions
+    from ..export import targets
+    from ..export.speeds import recorded_speed
+    from ..plant import Plant
+    from ..robot.robot import describes_robot
+    from .robot import export_arm
+
     known = targets()
     if list:
         text = "\n".join(f"{each.name:<8} {each.summary}" for each in known.values())
@@ -100,6 +104,8 @@ def _written(
     plant: Plant, to: tuple[str, ...], speed: float | None
 ) -> tuple[list[Export], dict[str, str]]:
     """What could be written, and why the rest could not: refused where that is all of it."""
+    from ..export import targets
+
     made, refused = [], {}
     for name in to:
         try:
@@ -118,6 +124,7 @@ def _checked(
 ) -> list[tuple[str, dict[str, Any]]]:
     """What each target keeps, as text and as data: one that cannot be run says why."""
     from ..export.fidelity import Bench
+    from .sessions import name_file_in_errors
 
     found: list[tuple[str, dict[str, Any]]] = []
     with name_file_in_errors(session, loaded, plant):

@@ -5,23 +5,20 @@ from __future__ import annotations
 import math
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from ..atomic_files import write_text
-from ..begins import FILE as BEGINS
-from ..begins import save_begins
 from ..errors import InputError
-from ..fitting import FitResult
-from ..fitting import fit as run
 from .answer import answer, folder, print_on_failure, protect_writes
-from .columns import read_columns
-from .drafts import Opened, Stated, is_data, open_session
 from .given import Quiet
 from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
-from .sessions import name_file_in_errors, refuse_overwrite, repairs_of
+
+if TYPE_CHECKING:
+    from ..fitting import FitResult
+    from .drafts import Opened
 
 __all__ = ["fit"]
 
@@ -69,6 +66,10 @@ def fit(
     json
         Print JSON.
     """
+    from ..fitting import fit as run
+    from .drafts import Stated, open_session
+    from .sessions import name_file_in_errors, refuse_overwrite
+
     if not more and _curve(session, columns, law, out, as_json=json):
         return
     with progress(quiet):
@@ -91,9 +92,12 @@ def fit(
 
 def _curve(path: Path, columns: str, law: str, out: Path | None, *, as_json: bool) -> bool:
     """Fit a law to a friction curve and say so, where the file is one."""
+    from ..fitting.curve_file import curve_table, fit_curve_file
+    from .columns import read_columns
+    from .drafts import is_data
+
     if not is_data(path) or os.path.isdir(path):
         return False
-    from ..fitting.curve_file import curve_table, fit_curve_file
 
     stated = read_columns(columns) if columns else None
     table = curve_table(path, stated)
@@ -111,7 +115,10 @@ def _curve(path: Path, columns: str, law: str, out: Path | None, *, as_json: boo
 
 def _told(at: Opened, result: FitResult, name: str, *, as_json: bool) -> None:
     """Write plant, numbers and page, and say what was fitted."""
+    from ..begins import FILE as BEGINS
+    from ..begins import save_begins
     from ..report.fit_page import fit_page
+    from .sessions import repairs_of
 
     recordings, where = at.session, at.where
     files = [where / "plant.toml", where / BEGINS, where / "fit.json", where / "fit.html"]

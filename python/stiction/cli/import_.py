@@ -8,9 +8,6 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from ..atomic_files import create_text
-from ..bam import read_bam
-from ..given import vacant
-from ..plant_file import render
 from .answer import answer, folder, protect_writes
 
 __all__ = ["import_"]
@@ -45,6 +42,10 @@ def import_(
     json
         Print JSON.
     """
+    from ..bam import read_bam
+    from ..given import vacant
+    from ..plant_file import render
+
     vacant(out, (_FILE,), "another folder with --out")
     found = read_bam(file, kp=kp, vin=vin)
     where = folder(out)

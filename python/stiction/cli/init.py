@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from .. import session as sessions
 from ..atomic_files import create_text
-from ..drafting import FILES, Draft, draft
 from ..errors import InputError
-from ..given import vacant
 from ..wording import commas, plural
 from .answer import answer, folder, protect_writes
 from .given import Quiet
 from .progress import progress
+
+if TYPE_CHECKING:
+    from ..drafting import Draft
 
 __all__ = ["init"]
 
@@ -54,9 +54,12 @@ def init(
     json
         Print JSON.
     """
-    if data.suffix.casefold() == ".urdf":
-        from .robot_draft import draft_robot
+    from .. import session as sessions
+    from ..drafting import FILES, draft
+    from ..given import vacant
+    from .robot_draft import draft_robot
 
+    if data.suffix.casefold() == ".urdf":
         draft_robot(data, more, header, joint, out, as_json=json, quiet=quiet)
         return
     vacant(out, FILES, "another folder with --out")

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from pathlib import Path
 from textwrap import wrap
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 from cyclopts import Parameter
 
-from .. import session as sessions
 from ..atomic_files import write_text
 from ..errors import InputError
-from ..library import Entry, UnitComparison, compare, entries, entry
-from ..plant_file import read_toml
-from ..session import Session
+from ..json_text import json_of
 from .answer import answer, folder, print_on_failure, protect_writes
 from .given import Quiet
 from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
-from .sessions import name_file_in_errors, repairs_of
+
+if TYPE_CHECKING:
+    from ..library import Entry, UnitComparison
+    from ..session import Session
 
 __all__ = ["library"]
 
@@ -51,6 +51,8 @@ def library(
     json
         Print JSON.
     """
+    from ..library import entry
+
     if name is None:
         if session is not None:
             raise InputError("stiction library: no entry is given; name one to compare with")
@@ -70,12 +72,12 @@ def library(
 
 
 def _listed(out: Path | None, *, as_json: bool) -> None:
+    from ..library import entries
+
     every = entries()
     text = "\n".join(line for each in every for line in _lines(each))
     data = [each.to_dict() for each in every]
     if out is not None:
-        from ..json_text import json_of
-
         where = folder(out)
         with protect_writes(where):
             write_text(where / "library.json", json_of(data) + "\n")
@@ -96,6 +98,11 @@ def _lines(each: Entry) -> list[str]:
 
 
 def _compared(found: Entry, path: Path, out: Path | None, *, as_json: bool, quiet: bool) -> None:
+    from .. import session as sessions
+    from ..library import compare
+    from ..plant_file import read_toml
+    from .sessions import name_file_in_errors
+
     with progress(quiet):
         # A session need not name a plant: that of the entry then says how it is driven.
         own = None if "plant" in read_toml(path) else found.plant
@@ -111,6 +118,8 @@ def _compared(found: Entry, path: Path, out: Path | None, *, as_json: bool, quie
 
 
 def _told(recordings: Session, found: UnitComparison, where: Path, *, as_json: bool) -> None:
+    from .sessions import repairs_of
+
     files = [where / "plant.toml", where / "comparison.json"]
     with print_on_failure(str(found), found.to_dict(), as_json=as_json), protect_writes(where):
         found.result.plant.save(files[0])

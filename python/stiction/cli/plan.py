@@ -7,15 +7,9 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from ..given import vacant
-from ..plan import plan as run
-from ..plan.result import FILLED_IN
-from ..plant import Plant
-from ..robot.robot import describes_robot
 from .answer import answer, folder, print_on_failure, protect_writes
 from .given import Quiet, Whole
 from .progress import progress
-from .robot import plan_arm
 
 __all__ = ["plan"]
 
@@ -60,6 +54,13 @@ def plan(
     json
         Print JSON.
     """
+    from ..given import vacant
+    from ..plan import plan as run
+    from ..plan.result import FILLED_IN
+    from ..plant import Plant
+    from ..robot.robot import describes_robot
+    from .robot import plan_arm
+
     where = Path(f"{plant.stem}-plan") if out is None else out
     if describes_robot(plant):
         asked = {"position": position, "speed": speed, "effort": effort, "only": only, "seed": seed}

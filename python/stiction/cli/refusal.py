@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Literal, get_args, get_origin
 
 import cyclopts
 from cyclopts import exceptions
@@ -11,6 +12,8 @@ from ..wording import commas, did_you_mean
 
 __all__ = ["refusal"]
 
+OPTIONS = ("--help", "--version")
+"""Of the program itself."""
 KINDS = {int: "a whole number", float: "a number", bool: "true or false"}
 
 
@@ -45,6 +48,10 @@ def _what(error: cyclopts.CycloptsError, app: cyclopts.App, command: str) -> str
             word = name
         return f"{word} is missing; write {' '.join([command, *words])}"
     if isinstance(error, exceptions.CoercionError) and error.token is not None:
+        if get_origin(error.target_type) is Literal:
+            given, allowed = error.token.value, get_args(error.target_type)
+            near = did_you_mean(given, allowed)
+            return f"{name} = {given} is unknown{near}; allowed are {commas(allowed)}"
         kind = KINDS.get(error.target_type or object)
         kind = "a whole number" if kind is None and error.msg is not None else kind
         if kind is not None:
@@ -66,8 +73,9 @@ def _positional(app: cyclopts.App, chain: Iterable[str]) -> list[str]:
 def _no_verb(given: str, app: cyclopts.App) -> str:
     verbs = [verb for verb in app if not verb.startswith("-")]
     if given.startswith("-"):
-        return _no_option(given, ["--help", "--version"])
-    return f"there is no verb '{given}'{did_you_mean(given, verbs)}; there are {commas(verbs)}"
+        return _no_option(given, OPTIONS)
+    near = did_you_mean(given, [*verbs, *OPTIONS])
+    return f"there is no verb '{given}'{near}; there are {commas(verbs)}"
 
 
 def _no_option(given: str, known: Iterable[str]) -> str:

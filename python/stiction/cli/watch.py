@@ -11,12 +11,9 @@ from typing import Annotated, Any, Final
 
 from cyclopts import Parameter
 
-from .. import session as sessions
 from ..diagnosis import SURROGATES
-from ..drafting import FILES, recordings_in
 from ..errors import InputError
 from .diagnose import diagnose
-from .drafts import FOLDER
 from .given import Quiet, Whole
 
 __all__ = ["watch"]
@@ -116,6 +113,8 @@ def _watch(
 
 def _seen(directory: Path) -> _Seen:
     """Size and time of every recording of a folder; none where there is none."""
+    from ..drafting import recordings_in
+
     found: _Seen = {}
     try:
         for file in recordings_in(directory):
@@ -129,6 +128,9 @@ def _seen(directory: Path) -> _Seen:
 
 def _look(directory: Path, where: Path, whole: dict[str, Any], *, as_json: bool) -> None:
     """Answer what is in the folder now: by what was added, where that is all that is new."""
+    from ..drafting import FILES, recordings_in
+    from .drafts import FOLDER
+
     known = _known(where)
     files = {file.resolve(): file for file in recordings_in(directory)}
     if known is None or not known <= files.keys():
@@ -141,6 +143,10 @@ def _look(directory: Path, where: Path, whole: dict[str, Any], *, as_json: bool)
 
 def _known(where: Path) -> set[Path] | None:
     """Recordings that a diagnosis in a folder holds; None where it is to be made again."""
+    from .. import session as sessions
+    from ..drafting import FILES
+    from .drafts import FOLDER
+
     try:
         session = sessions.load(where / FOLDER / FILES[1], keep_faulty=True)
         content = reader.loads((where / "findings.json").read_text(encoding="utf-8"))

@@ -8,10 +8,15 @@
 
 from __future__ import annotations
 
-from .measured import Measured, Property
-from .properties import PROPERTIES
-from .result import CONDITIONAL, NO, UNDEFINED, YES, Cell, Comparison, Row
-from .run import compare
+from typing import TYPE_CHECKING
+
+from ..lazy import lazy
+
+if TYPE_CHECKING:
+    from .measured import Measured, Property
+    from .properties import PROPERTIES
+    from .result import CONDITIONAL, NO, UNDEFINED, YES, Cell, Comparison, Row
+    from .run import compare
 
 __all__ = [
     "CONDITIONAL",
@@ -26,3 +31,20 @@ __all__ = [
     "Row",
     "compare",
 ]
+
+__getattr__, __dir__ = lazy(
+    __name__,
+    {
+        "CONDITIONAL": "result",
+        "Cell": "result",
+        "Comparison": "result",
+        "Measured": "measured",
+        "NO": "result",
+        "PROPERTIES": "properties",
+        "Property": "measured",
+        "Row": "result",
+        "UNDEFINED": "result",
+        "YES": "result",
+        "compare": "run",
+    },
+)

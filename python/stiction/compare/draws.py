@@ -10,12 +10,11 @@ import numpy as np
 
 from ..catalogue import LawRecord, ParameterRecord
 from ..errors import InputError
+from .defaults import DRAWS
 from .subject import Subject
 
-__all__ = ["DRAWS", "draws"]
+__all__ = ["draws"]
 
-DRAWS: Final = 24
-"""Sets of parameters for each law."""
 _DECADES, _SHAPE_DECADES = 1.0, 0.3
 """How far a value is drawn from its default; pure numbers, often exponents, less far."""
 _TRIES: Final = 50

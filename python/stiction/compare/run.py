@@ -14,10 +14,10 @@ from ..progress import phase
 from ..progress import steps as each_step
 from ..wording import commas, did_you_mean
 from .cost import BESIDE, costs
-from .draws import DRAWS
+from .defaults import DRAWS, PASSIVE_STEPS
 from .draws import draws as draw
 from .properties import PROPERTIES
-from .properties.passivity import PASSIVE_STEPS, passive
+from .properties.passivity import passive
 from .result import CONDITIONAL, Cell, Comparison, Row, verdict_of
 from .subject import Subject, variants
 

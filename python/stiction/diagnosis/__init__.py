@@ -2,7 +2,24 @@
 
 from __future__ import annotations
 
-from .pipeline import ALPHA, SMALLEST, SURROGATES, diagnose
-from .result import Diagnosis
+from typing import TYPE_CHECKING
+
+from ..lazy import lazy
+from .defaults import ALPHA, SMALLEST, SURROGATES
+
+if TYPE_CHECKING:
+    from .pipeline import diagnose
+    from .result import Diagnosis
 
 __all__ = ["ALPHA", "SMALLEST", "SURROGATES", "Diagnosis", "diagnose"]
+
+__getattr__, __dir__ = lazy(
+    __name__,
+    {
+        "ALPHA": "defaults",
+        "Diagnosis": "result",
+        "SMALLEST": "defaults",
+        "SURROGATES": "defaults",
+        "diagnose": "pipeline",
+    },
+)

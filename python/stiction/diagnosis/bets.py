@@ -73,6 +73,11 @@ class Bets:
     reaches 100 in one session of a hundred, however often one looks and however many recordings
     are added. (Waudby-Smith, Ramdas, J. R. Stat. Soc. B 86 (2024) 1-27; the unit is the recording,
     for what a model misses lasts through each of them.)
+
+    Attributes
+    ----------
+    each : tuple of Bet
+        One a recording.
     """
 
     each: tuple[Bet, ...] = ()

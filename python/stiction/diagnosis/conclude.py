@@ -29,7 +29,7 @@ from .confirm import (
     reject_without_machine,
 )
 from .coordinates import Look, looks
-from .decide import SMALLEST
+from .defaults import SMALLEST
 from .evidence import Evidence
 from .exact_forms import rests_of
 from .gain import HeldOut, gain_of, residuals_of

@@ -19,6 +19,7 @@ from .block_gains import (
     without_the_best,
 )
 from .candidates import Candidate
+from .defaults import SMALLEST
 from .homogeneity import unevenness
 from .model import LEAST_GIVEN, Model
 from .ranges import OF_READING, is_whole, out_of_its_range, partial_loss
@@ -32,7 +33,6 @@ __all__ = [
     "LEAST_Z",
     "OUT_OF_RANGE",
     "PENALTY",
-    "SMALLEST",
     "Trial",
     "degeneracy",
     "judge",
@@ -65,8 +65,6 @@ MOST_UNEVEN: Final = 0.3
 the effect imitates something else."""
 OUT_OF_RANGE: Final = float("inf")
 """Stands for that where its shape says that it is something else; no strengths add as much."""
-SMALLEST: Final = 0.001
-"""Contribution, as a share of the friction, below which an effect is not worth a name."""
 
 
 @dataclass(frozen=True)

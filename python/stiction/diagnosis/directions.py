@@ -11,7 +11,7 @@ from ..fitting.result import FitParameter
 __all__ = ["describe_effect"]
 
 LEVELS: Final = {"coulomb": "dry friction", "viscous": "viscous friction"}
-"""What the shares of ``direction_asymmetry`` are shares of."""
+"""What the shares of an effect of two levels are shares of."""
 
 
 def describe_effect(record: EffectRecord, parameters: Mapping[str, FitParameter]) -> str:
@@ -23,7 +23,7 @@ def describe_effect(record: EffectRecord, parameters: Mapping[str, FitParameter]
     parameters : Mapping of str to FitParameter
         Of the model that holds the effect, by whole path.
     """
-    if record.name != "direction_asymmetry":
+    if not record.two_levels:
         return record.summary
     told = []
     for name, level in LEVELS.items():

@@ -20,16 +20,8 @@ from .periodic import WITH_ACCELERATION, WITH_SQUARED_SPEED
 from .result import Cause, Unexplained
 from .words import LEAVES_NOTHING
 
-__all__ = ["doubt_geometry", "rests_of", "several"]
+__all__ = ["doubt_geometry", "exact_in", "rests_of", "several"]
 
-EXACT: Final = dict.fromkeys(
-    ("encoder_eccentricity", "cogging", "torque_constant_ripple", "position_dependent_friction"),
-    (WITH_ACCELERATION.name, WITH_SQUARED_SPEED.name),
-) | {"direction_asymmetry": ("effort",)}
-"""Where an effect leaves nothing once it is named: what repeats with position and grows with
-acceleration or squared speed is an inertia that changes, or an encoder that errs several times a
-turn; beside another friction in either direction, what goes with the effort is a drive that gives
-more in one direction than in the other."""
 LEAST_REST: Final = 0.02
 """Share of what the names took from which on such a rest counts: a large wave, a little off, leaves
 a little of everything."""
@@ -40,6 +32,20 @@ def several(record: EffectRecord) -> tuple[str, ...]:
     if record.second:
         return ()
     return tuple(e.name for e in effects() if e.second and e.family == record.family)
+
+
+def exact_in(name: str) -> tuple[str, ...]:
+    """Coordinates in which an effect leaves nothing once it is named; none of most.
+
+    Beside a wave, what repeats with position and grows with acceleration or squared speed is an
+    inertia that changes, or an encoder that errs several times a turn. Beside another friction in
+    either direction, what goes with the effort is a drive that gives more in one direction than in
+    the other.
+    """
+    record = effects()[name]
+    if record.second or record.misreads:
+        return WITH_ACCELERATION.name, WITH_SQUARED_SPEED.name
+    return ("effort",) if record.two_levels else ()
 
 
 def doubt_geometry(
@@ -56,7 +62,7 @@ def doubt_geometry(
         What it leaves where names leave nothing, as ``rests_of`` tells.
     """
     for each in rests:
-        if each.coordinate in EXACT.get(cause.name, ()):
+        if each.coordinate in exact_in(cause.name):
             return replace(cause, decided=False, doubt=LEAVES_NOTHING.format(each.coordinate))
     record = next(each for each in effects() if each.name == cause.name)
     others = [name for name in several(record) if name not in cause.look_alikes]
@@ -76,7 +82,7 @@ def rests_of(causes: Sequence[Cause], left: Rest, beside: float) -> tuple[Unexpl
     beside : float
         Power of all that is left over that of what the names took.
     """
-    asked = {name for cause in causes for name in EXACT.get(cause.name, ())}
+    asked = {name for cause in causes for name in exact_in(cause.name)}
     return tuple(
         Unexplained(view.coordinate.name, view.share)
         for view in left.views

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
+from ..catalogue import effects
 from . import listing
 from .block_gains import heldout_gain
 from .candidates import FALL
@@ -22,7 +23,8 @@ __all__ = ["MIMIC", "join", "rebuild_models", "remove_redundant", "without"]
 MIMIC: Final = 5.0
 """What keeps less than one part in so many of its gain beside a later effect was its mimic; what
 explains less than that of a relative that was found may be the rest of it."""
-TOGETHER: Final = ("stribeck", "frictional_lag")
+FALLS: Final = tuple(record.name for record in effects() if record.falls)
+LAGS: Final = tuple(record.name for record in effects() if record.friction_lags)
 """A fall of friction with speed, and what comes late of it."""
 AS_MUCH: Final = 0.02
 """What one cause leaves more than two, as a share, where it is both of them."""
@@ -88,15 +90,15 @@ def join(screening: Screening, found: Search) -> set[str]:
     strength and one speed what the two need two of each for. What it takes the place of need not be
     looked for again.
     """
-    pair = [c for c in found.choices if c.winner.name in TOGETHER]
-    if len(pair) < len(TOGETHER):
+    pair = [c for c in found.choices if c.winner.name in FALLS + LAGS]
+    if len(pair) < 2:
         return set()
     evidence, whole = screening.evidence, found.models[-1]
     plant = whole.plant
     for choice in pair:
         plant = without_effect(plant, choice.winner.name)
     less = compared_fit(evidence, plant, whole.nuisances)
-    score = next(s for s in screening.scores(less) if s.candidate.name == TOGETHER[-1])
+    score = next(s for s in screening.scores(less) if s.candidate.name in LAGS)
     if score.score <= score.threshold:
         return set()
     trial = screening.trial(less, score)
@@ -115,7 +117,7 @@ def join(screening: Screening, found: Search) -> set[str]:
     found.models[:] = rebuild_models(evidence, found.models[0], choices, settled)
     found.choices[:] = choices
     found.rows[trial.name] = listing.row_of_trial(trial, single)
-    replaced = set(TOGETHER[:-1])
+    replaced = set(FALLS)
     for name in replaced:
         row = found.rows[name]
         found.rows[name] = replace(row, reason=f"{trial.name} explains it, and what is late of it")

@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
+from ..catalogue import effects
 from .chance import lacks_repeats
 from .decide import SURE
 from .exact_forms import doubt_geometry
@@ -42,7 +43,7 @@ took: right names came to 0.4 but for one, and what was named of a contact whose
 form to 0.6 and more."""
 OF_A_LAW: Final = frozenset({"breakaway", "creep", "memory"})
 """Families of effects that say how friction goes with speed, time and reversals, as laws do."""
-OVER_SPEED: Final = frozenset({"stribeck", "viscous_quadratic"})
+OVER_SPEED: Final = frozenset(record.name for record in effects() if record.over_speed)
 """Effects that are parts of one curve, that of friction over speed."""
 
 

@@ -18,8 +18,6 @@ __all__ = ["doubt_by_noise"]
 SMALL: Final = 0.25
 """Gain up to which readings that flicker may be all there is to a cause: with nothing hidden they
 came to .14."""
-LAG: Final = "frictional_lag"
-"""What noise of the position may look like beside what is late."""
 LATE_SHARE: Final = 0.5
 """Of the kernel's support: by less than that may a turn be wrong that noise hides."""
 LATE: Final = "lies within what noise of the position makes friction late by"
@@ -82,7 +80,7 @@ def _late_by_noise(model: Model, name: str) -> bool:
     if record.late and any(form.flickers for form in evidence.forms):
         (gain,) = record.gains
         return bool(effect.parameters[gain].value <= LATE_SHARE * evidence.support)
-    if record.name == LAG:
+    if record.friction_lags:
         # Noise does it in most recordings; counts flicker where a machine rests, and there alone.
         late = float(np.median([form.lateness for form in evidence.forms]))
         return bool(effect.parameters["time"].value <= late)

@@ -28,7 +28,13 @@ MUCH_MORE: Final = 1.25
 
 @dataclass(frozen=True)
 class Rest:
-    """What a model leaves, in every coordinate, largest share first."""
+    """What a model leaves, in every coordinate.
+
+    Attributes
+    ----------
+    views : tuple of View
+        Largest share first.
+    """
 
     views: tuple[View, ...]
 

@@ -16,6 +16,7 @@ from ..best_effort import Failure, attempt
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import residual_sentence
 from ..given import instance, share, whole
+from ..keywords import explain_keywords
 from ..plant import Plant
 from ..products import on_one_thread
 from ..progress import phase
@@ -39,22 +40,18 @@ from .base import (
 )
 from .candidates import excluded_names
 from .conclude import MESSAGE, Conclusion, base_alone, surrogates_of
-from .decide import SMALLEST
+from .defaults import ALPHA, SMALLEST, SURROGATES
 from .evidence import Evidence
 from .laws import THE_LAW, law_names
 from .model import Known, Model, fit_model
 from .noise import Noise
 from .result import Diagnosis, Unexplained
 from .rounds import search
-from .screen import ALPHA
 from .seconds import acts_for_seconds, holds_more, tried_names, with_rows_of
 from .selection import Search
 from .verdict import all_blind
 
-__all__ = ["ALPHA", "SMALLEST", "SURROGATES", "diagnose"]
-
-SURROGATES: Final = 24
-"""Replays of the base with noise; more make thresholds smoother and cost in proportion."""
+__all__ = ["diagnose"]
 
 MOST_SURROGATES: Final = 1000
 """They are all kept; a threshold has settled long before."""
@@ -78,6 +75,7 @@ _logger = logging.getLogger(__name__)
 
 
 @on_one_thread
+@explain_keywords
 def diagnose(
     plant: Plant | Session | None,
     session: Session | Sequence[Recording] | Recording | None = None,

@@ -34,9 +34,9 @@ class Whole(NamedTuple):
     why: str
 
 
-_LIMIT: Final = Whole("share", 0.25, 0.95, "beyond a limit nothing gets through")
-WHOLE: Final = {"drive_saturation": _LIMIT, "voltage_limit": _LIMIT}
-"""A part that is lost of large inputs is a torque constant that falls, whatever its curve."""
+LIMIT: Final = Whole("share", 0.25, 0.95, "beyond a limit nothing gets through")
+"""Of effects that act beyond a limit alone: a part that is lost of large inputs is a torque
+constant that falls, whatever its curve."""
 MOST_BEYOND: Final = 3.0
 """Largest input over a limit: a drive is not asked for more, and what is beyond is a reading that
 was never there."""
@@ -133,22 +133,20 @@ def _readings_within(position: FloatArray, way: float) -> list[int]:
 
 def is_whole(candidate: Candidate, model: Model) -> bool:
     """Whether a gain came out as what was known of it, of inputs that a drive may be asked for."""
-    if candidate.name not in WHOLE:
+    if not candidate.record.limits:
         return False
-    known = WHOLE[candidate.name]
     limits = [_value(candidate, model, s.parameter) for s in candidate.record.shapes]
     asked = max(largest_command(rows.form, model.plant) for rows in model.evidence.shown)
-    came_out = _value(candidate, model, known.gain) >= known.whole
+    came_out = _value(candidate, model, LIMIT.gain) >= LIMIT.whole
     return came_out and asked <= MOST_BEYOND * min(limits)
 
 
 def surely_a_part(candidate: Candidate, model: Model) -> bool:
     """Whether a gain that would have to be whole surely is not, by the interval that is told."""
-    if candidate.name not in WHOLE:
+    if not candidate.record.limits:
         return False
-    known = WHOLE[candidate.name]
-    number = model.fit_result.parameters[f"effects.{candidate.name}.{known.gain}"]
-    return number.value + SURELY * number.stderr < known.whole
+    number = model.fit_result.parameters[f"effects.{candidate.name}.{LIMIT.gain}"]
+    return number.value + SURELY * number.stderr < LIMIT.whole
 
 
 def _value(candidate: Candidate, model: Model, name: str) -> float:
@@ -158,9 +156,8 @@ def _value(candidate: Candidate, model: Model, name: str) -> float:
 
 def partial_loss(candidate: Candidate, model: Model, strength: float) -> str:
     """The gain that would have to be whole and surely is not, "" where there is none."""
-    if candidate.name not in WHOLE:
+    if not candidate.record.limits:
         return ""
-    known = WHOLE[candidate.name]
-    value = _value(candidate, model, known.gain)
-    surely_less = value * (1.0 + SURELY / max(strength, 1e-300)) < known.partly
-    return f"{known.gain} is {value:.2g}, and {known.why}" if surely_less else ""
+    value = _value(candidate, model, LIMIT.gain)
+    surely_less = value * (1.0 + SURELY / max(strength, 1e-300)) < LIMIT.partly
+    return f"{LIMIT.gain} is {value:.2g}, and {LIMIT.why}" if surely_less else ""

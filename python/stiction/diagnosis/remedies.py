@@ -15,7 +15,7 @@ RISING_LAG: Final = (
     "friction is not a function of speed: it rises with speed, and late, so that it is lower while "
     "speeding up than while slowing down"
 )
-"""What frictional_lag means where its excess is negative."""
+"""What friction that lags means where its excess is negative."""
 FALLING_LAG: Final = (
     "friction that falls with speed makes slow motion jerk, and it falls late: it is higher while "
     "speeding up than while slowing down, which steadies stick-slip and fools a compensation by "
@@ -66,7 +66,7 @@ def meaning_of(record: EffectRecord, plant: Plant) -> Words:
     elif shown is not None and plant.motion == "linear":
         usual = shown.linear or usual
     effect = next((each for each in plant.effects if each.name == record.name), None)
-    if record.name != "frictional_lag" or effect is None:
+    if not record.friction_lags or effect is None:
         return usual
     excess, fall = (effect.parameters.get(name) for name in ("excess", "fall"))
     if excess is not None and excess.value < 0.0:

@@ -220,7 +220,17 @@ class CandidateRow:
 
 @dataclass(frozen=True)
 class LawRow(_Gained):
-    """Another law in place of the plant's."""
+    """Another law in place of the plant's.
+
+    Attributes
+    ----------
+    law : str
+        Its name.
+    gain : Gain or None
+        Of the held-out squared error against the plant's law; None where it was not fitted.
+    reason : str
+        What was decided of it and why, in words.
+    """
 
     law: str
     gain: Gain | None
@@ -320,7 +330,15 @@ class ModelSummary:
 
 @dataclass(frozen=True)
 class Unexplained:
-    """Something that is left and has no name: where it shows, and its share of what is left."""
+    """Something that is left and has no name.
+
+    Attributes
+    ----------
+    coordinate : str
+        Over what it shows.
+    share : float
+        Of what the extended model leaves, from 0 to 1.
+    """
 
     coordinate: str
     share: float
@@ -332,7 +350,15 @@ class Unexplained:
 
 @dataclass(frozen=True)
 class Advice:
-    """An experiment worth recording next."""
+    """An experiment worth recording next.
+
+    Attributes
+    ----------
+    experiment, reason : str
+        What to record and why, in words.
+    separates : tuple of str
+        Effects that it tells apart.
+    """
 
     experiment: str
     reason: str

@@ -17,7 +17,8 @@ from . import listing
 from .beside import doubt_by_forms, doubt_by_rests
 from .candidates import FALL, Candidate, candidates, present, scales_of
 from .choose import ALIKE, Choice, choose, covers, parallel
-from .decide import LEAST_GAIN, LEAST_STRENGTH, SMALLEST, Trial, degeneracy
+from .decide import LEAST_GAIN, LEAST_STRENGTH, Trial, degeneracy
+from .defaults import ALPHA, SMALLEST
 from .discretisation import doubt_by_discretisation
 from .evidence import Evidence
 from .exact_forms import several
@@ -26,7 +27,7 @@ from .model import Known, Model, without_effect
 from .replay import centre, common_bias, reading_power
 from .restarts import from_before, from_the_first
 from .result import CandidateRow
-from .screen import ALPHA, Score
+from .screen import Score
 from .selection import Search
 from .sharpen import beside_a_second, free_shapes, has_free_shapes
 from .signatures import Signatures
@@ -56,8 +57,8 @@ WORTH_RENEWING: Final = 0.005
 """Share of its residual's power that makes that worth while."""
 AT_THE_DRIVE: Final = frozenset({"input map", "input delay", "input lag"})
 """Hooks of effects that a machine without a drive cannot have."""
-STRIBECK: Final = "stribeck"
-"""A fall of friction with speed: where there is one, or is not to be looked for, a lag has none."""
+FALLS: Final = frozenset(record.name for record in effects() if record.falls)
+"""Falls of friction with speed: where there is one, or is not to be looked for, a lag has none."""
 SWINGS: Final = "second mass"
 """Hook of effects whose mass swings faster than the samples of a servo show."""
 LEANS: Final = 0.5
@@ -168,7 +169,7 @@ def _candidates(
     if all(form.own(base.plant).hangs for form in evidence.forms):
         channels.add("load")
     # A fall that the plant states and one that comes with its lag would exchange for each other.
-    falls = any(each.name == STRIBECK and present(base.plant, each) for each in effects())
+    falls = any(each.falls and present(base.plant, each) for each in effects())
     tried: list[Candidate] = []
     for record in effects():
         if record.name in without:
@@ -182,7 +183,7 @@ def _candidates(
             found.rows[record.name] = CandidateRow(record.name, None, None, None, reason)
         else:
             found_at = candidates(record, scales)
-            if falls or STRIBECK in without:
+            if falls or not FALLS.isdisjoint(without):
                 found_at = [each for each in found_at if not each.shape.get(FALL)]
             # Where rows are simulated a mass that swings bends the motion itself.
             swings = base.plant.inertia > 0.0 and not evidence.simulated

@@ -11,13 +11,13 @@ import numpy as np
 
 from ..trajectory import FloatArray
 from .candidates import Candidate
+from .defaults import ALPHA
 from .evidence import Plan
 from .influence import limit_influence
 from .regression import bounded_gains, project
 from .signatures import Alike, Signatures
 
 __all__ = [
-    "ALPHA",
     "NULL_TIMES",
     "Problem",
     "Score",
@@ -27,8 +27,6 @@ __all__ = [
 
 NULL_TIMES: Final = 1.3
 """A score counts above this many times the greatest one that the surrogates reach."""
-ALPHA: Final = 0.01
-"""Level of the screening for a whole session."""
 FORMS: Final = 11.0
 """Independent forms as which the 25 or so that are screened count: what their contributions have in
 common leaves 11 to 14 (effective number of tests; Li and Ji, Heredity 95 (2005))."""

@@ -18,7 +18,8 @@ from ..progress import phase
 from ..trajectory import FloatArray
 from ..weak_form import Start, WeakForm
 from .candidates import Candidate
-from .decide import SMALLEST, Trial, degeneracy, judge
+from .decide import Trial, degeneracy, judge
+from .defaults import ALPHA, SMALLEST
 from .evidence import Evidence
 from .model import (
     REFIT_CONVERGED,
@@ -32,7 +33,7 @@ from .model import (
     without_effect,
 )
 from .noisy_motion import doubt_by_noise
-from .screen import ALPHA, Problem, Score, likelier, screen
+from .screen import Problem, Score, likelier, screen
 from .signatures import Signatures, gain_at
 
 __all__ = [

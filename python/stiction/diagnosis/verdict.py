@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from ..catalogue import effects
 from ..trajectory import FloatArray
 from .block_gains import heldout_gain
 from .bursts import Burst, at_moments
@@ -37,8 +38,8 @@ LEAST_EXCESS: Final = -3.0
 the replays have lost the machine, as where a dry contact sticks and slips at random."""
 HALF: Final = 0.5
 """Of what goes with no coordinate, from which on a description stands for it."""
-BIAS: Final = "torque_bias"
-TWO_LEVELS: Final = "direction_asymmetry"
+(BIAS,) = (record.name for record in effects() if record.constant)
+(TWO_LEVELS,) = (record.name for record in effects() if record.two_levels)
 """With true stick a level for each direction is one level and a constant effort, to the last digit,
 as long as that does not outweigh it: what a constant effort explains so may be either. The reverse
 is told as all else is: viscous friction that differs as well is no constant."""

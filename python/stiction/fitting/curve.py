@@ -17,6 +17,7 @@ from ..catalogue import laws
 from ..errors import InputError
 from ..frozen import ByPath, freeze
 from ..json_text import json_of
+from ..keywords import explain_keywords
 from ..parameter import Parameter
 from ..plant import Plant
 from ..trajectory import FloatArray
@@ -205,6 +206,7 @@ class CurveFit:
         return files
 
 
+@explain_keywords
 def fit_curve(
     speed: npt.ArrayLike, friction: npt.ArrayLike, law: str = "coulomb", *, motion: str = "rotary"
 ) -> CurveFit:

@@ -10,9 +10,11 @@ from typing import Any, Final
 import numpy as np
 
 from ..begins import begins
+from ..catalogue import effects
 from ..drive import assumed_gain
 from ..errors import InputError
 from ..given import instance, whole
+from ..keywords import explain_keywords
 from ..plant import Plant
 from ..products import on_one_thread
 from ..progress import phase, steps
@@ -126,6 +128,7 @@ class _Seen:
 
 
 @on_one_thread
+@explain_keywords
 def fit(
     plant: Plant | Session | None, session: Any = None, *, max_evaluations: int = MOST_EVALUATIONS
 ) -> FitResult:
@@ -547,7 +550,8 @@ def _why(path: str, rows: Sequence[Rows]) -> str:
     moving = speeds[speeds > 0.0]
     if len(moving) == 0:
         return ": nothing moves"
-    if "stribeck" in path:
+    falls = (word for each in effects() if each.falls for word in (each.name, *each.law_terms))
+    if any(word in path for word in falls):
         low = float(np.quantile(moving, 0.05))
         return f": 95 % of the speeds recorded are above {low:.3g}"
     if path.endswith(("viscous", "quadratic")):

@@ -22,7 +22,15 @@ ms last 5.96 s."""
 
 @dataclass(frozen=True, order=True)
 class Part:
-    """Rows ``start`` to ``stop`` (without it) of the recording with this index."""
+    """Some rows of a recording.
+
+    Attributes
+    ----------
+    recording : int
+        Its index in the session.
+    start, stop : int
+        First row, and the row behind the last.
+    """
 
     recording: int
     start: int

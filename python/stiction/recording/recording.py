@@ -18,7 +18,9 @@ from ..errors import InputError
 from ..frozen import Frozen
 from ..given import brief, instance, mapping, numbers, real, whole
 from ..given import path as file_path
+from ..keywords import explain_constructor
 from ..parameter import number
+from ..readers import FromFile
 from ..wording import did_you_mean
 from .columns import ROLES, Columns
 from .formats import read_table
@@ -49,8 +51,9 @@ _HELD: Final = ("input", "load", "transmitted")
 _OPTIONAL: Final = tuple(role for role in ROLES if role not in _MAIN)
 
 
+@explain_constructor
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Recording:
+class Recording(metaclass=FromFile):
     """What was measured on a machine, in SI values.
 
     Row k is the state at ``time[k]``; the input of row k holds from there to row k + 1.

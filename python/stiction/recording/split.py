@@ -29,7 +29,13 @@ EDGE_S: Final = 0.05
 
 @dataclass(frozen=True)
 class Fold:
-    """One way to leave rows of train out: ``fit`` on these, judge on ``held``."""
+    """One way to leave rows of train out.
+
+    Attributes
+    ----------
+    fit, held : tuple of Part
+        Rows to fit on, and rows to judge on.
+    """
 
     fit: tuple[Part, ...]
     held: tuple[Part, ...]

@@ -9,6 +9,7 @@ from typing import Final
 
 from .. import __version__
 from ..best_effort import Failure, attempt
+from ..catalogue import effects
 from ..diagnosis import ALPHA, SMALLEST, SURROGATES, diagnose
 from ..diagnosis.result import Diagnosis
 from ..errors import NotEnoughData
@@ -24,7 +25,7 @@ from .session import RobotSession
 
 __all__ = ["OF_THE_LINKS", "diagnose_robot"]
 
-OF_THE_LINKS: Final = ("gravity_unbalance",)
+OF_THE_LINKS: Final = tuple(record.name for record in effects() if record.weighs)
 """Effects that the rigid links hold already: a joint is not asked for them."""
 
 _logger = logging.getLogger(__name__)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from .. import given
+from ..catalogue import effects
 from ..drive import INPUTS
 from ..errors import InputError
 from ..keys import check_keys, choice
@@ -28,7 +29,7 @@ _KEYS: Final = ("urdf", "locked", "gravity", "joints")
 _JOINT: Final = ("name", "columns", "drive", "rotor_inertia", "friction", "effects", "limits")
 _DRIVE: Final = ("input", "gain", "gear_ratio")
 _COLUMNS: Final = ("position", "velocity", "input", "temperature")
-BIAS: Final = {"name": "torque_bias"}
+BIAS: Final = {"name": next(record.name for record in effects() if record.constant)}
 """What drifts and offsets of a drive's zero leave; beside it a structure is measured."""
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 import stiction as st
 from stiction.diagnosis.base import fit_baseline
-from stiction.diagnosis.decide import SMALLEST
+from stiction.diagnosis.defaults import SMALLEST
 from stiction.diagnosis.model import fit_model, likeliest_of, step_beside, with_effect
 from stiction.diagnosis.regression import bounded_gains
 from stiction.diagnosis.rounds import _candidates, friction_of

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .hidden import HIDDEN, Plain, with_effect
+from .hidden import MOVED_HIDDEN, Plain, with_effect
 from .machine import Machine, simulate
 from .signals import KINDS, FloatArray, signal
 
@@ -437,8 +437,3 @@ def _flawed(log: Log, spec: Decided, rng: np.random.Generator) -> Log:
         given[rng.random(len(given)) < HOLES] = math.nan
         return replace(log, input=given)
     return log
-
-
-MOVED_HIDDEN = ("stribeck", "viscous_quadratic", "direction_asymmetry", "torque_bias")
-"""What can be hidden in a machine that is moved."""
-assert set(MOVED_HIDDEN) <= set(HIDDEN)

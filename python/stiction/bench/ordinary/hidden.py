@@ -12,7 +12,7 @@ import numpy as np
 from .machine import Effects, Machine
 from .signals import FloatArray
 
-__all__ = ["HIDDEN", "Plain", "with_effect"]
+__all__ = ["HIDDEN", "MOVED_HIDDEN", "Plain", "with_effect"]
 
 
 def _either(rng: np.random.Generator) -> float:
@@ -107,6 +107,10 @@ _PARTS: dict[str, Callable[..., dict[str, Any]]] = {
 }
 HIDDEN = tuple(_PARTS)
 """Effects that may be hidden, by the names that they have in the catalogue."""
+MOVED_HIDDEN = tuple(
+    name for name, part in _PARTS.items() if part in (_stribeck, _quadratic, _asymmetry, _bias)
+)
+"""What can be hidden in a machine that is moved."""
 
 
 class Plain:

@@ -7,13 +7,12 @@ from typing import Final
 
 import numpy as np
 
+from ..defaults import PASSIVE_STEPS
 from ..measured import Measured, Property
 from ..subject import Subject
 
-__all__ = ["PASSIVE", "PASSIVE_STEPS", "passive"]
+__all__ = ["PASSIVE", "passive"]
 
-PASSIVE_STEPS: Final = 20_000
-"""Random steps for each case and each draw of a law, unless another number is asked for."""
 _EPISODE: Final = 400  # steps
 _LEAST: Final = 0.02
 _SHORT: Final = 1e-6
