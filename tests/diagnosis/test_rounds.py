@@ -385,9 +385,14 @@ def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: 
         residual=np.ones(number),
     )
     record = SimpleNamespace(
-        late=False, limits=False, slope_misleads=lambda loop: False, shapes=(), family="angle"
+        late=False,
+        limits=False,
+        slope_misleads=lambda loop: False,
+        shapes=(),
+        family="angle",
+        parameters=(),
     )
-    candidate = SimpleNamespace(name="cogging", record=record, parameters=2)
+    candidate = SimpleNamespace(name="cogging", record=record, parameters=2, gains=())
     score: Any = SimpleNamespace(score=explained, threshold=0.01, candidate=candidate)
     judged = decide.judge(base, score, model, np.ones(number), 0.1)
     assert ("the base had lost the machine" in judged.reason) == refused, judged.reason

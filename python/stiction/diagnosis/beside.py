@@ -7,13 +7,17 @@ machine's own leaves a rest of it, which something else follows a little.
 from __future__ import annotations
 
 from collections.abc import Set
+from dataclasses import replace
 from typing import Final
 
-from .decide import Trial
+from .block_gains import heldout_gain
+from .decide import LEAST_GAIN, LEAST_STRENGTH, Trial
 from .evidence import Evidence
 from .screen import Score
+from .selection import Search
+from .trials import compared_fit
 
-__all__ = ["doubt_by_forms", "stands_out"]
+__all__ = ["doubt_by_forms", "doubt_by_rests", "stands_out"]
 
 BESIDE_NAMES: Final = 2.0
 """So many times its threshold a further cause scores: second ones that were hidden came to 2.2 and
@@ -52,3 +56,23 @@ def doubt_by_forms(evidence: Evidence, trial: Trial, families: Set[str]) -> str:
         f"scores {100 * score.score:.1f} % of what the causes before it leave; below "
         f"{100 * BESIDE_NAMES * score.threshold:.1f} % their forms may leave that"
     )
+
+
+def doubt_by_rests(evidence: Evidence, found: Search) -> str:
+    """Why the last cause may be what the form of an earlier one leaves, "" where it is not.
+
+    A relative that was taken back as that rest explains it: what comes after it has to explain
+    something beside it, or it follows the same rest less well.
+    """
+    choice, (before, whole) = found.choices[-1], found.models[-2:]
+    (own,) = (each for each in whole.plant.effects if each.name == choice.winner.name)
+    for name, model in found.rests:
+        (rest,) = (each for each in model.plant.effects if each.name == name)
+        plant = replace(before.plant, effects=(*before.plant.effects, rest))
+        less = compared_fit(evidence, plant, model.nuisances)
+        plant = replace(less.plant, effects=(*less.plant.effects, own))
+        both = compared_fit(evidence, plant, less.nuisances)
+        weak = both.strength(choice.winner.candidate) < LEAST_STRENGTH
+        if weak or heldout_gain(less, both)[0] <= LEAST_GAIN:
+            return f"explains nothing beside {name}, which may be what the form before it leaves"
+    return ""

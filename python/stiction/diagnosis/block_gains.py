@@ -17,6 +17,7 @@ __all__ = [
     "TOUCHED",
     "count_active_recordings",
     "heldout_gain",
+    "heldout_reduction",
     "lacks_excitation",
     "log_gain",
     "paired_z",
@@ -76,6 +77,12 @@ def heldout_gain(base: Model, model: Model, touched: Mask | None = None) -> tupl
     if total <= 0.0:
         return 0.0, 0.0
     return gained / total, max(z_of(difference), _sign_z(difference))
+
+
+def heldout_reduction(base: Model, model: Model) -> float:
+    """Held-out power that a model removes, no block counting for too much."""
+    before, after = limit_influence(base.blocks[1], model.blocks[1])
+    return float((before - after).sum())
 
 
 def without_the_best(base: Model, model: Model, contributed: FloatArray) -> float:

@@ -22,7 +22,7 @@ from .candidates import Candidate
 from .defaults import SMALLEST
 from .homogeneity import unevenness
 from .model import LEAST_GIVEN, Model
-from .ranges import BELOW_A_KERNEL, is_whole, out_of_its_range, partial_loss
+from .ranges import OF_READING, is_whole, out_of_its_range, partial_loss
 from .replication import confirms as is_confirmed
 from .replication import in_few_blocks
 from .screen import Score
@@ -278,7 +278,7 @@ def judge(
         unseen=unseen,
         freed=freed,
         partly=bool(partly),
-        of_reading=beyond.endswith(BELOW_A_KERNEL),
+        of_reading=beyond.endswith(OF_READING),
         empty=bool(empties),
         doubtless=doubtless,
         explained=explained,

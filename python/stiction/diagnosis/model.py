@@ -30,7 +30,7 @@ from .candidates import Candidate
 from .evidence import Evidence, Plan
 from .influence import limit_influence
 from .regression import step
-from .replay import NoReplayError, reread
+from .replay import NoReplayError, reread, simulate_alone
 
 __all__ = [
     "LEAST_GIVEN",
@@ -301,6 +301,18 @@ class Model:
             lambda rows: reread(rows, plant, nuisances, [SEED, number, rows.index])
         )
         return fit_model(evidence, plant, nuisances)
+
+    @cached_property
+    def alone(self) -> Evidence | None:
+        """The session as the plant would have made it by itself, read without noise.
+
+        None where it cannot be made (see ``simulate_alone``).
+        """
+        plant, nuisances = self.plant, self.nuisances
+        try:
+            return self.evidence.with_rows(lambda rows: simulate_alone(rows, plant, nuisances))
+        except NoReplayError:
+            return None
 
     @cached_property
     def blocks(self) -> tuple[FloatArray, FloatArray]:

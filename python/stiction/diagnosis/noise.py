@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -14,11 +15,13 @@ from ..motion import GAUSSIAN
 from ..plant import Plant
 from ..trajectory import FloatArray
 
-__all__ = ["Noise", "effort_noise", "measure_noise"]
+__all__ = ["Noise", "effort_noise", "input_noise", "measure_noise"]
 
 LAG_SHARE: Final = 1.0 / 3.0
 """Lag of the second difference that tells noise from misfit, as a share of the kernel's support:
 motion and friction hardly change over it, white noise through the kernel does."""
+THIRD: Final = math.sqrt(20.0)
+"""Standard deviation of a third difference of white noise of size 1."""
 FEWEST_ROWS: Final = 50
 """Second differences that have a median worth the name."""
 
@@ -83,6 +86,18 @@ def effort_noise(rows: Rows, residuals: Sequence[FloatArray], alone: Sequence[Fl
     weights = np.convolve(form.kernel.weights, [0.5, 0.5])
     effort = max(scatter(residuals) - scatter(alone), 0.0) / _bent(weights, lag * form.stride)
     return float(np.sqrt(effort))
+
+
+def input_noise(rows: Rows, plant: Plant, nuisances: Nuisances) -> float:
+    """Most that white noise of the log of the input can be, as an effort (N·m or N).
+
+    It makes the input scatter from one sample to the next, and the residual as much: a controller
+    that answers the noise of its readings does the first alone. The medians keep steps out.
+    """
+    third = np.diff(rows.form.input, 3)
+    scatter = GAUSSIAN * float(np.median(np.abs(third))) / THIRD if len(third) else 0.0
+    left = effort_noise(rows, [rows.residual(plant, nuisances)], ())
+    return min(abs(plant.gain) * scatter, left)
 
 
 def _counted(rows: Rows, lag: int) -> Mask:

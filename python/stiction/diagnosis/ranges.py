@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Final, NamedTuple
 
-from ..fitting.start import largest_command
-from .candidates import Candidate
-from .model import Model
+import numpy as np
 
-__all__ = ["is_whole", "out_of_its_range", "partial_loss", "surely_a_part"]
+from ..fitting.start import largest_command
+from ..trajectory import FloatArray
+from .candidates import Candidate
+from .evidence import Evidence
+from .model import Model
+from .noise import input_noise
+
+__all__ = ["OF_READING", "is_whole", "out_of_its_range", "partial_loss", "surely_a_part"]
+
+
+MEMORY: Final = "memory"
+"""Family of what builds up over a way behind a turn."""
+INPUT: Final = "input"
+"""Unit of what is measured in inputs."""
 
 
 class Whole(NamedTuple):
@@ -28,10 +40,22 @@ constant that falls, whatever its curve."""
 MOST_BEYOND: Final = 3.0
 """Largest input over a limit: a drive is not asked for more, and what is beyond is a reading that
 was never there."""
+FEWEST_INSIDE: Final = 2
+"""Readings on the way behind a turn that tell how something builds up: one tells how much."""
+AT_REST: Final = 0.1
+"""Share of such a way that is still the turn itself."""
 SURELY: Final = 2.0
 """Standard errors by which a gain is surely less."""
 BELOW_A_KERNEL: Final = "went below what a kernel shows"
 """What is late by so little is the reading of the motion, and nothing that is missing."""
+WITHIN_NOISE: Final = "lies within the noise of the input"
+"""So narrow a dead zone takes noise off the log where the machine coasts at an input of 0."""
+BETWEEN_STAMPS: Final = "is over between two readings"
+"""What builds up over so short a way behind a turn is where the machine turned."""
+OF_READING: Final = (BELOW_A_KERNEL, WITHIN_NOISE, BETWEEN_STAMPS)
+"""What imitates a reading, and nothing that is missing."""
+REACH_OF_NOISE: Final = 3.0
+"""Standard deviations that white noise stays within."""
 AT_THE_EDGE: Final = 0.98
 """A shape that has come this near to the end of where it may be stands there."""
 
@@ -43,12 +67,19 @@ def out_of_its_range(candidate: Candidate, model: Model) -> str:
     is late by far less than the kernel is wide is the reading of the motion. A speed whose grid
     begins below all speeds is no such change: over it one direction goes over into the other, and
     the friction of the two differs however slowly that comes about. And what is late and over below
-    the slowest speeds is no lag of sliding friction: there the curve of the contact is off.
+    the slowest speeds is no lag of sliding friction: there the curve of the contact is off. A dead
+    zone that noise of the input does not leave is a filter of that noise, and a way that is over
+    between two stamps behind most turns is where the machine turned between them.
     """
+    if narrow := _within_noise(candidate, model):
+        return f"{narrow} {WITHIN_NOISE}"
     late = any(shape.scale == "kernel" for shape in candidate.record.shapes)
     effect = next(each for each in model.plant.effects if each.name == candidate.name)
     for shape in candidate.record.shapes:
         stated = effect.parameters[candidate.own(shape.parameter)]
+        builds_up = candidate.record.family == MEMORY and shape.scale == "presliding"
+        if builds_up and _is_over_between(stated.value, model.evidence):
+            return f"{shape.parameter} {BETWEEN_STAMPS}"
         if stated.fixed or stated.max is None or stated.min is None:
             continue
         changes = shape.scale == "speed" and min(shape.grid) >= 0.0
@@ -60,6 +91,44 @@ def out_of_its_range(candidate: Candidate, model: Model) -> str:
         if shape.scale == "kernel" and stated.value <= stated.min / AT_THE_EDGE:
             return f"{shape.parameter} {BELOW_A_KERNEL}"
     return ""
+
+
+def _within_noise(candidate: Candidate, model: Model) -> str:
+    """The gain that is an input no greater than noise of its log, "" where there is none."""
+    units = {each.name: each.unit for each in candidate.record.parameters}
+    widths = [name for name in candidate.gains if units[name] == INPUT]
+    if not widths or model.plant.servo:
+        return ""
+    plant, nuisances, evidence = model.plant, model.nuisances, model.evidence
+    noises = evidence.each(lambda rows: input_noise(rows, plant, nuisances), evidence.train)
+    reach = REACH_OF_NOISE * float(np.median(noises))
+    widest = {w: abs(plant.gain * _value(candidate, model, w)) for w in widths}
+    return next((name for name, width in widest.items() if width <= reach), "")
+
+
+def _is_over_between(way: float, evidence: Evidence) -> bool:
+    """Whether behind most turns hardly any reading lies within a way, rad or m."""
+    inside = [
+        number for rows in evidence.train for number in _readings_within(rows.form.position, way)
+    ]
+    return bool(inside) and float(np.median(inside)) < FEWEST_INSIDE
+
+
+def _readings_within(position: FloatArray, way: float) -> list[int]:
+    """How many readings lie within a way behind each turn that is left by more than that.
+
+    Those that have hardly left the turn are none: the machine rests.
+    """
+    steps = np.diff(position)
+    moved = np.flatnonzero(steps)
+    turns = moved[1:][np.diff(np.sign(steps[moved])) != 0.0]
+    found = []
+    for first, last in pairwise([*turns, len(position) - 1]):
+        gone = np.abs(position[first : last + 1] - position[first])
+        if gone.max() > way:
+            gone = gone[: int(np.argmax(gone > way))]
+            found.append(int(np.sum(gone > AT_REST * way)))
+    return found
 
 
 def is_whole(candidate: Candidate, model: Model) -> bool:

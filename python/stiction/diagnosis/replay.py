@@ -11,6 +11,7 @@ import numpy as np
 
 from ..accompanied import nearby_motion
 from ..catalogue import effects
+from ..errors import InputError
 from ..fitting.readings import position_noise, read_sensor, sliding_motion, true_motion
 from ..fitting.rows import Nuisances, Rows
 from ..loop_form import LoopForm
@@ -29,6 +30,7 @@ __all__ = [
     "noise_of",
     "reading_power",
     "reread",
+    "simulate_alone",
     "surrogate_residuals",
 ]
 
@@ -283,6 +285,36 @@ def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) 
     again = form.reread(replay.read(noise.position, source), acted)
     found = Rows(plant, again, rows.index, rows.mask)
     found.weight = rows.weight
+    return found
+
+
+def simulate_alone(rows: Rows, plant: Plant, nuisances: Nuisances) -> Rows:
+    """Rows of a recording that the plant makes by itself near the measured one, without noise.
+
+    The sensor rounds it to its counts, and nothing else is between the plant and its readings: what
+    a fit leaves of such rows are errors of following them.
+
+    Raises
+    ------
+    NoReplayError
+        A machine that is moved, or rows that are simulated anyway; a plant that no simulation keeps
+        near the measured motion, or that hangs on the load, in whose place stands what keeps it.
+    """
+    own = rows.with_leader(nuisances)
+    form = own.form
+    simulated = isinstance(form, LoopForm | ShootingForm)
+    if simulated or form.prescribed or plant.servo or hangs_on_load(plant, form):
+        raise NoReplayError
+    if form.own(plant).inertia <= 0.0:
+        raise NoReplayError
+    start = nuisances.start(own.index)
+    try:
+        motion, load = nearby_motion(form, plant, start, position=true_motion(form))
+    except InputError as error:
+        raise NoReplayError from error
+    readings = read_sensor(form, motion, 0.0, np.random.default_rng(own.index))
+    found = Rows(plant, form.reread(readings, np.append(load, load[-1:])), own.index, own.mask)
+    found.weight = own.weight
     return found
 
 

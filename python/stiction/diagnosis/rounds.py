@@ -14,11 +14,12 @@ from ..fitting.rows import timing_bound
 from ..plant import Plant
 from ..trajectory import FloatArray
 from . import listing
-from .beside import doubt_by_forms
+from .beside import doubt_by_forms, doubt_by_rests
 from .candidates import FALL, Candidate, candidates, present, scales_of
 from .choose import ALIKE, Choice, choose, covers, parallel
 from .decide import LEAST_GAIN, LEAST_STRENGTH, Trial, degeneracy
 from .defaults import ALPHA, SMALLEST
+from .discretisation import doubt_by_discretisation
 from .evidence import Evidence
 from .exact_forms import several
 from .fewer import MIMIC, join, rebuild_models, remove_redundant, without
@@ -142,6 +143,11 @@ def search(
                 continue
             if stops is not None and len(found.choices) == 1 and stops(found):
                 return found
+            doubt = doubt_by_discretisation(*found.models[-2:])
+            if doubt := doubt or doubt_by_rests(evidence, found):
+                rests.add(choice.winner.name)
+                found.take_back(doubt)
+                continue
             dropped |= remove_redundant(evidence, found)
             rests |= join(screening, found)
             rests |= _take_back(screening, found)
@@ -397,7 +403,7 @@ def _take_back(screening: Screening, found: Search) -> set[str]:
                 "unexplained",
             )
             found.choices.pop()
-            found.models.pop()
+            found.rests.append((latest.name, found.models.pop()))
             _doubt_a_single_wave(found, place, latest)
             return {latest.name}
     return set()

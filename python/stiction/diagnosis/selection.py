@@ -36,6 +36,8 @@ class Search:
         Whether the last round refused a limit that helps, for where or how unevenly it does so.
     partly : frozenset of str
         Limits that take a part alone, and were found where rows that decide were fitted as well.
+    rests : list of (str, Model)
+        Effects that may be what the form of a named one leaves, each with the model that has it.
     interrupted : bool
     lesser : list of (Model, str, Model)
         Models, an effect of each, and the model fitted without it.
@@ -50,6 +52,7 @@ class Search:
     spread: bool = False
     partly: frozenset[str] = frozenset()
     tried: list[Model] = field(default_factory=list)
+    rests: list[tuple[str, Model]] = field(default_factory=list)
     interrupted: bool = False
     lesser: list[tuple[Model, str, Model]] = field(default_factory=list)
 
