@@ -42,4 +42,4 @@ def test_single_moments_are_not_throughout():
     assert not left_throughout(noise, null)
     noise[700:760] += 40.0
     assert not left_throughout(noise, null)
-    assert left_throughout(1.6 * source.standard_normal(2000), null)
+    assert left_throughout(2.5 * source.standard_normal(2000), null)

@@ -32,11 +32,11 @@ LEAST: Final = 0.08
 """Share of all that is left which bursts hold, from which on they are told; there it came to .04,
 and to .13 and more. What is that far beyond noise matters from half of ``LEAST_SIZE`` on."""
 THROUGHOUT: Final = 0.95
-BEYOND_NOISE: Final = 2.0
+BEYOND_NOISE: Final = 4.0
 """Share of the rows, those that hold least, in which a residual has so many times the power of any
-surrogate where more than noise is left throughout. Where nothing was hidden it came to 1.3, beside
-moments at which readings led a rigid contact astray; a gap or a shaft that rings came to 5 or more.
-"""
+surrogate where more than noise is left throughout: it is twice as large. Where nothing was hidden
+it came to 2.1, beside moments at which readings led a rigid contact astray; a gap or a shaft that
+rings came to 5.7 and more."""
 MOST_WINDOWS: Final = 0.01
 """Share of all windows up to which bursts are single moments."""
 
