@@ -14,6 +14,7 @@ from ..fitting.rows import Mask, Nuisances, Rows
 from ..motion import GAUSSIAN
 from ..plant import Plant
 from ..trajectory import FloatArray
+from ..weak_form import WeakForm
 
 __all__ = ["Noise", "effort_noise", "input_noise", "measure_noise"]
 
@@ -75,29 +76,45 @@ def effort_noise(rows: Rows, residuals: Sequence[FloatArray], alone: Sequence[Fl
     Shapes (rows,) each; 0 where no row tells of it.
     """
     form = rows.form
-    lag = max(1, round(LAG_SHARE * form.kernel.support / (form.dt * form.stride)))
-    counted = _counted(rows, lag)
+    lag, counted = _lag(form), _counted(rows, _lag(form))
     if not counted.any():
         return 0.0
 
     def scatter(each: Sequence[FloatArray]) -> float:
         return float(np.mean([_scatter(one, lag, counted) for one in each])) if each else 0.0
 
-    weights = np.convolve(form.kernel.weights, [0.5, 0.5])
-    effort = max(scatter(residuals) - scatter(alone), 0.0) / _bent(weights, lag * form.stride)
-    return float(np.sqrt(effort))
+    own = max(scatter(residuals) - scatter(alone), 0.0)
+    return math.sqrt(own / _bent(_weights(form), lag * form.stride))
 
 
 def input_noise(rows: Rows, plant: Plant, nuisances: Nuisances) -> float:
-    """Most that white noise of the log of the input can be, as an effort (N·m or N).
+    """White noise of the log of the input that the machine did not get, as an effort (N·m or N).
 
-    It makes the input scatter from one sample to the next, and the residual as much: a controller
-    that answers the noise of its readings does the first alone. The medians keep steps out.
+    The input scatters by it from one sample to the next, and it is in the residual as it is in the
+    input, so that their second differences have its power in common: what scatters in the input and
+    acts, as where a controller answers noise of its readings, has its answer in the motion, and
+    noise of the readings is in the residual alone. The medians keep steps out (Gnanadesikan,
+    Kettenring, Biometrics 28 (1972)).
     """
-    third = np.diff(rows.form.input, 3)
-    scatter = GAUSSIAN * float(np.median(np.abs(third))) / THIRD if len(third) else 0.0
-    left = effort_noise(rows, [rows.residual(plant, nuisances)], ())
-    return min(abs(plant.gain) * scatter, left)
+    form = rows.form
+    lag, counted = _lag(form), _counted(rows, _lag(form))
+    if not counted.any():
+        return 0.0
+    left, given = rows.residual(plant, nuisances), form.measured_effort(plant)
+    shared = 0.25 * (_scatter(left + given, lag, counted) - _scatter(left - given, lag, counted))
+    third = GAUSSIAN * float(np.median(np.abs(np.diff(form.input, 3)))) / THIRD
+    alike = math.sqrt(max(shared, 0.0) / _bent(_weights(form), lag * form.stride))
+    return min(abs(plant.gain) * third, alike)
+
+
+def _lag(form: WeakForm) -> int:
+    """Lag of the second differences, in rows."""
+    return max(1, round(LAG_SHARE * form.kernel.support / (form.dt * form.stride)))
+
+
+def _weights(form: WeakForm) -> FloatArray:
+    """How a row weighs samples of a held effort."""
+    return np.convolve(form.kernel.weights, [0.5, 0.5])
 
 
 def _counted(rows: Rows, lag: int) -> Mask:
