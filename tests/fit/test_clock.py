@@ -73,6 +73,17 @@ def test_the_number_that_the_data_do_not_show_gives_way(shows: str, moved: str, 
     assert other == stiff.parameters[stays]
 
 
+def test_a_contact_too_stiff_and_too_damped_gives_way_as_a_whole() -> None:
+    law = {"law": "elasto_plastic", "initial_stiffness": 3e10, "damping": 40.0}
+    table = {"drive": {"input": "torque_nm", "gain": 1.0}, "body": {"inertia": 1e-3}}
+    stiff = st.Plant.from_dict({**table, "friction": law})
+    rows: Any = [Told(lambda plant: 1.0 if plant.inertia == stiff.inertia else 1e9)]
+    assert not follows(stiff, rows, ease=1.0)
+    first, *_ = bounded_plants(stiff, ("body.inertia", "friction.damping"), rows, NONE)
+    assert follows(first, rows)
+    assert first.inertia == stiff.inertia
+
+
 def test_what_leaves_no_numbers_is_none() -> None:
     stiff = plant(1e-12, 3000.0)
     rows: Any = [Told(lambda plant: 1.0 if plant == stiff else np.nan)]

@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import InputError
 from ..parameter import Parameter
 from ..plant import Plant
+from .forms import followable
 from .rows import Nuisances, Rows
 
 __all__ = ["bounded_plants", "follows"]
@@ -25,14 +26,17 @@ MOST_STEPS: Final = 18
 """From the least inertia that a plant may have to that of a large machine tool."""
 
 
-def follows(plant: Plant, rows: Sequence[Rows]) -> bool:
-    """Whether a simulation of the plant follows samples like those of these rows with ease."""
+def follows(plant: Plant, rows: Sequence[Rows], *, ease: float = EASE) -> bool:
+    """Whether a simulation of the plant follows samples like those of these rows with ease.
+
+    ``ease`` is how much longer they might be: with 1 it follows them at all.
+    """
     if plant.prescribed_motion or plant.inertia == 0.0:
         return True
     dt = max(each.form.dt for each in rows)
     try:
         # Into how many parts a sample is divided goes with its length.
-        plant.motor().simulate(np.zeros(1), EASE * dt)
+        plant.motor().simulate(np.zeros(1), ease * dt)
     except InputError:
         return False
     return True
@@ -45,7 +49,8 @@ def bounded_plants(
 
     Along a measured motion an inertia or a slip distance that the data do not show may go to
     nothing, and what is handed over could not be simulated at the clock of the recordings. Each
-    number in turn takes the nearest value with which it can.
+    number in turn takes the nearest value with which it can, and those of a contact together that
+    is too stiff and too damped (``followable``).
 
     Parameters
     ----------
@@ -81,6 +86,9 @@ def bounded_plants(
                 within = replace(own, value=near, min=low, max=high)
                 other = _with_parameter(plant, path, within)
                 found.append((left(other), other))
+    softer = followable(plant, [each.form for each in rows])
+    if follows(softer, rows):
+        found.append((left(softer), softer))
     return [other for power, other in sorted(found, key=itemgetter(0)) if np.isfinite(power)]
 
 

@@ -30,7 +30,7 @@ from ..session import Session, both_of
 from ..trajectory import FloatArray
 from ..wording import plural
 from ..workers import with_workers
-from .clock import bounded_plants
+from .clock import bounded_plants, follows
 from .first_pass import first_pass, fit_from_data, remaining_share
 from .forms import KERNELS, Through, as_session, forms_of, restore_bounds
 from .leading import refit_windows
@@ -74,7 +74,9 @@ SELECT_IS_FITTED: Final = (
 )
 """The one thing in which a fit and the base of a diagnosis differ."""
 AS_WELL: Final = 1.1
-"""Times the power of a fit that one may leave which can be simulated; nobody can use another."""
+"""Times the power of a fit that one may leave which can be simulated with ease."""
+USABLE: Final = 2.0
+"""The same of a fit that cannot be simulated at all, which nobody can use."""
 MOST_BOUNDED: Final = 3
 """So many numbers are tried for that."""
 MOST_FOLLOWED: Final = {
@@ -284,7 +286,8 @@ def _followed(found: Solution, rows: Sequence[Rows], *, most: int) -> Solution:
             return with_interruption(found)
         others.append(replace(other, begin=found.begin))
     best = min(others, key=lambda other: other.power, default=found)
-    return best if best.power < AS_WELL * found.power else found
+    most_left = AS_WELL if follows(found.plant, rows, ease=1.0) else USABLE
+    return best if best.power < most_left * found.power else found
 
 
 def reweight(rows: Sequence[Rows], plant: Plant, nuisances: Nuisances) -> None:
