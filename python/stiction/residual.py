@@ -91,23 +91,25 @@ class EffortResidual:
 
     @property
     def relative(self) -> float:
-        """2-norm of the residual over that of the measured effort."""
+        """2-norm of the residual over that of the measured effort; inf where that is 0."""
         scale = float(np.linalg.norm(self.effort))
         return float(np.linalg.norm(self.residual)) / scale if scale > 0.0 else float("inf")
 
     def __repr__(self) -> str:
+        share = f"{100 * self.relative:.3f} % of the measured effort, "
+        share = share if np.isfinite(self.relative) else ""
         return (
-            f"EffortResidual({100 * self.relative:.3f} % of the measured effort, "
-            f"{self.rms:.4g} {self.unit} rms, kernel {1e3 * self.support:.0f} ms)"
+            f"EffortResidual({share}{self.rms:.4g} {self.unit} rms, "
+            f"kernel {1e3 * self.support:.0f} ms)"
         )
 
     def _repr_html_(self) -> str:
         return f"<p>{self!r}</p>"
 
     def to_dict(self) -> dict[str, Any]:
-        """The numbers, for JSON."""
+        """The numbers, for JSON; ``relative`` is None where the measured effort is 0."""
         return {
-            "relative": self.relative,
+            "relative": self.relative if np.isfinite(self.relative) else None,
             "rms": self.rms,
             "unit": self.unit,
             "kernel_support_s": self.support,

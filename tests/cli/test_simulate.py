@@ -123,6 +123,22 @@ def test_a_loop_that_cannot_be_simulated_says_so_in_json_too(
     assert "runs away" in loop["error"]
 
 
+def test_a_drive_that_gives_nothing_leaves_an_error_without_a_share(
+    plant: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with plant.open("a", encoding="utf-8") as file:
+        file.write('[[effects]]\nname = "drive_deadband"\ndeadband = 2.0\n')
+    position = 0.1 * np.sin(6.0 * TIME)
+    path = written(tmp_path / "run.csv", time_s=TIME, torque_nm=EFFORT, position_rad=position)
+    command = ["simulate", str(plant), str(path), "-o", str(tmp_path / "o")]
+    assert run(command) == 0
+    assert "N·m rms, of a drive that gives nothing" in capsys.readouterr().out
+    assert run([*command[:-1], str(tmp_path / "json"), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["effort_residual"]
+    assert found["relative"] is None
+    assert found["rms"] > 0.1
+
+
 def test_a_repair_is_told_once(
     plant: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -209,17 +209,20 @@ def _beside_the_motion(
             lines += _loop_lines(loop)
             result["closed_loop"] = loop.to_dict()
     effort = residual.effort_residual(plant, recording, support=support, **begin)
-    if not np.isfinite(effort.relative):
+    if not effort.success:
         raise InputError(
             "the effort residual is not a finite number; check units, and cells far beyond what "
             "the machine can do"
         )
     drawn.figure(effort.plot, "effort-residual")
-    lines.append(
-        f"effort along the measured motion: error {100 * effort.relative:.3f} % "
-        f"(relative 2-norm), {effort.rms:.4g} {effort.unit} rms, "
-        f"B-spline kernel of {1e3 * effort.support:.0f} ms on all terms"
+    size = (
+        f"error {100 * effort.relative:.3f} % (relative 2-norm), {effort.rms:.4g} {effort.unit} rms"
+        if np.isfinite(effort.relative)
+        # Of nothing there is no share: the whole input may lie within a dead zone.
+        else f"error {effort.rms:.4g} {effort.unit} rms, of a drive that gives nothing"
     )
+    kernel = f"B-spline kernel of {1e3 * effort.support:.0f} ms on all terms"
+    lines.append(f"effort along the measured motion: {size}, {kernel}")
     result["effort_residual"] = effort.to_dict()
     return lines
 
