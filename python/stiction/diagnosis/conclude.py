@@ -197,7 +197,7 @@ class Conclusion:
 
     @property
     def lacks_throughout(self) -> bool:
-        """Whether more than noise is left not in single moments alone."""
+        """Whether more than noise is left, and not in single moments alone."""
         final = self.valid_selection.models[-1]
         return left_throughout(final.residual, self._replays(final)[0])
 

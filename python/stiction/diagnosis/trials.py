@@ -405,17 +405,17 @@ def effort_share(evidence: Evidence, model: Model, name: str) -> float:
     for rows in evidence.train:
         start = model.nuisances.start(rows.index)
         form = rows.form_for(model.plant, model.nuisances)
-        needed, alone = (_acting(form, plant, start) for plant in (model.plant, less))
-        own += float(np.sum((needed - alone) ** 2))
-        whole += float(np.sum(form.along(model.plant, start)[1] ** 2))
+        acting, needed = _acting(form, model.plant, start)
+        own += float(np.sum((acting - _acting(form, less, start)[0]) ** 2))
+        whole += float(np.sum(needed**2))
     return math.sqrt(own / whole) if 0.0 < whole < math.inf else 0.0
 
 
-def _acting(form: WeakForm, plant: Plant, start: Start) -> FloatArray:
-    """What a plant needs beside the inertia of the measured motion, less what its drive gives."""
+def _acting(form: WeakForm, plant: Plant, start: Start) -> tuple[FloatArray, FloatArray]:
+    """What a plant needs beside inertia, less what its drive gives; and what it needs alone."""
     drive, needed, ahead = form.along(plant, start)
     bent = np.diff(ahead, 2, prepend=ahead[:1], append=ahead[-1:]) / form.dt**2
-    return finite(needed + form.own(plant).inertia * bent - drive)
+    return finite(needed + form.own(plant).inertia * bent - drive), needed
 
 
 def escape_local_minimum(model: Model) -> Model:
