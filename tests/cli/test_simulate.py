@@ -132,7 +132,7 @@ def test_a_drive_that_gives_nothing_leaves_an_error_without_a_share(
     path = written(tmp_path / "run.csv", time_s=TIME, torque_nm=EFFORT, position_rad=position)
     command = ["simulate", str(plant), str(path), "-o", str(tmp_path / "o")]
     assert run(command) == 0
-    assert "N·m rms, of a drive that gives nothing" in capsys.readouterr().out
+    assert "N·m rms, and the measured effort is 0" in capsys.readouterr().out
     assert run([*command[:-1], str(tmp_path / "json"), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["effort_residual"]
     assert found["relative"] is None

@@ -219,7 +219,7 @@ def _beside_the_motion(
         f"error {100 * effort.relative:.3f} % (relative 2-norm), {effort.rms:.4g} {effort.unit} rms"
         if np.isfinite(effort.relative)
         # Of nothing there is no share: the whole input may lie within a dead zone.
-        else f"error {effort.rms:.4g} {effort.unit} rms, of a drive that gives nothing"
+        else f"error {effort.rms:.4g} {effort.unit} rms, and the measured effort is 0"
     )
     kernel = f"B-spline kernel of {1e3 * effort.support:.0f} ms on all terms"
     lines.append(f"effort along the measured motion: {size}, {kernel}")
