@@ -31,7 +31,8 @@ const STRIDE: u64 = 2048;
 /// What may take the work, in words.
 pub const PARTS: &str = "samples are divided into many steps each";
 /// The same of events.
-pub const WITHIN_STEPS: &str = "its contact changes its mode again and again within a step";
+pub const WITHIN_STEPS: &str =
+    "its contact changes its mode or seeks its force again and again within a step";
 
 thread_local! {
     /// Work within steps, on this thread: attempts to find where modes change, and sums of a law.

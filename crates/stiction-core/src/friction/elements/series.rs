@@ -7,6 +7,10 @@ use super::plastic::{Creep, Plastic};
 use super::spring::{SpringState, Walk};
 use crate::friction::Motion;
 use crate::scalar::{Scalar, sign};
+use crate::work;
+
+/// Passes to a root that come with a step; three powers each, those beyond cost as much as steps.
+const PASSES_OF_A_STEP: usize = 8;
 
 /// A step of the series.
 #[derive(Debug, Clone, Copy)]
@@ -81,7 +85,10 @@ pub fn step<S: Scalar>(
     // The miss is known to the rounding of its terms; a strong damper's are far above the force that is left.
     let rounding = 4.0 * f64::EPSILON * high;
     let mut force = uncrept;
-    for _ in 0..60 {
+    for pass in 0..60 {
+        if pass >= PASSES_OF_A_STEP {
+            work::spend(2 * work::STEP);
+        }
         let (_, _, value, rise) = needed(force);
         let miss = force - value;
         let over = miss.re() * s;
