@@ -20,6 +20,8 @@ pub const DERIVATIVES: u64 = 5;
 /// Work of any call: two seconds of the dearest laws, which take 28 ns for one (bouc_wen, leuven), four
 /// of the dearest plants (a servo on elasto_plastic with an effect: 45 ns).
 const FIRST: f64 = 8e7;
+/// The same of a call of segments, whose evaluations may each take as long as several such steps.
+const FIRST_OF_SEGMENTS: f64 = 4.8e7;
 /// As much more for each sample: a thousand steps.
 const OF_A_SAMPLE: f64 = 8e3;
 /// The same for each row of segments, which are few and long.
@@ -61,7 +63,7 @@ pub fn allowed(samples: usize) -> f64 {
 
 /// What segments may cost that end in so many rows.
 pub fn allowed_for_rows(rows: usize) -> f64 {
-    FIRST + OF_A_ROW * rows as f64
+    FIRST_OF_SEGMENTS + OF_A_ROW * rows as f64
 }
 
 /// Counts the work of a call, and asks now and then whether to go on.

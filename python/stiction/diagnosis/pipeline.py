@@ -38,8 +38,10 @@ from .base import (
     fit_simulated_baseline,
     fit_wider_baseline,
 )
+from .block_gains import heldout_gain
+from .bursts import left_throughout
 from .candidates import excluded_names
-from .conclude import MESSAGE, Conclusion, base_alone, surrogates_of
+from .conclude import MESSAGE, TOLD_BY, Conclusion, base_alone, surrogates_of
 from .defaults import ALPHA, SMALLEST, SURROGATES
 from .evidence import Evidence
 from .laws import THE_LAW, law_names
@@ -367,15 +369,16 @@ def _seen_otherwise(
 
     Readings that lead a rigid contact astray leave what has no name, at single moments most of all:
     where the plant, simulated, follows the motion within its noise, nothing else was missing. What
-    is left throughout is none of their making, and may be too fast for a simulation to show it. And
-    where it is simulated from the first, slopes beside a base that has bent itself may show nothing
-    of a cause that readings show.
+    is left throughout is none of their making, and may be too fast for a simulation to show it: so
+    are readings asked where a simulation from the first knows no cause. And slopes beside a base
+    that has bent itself may show nothing of a cause that readings show.
     """
     if first.interrupted or look.evidence.loop or not look.found.plant.friction.sticks:
         return first
     try:
         if not first.unsaid:
-            return first
+            simulated = look.evidence.simulated
+            return _seen_along(first, look, asked, concluded) if simulated else first
         plant, recordings = look.found.plant, look.evidence.recordings
         seen: tuple[Evidence, Model] | None = (look.evidence, look.base)
         if look.evidence.simulated:
@@ -401,6 +404,42 @@ def _seen_otherwise(
     except KeyboardInterrupt:
         first.interrupted = first.brief = True
         return first
+
+
+def _seen_along(
+    first: Conclusion,
+    look: _Searched,
+    asked: _Asked,
+    concluded: Callable[[_Searched], Conclusion],
+) -> Conclusion:
+    """What readings conclude where windows know no cause, or the same one; else the first.
+
+    What is over within a seventh of a second hardly shows over windows. Along the readings it does,
+    and where these lead astray so do their surrogates: more than they make is left throughout. A
+    cause that both show is judged where it explains most.
+    """
+    try:
+        evidence, base = fit_baseline(look.found.plant, look.evidence.recordings, windows=False)
+    except InputError:
+        return first
+    if base.solution.interrupted:
+        raise KeyboardInterrupt
+    few, _ = surrogates_of(evidence, base, min(TOLD_BY, asked.surrogates), look.found.seed)
+    if not left_throughout(base.residual, few):
+        return first
+    phase(_logger, "screening the effects again, along the readings")
+    other = _again(look, (evidence, base), asked=asked)
+    if other is None:
+        raise KeyboardInterrupt
+    second = concluded(other)
+    if second.interrupted:
+        return first
+    known, seen = first.valid_selection, second.valid_selection
+    if not known.choices:
+        return second
+    alike = [c.winner.name for c in known.choices] == [c.winner.name for c in seen.choices]
+    gains = [heldout_gain(each.models[0], each.models[-1])[0] for each in (known, seen)]
+    return second if alike and gains[1] > gains[0] else first
 
 
 def _tried_along(look: _Searched, asked: _Asked) -> list[Model]:
