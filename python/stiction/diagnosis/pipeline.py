@@ -283,7 +283,10 @@ def _testable(
 
     # Who asks for laws wants them beside all that is named, and what is restated has been.
     asks = not (restated or asked.laws)
-    look, shot, outdone = _first_look(found, evidence, base, replays, session, asked, asks=asks)
+    followed: list[Model] = []
+    look, shot, outdone = _first_look(
+        found, evidence, base, replays, session, asked, followed=followed, asks=asks
+    )
     # A look that takes the place of this one is all that is held from then on.
     del evidence, base, replays
     if outdone:
@@ -299,8 +302,8 @@ def _testable(
             phase(_logger, "screening the effects again, through wider kernels")
             look = again(look, wider) or look
     if not look.selection.interrupted:
-        look = _simulated(look, shot, session, asked, again)
-    del shot
+        look = _simulated(look, shot, session, asked, again, followed)
+    del shot, followed
     if acts_for_seconds(look.evidence, look.selection, look.null):
         phase(_logger, "screening limits again, over the rows that decide as well")
         joined = fit_joint_baseline(found.plant, session.recordings, look.evidence)
@@ -326,6 +329,7 @@ def _first_look(
     session: Session,
     asked: _Asked,
     *,
+    followed: list[Model],
     asks: bool,
 ) -> tuple[_Searched, _Shot | None, bool]:
     """The first search, over which windows to make it again where readings lead astray, or else
@@ -336,7 +340,9 @@ def _first_look(
 
     def led_astray(first: Search) -> bool:
         last = first.models[-1]
-        shot = fit_simulated_baseline(found.plant, session.recordings, evidence, last, first.tried)
+        shot = fit_simulated_baseline(
+            found.plant, session.recordings, evidence, last, followed, first.tried
+        )
         shots.extend([] if shot is None else [shot])
         return bool(shots)
 
@@ -344,7 +350,7 @@ def _first_look(
         if led_astray(first):
             return True
         others.append(asks and is_outdone(first))
-        return others[0]
+        return others[-1]
 
     # What is added to a first cause along readings that lead astray only follows these, and beside
     # a law that another one outdoes it stands for that.
@@ -359,12 +365,13 @@ def _simulated(
     session: Session,
     asked: _Asked,
     again: Callable[..., _Searched | None],
+    followed: list[Model],
 ) -> _Searched:
     """The search over windows where readings lead astray: as ``shot`` tells, or at its end."""
     seen, last = look.evidence, look.selection.models[-1]
     cut_short = shot is not None
     if shot is None:
-        shot = fit_simulated_baseline(look.found.plant, session.recordings, seen, last)
+        shot = fit_simulated_baseline(look.found.plant, session.recordings, seen, last, followed)
     if shot is None:
         return look
     phase(_logger, "screening the effects again, with the plant simulated over windows")
