@@ -255,7 +255,7 @@ class Evidence:
             nuisances = found.of({each.index}).merge(nuisances)
         return nuisances
 
-    def resealed(self) -> Evidence:
+    def sealed_copy(self) -> Evidence:
         """The same session for a question of its own to the rows that test: here they stay shut."""
         return copy(self)
 

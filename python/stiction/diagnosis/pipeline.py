@@ -44,7 +44,7 @@ from .evidence import Evidence
 from .laws import law_names
 from .model import Known, Model, fit_model
 from .noise import Noise
-from .restated import is_outdone, restated_at_the_end, restated_early
+from .restated import diagnose_again_at_the_end, diagnose_again_early, is_outdone
 from .result import Diagnosis
 from .rounds import search
 from .seconds import acts_for_seconds, holds_more, tried_names, with_rows_of
@@ -258,7 +258,7 @@ def _testable(
         return Conclusion(
             look.found,
             session,
-            look.evidence.resealed() if outdone else look.evidence,
+            look.evidence.sealed_copy() if outdone else look.evidence,
             look.base,
             look.selection,
             look.null,
@@ -290,7 +290,7 @@ def _testable(
     # A look that takes the place of this one is all that is held from then on.
     del evidence, base, replays
     if outdone:
-        other = restated_early(concluded(look, outdone=True), of)
+        other = diagnose_again_early(concluded(look, outdone=True), of)
         if other is not None:
             return other
         phase(_logger, "going on with law %s", found.plant.friction.law)
@@ -318,7 +318,7 @@ def _testable(
     told = conclusion.diagnosis()
     if restated or not told.better_law or not told.success:
         return told
-    return restated_at_the_end(told, conclusion, of)
+    return diagnose_again_at_the_end(told, conclusion, of)
 
 
 def _first_look(

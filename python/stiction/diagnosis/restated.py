@@ -15,7 +15,7 @@ from .laws import HOPELESS, THE_LAW, better_laws, rivals_of
 from .result import Diagnosis, LawRow, Unexplained
 from .selection import Search
 
-__all__ = ["is_outdone", "restated_at_the_end", "restated_early"]
+__all__ = ["diagnose_again_at_the_end", "diagnose_again_early", "is_outdone"]
 
 _logger = logging.getLogger(__name__)
 
@@ -37,7 +37,7 @@ def is_outdone(found: Search) -> bool:
     return bool(better) and HOPELESS * (1.0 - better[0].beside) < 1.0
 
 
-def restated_early(
+def diagnose_again_early(
     conclusion: Conclusion, again: Callable[[Plant], Diagnosis | None]
 ) -> Diagnosis | None:
     """The diagnosis with a law that outdoes the plant's own beside the first cause.
@@ -61,7 +61,7 @@ def restated_early(
         return conclusion.diagnosis()
 
 
-def restated_at_the_end(
+def diagnose_again_at_the_end(
     told: Diagnosis, conclusion: Conclusion, again: Callable[[Plant], Diagnosis | None]
 ) -> Diagnosis:
     """The diagnosis with the law that is the better one, where that can be told, or ``told``.
