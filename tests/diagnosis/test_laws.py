@@ -117,7 +117,7 @@ def test_of_laws_that_leave_as_little_the_simpler_one_is_named() -> None:
 
 def test_no_law_is_said_to_leave_nothing() -> None:
     found = replace(rival("leuven", 1.0), beside=0.9996, z=9.0)
-    said = found.words("coulomb", named=False, alike=["lugre"])
+    said = found.words("coulomb", added="", alike=["lugre"])
     assert said.endswith("leaves over 99 % less than coulomb; lugre leaves about as little.")
 
 

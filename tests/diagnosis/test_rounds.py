@@ -15,8 +15,10 @@ from stiction.diagnosis.beside import doubt_by_forms, stands_out
 from stiction.diagnosis.choose import Choice
 from stiction.diagnosis.decide import Trial
 from stiction.diagnosis.exact_forms import doubt_geometry
+from stiction.diagnosis.restarts import from_the_first
 from stiction.diagnosis.result import CandidateRow, Cause, Unexplained
 from stiction.diagnosis.selection import Search
+from stiction.diagnosis.trials import Screening
 
 BLOCKS = np.ones(30), np.ones(30)
 
@@ -61,6 +63,10 @@ class Bench:
 
     def trial(self, model: Any, score: Any, others: Any = ()) -> Trial:
         return next(t for t in self.after[model.name] if t.name == score.candidate.name)
+
+    def may_count(self, score: Any) -> bool:
+        own: Any = self
+        return Screening.may_count(own, score)
 
     def from_where(self, model: Any, score: Any, lead: Any) -> None:
         return None
@@ -181,6 +187,65 @@ def test_what_explains_another_part_and_less_waits_for_the_next_round(
     assert bench.refitted == refitted
     if refitted == ["a"]:
         assert found.rows["b"].reason == "others explain more"
+
+
+@pytest.mark.parametrize(
+    ("score", "kind", "simulated", "named", "refitted"),
+    [
+        (0.004, "", False, True, False),
+        (0.007, "", False, True, True),
+        # What is late or swings comes to more than its slope tells, what is simulated to anything.
+        (0.004, "late", False, True, True),
+        (0.004, "swings", False, True, True),
+        (0.002, "late", False, True, False),
+        (0.002, "", True, True, True),
+        # What is tried in the first round is asked elsewhere.
+        (0.002, "", False, False, True),
+    ],
+)
+def test_what_cannot_come_to_what_counts_is_not_refitted(
+    score: float,
+    kind: str,
+    simulated: bool,
+    named: bool,
+    refitted: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    slight = replace(scored("b", score, (1.0, 0.0)), reason="gains 1 % on rows held out")
+    slight.score.threshold, slight.score.heldout = 0.001, 0.0015
+    record: Any = slight.candidate.record
+    record.late, record.swings = kind == "late", kind == "swings"
+    bench: Any = Asked({"base": [slight]})
+    bench.evidence = SimpleNamespace(loop=False, simulated=simulated)
+    monkeypatch.setattr(rounds, "pass_together", lambda *_: None)
+    monkeypatch.setattr(rounds, "doubt_by_forms", lambda *_: "")
+    base: Any = SimpleNamespace(name="base", power=1.0)
+    row = CandidateRow("b", score, 0.001, 0.0015, "others explain more")
+    choices = [Choice(trial("a", 1.0), ())] if named else []
+    found = Search([base], choices, {"b": row})
+    choice, _, _ = rounds._round(bench, found, set())
+    assert choice is None
+    assert bench.refitted == (["b"] if refitted else [])
+    assert (found.rows["b"].reason == rounds.TOO_LITTLE) is not refitted
+
+
+@pytest.mark.parametrize(
+    ("explained", "refused", "again"),
+    [(0.28, "", []), (0.1, "", ["b"]), (0.28, SPREAD, ["b"])],
+)
+def test_what_passes_with_all_that_it_promised_begins_nowhere_else(
+    explained: float, refused: str, again: list[str]
+) -> None:
+    first = scored("a", 0.4, (1.0, 0.0))
+    second = replace(scored("b", 0.3, (1.0, 0.1)), explained=explained, reason=refused)
+    begun: list[str] = []
+    bench: Any = SimpleNamespace(
+        from_where=lambda base, score, lead: begun.append(score.candidate.name)
+    )
+    trials = [first, second]
+    base: Any = None
+    assert from_the_first(bench, base, [t.score for t in trials], trials, first) == trials
+    assert begun == again
 
 
 def test_what_explains_less_than_another_is_no_first_of_two() -> None:

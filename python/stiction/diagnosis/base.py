@@ -126,6 +126,7 @@ def fit_simulated_baseline(
     recordings: Sequence[Recording],
     evidence: Evidence,
     final: Model,
+    followed: list[Model],
     tried: Sequence[Model] = (),
 ) -> tuple[Evidence, Model, list[Known]] | None:
     """The base simulated over windows, where a rigid contact was led astray; None elsewhere.
@@ -143,6 +144,8 @@ def fit_simulated_baseline(
         Of the weak form.
     final : Model
         With all causes that were found.
+    followed : list of Model
+        What readings were found not to lead astray: of those nobody asks again, and more are added.
     tried : sequence of Model
         The base with one cause each, whether it was accepted or not.
 
@@ -154,18 +157,22 @@ def fit_simulated_baseline(
     """
     # Where the last cause makes the contact yield, the others tell nothing against that.
     horizon = windows_of(final.plant, evidence.forms, evidence.train)
+    # The last model was tried as well, and fitted on to its end: that is the same one.
+    others = [model for model in tried if _forms_of(model.plant) != _forms_of(final.plant)]
     begun = [
         model
-        for model in (final, *tried)
+        for model in (final, *others)
         if model.plant.effects != plant.effects
         and windows_of(model.plant, evidence.forms, evidence.train) is not None
     ]
     if horizon is None or not begun:
         return None
+    if len(begun) == 1 and any(model is begun[0] for model in followed):
+        return None
     known = evidence.plant is plant and not evidence.joined
     narrow = known and not any(form.widened for form in evidence.forms)
     try:
-        led = _led_astray(recordings, evidence, begun, Through(horizon=horizon))
+        led = _led_astray(recordings, evidence, begun, Through(horizon=horizon), followed)
         if led is None:
             return None
         along = evidence if narrow else None
@@ -175,11 +182,17 @@ def fit_simulated_baseline(
         return None
 
 
+def _forms_of(plant: Plant) -> list[tuple[str, tuple[str, ...]]]:
+    """Effects of a plant and what they state."""
+    return [(effect.name, tuple(effect.parameters)) for effect in plant.effects]
+
+
 def _led_astray(
     recordings: Sequence[Recording],
     evidence: Evidence,
     begun: Sequence[Model],
     through: Through,
+    followed: list[Model],
 ) -> list[Known] | None:
     """Models as a simulation has them, what leaves least first; None where none was led astray.
 
@@ -195,6 +208,7 @@ def _led_astray(
         (best.plant, best.solution.nuisances),
         windows.train,
     ):
+        followed.append(led)
         return None
     models = sorted((each for each, _ in own), key=lambda model: model.power)
     return [Known(model.plant, model.nuisances) for model in models]

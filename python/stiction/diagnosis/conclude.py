@@ -51,7 +51,7 @@ from .pictures import Pictures
 from .regression import refit_residuals
 from .reliability import reliability_of
 from .replay import centre, common_bias, surrogate_residuals
-from .result import Diagnosis, Unexplained, Verdict
+from .result import Diagnosis, LawRow, Unexplained, Verdict
 from .rounds import friction_of
 from .selection import Search
 from .told import (
@@ -71,6 +71,7 @@ from .words import (
     MORE_MAY_BE,
     NO_COORDINATE,
     apart_words,
+    join_words,
     no_machine,
     sentence,
     stands_still,
@@ -118,6 +119,8 @@ class Conclusion:
         Share of the friction that an effect has to contribute to be worth a name.
     restated : bool
         The law is not the one that was stated.
+    outdone : bool
+        Another law leaves so little beside the first cause that no further one was looked for.
     interrupted : bool
         Then no further laws are fitted.
     brief : bool
@@ -135,6 +138,7 @@ class Conclusion:
     checks: Sequence[tuple[str, Check]]
     smallest: float = SMALLEST
     restated: bool = False
+    outdone: bool = False
     interrupted: bool = False
     brief: bool = False
     _known_rests: dict[int, Rest] = field(default_factory=dict)
@@ -221,7 +225,18 @@ class Conclusion:
         """What a better law means, in a sentence."""
         first, *others = self.better
         own = self.base.plant.friction.law
-        return first.words(own, bool(self.final_selection.choices), [each.law for each in others])
+        named = [choice.winner.name for choice in self.final_selection.choices]
+        if self.outdone:
+            added = f" with {join_words(named)}" if named else ""
+        else:
+            added = ", whatever is added to it" if named else ""
+        return first.words(own, added, [each.law for each in others])
+
+    @property
+    def law_rows(self) -> tuple[LawRow, ...]:
+        """What each law that was compared gains over the plant's own."""
+        first = len(self.valid_selection.models)
+        return law_rows(self.rivals, first, self.test, self.found.seed)
 
     @cached_property
     def test_rows(self) -> list[Rows]:

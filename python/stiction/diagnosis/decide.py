@@ -31,6 +31,7 @@ __all__ = [
     "LEAST_GAIN",
     "LEAST_STRENGTH",
     "LEAST_Z",
+    "MOST_TIMES",
     "OUT_OF_RANGE",
     "PENALTY",
     "Trial",

@@ -255,6 +255,10 @@ class Evidence:
             nuisances = found.of({each.index}).merge(nuisances)
         return nuisances
 
+    def sealed_copy(self) -> Evidence:
+        """The same session for a question of its own to the rows that test: here they stay shut."""
+        return copy(self)
+
     @property
     def sealed(self) -> bool:
         """Whether the rows that test are still unseen."""

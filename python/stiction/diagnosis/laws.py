@@ -136,14 +136,14 @@ class Rival:
         paths = () if self.model is None else self.model.solution.variables.paths
         return sum(path.startswith("friction.") for path in paths)
 
-    def words(self, own: str, named: bool, alike: Sequence[str] = ()) -> str:
-        """What that means, in a sentence; ``alike`` are laws that leave about as little."""
+    def words(self, own: str, added: str, alike: Sequence[str] = ()) -> str:
+        """What that means, in a sentence: ``added`` is what the plant's own law has beside it, and
+        ``alike`` are laws that leave about as little."""
         summary = next(record.summary for record in all_laws() if record.name == self.law)
-        beside = ", whatever is added to it" if named else ""
         kept = f", with {join_words(self.kept)}," if self.kept else ""
         return (
             f"The friction law itself lacks something: {self.law} ({summary}){kept} leaves "
-            f"{_less(self.beside)} less than {own}{beside}{_as_little(alike)}."
+            f"{_less(self.beside)} less than {own}{added}{_as_little(alike)}."
         )
 
     @property
@@ -221,8 +221,27 @@ def _representatives(own: Friction) -> tuple[str, ...]:
 def _rival(selection: Search, law: str, asked: bool) -> Rival:
     """Another law, fitted, with what it is worth; where it cannot be, with the reason."""
     base, final = selection.models[0], selection.models[-1]
+    # Fitted with nothing added, a law is the same beside whatever was found since.
+    compared = [(f, r) for b, f, r in selection.rivals if b is base and r.law == law]
+    for last, rival in compared:
+        if last is final and rival.asked is asked:
+            return rival
+    rival = _compared(selection, law, asked, compared[-1][1] if compared else None)
+    if not selection.interrupted:
+        selection.rivals.append((base, final, rival))
+    return rival
+
+
+def _compared(selection: Search, law: str, asked: bool, known: Rival | None) -> Rival:
+    """The same, as far as it is not ``known`` from beside fewer causes."""
+    base, final = selection.models[0], selection.models[-1]
+    hopeless = math.inf if asked else HOPELESS * final.power
+    if known is not None and known.asked is asked:
+        if known.model is None or known.model.power > hopeless:
+            return Rival(law, asked, None, why=known.why)
+        return _beside(final, known.model, Rival(law, asked, known.model), selection)
     try:
-        model = _fitted(base, law, math.inf if asked else HOPELESS * final.power)
+        model = _fitted(base, law, hopeless)
         if model is not None and asked and not model.solution.interrupted:
             model = _falling(model)
     except InputError as error:

@@ -12,7 +12,6 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from .. import __version__, given
-from ..best_effort import Failure, attempt
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import residual_sentence
 from ..given import instance, share, whole
@@ -41,13 +40,14 @@ from .base import (
 from .block_gains import heldout_gain
 from .bursts import left_throughout
 from .candidates import excluded_names
-from .conclude import MESSAGE, TOLD_BY, Conclusion, base_alone, surrogates_of
+from .conclude import TOLD_BY, Conclusion, base_alone, surrogates_of
 from .defaults import ALPHA, SMALLEST, SURROGATES
 from .evidence import Evidence
-from .laws import THE_LAW, law_names
+from .laws import law_names
 from .model import Known, Model, fit_model
 from .noise import Noise
-from .result import Diagnosis, Unexplained
+from .restated import diagnose_again_at_the_end, diagnose_again_early, is_outdone
+from .result import Diagnosis
 from .rounds import search
 from .seconds import acts_for_seconds, holds_more, tried_names, with_rows_of
 from .selection import Search
@@ -255,32 +255,12 @@ def _testable(
         return base_alone(found, evidence, base)
     phase(_logger, "screening the effects")
     again = partial(_again, asked=asked)
-    look, shot = _first_look(found, evidence, base, replays, session, asked)
-    # A look that takes the place of this one is all that is held from then on.
-    del evidence, base, replays
-    if not look.selection.interrupted and shot is None:
-        final = look.selection.models[-1]
-        wider = fit_wider_baseline(found.plant, session.recordings, look.evidence, final)
-        if wider is not None:
-            phase(_logger, "screening the effects again, through wider kernels")
-            look = again(look, wider) or look
-    if not look.selection.interrupted:
-        look = _simulated(look, shot, session, asked, again)
-    del shot
-    if acts_for_seconds(look.evidence, look.selection, look.null):
-        phase(_logger, "screening limits again, over the rows that decide as well")
-        joined = fit_joint_baseline(found.plant, session.recordings, look.evidence)
-        before = look.selection
-        others = asked._replace(without=(*asked.without, *tried_names(before)))
-        second = joined and _again(look, joined, asked=others)
-        if second and holds_more(second.selection, before):
-            look = second._replace(selection=with_rows_of(second.selection, before))
 
-    def concluded(look: _Searched) -> Conclusion:
+    def concluded(look: _Searched, *, outdone: bool = False) -> Conclusion:
         return Conclusion(
             look.found,
             session,
-            look.evidence,
+            look.evidence.sealed_copy() if outdone else look.evidence,
             look.base,
             look.selection,
             look.null,
@@ -289,15 +269,10 @@ def _testable(
             checks,
             asked.smallest,
             restated,
+            outdone,
             interrupted=look.selection.interrupted,
             brief=look.selection.interrupted,
         )
-
-    # Every decision is taken: now, and once, the rows that test.
-    conclusion = _seen_otherwise(concluded(look), look, asked, again, concluded)
-    told = conclusion.diagnosis()
-    if restated or not told.better_law or not told.success:
-        return told
 
     def of(plant: Plant) -> Diagnosis | None:
         began = replace(whole, plant=plant)
@@ -308,7 +283,44 @@ def _testable(
             _logger.info("with %s: %s", plant.friction.law, error)
             return None
 
-    return _restated(told, conclusion, of)
+    # Who asks for laws wants them beside all that is named, and what is restated has been.
+    asks = not (restated or asked.laws)
+    followed: list[Model] = []
+    look, shot, outdone = _first_look(
+        found, evidence, base, replays, session, asked, followed=followed, asks=asks
+    )
+    # A look that takes the place of this one is all that is held from then on.
+    del evidence, base, replays
+    if outdone:
+        other = diagnose_again_early(concluded(look, outdone=True), of)
+        if other is not None:
+            return other
+        phase(_logger, "going on with law %s", found.plant.friction.law)
+        look = look._replace(selection=asked.search(look.evidence, look.base, look.null))
+    if not look.selection.interrupted and shot is None:
+        final = look.selection.models[-1]
+        wider = fit_wider_baseline(found.plant, session.recordings, look.evidence, final)
+        if wider is not None:
+            phase(_logger, "screening the effects again, through wider kernels")
+            look = again(look, wider) or look
+    if not look.selection.interrupted:
+        look = _simulated(look, shot, session, asked, again, followed)
+    del shot, followed
+    if acts_for_seconds(look.evidence, look.selection, look.null):
+        phase(_logger, "screening limits again, over the rows that decide as well")
+        joined = fit_joint_baseline(found.plant, session.recordings, look.evidence)
+        before = look.selection
+        others = asked._replace(without=(*asked.without, *tried_names(before)))
+        second = joined and _again(look, joined, asked=others)
+        if second and holds_more(second.selection, before):
+            look = second._replace(selection=with_rows_of(second.selection, before))
+
+    # Every decision is taken: now, and once, the rows that test.
+    conclusion = _seen_otherwise(concluded(look), look, asked, again, concluded)
+    told = conclusion.diagnosis()
+    if restated or not told.better_law or not told.success:
+        return told
+    return diagnose_again_at_the_end(told, conclusion, of)
 
 
 def _first_look(
@@ -318,19 +330,35 @@ def _first_look(
     replays: tuple[FloatArray, Mapping[int, Noise]],
     session: Session,
     asked: _Asked,
-) -> tuple[_Searched, _Shot | None]:
-    """The first search, and over which windows to make it again where readings lead astray."""
+    *,
+    followed: list[Model],
+    asks: bool,
+) -> tuple[_Searched, _Shot | None, bool]:
+    """The first search, over which windows to make it again where readings lead astray, or else
+    whether another law leaves so little beside the first cause that it is to be made with that;
+    the last only where it ``asks``."""
     shots: list[_Shot] = []
+    others: list[bool] = []
 
     def led_astray(first: Search) -> bool:
         last = first.models[-1]
-        shot = fit_simulated_baseline(found.plant, session.recordings, evidence, last, first.tried)
+        shot = fit_simulated_baseline(
+            found.plant, session.recordings, evidence, last, followed, first.tried
+        )
         shots.extend([] if shot is None else [shot])
         return bool(shots)
 
-    # What is added to a first cause along readings that lead astray only follows these.
-    first = asked.search(evidence, base, replays[0], stops=led_astray)
-    return _Searched(found, evidence, base, *replays, first), shots[0] if shots else None
+    def stops(first: Search) -> bool:
+        if led_astray(first):
+            return True
+        others.append(asks and is_outdone(first))
+        return others[-1]
+
+    # What is added to a first cause along readings that lead astray only follows these, and beside
+    # a law that another one outdoes it stands for that.
+    first = asked.search(evidence, base, replays[0], stops=stops)
+    outdone = any(others) and not first.interrupted
+    return _Searched(found, evidence, base, *replays, first), shots[0] if shots else None, outdone
 
 
 def _simulated(
@@ -339,12 +367,13 @@ def _simulated(
     session: Session,
     asked: _Asked,
     again: Callable[..., _Searched | None],
+    followed: list[Model],
 ) -> _Searched:
     """The search over windows where readings lead astray: as ``shot`` tells, or at its end."""
     seen, last = look.evidence, look.selection.models[-1]
     cut_short = shot is not None
     if shot is None:
-        shot = fit_simulated_baseline(look.found.plant, session.recordings, seen, last)
+        shot = fit_simulated_baseline(look.found.plant, session.recordings, seen, last, followed)
     if shot is None:
         return look
     phase(_logger, "screening the effects again, with the plant simulated over windows")
@@ -456,41 +485,6 @@ def _tried_along(look: _Searched, asked: _Asked) -> list[Model]:
     if found.interrupted or any(each.solution.interrupted for each in own):
         raise KeyboardInterrupt
     return sorted(own, key=lambda model: model.power)
-
-
-def _restated(
-    told: Diagnosis, conclusion: Conclusion, again: Callable[[Plant], Diagnosis | None]
-) -> Diagnosis:
-    """The diagnosis of the plant with the law that is the better one, where that can be told.
-
-    What is named beside a law that lacks something stands for that. Where the other law is outdone
-    in its turn, neither is right, and what was told of the plant as it was stated stays. So it does
-    where this comes to nothing, and after Ctrl-C.
-    """
-    better, law = conclusion.better[0], told.better_law
-    phase(_logger, "diagnosing again, with law %s", law)
-    plant = replace(conclusion.found.plant, friction=better.statement)
-    ended = replace(told, success=False, message=MESSAGE)
-    try:
-        beside = attempt(f"the diagnosis with {law}", partial(again, plant))
-    except KeyboardInterrupt:
-        return ended
-    if beside is None or isinstance(beside, Failure):
-        return told
-    if not beside.success:
-        return ended
-    if beside.better_law or beside.verdict == "not_testable":
-        return told
-    nothing = beside.verdict == "nothing_missing"
-    return replace(
-        beside,
-        verdict="unexplained" if nothing else beside.verdict,
-        unexplained=(Unexplained(THE_LAW, better.beside),) if nothing else beside.unexplained,
-        sentence=f"{conclusion.law_words} With {law}: {beside.sentence}",
-        laws=told.laws,
-        better_law=law,
-        advice=(*beside.advice, better.advice(followed=True)),
-    )
 
 
 class _Asked(NamedTuple):

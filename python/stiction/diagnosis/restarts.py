@@ -8,13 +8,13 @@ from typing import Final
 from .decide import Trial
 from .model import Model
 from .screen import Score
-from .trials import WORTH_MOVING, Screening
+from .trials import KEPT, WORTH_MOVING, Screening
 
 __all__ = ["from_before", "from_the_first"]
 
 AS_MUCH: Final = 0.5
-"""A candidate that promised this share of what the first one did, and came to less, begins again
-where that has led the plant."""
+"""A candidate that promised this share of what the first one did, and came to less than it
+promised or was refused, begins again where that has led the plant."""
 MOST_AGAIN: Final = 3
 """So many of them."""
 WAVE: Final = "order"
@@ -28,14 +28,19 @@ def from_the_first(
     trials: Sequence[Trial],
     first: Trial,
 ) -> list[Trial]:
-    """Trials, with what promised about as much as the first and came to less begun beside it."""
+    """Trials, with what promised about as much as the first and came to less begun beside it.
+
+    What passes with all that it promised was held by no valley of the base.
+    """
     known = {trial.name: trial for trial in trials}
     enough = AS_MUCH * first.score.score
 
     def is_behind(score: Score) -> bool:
         trial = known.get(score.candidate.name)
         promised = score.testable and score.score >= max(score.threshold, enough)
-        behind = trial is None or (trial.worth < first.worth and not trial.imitates)
+        behind = trial is None or (
+            trial.worth < first.worth and not trial.imitates and not _kept_its_promise(trial)
+        )
         # A wave of any length bends itself to whatever is left; it needs no such help.
         wave = any(shape.scale == WAVE for shape in score.candidate.record.shapes)
         return promised and behind and not wave
@@ -54,6 +59,11 @@ def from_before(
         if score.testable:
             _keep_the_better(known, screening.from_before(base, score))
     return list(known.values())
+
+
+def _kept_its_promise(trial: Trial) -> bool:
+    """Whether a trial passes, and explains what the screening promised."""
+    return not trial.reason and trial.explained >= KEPT * trial.score.score
 
 
 def _keep_the_better(known: dict[str, Trial], again: Trial | None) -> None:

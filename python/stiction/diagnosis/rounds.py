@@ -48,6 +48,7 @@ MOST_EFFECTS: Final = 4
 """Effects added at most: who lacks more than that needs another law."""
 REFITTED: Final = 5
 """Candidates refitted in a round."""
+TOO_LITTLE: Final = "explains too little to count, beside what was found"
 OUTSTANDING: Final = 3.0
 """A candidate that explains this many times what any other does is refitted whatever it does held
 out."""
@@ -252,10 +253,14 @@ def _refitted(
     base = found.models[-1]
     # Of a simulation a signature tells too little for one part to be told from another.
     goes_on = len(found.choices) + 1 < MOST_EFFECTS and not screening.evidence.simulated
+    # What the first round tries is looked at where readings lead astray, however little it is.
+    little = [s for s in passing if not screening.may_count(s)] if found.choices else []
     waiting = []
     for score in [*passing[:REFITTED], *asked]:
         if goes_on and score not in asked and _can_wait(score, base, trials):
             waiting.append(score)
+        elif score in little:
+            continue
         elif not _hopeless(score, trials):
             trials.append(_trial(screening, found, score, trials))
     if waiting and choose(trials) is None:
@@ -269,7 +274,8 @@ def _refitted(
     for score in passing:
         if score.candidate.name not in tried:
             row = found.rows[score.candidate.name]
-            found.rows[row.name] = replace(row, reason="others explain more")
+            why = TOO_LITTLE if score in little else "others explain more"
+            found.rows[row.name] = replace(row, reason=why)
     choice = (
         choose(trials, screening.encompasses)
         or passes_beside(screening, trials)

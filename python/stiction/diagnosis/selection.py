@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from ..catalogue import EffectRecord
 from .choose import Choice
 from .model import Model
 from .result import CandidateRow
+
+if TYPE_CHECKING:
+    from .laws import Rival
 
 __all__ = ["Search"]
 
@@ -41,6 +45,8 @@ class Search:
     interrupted : bool
     lesser : list of (Model, str, Model)
         Models, an effect of each, and the model fitted without it.
+    rivals : list of (Model, Model, Rival)
+        Other laws that were compared, each with the baseline and the last model then.
     """
 
     models: list[Model]
@@ -55,6 +61,7 @@ class Search:
     rests: list[tuple[str, Model]] = field(default_factory=list)
     interrupted: bool = False
     lesser: list[tuple[Model, str, Model]] = field(default_factory=list)
+    rivals: list[tuple[Model, Model, Rival]] = field(default_factory=list)
 
     @property
     def families(self) -> set[str]:

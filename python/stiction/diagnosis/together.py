@@ -72,7 +72,7 @@ def pass_together(
         score
         for score in screening.scores(first.model)
         if score.candidate.name != first.name and promises(score)
-        if stands_out(evidence, score, families | own)
+        if screening.may_count(score) and stands_out(evidence, score, families | own)
     ]
     for score in others[:FEW]:
         second = screening.trial(first.model, score)

@@ -18,7 +18,7 @@ from ..progress import phase
 from ..trajectory import FloatArray
 from ..weak_form import Start, WeakForm
 from .candidates import Candidate
-from .decide import Trial, degeneracy, judge
+from .decide import LEAST_GAIN, MOST_TIMES, Trial, degeneracy, judge
 from .defaults import ALPHA, SMALLEST
 from .evidence import Evidence
 from .model import (
@@ -37,6 +37,7 @@ from .screen import Problem, Score, likelier, screen
 from .signatures import Signatures, gain_at
 
 __all__ = [
+    "KEPT",
     "LESSER",
     "SLIGHT",
     "Screening",
@@ -143,6 +144,18 @@ class Screening:
         self.kept.append((model, scores))
         del self.kept[:-MOST_KEPT]
         return scores
+
+    def may_count(self, score: Score) -> bool:
+        """Whether a candidate may gain what counts, were a refit to come to many times its promise.
+
+        So many times as it may before it is refused for that. What is late or swings comes to more
+        than its slope tells, and what is simulated to anything.
+        """
+        if self.evidence.simulated or self.evidence.loop:
+            return True
+        record = score.candidate.record
+        times = 1.0 / SLIGHT if record.late or record.swings else MOST_TIMES
+        return times * max(score.score, score.heldout) >= LEAST_GAIN
 
     def trial(self, base: Model, score: Score, others: Sequence[Trial] = ()) -> Trial:
         """A candidate refitted together with a model, and judged; in its other form if it fails.
