@@ -9,7 +9,7 @@ from functools import partial
 from .. import catalogue
 from ..catalogue import LawRecord
 from ..errors import InputError
-from ..given import names, whole
+from ..given import brief, names, whole
 from ..progress import phase
 from ..progress import steps as each_step
 from ..wording import commas, did_you_mean
@@ -57,7 +57,8 @@ def compare(
     Raises
     ------
     InputError
-        No sequence of names, an unknown law, fewer than 1000 steps, draws below 0.
+        No sequence of names, an unknown law, fewer than 1000 steps, draws below 0, a progress
+        that cannot be called.
 
     Examples
     --------
@@ -67,6 +68,11 @@ def compare(
     """
     steps = whole(steps, "compare: steps", least=1000)
     draws = whole(draws, "compare: draws", least=0)
+    if progress is not None and not callable(progress):
+        raise InputError(
+            f"compare: progress: {brief(progress)} cannot be called; give a function of the name of "
+            "a law, or None"
+        )
     records = [_record(name) for name in dict.fromkeys(names(laws, "compare: laws"))] or list(
         catalogue.laws()
     )
