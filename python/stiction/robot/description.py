@@ -164,7 +164,7 @@ def _check_axis(joint: ElementTree.Element, urdf: Path) -> None:
     if axis is None or joint.get("type") not in _MOVING:
         return
     text = axis.get("xyz", "1 0 0")
-    numbers = [_parsed(part) for part in text.split()]
+    numbers = [_float(part) for part in text.split()]
     if len(numbers) != 3 or not 0.0 < math.hypot(*numbers) < math.inf:
         raise InputError(
             f"{urdf}: the axis of joint '{joint.get('name', '')}' is '{text}'; give three numbers "
@@ -181,14 +181,14 @@ def _check_inertial(link: ElementTree.Element, urdf: Path) -> None:
         found = inertial.find(tag)
         for key in keys:
             text = "" if found is None else found.get(key, "")
-            if not 0.0 <= _parsed(text) < math.inf:
+            if not 0.0 <= _float(text) < math.inf:
                 raise InputError(
                     f"{urdf}: <{tag}> of link '{link.get('name', '')}' has {key} = '{text}'; give "
                     "a finite number from 0, or leave <inertial> out where nobody knows it"
                 )
 
 
-def _parsed(text: str) -> float:
+def _float(text: str) -> float:
     """A number, NaN where it is none."""
     try:
         return float(text)
@@ -216,12 +216,12 @@ def _limits(joint: ElementTree.Element, kind: str) -> JointLimits:
 
 def _stated(text: str | None) -> float:
     """A limit, 0 where it is none: only plans need it, and say so where it is not there."""
-    value = _parsed(text or "")
+    value = _float(text or "")
     return value if math.isfinite(value) else 0.0
 
 
 def _number(text: str | None, default: float, urdf: Path, joint: str) -> float:
-    value = default if text is None else _parsed(text)
+    value = default if text is None else _float(text)
     if not math.isfinite(value):
         raise InputError(f"{urdf}: <mimic> of joint '{joint}' has '{text}' for a number")
     return value
