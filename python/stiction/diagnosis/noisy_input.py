@@ -14,7 +14,7 @@ from .model import Model
 from .noise import input_noise
 from .screen import NULL_TIMES
 
-__all__ = ["doubt_by_averaging"]
+__all__ = ["doubt_by_input_noise"]
 
 DRAWS: Final = 3
 """Of the noise: their mean scattered by some hundredths of itself."""
@@ -22,7 +22,7 @@ DRAWS: Final = 3
 _logger = logging.getLogger(__name__)
 
 
-def doubt_by_averaging(base: Model, model: Model, name: str, gain: float) -> str:
+def doubt_by_input_noise(base: Model, model: Model, name: str, gain: float) -> str:
     """Why a held-out gain of what comes late may be one of noise, "" where it is more.
 
     An input that comes late by a part of a sample is in each sample a mean of two that were logged,
