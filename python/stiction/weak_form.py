@@ -303,6 +303,14 @@ class WeakForm:
         other.acceleration = other.accelerations(readings, other.position)
         return other
 
+    def with_input(self, given: FloatArray) -> Self:
+        """The same recording with another input, shape (rows - 1,), held over each sample."""
+        other = copy(self)
+        for name in ("motion", "_otherwise", "_led"):
+            other.__dict__.pop(name, None)
+        other.input = given
+        return other
+
     def own(self, plant: Plant) -> Plant:
         """The plant as it was set for this recording."""
         return plant.under(self.settings)
@@ -475,7 +483,14 @@ class WeakForm:
             late = self._driven(plant, before) - self._driven(plant, self.input)
             return self._mean(_centred(late)) / self.dt
         gain = 1.0 if self.prescribed else plant.gain
-        rate = np.gradient(self.effort, self.dt)[1:]
+        # A measured effort belongs to its stamp. Of a held one the mean of two samples does, and
+        # its slope is their difference: any other one goes with the noise of that mean, and noise
+        # of the log alone would look like an offset.
+        rate = (
+            np.gradient(self.effort, self.dt)[1:]
+            if self.prescribed
+            else np.diff(self.effort) / self.dt
+        )
         limit = float(plant.drive.get("limit", np.inf))
         if not self.prescribed and np.isfinite(limit):
             rate = np.where(np.abs(self.effort[1:]) < limit, rate, 0.0)

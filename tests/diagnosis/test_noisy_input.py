@@ -8,7 +8,7 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.coulomb_reference import simulate_coulomb
 from tests.reference.session_reference import make_session
 
-from stiction import Diagnosis, Plant, Recording, Session, diagnose
+from stiction import Diagnosis, Plant, Recording, Session, diagnose, fit
 
 DT = 1e-3
 ROWS = 15_000
@@ -61,3 +61,41 @@ def test_an_answer_that_comes_late_is_still_told(acts: bool) -> None:
 def test_a_machine_that_rests_under_a_noisy_log_lacks_nothing(seed: int) -> None:
     made = make_session(seed=seed, base="maxwell_slip", log_noise=0.02)
     assert diagnose(as_plant(made), as_session(made)).verdict == "nothing_missing"
+
+
+ROW, FINE = 5e-3, 1e-3
+"""s: of the log, whose inputs are held, and of the simulation."""
+
+
+def logged(noise: float, late: int) -> Session:
+    """A machine at 200 rows a second with noise of its log, late by so many fifths of a row."""
+    every, time = round(ROW / FINE), np.arange(2_000) * ROW
+    recordings = []
+    for k in range(3):
+        source = np.random.default_rng([11, k])
+        phases = source.uniform(0.0, 6.0, 4)
+        waves = zip((2.0, 2.0, 3.0, 2.0), (0.9, 2.3, 5.1, 11.0), phases, strict=True)
+        asked = sum(size * np.sin(w * (1.0 + 0.1 * k) * time + p) for size, w, p in waves)
+        held = np.repeat(asked, every)
+        acted = np.concatenate([np.full(late, held[0]), held[: len(held) - late]])
+        friction = {"coulomb": 2.0, "breakaway": 2.0, "viscous": 2.0}
+        run = simulate_coulomb(acted[:-1], FINE, inertia=0.25, **friction)
+        position = np.concatenate([[0.0], run["position"]])[::every]
+        white = noise * source.standard_normal(len(time))
+        recordings.append(Recording(time, asked + white, np.round(position / COUNT) * COUNT))
+    return Session(recordings)
+
+
+PLANT = Plant.from_dict({"drive": {"input": "torque_nm"}, "friction": {"law": "coulomb"}})
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.3])
+def test_noise_of_the_log_is_no_offset_of_timing(noise: float) -> None:
+    # A slope half a row beside the input that it belongs to had -1.6 ms.
+    assert fit(PLANT, logged(noise, late=0)).timing_offset == pytest.approx(0.0, abs=4e-4)
+
+
+def test_what_comes_late_by_less_than_a_row_is_told_from_noise_of_the_log() -> None:
+    assert diagnose(PLANT, logged(0.3, late=0)).verdict == "nothing_missing"
+    late = diagnose(PLANT, logged(0.12, late=2))
+    assert [each.name for each in late.effects] == ["current_loop_lag"]

@@ -116,6 +116,13 @@ def test_what_cannot_be_read_is_one_sentence(folder: Path, old: str, new: str, t
             URDF.replace('<axis xyz="0 0 1"/>', '<mimic joint="turn" multiplier="x"/>', 2),
             "has 'x' for a number",
         ),
+        (URDF.replace('value="1"', 'value="nan"'), "<mass> of link 'b' has value = 'nan'"),
+        (URDF.replace('iyy="1"', 'iyy="-1"'), "<inertia> of link 'b' has iyy = '-1'"),
+        (URDF.replace('xyz="0 0 1"', 'xyz="0 0 0"', 1), "axis of joint 'turn' is '0 0 0'"),
+        (URDF.replace('child link="c"', 'child link="d"'), "is link 'd', which the file does not"),
+        (URDF.replace('child link="c"', 'child link="b"'), "'b' hangs on two joints"),
+        (URDF.replace('parent link="a"', 'parent link="c"'), "hangs on itself"),
+        (URDF.replace('name="slide"', 'name="turn"'), "has joint 'turn' twice"),
     ],
 )
 def test_a_urdf_that_is_none_is_refused(folder: Path, text: str, told: str) -> None:

@@ -32,6 +32,7 @@ from .model import (
     with_last_free,
     without_effect,
 )
+from .noisy_input import doubt_by_input_noise
 from .noisy_motion import doubt_by_noise
 from .screen import Problem, Score, likelier, screen
 from .signatures import Signatures, gain_at
@@ -196,6 +197,7 @@ class Screening:
         reason = (
             trial.reason
             or _too_good(self.evidence, model)
+            or doubt_by_input_noise(base, model, trial.name, trial.gain)
             or doubt_by_noise(base, model, trial.name, trial.gain)
         )
         return replace(trial, reason=reason)

@@ -110,6 +110,12 @@ class Rows:
         other.mask = mask
         return other
 
+    def with_input(self, given: FloatArray) -> Rows:
+        """The same of a recording with another input; see ``WeakForm.with_input``."""
+        other = copy(self)
+        other.form = self.form.with_input(given)
+        return other
+
     def with_leader(self, nuisances: Nuisances) -> Rows:
         """The same with windows that begin as they did for a plant with these nuisances."""
         other = copy(self)

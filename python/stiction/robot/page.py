@@ -122,10 +122,13 @@ def _links(diagnosis: RobotDiagnosis) -> list[dict[str, str]]:
             "viscous": digits(float(friction[0])),
             "coulomb": digits(float(friction[1])),
             "bias": digits(float(friction[2])),
+            "by_load": digits(float(grows)),
             "rotor": digits(float(rotor)),
             "left": digits(float(left)),
         }
-        for friction, rotor, left in zip(arm.friction, arm.rotors, arm.left, strict=True)
+        for friction, grows, rotor, left in zip(
+            arm.friction, arm.by_load, arm.rotors, arm.left, strict=True
+        )
     ]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -18,7 +18,7 @@ from .motion import JointMotion
 __all__ = ["PLAIN", "ArmFit", "Rows", "fit_arm", "rows_of"]
 
 PLAIN: Final = ("viscous", "coulomb", "bias")
-"""Friction of a joint beside which its structure is measured."""
+"""Friction of a joint beside which its structure is measured, and its links are first fitted."""
 STANDS: Final = 0.02
 """Share of a joint's usual speed below which nothing tells which way its friction acts."""
 RANK: Final = 1e-4
@@ -37,8 +37,8 @@ class Rows:
     links : numpy.ndarray, shape (joints, n, links · 10)
     rotor : numpy.ndarray, shape (n, joints)
         Its acceleration.
-    friction : numpy.ndarray, shape (joints, n, 3)
-        Velocity, direction and 1.
+    friction : numpy.ndarray, shape (joints, n, 3 or 4)
+        Velocity, direction and 1; then what the gear transmits, to either side, in that direction.
     effort : numpy.ndarray, shape (n, joints)
     used : numpy.ndarray of bool, shape (n, joints)
         Where the joint moves, and the row may be fitted to.
@@ -52,6 +52,20 @@ class Rows:
     effort: FloatArray
     used: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
     payload: float
+
+    def under_load(self, motion: JointMotion, transmitted: FloatArray) -> Rows:
+        """The same with friction that may grow with what the gears transmit.
+
+        Parameters
+        ----------
+        motion : JointMotion
+            That the rows were made of.
+        transmitted : numpy.ndarray, shape (n, joints)
+            On its even stamps.
+        """
+        grows = motion.filter(np.abs(transmitted) * np.sign(motion.velocity))
+        plain = self.friction[:, :, : len(PLAIN)]
+        return replace(self, friction=np.concatenate([plain, grows.T[:, :, None]], axis=2))
 
 
 @dataclass(frozen=True)
@@ -68,6 +82,8 @@ class ArmFit:
         kg·m² or kg on the joint's side.
     friction : numpy.ndarray, shape (joints, 3)
         Viscous, Coulomb and bias.
+    by_load : numpy.ndarray, shape (joints,)
+        Friction per effort that the gear transmits; 0 where it was not fitted.
     left : numpy.ndarray, shape (joints,)
         rms of what each joint leaves, N·m or N.
     base : int
@@ -82,6 +98,7 @@ class ArmFit:
     payloads: Mapping[float, FloatArray]
     rotors: FloatArray
     friction: FloatArray
+    by_load: FloatArray
     left: FloatArray
     base: int
     impossible: tuple[int, ...]
@@ -163,7 +180,8 @@ def fit_arm(arm: Arm, rows: Sequence[Rows]) -> ArmFit:
     never = [name for name, (left, _) in zip(arm.names, systems, strict=True) if len(left) < 50]
     if never:
         raise NotEnoughData(f"{commas(never)} moves in no row that is fitted to")
-    own = systems[0][0].shape[1] - 3 * joints
+    kinds = rows[0].friction.shape[-1]
+    own = systems[0][0].shape[1] - kinds * joints
     known = np.concatenate([feasible(arm.prior), *(_hanging(mass) for mass in payloads)])
     begin = np.concatenate([known, np.full(joints, _rotor(arm))])
     weights = np.ones(joints)
@@ -189,7 +207,7 @@ def fit_arm(arm: Arm, rows: Sequence[Rows]) -> ArmFit:
         weights = 1.0 / np.maximum(left_over, 1e-12)
         if settled:
             break
-    links = len(arm.prior)
+    links, friction = len(arm.prior), whole[own:].reshape(joints, kinds)
     least = float(np.sum((left @ np.concatenate([free, back(free)]) - right) ** 2))
     spent = float(np.sum((left @ whole - right) ** 2))
     return ArmFit(
@@ -199,7 +217,8 @@ def fit_arm(arm: Arm, rows: Sequence[Rows]) -> ArmFit:
             for k, mass in enumerate(payloads)
         },
         found[own - joints :],
-        whole[own:].reshape(joints, 3),
+        friction[:, : len(PLAIN)],
+        friction[:, len(PLAIN)] if kinds > len(PLAIN) else np.zeros(joints),
         left_over,
         len(place),
         tuple(k for k, fine in enumerate(exist(free[: own - joints])) if not fine),
@@ -250,8 +269,9 @@ def _system(
                 hangs[:, PER_LINK * k : PER_LINK * (k + 1)] = links[:, last]
         rotor = np.zeros((len(links), joints))
         rotor[:, joint] = one.rotor[used, joint]
-        friction = np.zeros((len(links), 3 * joints))
-        friction[:, 3 * joint : 3 * joint + 3] = one.friction[joint, used]
+        kinds = one.friction.shape[-1]
+        friction = np.zeros((len(links), kinds * joints))
+        friction[:, kinds * joint : kinds * (joint + 1)] = one.friction[joint, used]
         parts.append(np.hstack([links, hangs, rotor, friction]))
         efforts.append(one.effort[used, joint])
     return np.vstack(parts), np.concatenate(efforts)

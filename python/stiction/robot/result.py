@@ -168,7 +168,7 @@ class RobotDiagnosis:
     def _links(self) -> dict[str, Any]:
         arm = self.fit.arm
         names = self.fit.session.robot.names
-        plain = zip(names, arm.friction, arm.rotors, arm.left, strict=True)
+        plain = zip(names, arm.friction, arm.by_load, arm.rotors, arm.left, strict=True)
         return {
             "base_parameters": arm.base,
             "could_not_exist": len(arm.impossible),
@@ -184,10 +184,11 @@ class RobotDiagnosis:
                     "viscous": float(friction[0]),
                     "coulomb": float(friction[1]),
                     "bias": float(friction[2]),
+                    "by_load": float(grows),
                     "rotor_inertia": float(rotor),
                     "left_rms": float(left),
                 }
-                for name, friction, rotor, left in plain
+                for name, friction, grows, rotor, left in plain
             ],
         }
 
