@@ -70,8 +70,8 @@ def compare(
     draws = whole(draws, "compare: draws", least=0)
     if progress is not None and not callable(progress):
         raise InputError(
-            f"compare: progress: {brief(progress)} cannot be called; give a function of the name of "
-            "a law, or None"
+            f"compare: progress: {brief(progress)} cannot be called; give a function of the name "
+            "of a law, or None"
         )
     records = [_record(name) for name in dict.fromkeys(names(laws, "compare: laws"))] or list(
         catalogue.laws()

@@ -7,13 +7,12 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 
 from .. import __version__, given
 from ..errors import InputError, NotEnoughData
-from ..fitting.forms import residual_sentence
 from ..given import instance, share, whole
 from ..keywords import explain_keywords
 from ..plant import Plant
@@ -32,23 +31,21 @@ from ..workers import with_workers
 from .advice import advise
 from .base import (
     fit_baseline,
-    fit_baseline_over_windows,
     fit_joint_baseline,
     fit_simulated_baseline,
     fit_wider_baseline,
 )
-from .block_gains import heldout_gain
-from .bursts import left_throughout
 from .candidates import excluded_names
-from .conclude import TOLD_BY, Conclusion, base_alone, surrogates_of
+from .conclude import Conclusion, base_alone
 from .defaults import ALPHA, SMALLEST, SURROGATES
 from .evidence import Evidence
 from .laws import law_names
-from .model import Known, Model, fit_model
+from .model import Known, Model
 from .noise import Noise
+from .otherwise import look_otherwise
 from .restated import diagnose_again_at_the_end, diagnose_again_early, is_outdone
 from .result import Diagnosis
-from .rounds import search
+from .searched import Asked, Searched, replay_base, search_again
 from .seconds import acts_for_seconds, holds_more, tried_names, with_rows_of
 from .selection import Search
 from .verdict import all_blind
@@ -57,12 +54,6 @@ __all__ = ["diagnose"]
 
 MOST_SURROGATES: Final = 1000
 """They are all kept; a threshold has settled long before."""
-
-TRAIN_IS_FITTED: Final = (
-    "Parameters are fitted to the rows of train alone; stiction fit takes those of select as well "
-    "and may end at values a little different."
-)
-"""Where a fit of the same session and the base differ; everything else they do alike."""
 
 NOT_DRIVEN: Final = (
     "The data cannot be used: input is 0 in every row of all recordings, so that no effort is "
@@ -140,7 +131,7 @@ def diagnose(
     alpha = share(alpha, "alpha")
     seed = whole(seed, "seed", least=0)
     threads = None if threads is None else whole(threads, "threads", least=1)
-    asked = _Asked(
+    asked = Asked(
         without=excluded_names(_names("without", without)),
         laws=law_names(_names("laws", laws), machine.friction.law),
         surrogates=surrogates,
@@ -240,7 +231,7 @@ def _is_driven(recording: Recording) -> bool:
 def _testable(
     found: Diagnosis,
     session: Session,
-    asked: _Asked,
+    asked: Asked,
     checks: Sequence[tuple[str, Check]],
     *,
     restated: bool = False,
@@ -250,13 +241,13 @@ def _testable(
     number = plural(len(session), "recording")
     phase(_logger, "looking through %s and fitting the base", number)
     evidence, base = fit_baseline(found.plant, session.recordings)
-    found, replays = _replayed(found, evidence, base, asked.surrogates)
+    found, replays = replay_base(found, evidence, base, asked.surrogates)
     if replays is None:
         return base_alone(found, evidence, base)
     phase(_logger, "screening the effects")
-    again = partial(_again, asked=asked)
+    again = partial(search_again, asked=asked)
 
-    def concluded(look: _Searched, *, outdone: bool = False) -> Conclusion:
+    def concluded(look: Searched, *, outdone: bool = False) -> Conclusion:
         return Conclusion(
             look.found,
             session,
@@ -311,12 +302,12 @@ def _testable(
         joined = fit_joint_baseline(found.plant, session.recordings, look.evidence)
         before = look.selection
         others = asked._replace(without=(*asked.without, *tried_names(before)))
-        second = joined and _again(look, joined, asked=others)
+        second = joined and search_again(look, joined, asked=others)
         if second and holds_more(second.selection, before):
             look = second._replace(selection=with_rows_of(second.selection, before))
 
     # Every decision is taken: now, and once, the rows that test.
-    conclusion = _seen_otherwise(concluded(look), look, asked, again, concluded)
+    conclusion = look_otherwise(concluded(look), look, asked, again, concluded)
     told = conclusion.diagnosis()
     if restated or not told.better_law or not told.success:
         return told
@@ -329,11 +320,11 @@ def _first_look(
     base: Model,
     replays: tuple[FloatArray, Mapping[int, Noise]],
     session: Session,
-    asked: _Asked,
+    asked: Asked,
     *,
     followed: list[Model],
     asks: bool,
-) -> tuple[_Searched, _Shot | None, bool]:
+) -> tuple[Searched, _Shot | None, bool]:
     """The first search, over which windows to make it again where readings lead astray, or else
     whether another law leaves so little beside the first cause that it is to be made with that;
     the last only where it ``asks``."""
@@ -358,17 +349,17 @@ def _first_look(
     # a law that another one outdoes it stands for that.
     first = asked.search(evidence, base, replays[0], stops=stops)
     outdone = any(others) and not first.interrupted
-    return _Searched(found, evidence, base, *replays, first), shots[0] if shots else None, outdone
+    return Searched(found, evidence, base, *replays, first), shots[0] if shots else None, outdone
 
 
 def _simulated(
-    look: _Searched,
+    look: Searched,
     shot: _Shot | None,
     session: Session,
-    asked: _Asked,
-    again: Callable[..., _Searched | None],
+    asked: Asked,
+    again: Callable[..., Searched | None],
     followed: list[Model],
-) -> _Searched:
+) -> Searched:
     """The search over windows where readings lead astray: as ``shot`` tells, or at its end."""
     seen, last = look.evidence, look.selection.models[-1]
     cut_short = shot is not None
@@ -385,185 +376,3 @@ def _simulated(
         return look
     # Few windows may show nothing of any effect: that takes no name away.
     return look._replace(selection=asked.search(seen, look.base, look.null))
-
-
-def _seen_otherwise(
-    first: Conclusion,
-    look: _Searched,
-    asked: _Asked,
-    again: Callable[..., _Searched | None],
-    concluded: Callable[[_Searched], Conclusion],
-) -> Conclusion:
-    """What is concluded, or what the other residual concludes where that leaves nothing.
-
-    Readings that lead a rigid contact astray leave what has no name, at single moments most of all:
-    where the plant, simulated, follows the motion within its noise, nothing else was missing. What
-    is left throughout is none of their making, and may be too fast for a simulation to show it: so
-    are readings asked where a simulation from the first knows no cause. And slopes beside a base
-    that has bent itself may show nothing of a cause that readings show.
-    """
-    if first.interrupted or look.evidence.loop or not look.found.plant.friction.sticks:
-        return first
-    try:
-        if not first.unsaid:
-            simulated = look.evidence.simulated
-            return _seen_along(first, look, asked, concluded) if simulated else first
-        plant, recordings = look.found.plant, look.evidence.recordings
-        seen: tuple[Evidence, Model] | None = (look.evidence, look.base)
-        if look.evidence.simulated:
-            earlier: Sequence[Known | Model] = _tried_along(look, asked)
-            seen = seen if earlier else None
-        else:
-            # What was found last stands where all others have led the plant.
-            earlier = [*look.selection.models[:0:-1], *look.selection.tried]
-            final = first.valid_selection.models[-1]
-            seen = fit_baseline_over_windows(plant, recordings, look.evidence, final)
-        if seen is None:
-            return first
-        phase(_logger, "screening the effects again, with the plant simulated over windows")
-        other = again(look, seen, earlier=earlier)
-        if other is None or all_blind(other.selection):
-            return first
-        second = concluded(other)
-        if second.interrupted or second.unsaid:
-            return first
-        # Windows average away what is over within a seventh of a second.
-        nothing = other.evidence.simulated and not second.valid_selection.choices
-        return first if nothing and first.lacks_throughout else second
-    except KeyboardInterrupt:
-        first.interrupted = first.brief = True
-        return first
-
-
-def _seen_along(
-    first: Conclusion,
-    look: _Searched,
-    asked: _Asked,
-    concluded: Callable[[_Searched], Conclusion],
-) -> Conclusion:
-    """What readings conclude where windows know no cause, or the same one; else the first.
-
-    What is over within a seventh of a second hardly shows over windows. Along the readings it does,
-    and where these lead astray so do their surrogates: more than they make is left throughout. A
-    cause that both show is judged where it explains most.
-    """
-    try:
-        evidence, base = fit_baseline(look.found.plant, look.evidence.recordings, windows=False)
-    except InputError:
-        return first
-    if base.solution.interrupted:
-        raise KeyboardInterrupt
-    few, _ = surrogates_of(evidence, base, min(TOLD_BY, asked.surrogates), look.found.seed)
-    if not left_throughout(base.residual, few):
-        return first
-    phase(_logger, "screening the effects again, along the readings")
-    other = _again(look, (evidence, base), asked=asked)
-    if other is None:
-        raise KeyboardInterrupt
-    second = concluded(other)
-    if second.interrupted:
-        return first
-    known, seen = first.valid_selection, second.valid_selection
-    if not known.choices:
-        return second
-    alike = [c.winner.name for c in known.choices] == [c.winner.name for c in seen.choices]
-    gains = [heldout_gain(each.models[0], each.models[-1])[0] for each in (known, seen)]
-    return second if alike and gains[1] > gains[0] else first
-
-
-def _tried_along(look: _Searched, asked: _Asked) -> list[Model]:
-    """Models with a cause each that was tried along the readings, as a simulation has them."""
-    try:
-        evidence, base = fit_baseline(look.found.plant, look.evidence.recordings, windows=False)
-        _, replays = _replayed(look.found, evidence, base, asked.surrogates)
-        if replays is None:
-            raise KeyboardInterrupt
-        found = asked.search(evidence, base, replays[0], stops=lambda _: True)
-        own = [fit_model(look.evidence, each.plant, each.nuisances) for each in found.tried]
-    except InputError:
-        return []
-    if found.interrupted or any(each.solution.interrupted for each in own):
-        raise KeyboardInterrupt
-    return sorted(own, key=lambda model: model.power)
-
-
-class _Asked(NamedTuple):
-    """What a diagnosis is to look for."""
-
-    without: Sequence[str]
-    """Effects that are not tried."""
-    laws: Sequence[str]
-    """Others to compare."""
-    surrogates: int
-    smallest: float
-    alpha: float
-
-    def search(
-        self,
-        evidence: Evidence,
-        base: Model,
-        null: FloatArray,
-        earlier: Sequence[Known | Model] = (),
-        stops: Callable[[Search], bool] | None = None,
-    ) -> Search:
-        """The search for effects beside a base, after an earlier one; see ``search``."""
-        return search(
-            evidence,
-            base,
-            null,
-            without=self.without,
-            smallest=self.smallest,
-            alpha=self.alpha,
-            earlier=earlier,
-            stops=stops,
-        )
-
-
-class _Searched(NamedTuple):
-    """A search for effects, and what it was made with."""
-
-    found: Diagnosis
-    evidence: Evidence
-    base: Model
-    null: FloatArray
-    noises: Mapping[int, Noise]
-    selection: Search
-
-
-def _again(
-    look: _Searched,
-    seen: tuple[Evidence, Model],
-    *,
-    asked: _Asked,
-    earlier: Sequence[Known | Model] = (),
-) -> _Searched | None:
-    """The same search with another base; None after Ctrl-C: what was found is the best so far."""
-    found, replays = _replayed(look.found, *seen, asked.surrogates)
-    selection = None if replays is None else asked.search(*seen, replays[0], earlier)
-    if replays is None or selection is None or selection.interrupted:
-        look.selection.interrupted = True
-        return None
-    return _Searched(found, *seen, *replays, selection)
-
-
-def _replayed(
-    found: Diagnosis, evidence: Evidence, base: Model, surrogates: int
-) -> tuple[Diagnosis, tuple[FloatArray, Mapping[int, Noise]] | None]:
-    """What is known with a base, and what noise would leave of it; None where Ctrl-C ended it."""
-    dealt = evidence.split.to_dict()
-    told = [TRAIN_IS_FITTED] if evidence.split.select else []
-    dealt["rules"] = [*dealt["rules"], *told]
-    data = {
-        **found.data,
-        "split": dealt,
-        "residual": residual_sentence([rows.form for rows in evidence.shown], base.plant),
-    }
-    words = "\n".join([evidence.split.describe(), *told])
-    found = replace(found, split=words, data=data)
-    try:
-        if base.solution.interrupted:
-            raise KeyboardInterrupt
-        phase(_logger, "replaying it with noise, %d times", surrogates)
-        return found, surrogates_of(evidence, base, surrogates, found.seed)
-    except KeyboardInterrupt:
-        return found, None
