@@ -200,6 +200,17 @@ def test_a_sensor_that_freezes_and_jumps_is_stuck() -> None:
     assert verdict(data, "stuck channel") == "note"
 
 
+@pytest.mark.parametrize("flickers", [[700], [700, 1400], [0], [1999]])
+def test_a_machine_that_rests_but_for_single_readings_is_looked_at(flickers: list[int]) -> None:
+    # Without its spikes such a record has no step at all.
+    source = np.random.default_rng(3)
+    position = np.zeros(2000)
+    position[flickers] = 1e-3
+    effort = 0.01 * source.standard_normal(2000)
+    resting = Recording(np.arange(2000) * 1e-3, input=effort, position=position)
+    assert [c.name for c in check(resting) if c.verdict == "fault"] == []
+
+
 def test_a_sensor_that_freezes_under_efforts_that_move_the_machine_is_stuck() -> None:
     data = machine()
     swings = np.sin(9.0 * data["time"])

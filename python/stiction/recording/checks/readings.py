@@ -294,6 +294,9 @@ def _frozen(values: FloatArray, fewest: int, jump: float, at_end: int) -> tuple[
     steps = np.diff(values)
     size = np.abs(steps)
     fast = np.flatnonzero(size)
+    # Where single readings alone differ nothing moved.
+    if len(fast) == 0:
+        return 0, 0
     usual = float(np.quantile(size[fast], 0.99))
     before, after = fast[:-1], fast[1:]
     least = max(jump * usual, 5.0 * count_of(values))
