@@ -8,7 +8,7 @@ from tests.blind.plants import PLANTS
 
 import stiction as st
 from stiction.cli.sessions import load_session
-from stiction.diagnosis.bursts import left_throughout
+from stiction.diagnosis.bursts import left_again_and_again
 
 
 def told(seed, folder, number=150):
@@ -43,11 +43,18 @@ def test_windows_that_come_first_do_not_hide_a_shaft_that_rings(tmp_path):
     assert found.effects[0].decided
 
 
-def test_single_moments_are_not_throughout():
+def test_single_moments_are_not_again_and_again():
     source = np.random.default_rng(1)
     null = source.standard_normal((2000, 20))
     noise = source.standard_normal(2000)
-    assert not left_throughout(noise, null)
+    block = np.repeat(np.arange(20), 100)
+    assert not left_again_and_again(noise, null, block)
     noise[700:760] += 40.0
-    assert not left_throughout(noise, null)
-    assert left_throughout(2.5 * source.standard_normal(2000), null)
+    assert not left_again_and_again(noise, null, block)
+    # Twice in twenty seconds as well; a ring after every other step is something else.
+    noise[1300:1330] += 10.0
+    assert not left_again_and_again(noise, null, block)
+    for start in range(0, 2000, 200):
+        noise[start : start + 5] += 12.0
+    assert left_again_and_again(noise, null, block)
+    assert left_again_and_again(3.0 * source.standard_normal(2000), null, block)

@@ -9,7 +9,7 @@ from ..errors import InputError
 from ..progress import phase
 from .base import fit_baseline, fit_baseline_over_windows
 from .block_gains import heldout_gain
-from .bursts import left_throughout
+from .bursts import left_again_and_again
 from .conclude import TOLD_BY, Conclusion, surrogates_of
 from .evidence import Evidence
 from .model import Known, Model, fit_model
@@ -32,7 +32,7 @@ def look_otherwise(
 
     Readings that lead a rigid contact astray leave what has no name, at single moments most of all:
     where the plant, simulated, follows the motion within its noise, nothing else was missing. What
-    is left throughout is none of their making, and may be too fast for a simulation to show it: so
+    is left again and again is none of their making, and may be too fast for a simulation to show it: so
     are readings asked where a simulation from the first knows no cause. And slopes beside a base
     that has bent itself may show nothing of a cause that readings show.
     """
@@ -63,7 +63,7 @@ def look_otherwise(
             return first
         # Windows average away what is over within a seventh of a second.
         nothing = other.evidence.simulated and not second.valid_selection.choices
-        return first if nothing and first.lacks_throughout else second
+        return first if nothing and first.lacks_again_and_again else second
     except KeyboardInterrupt:
         first.interrupted = first.brief = True
         return first
@@ -78,8 +78,9 @@ def _seen_along(
     """What readings conclude where windows know no cause, or the same one; else the first.
 
     What is over within a seventh of a second hardly shows over windows. Along the readings it does,
-    and where these lead astray so do their surrogates: more than they make is left throughout. A
-    cause that both show is judged where it explains most.
+    and where these lead astray they lead their surrogates astray as well: what is left again and
+    again beyond those is none of their making. A cause that both show is judged where it explains
+    most.
     """
     try:
         evidence, base = fit_baseline(look.found.plant, look.evidence.recordings, windows=False)
@@ -88,7 +89,7 @@ def _seen_along(
     if base.solution.interrupted:
         raise KeyboardInterrupt
     few, _ = surrogates_of(evidence, base, min(TOLD_BY, asked.surrogates), look.found.seed)
-    if not left_throughout(base.residual, few):
+    if not left_again_and_again(base.residual, few, evidence.cells.block):
         return first
     phase(_logger, "screening the effects again, along the readings")
     other = search_again(look, (evidence, base), asked=asked)
