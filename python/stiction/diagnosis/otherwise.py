@@ -32,9 +32,9 @@ def look_otherwise(
 
     Readings that lead a rigid contact astray leave what has no name, at single moments most of all:
     where the plant, simulated, follows the motion within its noise, nothing else was missing. What
-    is left again and again is none of their making, and may be too fast for a simulation to show it: so
-    are readings asked where a simulation from the first knows no cause. And slopes beside a base
-    that has bent itself may show nothing of a cause that readings show.
+    is left again and again is none of their making, and may be too fast for a simulation to show
+    it: so are readings asked where a simulation from the first knows no cause. And slopes beside a
+    base that has bent itself may show nothing of a cause that readings show.
     """
     if first.interrupted or look.evidence.loop or not look.found.plant.friction.sticks:
         return first
