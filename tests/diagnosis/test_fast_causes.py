@@ -8,7 +8,7 @@ from tests.blind.plants import PLANTS
 
 import stiction as st
 from stiction.cli.sessions import load_session
-from stiction.diagnosis.bursts import left_again_and_again
+from stiction.diagnosis.bursts import recurs
 
 
 def told(seed, folder, number=150):
@@ -48,13 +48,13 @@ def test_single_moments_are_not_again_and_again():
     null = source.standard_normal((2000, 20))
     noise = source.standard_normal(2000)
     block = np.repeat(np.arange(20), 100)
-    assert not left_again_and_again(noise, null, block)
+    assert not recurs(noise, null, block)
     noise[700:760] += 40.0
-    assert not left_again_and_again(noise, null, block)
+    assert not recurs(noise, null, block)
     # Twice in twenty seconds as well; a ring after every other step is something else.
     noise[1300:1330] += 10.0
-    assert not left_again_and_again(noise, null, block)
+    assert not recurs(noise, null, block)
     for start in range(0, 2000, 200):
         noise[start : start + 5] += 12.0
-    assert left_again_and_again(noise, null, block)
-    assert left_again_and_again(3.0 * source.standard_normal(2000), null, block)
+    assert recurs(noise, null, block)
+    assert recurs(3.0 * source.standard_normal(2000), null, block)

@@ -16,7 +16,7 @@ from .passing import MOMENTS
 from .result import Advice
 from .view import LEAST_SIZE, View
 
-__all__ = ["Burst", "at_moments", "burst_of", "bursts", "left_again_and_again"]
+__all__ = ["Burst", "at_moments", "burst_of", "bursts", "recurs"]
 
 WINDOW_S: Final = 0.2
 """Length of the windows in which single moments are looked for."""
@@ -89,7 +89,7 @@ def at_moments(evidence: Evidence, model: Model, null: FloatArray) -> bool:
     return few and outstanding > MOST_OF_IT * excess > 0.0
 
 
-def left_again_and_again(residual: FloatArray, null: FloatArray, block: np.ndarray) -> bool:
+def recurs(residual: FloatArray, null: FloatArray, block: np.ndarray) -> bool:
     """Whether more than noise is left, and not in single moments alone.
 
     What readings make of a rigid contact they make of surrogates at the same moments.

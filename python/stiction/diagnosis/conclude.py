@@ -18,7 +18,7 @@ from ..session import Session
 from ..trajectory import FloatArray
 from .advice import advise
 from .bets import Bets, bets_of
-from .bursts import Burst, burst_of, left_again_and_again
+from .bursts import Burst, burst_of, recurs
 from .candidates import scales_of
 from .ceiling import Ceiling, ceiling_of
 from .confirm import (
@@ -200,11 +200,11 @@ class Conclusion:
         )
 
     @property
-    def lacks_again_and_again(self) -> bool:
+    def lacks_what_recurs(self) -> bool:
         """Whether more than noise is left, and not in single moments alone."""
         final = self.valid_selection.models[-1]
         null, block = self._replays(final)[0], self.evidence.cells.block
-        return left_again_and_again(final.residual, null, block)
+        return recurs(final.residual, null, block)
 
     @cached_property
     def rivals(self) -> Sequence[Rival]:

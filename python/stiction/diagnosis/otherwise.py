@@ -9,7 +9,7 @@ from ..errors import InputError
 from ..progress import phase
 from .base import fit_baseline, fit_baseline_over_windows
 from .block_gains import heldout_gain
-from .bursts import left_again_and_again
+from .bursts import recurs
 from .conclude import TOLD_BY, Conclusion, surrogates_of
 from .evidence import Evidence
 from .model import Known, Model, fit_model
@@ -63,7 +63,7 @@ def look_otherwise(
             return first
         # Windows average away what is over within a seventh of a second.
         nothing = other.evidence.simulated and not second.valid_selection.choices
-        return first if nothing and first.lacks_again_and_again else second
+        return first if nothing and first.lacks_what_recurs else second
     except KeyboardInterrupt:
         first.interrupted = first.brief = True
         return first
@@ -89,7 +89,7 @@ def _seen_along(
     if base.solution.interrupted:
         raise KeyboardInterrupt
     few, _ = surrogates_of(evidence, base, min(TOLD_BY, asked.surrogates), look.found.seed)
-    if not left_again_and_again(base.residual, few, evidence.cells.block):
+    if not recurs(base.residual, few, evidence.cells.block):
         return first
     phase(_logger, "screening the effects again, along the readings")
     other = search_again(look, (evidence, base), asked=asked)
