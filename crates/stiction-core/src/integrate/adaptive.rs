@@ -164,7 +164,8 @@ impl Adaptive {
                 continue;
             }
             let counts = machine.counts_work();
-            let work = counts.then(|| Work::begin(machine, swing.run, (input, load), 0.0));
+            let work = counts
+                .then(|| Work::begin(machine, swing.run, (input, load), (0.0, f64::INFINITY)));
             let passed = self.step(&mut swing, law, state, left, &mut stalled);
             if let Some(mut work) = work {
                 work.rough = machine.roughness(law.greatest_stiffness(), passed);

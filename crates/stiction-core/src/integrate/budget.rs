@@ -7,11 +7,14 @@
 //! is the passivity controller of Hannaford and Ryu, IEEE Trans. Robot. Autom. 18 (2002) 1-10.
 
 use super::machine::{Machine, Run};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, sign};
 
 /// Share of the greatest energy by which a balance may be off, in (ω·h)²: what a step of the fast
 /// integrator leaves of a ring that nothing damps is an eighth of that.
 const ROUGH: f64 = 0.25;
+/// Times the way that velocity, other efforts and what the contact holds may carry a body in a step. What
+/// goes further was thrown by its contact, and other efforts did no work on such a way.
+const REACH: f64 = 2.0;
 /// The same of round-off.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -49,25 +52,33 @@ pub(super) struct Work<S> {
     acting: (S, S),
     /// How rough steps are.
     pub rough: f64,
+    /// How long they are, s; infinite of steps that hold whole swings.
+    pub span: f64,
     from: Run<S>,
     /// All effort but friction there.
     effort: S,
 }
 
 impl<S: Scalar> Work<S> {
-    /// From where a run is, in steps as rough as that.
+    /// From where a run is, in steps as rough and as long as that.
     #[inline]
-    pub fn begin(machine: &Machine<S>, run: &Run<S>, acting: (S, S), rough: f64) -> Self {
-        Self { acting, rough, from: *run, effort: effort(machine, run, acting) }
+    pub fn begin(
+        machine: &Machine<S>,
+        run: &Run<S>,
+        acting: (S, S),
+        (rough, span): (f64, f64),
+    ) -> Self {
+        Self { acting, rough, span, from: *run, effort: effort(machine, run, acting) }
     }
 
     /// Counts a step that led here, and takes off the velocity what the contact would have given
     /// without having it.
     #[inline]
     pub fn count(&mut self, machine: &Machine<S>, run: &mut Run<S>) {
-        let Self { acting, rough, from, effort: acted } = *self;
+        let Self { acting, rough, span, from, effort: acted } = *self;
         let now = effort(machine, run, acting);
-        let braked = machine.settle(run, (from.position, from.velocity), (acted, now), rough);
+        let braked =
+            machine.settle(run, (from.position, from.velocity), (acted, now), (rough, span));
         self.effort = if braked { effort(machine, run, acting) } else { now };
         self.from = *run;
     }
@@ -95,12 +106,15 @@ impl<S: Scalar> Machine<S> {
         run: &mut Run<S>,
         (position, velocity): (S, S),
         (acted, now): (S, S),
-        rough: f64,
+        (rough, span): (f64, f64),
     ) -> bool {
         let half = self.inertia * 0.5;
         let before = half * velocity * velocity;
         let after = half * run.velocity * run.velocity;
-        let done = (acted + now) * (run.position - position) * 0.5;
+        let way = run.position - position;
+        let reach = REACH * span * self.fastest(velocity, run.budget.taken, (acted, now), span);
+        let way = if way.re().abs() > reach { S::constant(reach * sign(way.re())) } else { way };
+        let done = (acted + now) * way * 0.5;
         let counted = run.budget.taken + done - (after - before);
         // What is beyond floats cannot be counted.
         let taken = if counted.re().is_finite() { counted } else { S::constant(f64::INFINITY) };
@@ -113,6 +127,13 @@ impl<S: Scalar> Machine<S> {
             self.brake(run, after, least);
         }
         short
+    }
+
+    /// How fast a body may become in a step, by what it had, what its contact holds and other efforts.
+    fn fastest(&self, velocity: S, taken: S, (acted, now): (S, S), span: f64) -> f64 {
+        let held = (2.0 * taken.re().max(0.0) / self.inertia.re()).sqrt();
+        let effort = acted.re().abs().max(now.re().abs());
+        velocity.re().abs() + held + effort * span / self.inertia.re()
     }
 
     /// How rough steps of this duration are on a contact of this stiffness.

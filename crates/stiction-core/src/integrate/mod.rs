@@ -286,7 +286,8 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
             let mut stepper = fast::Fast::<S, BARE> { machine, run, input, load, piece };
             let counts = !BARE && machine.counts_work();
             let rough = |span: S| machine.roughness(law.greatest_stiffness(), span.re());
-            let mut work = counts.then(|| Work::begin(machine, stepper.run, (input, load), 0.0));
+            let mut work =
+                counts.then(|| Work::begin(machine, stepper.run, (input, load), (0.0, 0.0)));
             let mut passed = steps.start;
             while passed < steps.end {
                 // A step that was begun in pieces is ended so.
@@ -295,7 +296,7 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
                 let (span, taken) = if whole { (each.span, pieces) } else { (each.piece, 1) };
                 through_events(&mut stepper, law, state, span);
                 if let Some(work) = &mut work {
-                    work.rough = rough(span);
+                    (work.rough, work.span) = (rough(span), span.re());
                     work.count(machine, stepper.run);
                 }
                 meter.take(cost)?;
@@ -306,8 +307,9 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
             let mut left = parts.max(integrator.inner(law, state, dt) as u32);
             let mut parts = left;
             let mut stepper = reference::Reference { machine, run, input, load };
-            let mut work = Work::begin(machine, stepper.run, (input, load), 0.0);
-            work.rough = machine.roughness(law.greatest_stiffness(), dt / f64::from(parts));
+            let span = dt / f64::from(parts);
+            let rough = machine.roughness(law.greatest_stiffness(), span);
+            let mut work = Work::begin(machine, stepper.run, (input, load), (rough, span));
             while left > 0 && !stepper.run.is_lost() {
                 let before = (law.decay_rate(state) > 0.0).then(|| (state.clone(), *stepper.run));
                 through_events(&mut stepper, law, state, S::constant(dt / f64::from(parts)));

@@ -456,7 +456,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
     #[inline(always)]
     fn settle(&self, run: &mut Run<S>, from: (S, S), efforts: (S, S)) {
         if self.counts {
-            self.machine.settle(run, from, efforts, self.rough);
+            self.machine.settle(run, from, efforts, (self.rough, self.span.re()));
         }
     }
 
