@@ -12,11 +12,11 @@ use crate::scalar::{Scalar, sign};
 /// Share of the greatest energy by which a balance may be off, in (ω·h)²: what a step of the fast
 /// integrator leaves of a ring that nothing damps is an eighth of that.
 const ROUGH: f64 = 0.25;
+/// The same of round-off.
+const ROUND_OFF: f64 = 1e-12;
 /// Times the way that velocity, other efforts and what the contact holds may carry a body in a step. What
 /// goes further was thrown by its contact, and other efforts did no work on such a way.
 const REACH: f64 = 2.0;
-/// The same of round-off.
-const ROUND_OFF: f64 = 1e-12;
 
 /// The work that a contact has taken in.
 #[derive(Debug, Clone, Copy)]
