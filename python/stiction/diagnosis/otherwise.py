@@ -25,7 +25,6 @@ def look_otherwise(
     first: Conclusion,
     look: Searched,
     asked: Asked,
-    again: Callable[..., Searched | None],
     concluded: Callable[[Searched], Conclusion],
 ) -> Conclusion:
     """What is concluded, or what the other residual concludes where that leaves nothing.
@@ -55,7 +54,7 @@ def look_otherwise(
         if seen is None:
             return first
         phase(_logger, "screening the effects again, with the plant simulated over windows")
-        other = again(look, seen, earlier=earlier)
+        other = search_again(look, seen, asked=asked, earlier=earlier)
         if other is None or all_blind(other.selection):
             return first
         second = concluded(other)
@@ -83,11 +82,9 @@ def _seen_along(
     most.
     """
     try:
-        evidence, base = fit_baseline(look.found.plant, look.evidence.recordings, windows=False)
+        evidence, base = _base_along(look)
     except InputError:
         return first
-    if base.solution.interrupted:
-        raise KeyboardInterrupt
     few, _ = surrogates_of(evidence, base, min(TOLD_BY, asked.surrogates), look.found.seed)
     if not recurs(base.residual, few, evidence.cells.block):
         return first
@@ -106,10 +103,23 @@ def _seen_along(
     return second if alike and gains[1] > gains[0] else first
 
 
+def _base_along(look: Searched) -> tuple[Evidence, Model]:
+    """The base along the readings, whatever these do to a contact.
+
+    Raises
+    ------
+    InputError, KeyboardInterrupt
+    """
+    evidence, base = fit_baseline(look.found.plant, look.evidence.recordings, windows=False)
+    if base.solution.interrupted:
+        raise KeyboardInterrupt
+    return evidence, base
+
+
 def _tried_along(look: Searched, asked: Asked) -> list[Model]:
     """Models with a cause each that was tried along the readings, as a simulation has them."""
     try:
-        evidence, base = fit_baseline(look.found.plant, look.evidence.recordings, windows=False)
+        evidence, base = _base_along(look)
         _, replays = replay_base(look.found, evidence, base, asked.surrogates)
         if replays is None:
             raise KeyboardInterrupt

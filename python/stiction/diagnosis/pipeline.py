@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -245,7 +244,6 @@ def _testable(
     if replays is None:
         return base_alone(found, evidence, base)
     phase(_logger, "screening the effects")
-    again = partial(search_again, asked=asked)
 
     def concluded(look: Searched, *, outdone: bool = False) -> Conclusion:
         return Conclusion(
@@ -293,9 +291,9 @@ def _testable(
         wider = fit_wider_baseline(found.plant, session.recordings, look.evidence, final)
         if wider is not None:
             phase(_logger, "screening the effects again, through wider kernels")
-            look = again(look, wider) or look
+            look = search_again(look, wider, asked=asked) or look
     if not look.selection.interrupted:
-        look = _simulated(look, shot, session, asked, again, followed)
+        look = _simulated(look, shot, session, asked, followed)
     del shot, followed
     if acts_for_seconds(look.evidence, look.selection, look.null):
         phase(_logger, "screening limits again, over the rows that decide as well")
@@ -307,7 +305,7 @@ def _testable(
             look = second._replace(selection=with_rows_of(second.selection, before))
 
     # Every decision is taken: now, and once, the rows that test.
-    conclusion = look_otherwise(concluded(look), look, asked, again, concluded)
+    conclusion = look_otherwise(concluded(look), look, asked, concluded)
     told = conclusion.diagnosis()
     if restated or not told.better_law or not told.success:
         return told
@@ -325,9 +323,12 @@ def _first_look(
     followed: list[Model],
     asks: bool,
 ) -> tuple[Searched, _Shot | None, bool]:
-    """The first search, over which windows to make it again where readings lead astray, or else
-    whether another law leaves so little beside the first cause that it is to be made with that;
-    the last only where it ``asks``."""
+    """The first search; windows for another one, and whether that is made with another law.
+
+    Windows are those over which to search again where readings lead astray. Elsewhere, and only
+    where it ``asks``, another law may leave so little beside the first cause that the search is to
+    be made with that.
+    """
     shots: list[_Shot] = []
     others: list[bool] = []
 
@@ -357,7 +358,6 @@ def _simulated(
     shot: _Shot | None,
     session: Session,
     asked: Asked,
-    again: Callable[..., Searched | None],
     followed: list[Model],
 ) -> Searched:
     """The search over windows where readings lead astray: as ``shot`` tells, or at its end."""
@@ -369,7 +369,7 @@ def _simulated(
         return look
     phase(_logger, "screening the effects again, with the plant simulated over windows")
     windows, base, earlier = shot
-    other = again(look, (windows, base), earlier=earlier)
+    other = search_again(look, (windows, base), asked=asked, earlier=earlier)
     if other is not None and not all_blind(other.selection):
         return other
     if not cut_short or other is None:
