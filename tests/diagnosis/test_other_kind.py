@@ -7,11 +7,12 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from tests.diagnosis.second_base import fail_the_second_base
 
 import stiction as st
 from stiction.bench.ordinary.draw import Spec, ordinary
 from stiction.bench.ordinary.files import write
-from stiction.diagnosis import left_open, pipeline
+from stiction.diagnosis import left_open
 from stiction.diagnosis.decide import degeneracy
 from stiction.diagnosis.result import Cause
 from stiction.diagnosis.verdict import relatives
@@ -62,15 +63,7 @@ def test_what_was_told_stays_where_the_diagnosis_with_the_better_law_comes_to_no
     monkeypatch: pytest.MonkeyPatch,
     left_out: list[str],
 ) -> None:
-    whole, begun = pipeline.fit_baseline, []
-
-    def based(*given: Any) -> Any:
-        begun.append(given)
-        if len(begun) > 1:
-            raise fault
-        return whole(*given)
-
-    monkeypatch.setattr(pipeline, "fit_baseline", based)
+    begun = fail_the_second_base(monkeypatch, fault)
     found = st.diagnose(None, session(tmp_path, Spec(11, law="dahl", contact="dry", **SHORT)))
     assert len(begun) == 2
     assert found.success is success

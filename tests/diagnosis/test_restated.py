@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from tests.diagnosis.second_base import fail_the_second_base
 
 import stiction as st
 from stiction.bench.ordinary.draw import Spec, ordinary
@@ -84,15 +85,7 @@ def test_what_is_told_is_what_the_whole_search_tells(
 def test_where_nothing_comes_of_it_the_search_goes_on(
     session: st.Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole, begun = pipeline.fit_baseline, []
-
-    def based(*given: Any) -> Any:
-        begun.append(given)
-        if len(begun) > 1:
-            raise NotEnoughData("too short")
-        return whole(*given)
-
-    monkeypatch.setattr(pipeline, "fit_baseline", based)
+    begun = fail_the_second_base(monkeypatch, NotEnoughData("too short"))
     found = st.diagnose(None, session)
     monkeypatch.setattr(restated, "HOPELESS", 100.0)
     begun.clear()
@@ -107,15 +100,7 @@ def test_where_nothing_comes_of_it_the_search_goes_on(
 def test_after_an_interrupt_what_was_told_of_the_stated_law_stays(
     session: st.Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole, begun = pipeline.fit_baseline, []
-
-    def based(*given: Any) -> Any:
-        begun.append(given)
-        if len(begun) > 1:
-            raise KeyboardInterrupt
-        return whole(*given)
-
-    monkeypatch.setattr(pipeline, "fit_baseline", based)
+    fail_the_second_base(monkeypatch, KeyboardInterrupt())
     found = st.diagnose(None, session)
     assert not found.success
     assert found.message.startswith("interrupted")
