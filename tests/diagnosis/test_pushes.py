@@ -10,7 +10,7 @@ import pytest
 from tests.reference.coulomb_reference import simulate_coulomb
 
 import stiction as st
-from stiction.diagnosis.words import push_words
+from stiction.diagnosis.findings.words import push_words
 from stiction.fitting.pushes import Watch
 from stiction.fitting.rows import Push
 from stiction.recording.blocks import Part

@@ -7,7 +7,7 @@ import pytest
 
 import stiction as st
 from stiction._support.arrays import FloatArray
-from stiction.diagnosis.pictures import ROLES, Trace
+from stiction.diagnosis.findings.pictures import ROLES, Trace
 
 DT = 2e-3
 

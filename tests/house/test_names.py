@@ -166,7 +166,7 @@ PUBLIC = {
     "closed_loop:Controller.acting",
     "compensation:Compensation.stepped",
     "demo_session:hidden",
-    "diagnosis.result:Diagnosis.gap_closed",
+    "diagnosis.findings.result:Diagnosis.gap_closed",
     "library.comparison:UnitComparison.differing",
     "library.comparison:UnitComparison.left",
     "library.entry_file:EntryNumber.expected",

@@ -11,6 +11,9 @@ import stiction as st
 PACKAGE = Path(st.__file__).parent
 GROUND = frozenset({"_support", "errors", "_native"})
 """What everything stands on: errors speak in the words of ``_support``, which raises them."""
+ROOM = dict.fromkeys(GROUND, "_support")
+DIAGNOSIS = ("data", "screening", "adequacy", "selection", "findings")
+"""From the ground up."""
 LOOKS_UP = {
     "_support/keywords.py": "recording",
     "_support/file_kinds.py": "recording",
@@ -20,7 +23,7 @@ LOOKS_UP = {
 
 def room_of(module: str) -> str:
     name = module.split(".")[1]
-    return "_support" if name in GROUND else name
+    return ROOM.get(name, name)
 
 
 def imports(path: Path, *, late: bool) -> Iterator[str]:
@@ -38,25 +41,45 @@ def imports(path: Path, *, late: bool) -> Iterator[str]:
         stack += [(child, deeper) for child in ast.iter_child_nodes(node)]
 
 
-def rooms() -> dict[str, set[str]]:
-    """By room, the rooms that it needs to be imported."""
+def rooms(within: str = "") -> dict[str, set[str]]:
+    """By room of the package, or of a package in it, the rooms that it needs to be imported."""
     found: dict[str, set[str]] = {}
-    for path in PACKAGE.rglob("*.py"):
-        if path == PACKAGE / "__init__.py":
-            continue
-        own = room_of("stiction." + path.relative_to(PACKAGE).with_suffix("").parts[0])
-        needed = {room_of(module) for module in imports(path, late=False)}
-        found.setdefault(own, set()).update(needed - {own})
+    top = PACKAGE / within
+    whole = ".".join(["stiction", *filter(None, [within])])
+    for path in top.rglob("*.py"):
+        own = ".".join(path.relative_to(top).with_suffix("").parts[:1])
+        if path.name != "__init__.py" or path.parent != top:
+            needed = {
+                module.removeprefix(f"{whole}.").partition(".")[0]
+                for module in imports(path, late=False)
+                if module.startswith(f"{whole}.")
+            }
+            own = ROOM.get(own, own)
+            found.setdefault(own, set()).update({ROOM.get(each, each) for each in needed} - {own})
     return found
 
 
-def test_no_room_needs_itself() -> None:
-    left = rooms()
-    assert {"_support", "plant", "residual", "fitting", "diagnosis", "report"} <= set(left)
+def circles(left: dict[str, set[str]]) -> dict[str, set[str]]:
+    """Rooms that need each other."""
+    left = dict(left)
     while free := [room for room, needed in left.items() if not needed & set(left)]:
         for room in free:
             del left[room]
-    assert left == {}, "these rooms need each other"
+    return left
+
+
+def test_no_room_needs_itself() -> None:
+    found = rooms()
+    assert {"_support", "plant", "residual", "fitting", "diagnosis", "report"} <= set(found)
+    assert circles(found) == {}, "these rooms need each other"
+
+
+def test_the_rooms_of_a_diagnosis_stand_in_their_order() -> None:
+    found = rooms("diagnosis")
+    assert circles(found) == {}
+    for place, room in enumerate(DIAGNOSIS):
+        above = set(DIAGNOSIS[place + 1 :]) | {"pipeline", "searched", "restated", "otherwise"}
+        assert not found[room] & above, room
 
 
 def test_the_ground_needs_no_room() -> None:

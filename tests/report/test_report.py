@@ -27,9 +27,9 @@ from tests.report.canned import (
 
 import stiction as st
 from stiction._support.numbers import between, digits, percent, quantity, tick
-from stiction.diagnosis.gain import Gain
-from stiction.diagnosis.omnibus import Rest
-from stiction.diagnosis.result import CandidateRow, Verdict
+from stiction.diagnosis.adequacy.omnibus import Rest
+from stiction.diagnosis.data.gain import Gain
+from stiction.diagnosis.records import CandidateRow, Verdict
 from stiction.fitting.waves import waves_of
 from stiction.plant.parameter import Parameter
 from stiction.plant.stated import Effect

@@ -17,7 +17,7 @@ import stiction as st
 from stiction._support.frozen import ByPath, Frozen
 from stiction.closed_loop import ClosedLoop
 from stiction.compare.result import Comparison, Row
-from stiction.diagnosis.result import CandidateRow, LawRow
+from stiction.diagnosis.records import CandidateRow, LawRow
 from stiction.errors import UnknownName
 from stiction.paper.result import Number, Result
 from stiction.plan.result import Plan

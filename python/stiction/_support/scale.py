@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from .numbers import quantity
 
 if TYPE_CHECKING:
-    from ..diagnosis.result import Diagnosis
+    from ..diagnosis.findings.result import Diagnosis
 
 __all__ = ["Scale", "effort_unit_of", "loop_scale_of", "prefix_for", "scale_for", "scale_of"]
 

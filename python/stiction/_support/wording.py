@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 # Below this similarity a suggestion misleads more often than it helps.
 _ALIKE = 0.55
@@ -30,6 +30,13 @@ def commas(words: Iterable[str]) -> str:
     if len(all_words) > _LISTED:
         text += f" and {len(all_words) - _LISTED} more"
     return text or "nothing"
+
+
+def join_words(words: Sequence[str], last: str = "and") -> str:
+    """``"a"``, ``"a and b"``, ``"a, b and c"``."""
+    if len(words) < 2:
+        return "".join(words)
+    return f"{', '.join(words[:-1])} {last} {words[-1]}"
 
 
 def printable(text: str) -> str:

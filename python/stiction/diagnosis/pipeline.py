@@ -28,27 +28,27 @@ from ..recording.recording import recordings_of
 from ..recording.session_clock import subset
 from ..recording.usable import checks_of, usable
 from ..session import Session, both_of
-from .advice import advise
-from .base import (
+from .data.evidence import Evidence
+from .data.noise import Noise
+from .defaults import ALPHA, SMALLEST, SURROGATES
+from .findings.advice import advise
+from .findings.conclude import Conclusion, base_alone
+from .findings.result import Diagnosis
+from .findings.verdict import all_blind
+from .otherwise import look_otherwise
+from .restated import diagnose_again_at_the_end, diagnose_again_early, is_outdone
+from .screening.base import (
     fit_baseline,
     fit_joint_baseline,
     fit_simulated_baseline,
     fit_wider_baseline,
 )
-from .candidates import excluded_names
-from .conclude import Conclusion, base_alone
-from .defaults import ALPHA, SMALLEST, SURROGATES
-from .evidence import Evidence
-from .laws import law_names
-from .model import Known, Model
-from .noise import Noise
-from .otherwise import look_otherwise
-from .restated import diagnose_again_at_the_end, diagnose_again_early, is_outdone
-from .result import Diagnosis
+from .screening.candidates import excluded_names
+from .screening.model import Known, Model
 from .searched import Asked, Searched, replay_base, search_again
-from .seconds import acts_for_seconds, holds_more, tried_names, with_rows_of
-from .selection import Search
-from .verdict import all_blind
+from .selection.laws import law_names
+from .selection.search import Search
+from .selection.seconds import acts_for_seconds, holds_more, tried_names, with_rows_of
 
 __all__ = ["diagnose"]
 

@@ -22,8 +22,8 @@ from .chart_svg import write_svg
 from .svg import inline
 
 if TYPE_CHECKING:
-    from ..diagnosis.omnibus import View
-    from ..diagnosis.result import Diagnosis
+    from ..diagnosis.adequacy.omnibus import View
+    from ..diagnosis.findings.result import Diagnosis
     from .chart import Chart
 
 __all__ = ["Drawing", "Drawings", "Order", "draw", "orders"]

@@ -16,7 +16,7 @@ from markupsafe import Markup
 
 from .._support.numbers import percent
 from .._support.scale import Scale, scale_for, scale_of
-from ..diagnosis.pictures import ROLES
+from ..diagnosis.findings.pictures import ROLES
 from ..plot import thinned
 from ..residual.compared import comparison_of
 from .packing import Packed, pack
@@ -24,8 +24,8 @@ from .titles import effect_title
 
 if TYPE_CHECKING:
     from .._support.arrays import FloatArray
-    from ..diagnosis.pictures import Trace
-    from ..diagnosis.result import Diagnosis
+    from ..diagnosis.findings.pictures import Trace
+    from ..diagnosis.findings.result import Diagnosis
 
 __all__ = ["Explorer", "explorer"]
 

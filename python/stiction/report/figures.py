@@ -24,9 +24,10 @@ from .chart_parts import INCH, extent, time_axis, trace_line, width_of
 from .labels import distinct_labels, shorten
 
 if TYPE_CHECKING:
-    from ..diagnosis.omnibus import View
-    from ..diagnosis.pictures import Pictures
-    from ..diagnosis.result import Diagnosis, ModelSummary
+    from ..diagnosis.adequacy.omnibus import View
+    from ..diagnosis.findings.pictures import Pictures
+    from ..diagnosis.findings.result import Diagnosis
+    from ..diagnosis.records import ModelSummary
 
 __all__ = [
     "candidates",

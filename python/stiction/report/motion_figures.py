@@ -18,8 +18,8 @@ from .chart_parts import extent, time_axis, trace_line, width_of
 
 if TYPE_CHECKING:
     from .._support.arrays import FloatArray
-    from ..diagnosis.pictures import Trace
-    from ..diagnosis.result import Diagnosis
+    from ..diagnosis.findings.pictures import Trace
+    from ..diagnosis.findings.result import Diagnosis
     from ..plant import Plant
 
 FloatArrays: TypeAlias = "tuple[FloatArray, FloatArray]"

@@ -17,7 +17,7 @@ from .sections import BUILDERS, Builder, name_of
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from ..diagnosis.result import Diagnosis
+    from ..diagnosis.findings.result import Diagnosis
     from .drawings import Drawings
 
 __all__ = ["render"]

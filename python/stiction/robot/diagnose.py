@@ -15,7 +15,7 @@ from .._support.progress import phase
 from .._support.workers import side_by_side, with_workers
 from ..catalogue import effects
 from ..diagnosis import ALPHA, SMALLEST, SURROGATES, diagnose
-from ..diagnosis.result import Diagnosis
+from ..diagnosis.findings.result import Diagnosis
 from ..errors import NotEnoughData
 from ..session import Session
 from .agreement import Agreement, agreement_of

@@ -11,7 +11,8 @@ from typing import Any, Final
 
 from .._support import given
 from .._support.wording import commas, plural
-from ..diagnosis.result import SCHEMA, Cause, Diagnosis, Verdict
+from ..diagnosis.findings.result import SCHEMA, Diagnosis
+from ..diagnosis.records import Cause, Verdict
 from .agreement import Agreement
 from .fit import RobotFit
 

@@ -9,7 +9,8 @@ from ...catalogue import laws as catalogue
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Diagnosis, LawRow
+    from ...diagnosis.findings.result import Diagnosis
+    from ...diagnosis.records import LawRow
     from ..drawings import Drawings
 
 __all__ = ["build"]

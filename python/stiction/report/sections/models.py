@@ -11,7 +11,8 @@ from .parameters import meanings_of, row
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Diagnosis, ModelSummary
+    from ...diagnosis.findings.result import Diagnosis
+    from ...diagnosis.records import ModelSummary
     from ..drawings import Drawings
 
 __all__ = ["build"]

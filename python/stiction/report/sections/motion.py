@@ -11,8 +11,8 @@ from ..._support.scale import scale_for
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.pictures import Trace
-    from ...diagnosis.result import Diagnosis
+    from ...diagnosis.findings.pictures import Trace
+    from ...diagnosis.findings.result import Diagnosis
     from ..drawings import Drawings
 
 __all__ = ["build"]

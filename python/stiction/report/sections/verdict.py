@@ -11,8 +11,8 @@ from ..titles import headline
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.gain import Gain
-    from ...diagnosis.result import Diagnosis
+    from ...diagnosis.data.gain import Gain
+    from ...diagnosis.findings.result import Diagnosis
     from ..drawings import Drawings
 
 __all__ = ["build"]
