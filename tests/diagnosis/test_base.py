@@ -12,7 +12,7 @@ from stiction.diagnosis.base import fit_baseline
 from stiction.fitting.forms import horizon_of
 from stiction.fitting.rows import Nuisances, Rows
 from stiction.fitting.solve import SELECT_IS_FITTED
-from stiction.weak_form import WeakForm
+from stiction.residual.weak_form import WeakForm
 
 DT, ROWS = 1e-3, 5000
 

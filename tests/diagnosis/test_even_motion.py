@@ -13,7 +13,7 @@ from tests.reference.session_reference import make_sessions
 
 import stiction as st
 from stiction.diagnosis.coordinates import _asked
-from stiction.weak_form import WeakForm
+from stiction.residual.weak_form import WeakForm
 
 # One seed: a machine that lacks nothing goes evenly, there and back, under its controller.
 SEED = 10320000

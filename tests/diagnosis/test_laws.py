@@ -18,7 +18,7 @@ from tests.reference.session_reference import make_sessions
 import stiction as st
 from stiction.diagnosis import laws
 from stiction.diagnosis.model import Model
-from stiction.stated import Friction
+from stiction.plant.stated import Friction
 
 SECONDS = 72.0
 

@@ -20,9 +20,9 @@ from stiction.diagnosis.periodic import COUPLED, FREQUENCY, ORDERS
 from stiction.diagnosis.presentation import PRESENTATIONS, Wave
 from stiction.diagnosis.response import RESPONSE
 from stiction.diagnosis.smoother import BINS, smoother
-from stiction.parameter import Parameter
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
 from stiction.report.views import HINTS
-from stiction.stated import Effect
 
 SPACING = 0.005
 

@@ -30,13 +30,13 @@ from stiction.diagnosis.result import Cause, Diagnosis
 from stiction.diagnosis.trials import Screening
 from stiction.diagnosis.verdict import relatives
 from stiction.diagnosis.words import value_words
-from stiction.finite import finite
 from stiction.fitting.levenberg import escape, levenberg_marquardt
 from stiction.fitting.result import FitParameter
 from stiction.fitting.rows import Nuisances
 from stiction.fitting.statistics import interval_width
-from stiction.parameter import Parameter
-from stiction.stated import Effect
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
+from stiction.residual.finite import finite
 
 DT = 1e-3
 COUNT = 2.0 * math.pi / 2**18

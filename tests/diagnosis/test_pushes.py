@@ -14,7 +14,7 @@ from stiction.diagnosis.words import push_words
 from stiction.fitting.pushes import Watch
 from stiction.fitting.rows import Push
 from stiction.recording.blocks import Part
-from stiction.weak_form import WeakForm
+from stiction.residual.weak_form import WeakForm
 
 DT, SECONDS = 1e-3, 10.0
 TRUE = {"inertia": 0.006, "coulomb": 0.25, "viscous": 0.02}

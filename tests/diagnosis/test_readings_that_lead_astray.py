@@ -19,9 +19,9 @@ from stiction.diagnosis.moved import _powers, borne_out_in_motion
 from stiction.diagnosis.selection import Search
 from stiction.fitting.forms import Through
 from stiction.fitting.rows import Nuisances
-from stiction.parameter import Parameter
-from stiction.shooting import ShootingForm
-from stiction.stated import Effect
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
+from stiction.residual.shooting import ShootingForm
 
 INERTIA, COULOMB, VISCOUS = 2.4e-3, 0.13, 7.5e-3
 DT = 2e-3

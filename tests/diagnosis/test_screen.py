@@ -12,8 +12,8 @@ from stiction.diagnosis.evidence import Plan
 from stiction.diagnosis.regression import project
 from stiction.diagnosis.screen import FORMS, Problem, Score, _threshold, screen
 from stiction.diagnosis.signatures import Signatures
-from stiction.parameter import Parameter
-from stiction.stated import Effect
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
 
 ROWS, FITTED, SURROGATES = 600, 400, 8
 NAMES = ("cogging", "torque_bias", "input_delay")

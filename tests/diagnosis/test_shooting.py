@@ -16,8 +16,8 @@ from stiction.diagnosis.model import Model, fit_model
 from stiction.diagnosis.replay import noise_of, surrogate_residuals
 from stiction.fitting.forms import HORIZONS_S, Through, horizon_of, residual_sentence
 from stiction.fitting.rows import Nuisances
-from stiction.shooting import ShootingForm
-from stiction.weak_form import WeakForm
+from stiction.residual.shooting import ShootingForm
+from stiction.residual.weak_form import WeakForm
 
 DT = 1e-3
 COARSE, FINE = 2**12, 2**18

@@ -13,6 +13,11 @@ NOTES = [
     for note in sorted((REPOSITORY / "docs" / "decisions").glob("*.md"))
     if note.name != "README.md"
 ]
+SOURCES = [
+    source
+    for folder, ending in (("python", "py"), ("crates", "rs"))
+    for source in (REPOSITORY / folder).rglob(f"*.{ending}")
+]
 MOST_WORDS = 700
 EARLIER = 69
 """Numbered notes that there were before these."""
@@ -37,11 +42,15 @@ def test_constants_have_the_values_that_notes_say(note: Path) -> None:
     text = " ".join(note.read_text("utf-8").split())
     named = re.findall(r"`([A-Z_]+) = ([^`]+)` \(`([^`]+)`\)", text)
     assert len(named) == len(re.findall(r"`[A-Z_]+ = ", text))
-    for name, value, path in named:
-        source = (REPOSITORY / path).read_text("utf-8")
-        stated = re.search(rf"\b{name}\b(?:: [\w\[\]]+)? = (.+?);?$", source, re.M)
-        assert stated is not None, f"{path}: {name}"
-        assert stated[1] == value, f"{path}: {name}"
+    for name, value, file in named:
+        stating = rf"^(?:pub )?(?:const )?{name}(?:: [\w\[\]]+)? = (.+?);?$"
+        stated = [
+            found[1]
+            for source in SOURCES
+            if f"/{source.as_posix()}".endswith(f"/{file}")
+            and (found := re.search(stating, source.read_text("utf-8"), re.M))
+        ]
+        assert stated == [value], f"{file}: {name}"
 
 
 def test_every_earlier_number_leads_to_a_note() -> None:

@@ -17,7 +17,7 @@ TABLES: dict[str, tuple[int, str]] = {
     "diagnosis/presentation.py": (29, "the entry of each effect"),
     "ode.py": (3, "the formula of each"),
     "paper/local.py": (1, "the effect that an experiment is simulated with"),
-    "steady.py": (1, "a family that is called as one of its effects is"),
+    "plant/steady.py": (1, "a family that is called as one of its effects is"),
 }
 """Names that may stand in a file, and why: the tables themselves. None is added without need."""
 

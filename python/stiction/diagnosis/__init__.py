@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..lazy import lazy
+from .._support.lazy import lazy
 from .defaults import ALPHA, SMALLEST, SURROGATES
 
 if TYPE_CHECKING:

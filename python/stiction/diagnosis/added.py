@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from .. import given
-from ..atomic_files import write_text
+from .._support import given
+from .._support.atomic_files import write_text
+from .._support.json_text import json_of
 from ..errors import InputError, NotEnoughData
 from ..fitting.forms import Through, stiffen
 from ..fitting.rows import Nuisances
-from ..json_text import json_of
 from ..plant import Plant
 from ..recording import Recording
 from ..session import Session

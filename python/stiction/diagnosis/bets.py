@@ -8,8 +8,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
-from ..wording import plural
+from .._support.arrays import FloatArray
+from .._support.wording import plural
 from .gain import HeldOut
 
 __all__ = ["Bet", "Bets", "bets_of"]

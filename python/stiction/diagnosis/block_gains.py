@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.rows import Mask
-from ..trajectory import FloatArray
 from .influence import limit_influence
 from .model import Model
 from .regression import refit_residuals

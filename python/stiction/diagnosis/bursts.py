@@ -8,8 +8,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.rows import Rows
-from ..trajectory import FloatArray
 from .evidence import Evidence
 from .model import Model
 from .passing import MOMENTS

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .coordinates import Coordinate
 from .evidence import Cells
 from .view import View, limit, sums

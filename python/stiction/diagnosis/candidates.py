@@ -10,13 +10,13 @@ from typing import Final
 
 import numpy as np
 
+from .._support.wording import commas, did_you_mean
 from ..catalogue import EffectRecord, effects
 from ..errors import InputError
 from ..fitting.start import largest_command
 from ..plant import Plant
-from ..presliding import presliding
-from ..stated import Effect
-from ..wording import commas, did_you_mean
+from ..plant.presliding import presliding
+from ..plant.stated import Effect
 from .evidence import Evidence
 
 __all__ = ["LOWEST", "Candidate", "Scales", "candidates", "excluded_names", "present", "scales_of"]

@@ -8,9 +8,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.rows import Nuisances, Rows, warm
 from ..plant import Plant
-from ..trajectory import FloatArray
 from .evidence import Evidence
 
 __all__ = ["Ceiling", "ceiling_of"]

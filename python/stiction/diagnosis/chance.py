@@ -15,8 +15,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..catalogue import effects
-from ..trajectory import FloatArray
 from .block_gains import paired_z
 from .candidates import LOWEST, scales_of
 from .decide import Trial

@@ -8,14 +8,14 @@ from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
-from ..compared import comparison_of
+from .._support.arrays import FloatArray
+from .._support.progress import phase
 from ..fitting.rows import Rows
 from ..fitting.sign import sign_error
 from ..fitting.solve import fit_remainder
-from ..progress import phase
 from ..recording import Check
+from ..residual.compared import comparison_of
 from ..session import Session
-from ..trajectory import FloatArray
 from .advice import advise
 from .bets import Bets, bets_of
 from .bursts import Burst, burst_of, recurs

@@ -9,9 +9,9 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.rows import Mask, Rows
-from ..shooting import ShootingForm
-from ..trajectory import FloatArray
+from ..residual.shooting import ShootingForm
 from .block_gains import heldout_gain
 from .evidence import Evidence
 from .gain import HeldOut, gain_of

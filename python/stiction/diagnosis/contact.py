@@ -8,8 +8,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.rows import Mask
-from ..trajectory import FloatArray
 
 __all__ = ["Slides", "slides_of"]
 

@@ -8,11 +8,11 @@ from typing import Any, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.rows import Rows
 from ..plant import Plant
 from ..recording import Recording
-from ..trajectory import FloatArray
-from ..weak_form import WeakForm
+from ..residual.weak_form import WeakForm
 from .contact import Slides, slides_of
 from .evidence import Evidence
 

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .block_gains import (
     TOUCHED,
     count_active_recordings,

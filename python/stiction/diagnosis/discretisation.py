@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ..finite import finite
+from ..residual.finite import finite
 from .block_gains import heldout_reduction
 from .evidence import Evidence
 from .model import Model

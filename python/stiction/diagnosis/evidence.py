@@ -10,19 +10,19 @@ from typing import Final, TypeVar
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.progress import steps
+from .._support.workers import side_by_side
 from ..errors import NotEnoughData
 from ..fitting.forms import KERNELS, Through, as_session, forms_of
 from ..fitting.pushes import Watch
 from ..fitting.recording_starts import fit_starts
 from ..fitting.rows import Mask, Nuisances, Rows, require_motion, rows_of
 from ..plant import Plant
-from ..progress import steps
 from ..recording import Part, Recording
 from ..recording.names import names_of, places_in_session
 from ..recording.split import BLOCK_S, Split, split
-from ..trajectory import FloatArray
-from ..weak_form import WeakForm
-from ..workers import side_by_side
+from ..residual.weak_form import WeakForm
 
 __all__ = ["Cells", "Evidence", "Plan", "SealedError"]
 

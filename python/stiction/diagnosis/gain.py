@@ -8,9 +8,9 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.rows import Nuisances, Rows
 from ..plant import Plant
-from ..trajectory import FloatArray
 from .evidence import Cells, Evidence
 
 __all__ = ["Gain", "HeldOut", "gain_of", "residuals_of"]

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
+from .._support.progress import phase
 from ..errors import InputError
 from ..fitting.variables import unit_of
-from ..progress import phase
 from ..recording import Check
 from .block_gains import heldout_gain
 from .decide import LEAST_GAIN, LEAST_STRENGTH, LEAST_Z

@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.rows import Rows
 from ..recording import Check
-from ..trajectory import FloatArray
 from .model import Model
 
 __all__ = ["holds_of"]

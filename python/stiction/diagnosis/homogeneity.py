@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .evidence import Evidence, Plan
 from .model import Model
 from .regression import project

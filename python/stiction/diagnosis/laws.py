@@ -11,7 +11,9 @@ from typing import Final
 
 import numpy as np
 
-from ..best_effort import Failure, attempt
+from .._support.best_effort import Failure, attempt
+from .._support.progress import phase, steps
+from .._support.wording import commas, did_you_mean
 from ..catalogue import effects
 from ..catalogue import laws as all_laws
 from ..errors import InputError
@@ -20,10 +22,8 @@ from ..fitting.forms import followable, horizon_of
 from ..fitting.minimise import MOST_EVALUATIONS
 from ..fitting.recording_starts import with_turns
 from ..fitting.rows import require_motion
-from ..parameter import Parameter
-from ..progress import phase, steps
-from ..stated import Friction
-from ..wording import commas, did_you_mean
+from ..plant.parameter import Parameter
+from ..plant.stated import Friction
 from .block_gains import heldout_gain
 from .candidates import scales_of
 from .choose import DECIDED_Z

@@ -8,9 +8,9 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.rows import Mask, Rows
 from ..recording.split import BLOCK_S
-from ..trajectory import FloatArray
 from .evidence import Evidence
 from .gain import HeldOut
 from .model import Model

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .. import closed_loop
+from .._support.arrays import FloatArray
+from .._support.wording import plural
 from ..closed_loop import ClosedLoop
 from ..errors import InputError
 from ..fitting.rows import Mask
 from ..plant import Plant
 from ..recording import Part, Recording
-from ..trajectory import FloatArray
-from ..wording import plural
 from .evidence import Evidence, SealedError
 from .pictures import Pictures, Tracking
 from .traces import with_loops

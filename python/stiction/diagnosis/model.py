@@ -10,8 +10,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..catalogue import effects
-from ..finite import finite
 from ..fitting.leading import refit_windows
 from ..fitting.levenberg import FIRST_DAMPING
 from ..fitting.likeliest import likeliest
@@ -22,10 +22,10 @@ from ..fitting.slopes import places_of, slopes
 from ..fitting.solve import evaluate
 from ..fitting.start import free_paths
 from ..fitting.statistics import covariance, differ, jackknife
-from ..parameter import Parameter
 from ..plant import Plant
-from ..stated import Effect
-from ..trajectory import FloatArray
+from ..plant.parameter import Parameter
+from ..plant.stated import Effect
+from ..residual.finite import finite
 from .candidates import Candidate
 from .evidence import Evidence, Plan
 from .influence import limit_influence

@@ -9,8 +9,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..errors import InputError
-from ..finite import finite
 from ..fitting.forms import (
     HORIZONS_S,
     Through,
@@ -21,8 +21,8 @@ from ..fitting.forms import (
     stiffen,
 )
 from ..plant import Plant
-from ..trajectory import FloatArray
-from ..weak_form import WeakForm
+from ..residual.finite import finite
+from ..residual.weak_form import WeakForm
 from .confirm import inertial_of
 from .evidence import Evidence
 from .influence import limit_influence

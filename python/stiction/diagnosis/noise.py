@@ -9,12 +9,12 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.readings import position_noise
 from ..fitting.rows import Mask, Nuisances, Rows
-from ..motion import GAUSSIAN
 from ..plant import Plant
-from ..trajectory import FloatArray
-from ..weak_form import WeakForm
+from ..recording.motion import GAUSSIAN
+from ..residual.weak_form import WeakForm
 
 __all__ = ["Noise", "effort_noise", "input_noise", "measure_noise"]
 

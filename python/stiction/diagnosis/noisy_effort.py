@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .coordinates import Coordinate, Look
 from .evidence import Evidence
 from .response import RESPONSE

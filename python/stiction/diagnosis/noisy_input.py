@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..catalogue import effects
 from ..fitting.rows import Rows
-from ..trajectory import FloatArray
 from .model import Model
 from .noise import input_noise
 from .screen import NULL_TIMES

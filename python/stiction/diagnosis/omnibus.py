@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .by_recording import BY_RECORDING, by_recording_view
 from .coordinates import COORDINATES, Look
 from .evidence import Evidence

@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 
+from .._support.progress import phase
 from ..errors import InputError
-from ..progress import phase
 from .base import fit_baseline, fit_baseline_over_windows
 from .block_gains import heldout_gain
 from .bursts import recurs

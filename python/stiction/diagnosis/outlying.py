@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..recording import Check
-from ..trajectory import FloatArray
 from .evidence import Cells, Evidence
 from .gain import HeldOut
 from .model import Model

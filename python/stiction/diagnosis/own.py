@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 
-from ..stated import Effect
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
+from ..plant.stated import Effect
 from .coordinates import COORDINATES, UNJUDGED, Coordinate, Look
 from .evidence import Evidence
 from .presentation import PRESENTATIONS, SLIDING, Wave, contact_slides

@@ -11,8 +11,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.rows import Mask
-from ..trajectory import FloatArray
 from .coordinates import Coordinate, Look
 from .evidence import Cells
 from .view import FEWEST_ROWS, View, limit, means, sums

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .coordinates import Coordinate, Look
 from .evidence import Cells, Plan
 from .view import View, limit, means

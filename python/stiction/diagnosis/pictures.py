@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..errors import InputError
-from ..trajectory import FloatArray
 from .omnibus import Rest
 from .view import View
 

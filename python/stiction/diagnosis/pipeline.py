@@ -10,13 +10,17 @@ from typing import Any, Final
 
 import numpy as np
 
-from .. import __version__, given
+from .. import __version__
+from .._support import given
+from .._support.arrays import FloatArray
+from .._support.given import instance, share, whole
+from .._support.keywords import explain_keywords
+from .._support.products import on_one_thread
+from .._support.progress import phase
+from .._support.wording import plural
+from .._support.workers import with_workers
 from ..errors import InputError, NotEnoughData
-from ..given import instance, share, whole
-from ..keywords import explain_keywords
 from ..plant import Plant
-from ..products import on_one_thread
-from ..progress import phase
 from ..recording import Check, Recording
 from ..recording.checks import DOUBTED, without_failures
 from ..recording.names import names_of
@@ -24,9 +28,6 @@ from ..recording.recording import recordings_of
 from ..recording.session_clock import subset
 from ..recording.usable import checks_of, usable
 from ..session import Session, both_of
-from ..trajectory import FloatArray
-from ..wording import plural
-from ..workers import with_workers
 from .advice import advise
 from .base import (
     fit_baseline,

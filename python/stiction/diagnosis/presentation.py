@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .coordinates import Look
 
 __all__ = ["PRESENTATIONS", "SLIDING", "Presentation", "Wave", "Words", "contact_slides"]

@@ -7,8 +7,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.start import largest_command
-from ..trajectory import FloatArray
 from .candidates import Candidate
 from .evidence import Evidence
 from .model import Model

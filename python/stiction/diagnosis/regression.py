@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..fitting.rows import Mask
-from ..trajectory import FloatArray
 from .evidence import Plan
 
 __all__ = ["FLAT", "Base", "Projected", "bounded_gains", "project", "refit_residuals", "step"]

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
-from ..wording import plural
+from .._support.wording import plural
 
 __all__ = ["COUNTS", "Reliability", "manner", "reliability_of"]
 

@@ -9,16 +9,16 @@ from typing import Final
 
 import numpy as np
 
-from ..accompanied import nearby_motion
+from .._support.arrays import FloatArray
 from ..catalogue import effects
 from ..errors import InputError
 from ..fitting.readings import position_noise, read_sensor, sliding_motion, true_motion
 from ..fitting.rows import Nuisances, Rows
-from ..loop_form import LoopForm
 from ..plant import Plant
-from ..shooting import ShootingForm
-from ..trajectory import FloatArray
-from ..weak_form import Start, WeakForm
+from ..residual.accompanied import nearby_motion
+from ..residual.loop_form import LoopForm
+from ..residual.shooting import ShootingForm
+from ..residual.weak_form import Start, WeakForm
 from .evidence import Evidence
 from .noise import Noise, effort_noise, measure_noise
 

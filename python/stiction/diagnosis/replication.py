@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .model import Model
 from .regression import refit_residuals
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
-from ..best_effort import Failure, attempt
+from .._support.best_effort import Failure, attempt
+from .._support.progress import phase
 from ..plant import Plant
-from ..progress import phase
 from .conclude import MESSAGE, Conclusion
 from .laws import HOPELESS, THE_LAW, better_laws, rivals_of
 from .result import Diagnosis, LawRow, Unexplained

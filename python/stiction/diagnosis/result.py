@@ -8,10 +8,10 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from .. import given
+from .._support import given
+from .._support.frozen import ByPath, Frozen, freeze
 from ..catalogue import effects
 from ..fitting.result import FitParameter
-from ..frozen import ByPath, Frozen, freeze
 from ..plant import Plant
 from .bets import Bets
 from .gain import Gain
@@ -512,7 +512,7 @@ class Diagnosis:
 
     def to_json(self) -> str:
         """findings.json as text; null stands for an end of an interval that the data leave open."""
-        from ..json_text import json_of
+        from .._support.json_text import json_of
 
         return json_of(self.to_dict())
 

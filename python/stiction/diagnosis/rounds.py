@@ -9,10 +9,10 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..catalogue import EffectRecord, effects
 from ..fitting.rows import timing_bound
 from ..plant import Plant
-from ..trajectory import FloatArray
 from . import listing
 from .beside import doubt_by_forms, doubt_by_rests
 from .candidates import FALL, Candidate, candidates, present, scales_of

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .candidates import Candidate
 from .defaults import ALPHA
 from .evidence import Plan

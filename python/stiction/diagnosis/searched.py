@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple
 
+from .._support.arrays import FloatArray
+from .._support.progress import phase
 from ..fitting.forms import residual_sentence
-from ..progress import phase
-from ..trajectory import FloatArray
 from .conclude import surrogates_of
 from .evidence import Evidence
 from .model import Known, Model

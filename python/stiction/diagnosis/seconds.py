@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from .._support.arrays import FloatArray
 from ..catalogue import effects
-from ..trajectory import FloatArray
 from .bursts import bursts
 from .decide import Trial
 from .evidence import Evidence

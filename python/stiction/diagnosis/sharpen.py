@@ -9,9 +9,9 @@ from itertools import product
 from typing import Final
 
 from ..catalogue import EffectRecord
-from ..parameter import Parameter
 from ..plant import Plant
-from ..stated import Effect
+from ..plant.parameter import Parameter
+from ..plant.stated import Effect
 from .block_gains import heldout_gain, log_gain
 from .choose import Choice
 from .decide import LEAST_GAIN, LEAST_Z, PENALTY, Trial

@@ -11,12 +11,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..finite import finite
+from .._support.arrays import FloatArray
 from ..fitting.rows import Mask, Nuisances, Rows
 from ..plant import Plant
-from ..stated import Effect
-from ..trajectory import FloatArray
-from ..weak_form import Places
+from ..plant.stated import Effect
+from ..residual.finite import finite
+from ..residual.weak_form import Places
 from .candidates import Candidate
 from .evidence import Evidence
 from .model import with_effect

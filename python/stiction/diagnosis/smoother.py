@@ -8,7 +8,7 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .coordinates import Coordinate, Look
 from .evidence import Evidence
 from .view import FEWEST_ROWS, View, limit, means, sums

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..begins import begins
+from .._support.arrays import FloatArray
 from ..fitting.result import FitResult
 from ..plant import Plant
-from ..stated import Effect
-from ..trajectory import FloatArray
+from ..plant.begins import begins
+from ..plant.stated import Effect
 from .candidates import Scales
 from .coordinates import Look
 from .evidence import Evidence

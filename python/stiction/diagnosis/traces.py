@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..errors import InputError
 from ..fitting.rows import Nuisances, Rows
 from ..plant import Plant
-from ..residual import free_run
-from ..trajectory import FloatArray
+from ..residual.effort import free_run
 from .evidence import Evidence
 from .gain import HeldOut
 from .pictures import ROLES, Trace

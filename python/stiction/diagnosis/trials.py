@@ -10,13 +10,13 @@ from typing import Final
 
 import numpy as np
 
-from ..finite import finite
+from .._support.arrays import FloatArray
+from .._support.progress import phase
 from ..fitting.minimise import from_elsewhere
 from ..fitting.rows import Nuisances
 from ..plant import Plant
-from ..progress import phase
-from ..trajectory import FloatArray
-from ..weak_form import Start, WeakForm
+from ..residual.finite import finite
+from ..residual.weak_form import Start, WeakForm
 from .candidates import Candidate
 from .decide import LEAST_GAIN, MOST_TIMES, Trial, degeneracy, judge
 from .defaults import ALPHA, SMALLEST

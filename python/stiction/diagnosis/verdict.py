@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..catalogue import effects
-from ..trajectory import FloatArray
 from .block_gains import heldout_gain
 from .bursts import Burst, at_moments
 from .decide import LEAST_GAIN

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .coordinates import Coordinate
 
 __all__ = ["FLAG_ABOVE", "LEAST_SIZE", "View", "limit", "means", "sums"]

@@ -7,16 +7,16 @@ from collections.abc import Mapping, Sequence, Set
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from .._support.scale import loop_scale_of
+from .._support.wording import plural
 from ..catalogue import EffectRecord
 from ..catalogue import effects as catalogue
-from ..compared import EFFORT, Compared, comparison_of
 from ..fitting.pushes import omission_words
 from ..fitting.result import FitParameter
 from ..fitting.rows import Push
 from ..fitting.waves import amplitude_of, parts_of, phase_of
-from ..report.scale import loop_scale_of
-from ..stated import Effect
-from ..wording import plural
+from ..plant.stated import Effect
+from ..residual.compared import EFFORT, Compared, comparison_of
 from .directions import describe_effect
 from .orders import order_words
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup, escape
 
-from ..best_effort import Failure, attempt
+from .._support.best_effort import Failure, attempt
 from .explorer import explorer
 from .sections import BUILDERS, Builder, name_of
 

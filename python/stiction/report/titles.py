@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from ..compared import comparison_of
+from .._support.numbers import NO_BREAK, percent, plain
 from ..diagnosis.presentation import PRESENTATIONS
 from ..diagnosis.words import join_words
-from .numbers import NO_BREAK, percent, plain
+from ..residual.compared import comparison_of
 
 if TYPE_CHECKING:
     from ..diagnosis.result import Diagnosis

@@ -9,9 +9,9 @@ from html import escape
 from pathlib import Path
 from typing import Any, Final
 
-from .. import given
+from .._support import given
+from .._support.wording import commas, plural
 from ..diagnosis.result import SCHEMA, Cause, Diagnosis, Verdict
-from ..wording import commas, plural
 from .agreement import Agreement
 from .fit import RobotFit
 
@@ -194,7 +194,7 @@ class RobotDiagnosis:
 
     def to_json(self) -> str:
         """findings.json as text."""
-        from ..json_text import json_of
+        from .._support.json_text import json_of
 
         return json_of(self.to_dict())
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ...errors import InputError
-from ...trajectory import FloatArray
-from ..joint import joint_of, losses_of, sidecar
+from ...plant.joint import joint_of, losses_of, sidecar
 from ..made import Export
 from ..runs import MotionRun, Windows, gravity_effort
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..numbers import percent
+from ..._support.numbers import percent
 from ..titles import effect_title
 from .section import Section
 

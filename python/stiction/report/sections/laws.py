@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from ..._support.numbers import percent, percent_between
 from ...catalogue import laws as catalogue
-from ..numbers import percent, percent_between
 from .section import Section
 
 if TYPE_CHECKING:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..._support.numbers import percent
+from ..._support.scale import loop_scale_of
 from ...diagnosis.words import MISSED
-from ..numbers import percent
-from ..scale import loop_scale_of
 from .section import Section
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..numbers import digits
-from ..scale import scale_for
+from ..._support.numbers import digits
+from ..._support.scale import scale_for
 from .section import Section
 
 if TYPE_CHECKING:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ...compared import comparison_of
+from ..._support.numbers import percent
+from ..._support.scale import scale_of
 from ...diagnosis.words import THE_LAW
-from ..numbers import percent
-from ..scale import scale_of
+from ...residual.compared import comparison_of
 from ..views import hint
 from .section import Section
 

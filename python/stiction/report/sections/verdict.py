@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from ...compared import comparison_of
-from ..numbers import digits, percent, percent_between
-from ..scale import scale_of
+from ..._support.numbers import digits, percent, percent_between
+from ..._support.scale import scale_of
+from ...residual.compared import comparison_of
 from ..titles import headline
 from .section import Section
 
