@@ -228,6 +228,23 @@ def test_a_torque_drives() -> None:
     assert found.motion == "rotary"
 
 
+def test_the_effort_of_a_joint_state_is_no_voltage() -> None:
+    real, joint = machine(), "/joint_states/elbow"
+    names = {word: f"{joint}/{word}" for word in ("position", "velocity", "effort")}
+    columns = {"__time": real["time"]} | {name: real[word] for word, name in names.items()}
+    found = guess([table(columns)])
+    assert found.drive == "torque_nm"
+    assert found.by_role["input"].unit == "Nm"
+    assert found.input_unknown
+    assert "JointState" in found.drive_reason
+
+
+def test_a_column_of_which_the_numbers_are_spoiled_is_named_where_it_is_missed() -> None:
+    columns = machine() | {"position": np.full(3000, 1e200)}
+    found = guess([table({name: columns[name] for name in ("time", "position", "effort")})])
+    assert found.missing["position"].endswith("'position' holds numbers beyond 1e100")
+
+
 def test_a_friction_coefficient_stands_for_the_effort() -> None:
     real = machine()
     found = guess([table({
