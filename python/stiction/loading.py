@@ -8,7 +8,7 @@ from typing import Any
 
 from . import given, session
 from .errors import InputError
-from .file_kinds import kind_of, kind_of_table
+from .file_kinds import kind_of, kind_of_table, refuse_findings
 from .keywords import explain_keywords
 from .plant import Plant
 from .plant_file import read_toml
@@ -54,11 +54,7 @@ def load(
         that overlap on the session clock.
     """
     path = given.path(path, "load")
-    if path.name == "findings.json":
-        raise InputError(
-            f"{path}: holds what a diagnosis found; read it as JSON, or load plant.toml beside "
-            "it, the plant with what was found"
-        )
+    refuse_findings(path)
     if kind_of(path):
         return _recording(path, columns)
     if columns is not None:

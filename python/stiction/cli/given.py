@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import glob
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter, Token
 
-__all__ = ["Quiet", "Whole", "separate"]
+__all__ = ["Quiet", "Whole", "expand_patterns", "separate"]
 
 
 def _read(_: object, tokens: Sequence[Token]) -> int:
@@ -18,6 +20,15 @@ def _read(_: object, tokens: Sequence[Token]) -> int:
 def separate(names: str) -> list[str]:
     """Names that stand in one word with commas between."""
     return [name.strip() for name in names.split(",") if name.strip()]
+
+
+def expand_patterns(paths: Sequence[Path]) -> list[Path]:
+    """Paths, with what a pattern finds in its place: shells of Windows leave that to programs."""
+    found: list[Path] = []
+    for path in paths:
+        matches = [] if path.exists() else sorted(map(Path, glob.glob(str(path))))
+        found += matches or [path]
+    return found
 
 
 Whole = Annotated[int, Parameter(converter=_read)]

@@ -155,10 +155,10 @@ def _places(
         ordered = {name: by_name[name] for name in kinds if name in by_name}
         return ordered, tuple(name for name in free if name not in ordered)
     if not labels or len(labels) > len(free):
+        told = f"are of {plural(len(labels), 'joint')} ({commas(labels)})"
         raise InputError(
-            f"{tables[0].path}: its columns are of {plural(len(labels), 'joint')}"
-            f"{f' ({commas(labels)})' if labels else ''}, and {urdf.name} has "
-            f"{plural(len(free), 'joint')} that "
+            f"{tables[0].path}: its columns {told if labels else 'name no joint'}, "
+            f"and {urdf.name} has {plural(len(free), 'joint')} that "
             f"{'moves' if len(free) == 1 else 'move'} ({commas(free)}); call the columns as the "
             'URDF calls its joints, or say what they are with --header "t,q*6,qd*6,i*6"'
         )

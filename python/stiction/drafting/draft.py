@@ -132,10 +132,15 @@ def draft(
 
 
 def _check_law(law: str) -> None:
-    from ..catalogue import laws
+    from ..catalogue import effects, laws
     from ..wording import commas, did_you_mean
 
     names = [record.name for record in laws()]
+    if law in (record.name for record in effects()):
+        raise InputError(
+            f"'{law}' is an effect and no law: a diagnosis tries every effect by itself, and a "
+            f"plant file states it under [[effects]]; the laws are {commas(names)}"
+        )
     if law not in names:
         raise InputError(
             f"there is no law '{law}'{did_you_mean(law, names)}; there are {commas(names)}"

@@ -8,7 +8,7 @@ from typing import Final
 
 from ...errors import InputError
 from ...wording import commas, did_you_mean
-from ..columns import CANONICAL, ROLES, Column, Columns
+from ..columns import CANONICAL, ROLES, Column, Columns, named_in
 from ..mapping import PRESCRIBED
 from ..units import MOTION_OF_QUANTITY, Motion, find_unit, unit_names
 from .result import DRIVE_OF, ColumnGuess, Guess
@@ -36,8 +36,9 @@ def overrule(found: Guess, columns: Columns) -> Guess:
         A column that is not in the file, a role whose unit nothing tells, or a unit that is none
         of the role's.
     """
-    taken = {column.name: role for role, column in columns.items()}
     known = [each.column for each in found.columns]
+    columns = named_in(columns, known)
+    taken = {column.name: role for role, column in columns.items()}
     for role, column in columns.items():
         if column.name not in known:
             raise InputError(

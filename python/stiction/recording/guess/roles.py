@@ -168,7 +168,7 @@ class _Guesser:
             self.missing["time"] = (
                 "no column is known to be the time: name it, with its unit; where the file has "
                 "none, add a column of seconds"
-            )
+            ) + "".join(f"; {quote(one.name)} does not increase" for one in named)
             return
         unit = unit_in_name(chosen, ("time",)) or units.time_unit(chosen)
         self._give(chosen, "time", unit, why, sure)
