@@ -53,6 +53,16 @@ def load(
         keys, no recordings, one file twice, a replicate of a file that is not listed, recordings
         that overlap on the session clock.
     """
+    if isinstance(path, Mapping) or type(path).__name__ == "DataFrame":
+        raise InputError(
+            f"load: {given.brief(path)} is no file; of columns make Recording(time, input, "
+            "position), of the tables of a plant Plant.from_dict(...)"
+        )
+    if isinstance(path, list | tuple):
+        raise InputError(
+            "load: a list is given, and it reads one file; load each and give them together: "
+            "Session([load(a), load(b)])"
+        )
     path = given.path(path, "load")
     refuse_findings(path)
     if kind_of(path):

@@ -189,6 +189,17 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
     "swapped": (lambda: st.fit(recording(), st.Session([recording()])), "give a Plant"),
     "path for a session": (lambda: st.diagnose("session.toml"), "give what stiction.load("),
     "session without a plant": (lambda: st.fit(st.Session([recording()])), "plant"),
+    "a path among recordings": (
+        lambda: st.Session(["run.csv"]), "give what stiction.load('run.csv') returns",
+    ),
+    "several files at once": (
+        lambda: st.load(["a.csv", "b.csv"]), "Session([load(a), load(b)])",
+    ),
+    "a table for a file": (lambda: st.load({"friction": {}}), "Plant.from_dict(...)"),
+    "a name for an effect": (
+        lambda: st.Plant.from_dict({"friction": {"law": "coulomb"}, "effects": ["stribeck"]}),
+        '"effects": [{"name": "stribeck"}]',
+    ),
     "findings": (lambda: st.load("findings.json"), "holds what a diagnosis found"),
     "unequal lengths": (lambda: st.Recording([0.0, 1.0], [1.0], [0.0, 0.0]), "1"),
     "figure for axes": (lambda: motor().simulate(np.ones(5), 1e-3).plot(3), "plot: ax"),
