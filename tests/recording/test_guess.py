@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stiction.recording import Recording, Table, read_table
+from stiction.recording import Columns, Recording, Table, read_table
 from stiction.recording.guess import Guess, guess
+from stiction.recording.guess.overrule import overrule
 
 DEG = np.pi / 180.0
 TURN = 2.0 * np.pi
@@ -408,3 +409,26 @@ def test_real_recordings_are_understood(shared_data: Path, folder: str) -> None:
         assert known == {role: name for role, name in expected.items() if role != "enabled"}
         assert found.by_role["position"].unit == UNITS[expected["position"]]
         assert found.complete == (drive is not None)
+
+
+@pytest.mark.parametrize("name", ["n [U/min]", "Drehzahl (U/min)", "n [rpm]"])
+def test_a_speed_of_the_shaft_alone_is_a_velocity(name: str) -> None:
+    real = machine()
+    columns = {"t": real["time"], "i": real["effort"], name: real["velocity"] * 30.0 / np.pi}
+    found = guess([table(columns)])
+    assert roles(found)["velocity"] == (name, "rpm")
+    assert found.missing == {}
+
+
+def test_the_only_column_that_may_drive_says_why_it_does_not() -> None:
+    real = machine()
+    columns = {"t": real["time"], "q": real["position"], "torque [% rated]": 30.0 * real["effort"]}
+    missing = guess([table(columns)]).missing["input"]
+    assert "('torque [% rated]' did not qualify: in parts of a rated value" in missing
+
+
+def test_a_velocity_that_is_stated_stands_for_the_position() -> None:
+    real = machine()
+    columns = {"t": real["time"], "i": real["effort"], "what": real["velocity"]}
+    stated = Columns.parse({"velocity": {"name": "what", "unit": "rad/s"}})
+    assert overrule(guess([table(columns)]), stated).missing == {}

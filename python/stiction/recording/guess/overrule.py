@@ -60,6 +60,8 @@ def overrule(found: Guess, columns: Columns) -> Guess:
     missing = {r: w for r, w in found.missing.items() if r not in columns and r not in by_role}
     if {"input", "effort"} & columns.keys():
         missing.pop("input", None)
+    if "velocity" in by_role:  # which is integrated
+        missing.pop("position", None)
     motion, motion_reason = _motion(found, by_role, columns)
     return replace(
         found,

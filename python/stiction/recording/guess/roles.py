@@ -389,7 +389,10 @@ class _Guesser:
                 "no column is known to be the input: name the current, voltage, torque or force "
                 "that drives the machine, with its sign"
             )
-            if drive.refused:
+            if len(drive.refused) == 1:
+                (name, why), *_ = drive.refused.items()
+                sentence += f" ({quote(name)} did not qualify: {why})"
+            elif drive.refused:
                 sentence += f" ({commas(map(quote, drive.refused))} did not qualify)"
             if referenced:
                 sentence += (
