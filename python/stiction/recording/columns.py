@@ -229,7 +229,7 @@ class Columns(Mapping[str, Column]):
         return _rebuilt, (dict(self._by_role), self.where)
 
 
-def named_in(columns: Columns, names: Iterable[str]) -> Columns:
+def match_header(columns: Columns, names: Iterable[str]) -> Columns:
     """The same columns under the names that stand in a header.
 
     A column goes by its number too, and by its name without the unit behind it, where that means

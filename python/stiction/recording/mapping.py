@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..given import brief
 from ..wording import commas, plural
 from .clocks import align
-from .columns import CANONICAL, ROLES, Column, Columns, named_in
+from .columns import CANONICAL, ROLES, Column, Columns, match_header
 from .repair import check_lengths
 from .table import Table
 from .turns import unwrap
@@ -106,7 +106,7 @@ def read_channels(
     _check_choice("motion", motion, ("rotary", "linear"))
     _check_choice("drive", drive, DRIVES)
     notes: list[str] = []
-    columns = named_in(columns, table.columns)
+    columns = match_header(columns, table.columns)
     chosen = {
         role: _choose(table, role, column, f"{columns.where}: {role}", drive, motion, notes)
         for role, column in columns.items()

@@ -8,7 +8,7 @@ from typing import Final
 
 from ...errors import InputError
 from ...wording import commas, did_you_mean
-from ..columns import CANONICAL, ROLES, Column, Columns, named_in
+from ..columns import CANONICAL, ROLES, Column, Columns, match_header
 from ..mapping import PRESCRIBED
 from ..units import MOTION_OF_QUANTITY, Motion, find_unit, unit_names
 from .result import DRIVE_OF, ColumnGuess, Guess
@@ -37,7 +37,7 @@ def overrule(found: Guess, columns: Columns) -> Guess:
         of the role's.
     """
     known = [each.column for each in found.columns]
-    columns = named_in(columns, known)
+    columns = match_header(columns, known)
     taken = {column.name: role for role, column in columns.items()}
     for role, column in columns.items():
         if column.name not in known:
