@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import glob
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -26,7 +27,9 @@ def expand_patterns(paths: Sequence[Path]) -> list[Path]:
     """Paths, with what a pattern finds in its place: shells of Windows leave that to programs."""
     found: list[Path] = []
     for path in paths:
-        matches = [] if path.exists() else sorted(map(Path, glob.glob(str(path))))
+        # What no file can be called is told by those that read it.
+        there = os.path.exists(path) or "\0" in str(path)
+        matches = [] if there else sorted(map(Path, glob.glob(str(path))))
         found += matches or [path]
     return found
 
