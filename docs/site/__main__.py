@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from .check import complaints
+from .excerpts import write_excerpts
 from .stage import stage
 
 HERE = Path(__file__).parent
@@ -28,6 +29,7 @@ def main() -> int:
     site = out / "html"
     words = ["-q", "-W", "--keep-going", "-b", "html", "-c", str(HERE), "-d", str(out / "doctrees")]
     failed = build_main([*words, str(source), str(site)])
+    write_excerpts(site)
     wrong = complaints(site)
     for each in wrong:
         print(each, file=sys.stderr)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
+from pathlib import Path
 from typing import Any
 
 import stiction
@@ -46,6 +47,8 @@ html_theme = "furo"
 html_title = f"stiction {release}"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+html_js_files = ["offline-search.js"]
+html_search_scorer = str(Path(__file__).parent / "static" / "scorer.js")
 html_copy_source = False
 html_show_sphinx = False
 html_theme_options = {"navigation_with_keys": True}

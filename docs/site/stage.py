@@ -23,11 +23,11 @@ MADE: Final = """\
 
 | page | what it answers |
 |---|---|
-| [walkthroughs](walked/index.rst) | executed: diagnosis, axis, servo, robot, compensation |
-| [gallery of laws](gallery/laws.md) | each with figure, equation, source, example |
-| [gallery of effects](gallery/effects.md) | the same of what a plant has beside its law |
-| [figures of the paper](gallery/paper.md) | its experiments, run when the site was built |
-| [API reference](api/index.rst) | what is public in Python |
+| [walkthroughs](walked/index.rst) | executed: diagnosis, linear axis, servo, robot, compensation |
+| [gallery of laws](gallery/laws.md) | figure, equation, source, example of every law |
+| [gallery of effects](gallery/effects.md) | the same of every effect |
+| [figures of the paper](gallery/paper.md) | its experiments, simulated at each build |
+| [API reference](api/index.rst) | the public Python API, from the docstrings |
 
 """
 LINK: Final = re.compile(r"(\]\()((?:\.\./)*)([^()\s#:]*)((?:#[^()\s]*)?\))")

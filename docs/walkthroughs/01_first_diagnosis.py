@@ -2,9 +2,9 @@
 A first diagnosis
 =================
 
-Recordings of a motor, a plant that lacks something, and what it lacks. The package ships recordings
-of a simulated motor in which one effect is hidden. ``stiction demo`` diagnoses them on the command
-line; this does it from Python.
+Recordings of a motor, a model that lacks an effect, and which one it lacks. The package ships
+recordings of a simulated motor in which one effect is hidden. ``stiction demo`` diagnoses them on
+the command line; this does it in Python.
 """
 
 import stiction as st

@@ -2,9 +2,11 @@
 Friction of a linear axis
 =========================
 
-A prismatic joint like that of the EMPS benchmark (95 kg on a ball screw, driven by a voltage).
-Which mass, Coulomb and viscous friction does it have, and how well does a recording tell? It is
-made by a simulated axis with an encoder, so that the answer is known.
+**Simulated data.** The axis has the published mass, gain and friction of the EMPS benchmark (95
+kg on a ball screw, driven by a voltage). The recording of the benchmark itself states no licence,
+so it is not part of this package; :doc:`the effort residual </effort-residual>` has what the real
+one gives, and the command for it. Which mass, Coulomb and viscous friction does the axis have,
+and how well does a recording tell? As it is simulated, the answer is known.
 """
 
 import numpy as np

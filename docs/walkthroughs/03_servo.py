@@ -2,9 +2,9 @@
 A servo
 =======
 
-The input of a servo is a goal. Its own electronics make a voltage of the distance to it, so every
-simulation is a closed loop, and a fit compares positions. Here a servo with a payload is fitted
-from goals and positions alone.
+The input of a servo is a goal position. Its electronics turn the position error into a voltage,
+so every simulation is a closed loop, and a fit compares positions. Here a simulated servo with a
+payload is identified from goals and positions alone.
 """
 
 import numpy as np

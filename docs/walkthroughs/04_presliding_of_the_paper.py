@@ -2,10 +2,10 @@
 Pre-sliding, as in the paper
 ============================
 
-Before it slides a contact gives like a spring that forgets nothing until a loop is closed, creeps
-under a held load and hardens. C. Hsieh and Y.-C. Pan (Wear 242, 2000) tell these properties apart
-by experiments; each is a function of ``stiction.paper``. All of them are on :doc:`the page of the
-paper's figures </gallery/paper>`.
+Before it slides, a contact yields with hysteresis and non-local memory, creeps under a held load
+and hardens. C. Hsieh and Y.-C. Pan (Wear 242, 2000) separate these properties by experiments,
+which are simulated here; each is a function of ``stiction.paper``. All of them are on :doc:`the
+page of the paper's figures </gallery/paper>`.
 """
 
 from stiction import paper

@@ -2,9 +2,9 @@
 A robot arm
 ===========
 
-A robot is a machine of many joints. Its links are fitted to all joints together, by the rigid-body
-dynamics of its URDF; then each joint has a friction of its own. Needs ``pip install
-'stiction[robot]'``.
+Simulated data: one elbow whose truth is known. A robot is a machine of many joints. Its links are
+fitted to all joints together, by the rigid-body dynamics of its URDF; then each joint has a
+friction of its own. Needs ``pip install 'stiction[robot]'``.
 """
 
 import tempfile
@@ -47,3 +47,16 @@ session = RobotSession(robot, (Run((st.Recording(time, torque, q),)),))
 fitted = fit_robot(session)
 viscous, coulomb, bias = fitted.arm.friction[0]
 print(f"viscous {viscous:.3f} N·m·s/rad, Coulomb {coulomb:.3f} N·m, offset {bias:.4f} N·m")
+
+# %%
+# The friction of the elbow over speed, fitted and true. ``stiction diagnose`` of such a session
+# goes on from here: it looks for what each joint has beside this.
+
+
+def joint_friction(coulomb, viscous):
+    friction = {"law": "coulomb", "coulomb": float(coulomb), "viscous": float(viscous)}
+    return st.Plant.from_dict({"body": {"inertia": 0.3}, "friction": friction})
+
+
+curves = joint_friction(coulomb, viscous).plot_friction(label="fitted")
+joint_friction(0.8, 0.5).plot_friction(ax=curves, label="true")

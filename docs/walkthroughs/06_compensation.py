@@ -2,9 +2,9 @@
 Compensation in a loop
 ======================
 
-A friction that was identified is worth something where a controller gets it as a feed-forward. Here
-a PD loop follows a slow sine without it and with it; then the same joint is put into MuJoCo, whose
-own joint friction cannot hold. Needs ``pip install 'stiction[mujoco]'``.
+What is an identified friction worth as a feed-forward? A simulated PD loop follows a slow sine
+without it and with it; then the same joint is put into MuJoCo, whose own joint friction creeps
+under a held load. Needs ``pip install 'stiction[mujoco]'``.
 """
 
 import mujoco

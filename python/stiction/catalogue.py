@@ -128,6 +128,11 @@ class LawRecord:
         """The record as plain dicts and lists."""
         return asdict(self)
 
+    def _repr_html_(self) -> str:
+        from .notebook import record
+
+        return record(self)
+
 
 @dataclass(frozen=True)
 class ShapeRecord:
@@ -305,6 +310,11 @@ class EffectRecord:
     def to_dict(self) -> dict[str, Any]:
         """The record as plain dicts and lists."""
         return asdict(self)
+
+    def _repr_html_(self) -> str:
+        from .notebook import record
+
+        return record(self)
 
 
 Record = TypeVar("Record", LawRecord, EffectRecord)

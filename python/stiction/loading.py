@@ -8,7 +8,7 @@ from typing import Any
 
 from . import session
 from ._support import given
-from ._support.file_kinds import kind_of, kind_of_table
+from ._support.file_kinds import kind_of, kind_of_table, refuse_findings
 from ._support.keywords import explain_keywords
 from .errors import InputError
 from .plant import Plant
@@ -54,12 +54,18 @@ def load(
         keys, no recordings, one file twice, a replicate of a file that is not listed, recordings
         that overlap on the session clock.
     """
-    path = given.path(path, "load")
-    if path.name == "findings.json":
+    if isinstance(path, Mapping) or type(path).__name__ == "DataFrame":
         raise InputError(
-            f"{path}: holds what a diagnosis found; read it as JSON, or load plant.toml beside "
-            "it, the plant with what was found"
+            f"load: {given.brief(path)} is no file; of columns make Recording(time, input, "
+            "position), of the tables of a plant Plant.from_dict(...)"
         )
+    if isinstance(path, list | tuple):
+        raise InputError(
+            "load: a list is given, and it reads one file; load each and give them together: "
+            "Session([load(a), load(b)])"
+        )
+    path = given.path(path, "load")
+    refuse_findings(path)
     if kind_of(path):
         return _recording(path, columns)
     if columns is not None:

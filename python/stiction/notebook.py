@@ -10,15 +10,16 @@ import numpy as np
 import numpy.typing as npt
 
 from ._native import FrictionModel
-from .catalogue import laws
+from .catalogue import LawRecord, laws
 from .errors import InputError
 from .plant import Plant
 from .plot import ACCENT, CYCLE, FAINT, thinned
 
 if TYPE_CHECKING:
+    from .catalogue import EffectRecord
     from .motor import Motor
 
-__all__ = ["Line", "drawing", "friction_drawing", "friction_model", "motor", "table"]
+__all__ = ["Line", "drawing", "friction_drawing", "friction_model", "motor", "record", "table"]
 
 WIDTH: Final = 560
 """Pixels, which are units of the drawing."""
@@ -40,6 +41,25 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
         "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
     )
     return f"<table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def record(entry: LawRecord | EffectRecord) -> str:
+    """A law or effect of the catalogue: what it is, where it is from, and its parameters."""
+    about = entry.source if isinstance(entry, LawRecord) else f"{entry.means}; {entry.remedy}"
+    head = ("parameter", "symbol", "meaning", "unit", "default", "bounds")
+    rows = [
+        (
+            each.name,
+            each.symbol or "",
+            each.meaning,
+            each.unit,
+            "" if each.default is None else f"{each.default:g}",
+            "{:g} to {:g}".format(*each.bounds),
+        )
+        for each in entry.parameters
+    ]
+    told = f"<p><b>{escape(entry.name)}</b>: {escape(entry.summary)}</p><p>{escape(about)}</p>"
+    return f"{told}{table(head, rows)}"
 
 
 def drawing(lines: Sequence[Line], x: str, y: str) -> str:

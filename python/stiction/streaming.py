@@ -42,7 +42,7 @@ def stream(
     Parameters
     ----------
     motor : Motor
-        Is moved on.
+        Its state goes on from block to block.
     currents : iterable of array_like of shape (n,)
         Chunks of any length, held over their samples; a generator may go on for ever.
     dt : float

@@ -133,3 +133,47 @@ def test_what_cannot_be_drafted_is_one_sentence(
     before = sorted(os.listdir())
     assert told in refused(["diagnose", *words], capsys)
     assert sorted(os.listdir()) == before
+
+
+@pytest.mark.parametrize(
+    "stated",
+    [
+        "input=Iq [A] [A], position=Angle [rad]",
+        "input=Iq, position=Angle",
+        "input=Iq [A], position='Angle [rad]'",
+        'input="Iq [A]"',
+    ],
+)
+def test_columns_whose_header_has_a_unit_go_by_the_name_with_it_and_without(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], stated: str
+) -> None:
+    # The command prints "input = Iq [A] [A]", and what it prints can be given back.
+    paths = three(tmp_path, ("Time [s]", "Iq [A]", "Angle [rad]"))
+    out = tmp_path / "out"
+    assert run(["fit", *map(str, paths), "--columns", stated, "-o", str(out), "-q"]) == 0
+    columns = capsys.readouterr().out.splitlines()[0]
+    assert "input = Iq [A] [A]" in columns
+    assert "position = Angle [rad] [rad]" in columns
+
+
+def test_a_pattern_that_the_shell_left_is_what_it_finds(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    three(tmp_path)
+    out = tmp_path / "out"
+    assert run(["fit", str(tmp_path / "run*.csv"), "-o", str(out), "-q"]) == 0
+    assert "in 3 recordings" in capsys.readouterr().out
+    assert run(["init", str(tmp_path / "run*.csv"), "-o", str(tmp_path / "drafts")]) == 0
+    assert "guessed from 3 recordings" in capsys.readouterr().out
+
+
+def test_several_targets_may_stand_in_one_word(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plant = tmp_path / "plant.toml"
+    st.Plant.from_dict({
+        "body": {"inertia": 0.01}, "friction": {"law": "coulomb", "coulomb": 0.2, "viscous": 0.01},
+    }).save(plant)  # fmt: skip
+    assert run(["export", str(plant), "--to", "c,urdf", "-o", str(tmp_path / "out"), "-q"]) == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"c", "urdf"}
+    capsys.readouterr()

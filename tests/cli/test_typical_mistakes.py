@@ -111,6 +111,30 @@ COMMANDS: dict[str, tuple[str, str, str, list[str], str]] = {
         "there is no effect stribek (did you mean 'stribeck'?)",
     ),
     "another shell": ("", "", "", ["completion", "powershel"], "did you mean 'powershell'?"),
+    "an effect for a law": (
+        "", "", "", ["diagnose", "run.csv", "--law", "stribeck"], "is an effect and no law",
+    ),
+    "an option that is like none": (
+        "", "", "", ["plan", "plant.toml", "--limit", "5"], "there is no option --limit; there are",
+    ),
+    "an address": (
+        "", "", "", ["diagnose", "https://example.org/run.csv"], "download the file and name the",
+    ),
+    "findings for a recording": (
+        "", "", "", ["diagnose", "findings.json"], "holds what a diagnosis found",
+    ),
+    "a robot's description": (
+        "", "", "", ["diagnose", "arm.urdf"], "stiction init arm.urdf LOGS drafts its session",
+    ),
+    "a pattern that finds nothing": ("", "", "", ["diagnose", "log*.csv"], "no such file"),
+    "a column twice": (
+        "", "", "", ["diagnose", "run.csv", "--columns", "input=u, input=q"], "drop one",
+    ),
+    "targets with commas": (
+        "", "", "", ["export", "plant.toml", "--to", "c,simulink"], "to = 'simulink' is unknown",
+    ),
+    "an empty folder": ("", "", "", ["diagnose", "empty"], "no recording in this folder"),
+    "results into a file": ("", "", "", ["fit", "run.csv", "-o", "run.csv"], "another one with"),
     "below 0": (
         "plant.toml", "coulomb = 0.2", "coulomb = -0.2", ["plan", "plant.toml"], "out of bounds",
     ),
@@ -124,6 +148,9 @@ def test_a_mistake_on_the_command_line_is_one_helpful_sentence(
     file, old, new, words, told = COMMANDS[name]
     desk = Desk(tmp_path)
     (tmp_path / "notes.xlsx").write_bytes(b"PK")
+    for other in ("findings.json", "arm.urdf"):
+        (tmp_path / other).write_text("{}", encoding="utf-8")
+    (tmp_path / "empty").mkdir()
     if file:
         desk.edit(tmp_path / file, old, new)
     monkeypatch.chdir(tmp_path)
@@ -162,6 +189,17 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
     "swapped": (lambda: st.fit(recording(), st.Session([recording()])), "give a Plant"),
     "path for a session": (lambda: st.diagnose("session.toml"), "give what stiction.load("),
     "session without a plant": (lambda: st.fit(st.Session([recording()])), "plant"),
+    "a path among recordings": (
+        lambda: st.Session(["run.csv"]), "give what stiction.load('run.csv') returns",
+    ),
+    "several files at once": (
+        lambda: st.load(["a.csv", "b.csv"]), "Session([load(a), load(b)])",
+    ),
+    "a table for a file": (lambda: st.load({"friction": {}}), "Plant.from_dict(...)"),
+    "a name for an effect": (
+        lambda: st.Plant.from_dict({"friction": {"law": "coulomb"}, "effects": ["stribeck"]}),
+        '"effects": [{"name": "stribeck"}]',
+    ),
     "findings": (lambda: st.load("findings.json"), "holds what a diagnosis found"),
     "unequal lengths": (lambda: st.Recording([0.0, 1.0], [1.0], [0.0, 0.0]), "1"),
     "figure for axes": (lambda: motor().simulate(np.ones(5), 1e-3).plot(3), "plot: ax"),

@@ -73,9 +73,11 @@ def test_names_are_counted_by_how_they_were_told() -> None:
 
 def test_it_is_said_in_words() -> None:
     held = Reliability(told=19, first=9, listed=17)
-    several = "of names told like these one was right 17 of 19 times where the truth was known"
-    assert cause("frictional_lag", held=held).track_record == f"{several}, the first one 9"
-    told = "names told like this one were right 9 of 19 times where the truth was known"
+    several = (
+        "with alternatives like these one was right in 17 of 19 sessions whose truth was known"
+    )
+    assert cause("frictional_lag", held=held).track_record == f"{several}, the first in 9"
+    told = "a name stated like this was right in 9 of 19 sessions whose truth was known"
     assert cause(held=held).track_record == told
     assert cause(held=Reliability(0, 0, 0)).track_record == ""
     assert cause().track_record == ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
 from pathlib import Path
@@ -12,11 +13,13 @@ from docs.site.check import complaints
 from docs.site.doc_comments import comment_of
 from docs.site.effect_figure import effect_figure
 from docs.site.examples import effect_example, law_example, printed
+from docs.site.excerpts import main_text, write_excerpts
 from docs.site.gallery import effect_page, law_page
 from docs.site.pictures import draw
 from docs.site.reference import documented
 from docs.site.stage import relinked
 from PIL import Image
+from tests.report.browser import chromium, opened
 
 import stiction as st
 from stiction.compare.figures import law_figures
@@ -110,3 +113,32 @@ def test_a_dead_link_and_a_load_from_the_network_are_found(tmp_path: Path) -> No
         "a.html: #nowhere: no such place on that page",
         "a.html: loads https://example.org/p.png from the network",
     ]
+
+
+PAGE = (
+    '<nav>menu</nav><article role="main"><h1>Lu<em>Gre</em><a class="headerlink">¶</a></h1>'
+    "<p>one<br>two<img src='x.png'></p><script>var three;</script></article><p>foot</p>"
+)
+
+
+def test_the_search_has_the_words_of_a_page_without_its_menus() -> None:
+    assert main_text(PAGE) == "Lu Gre one two"
+
+
+def test_the_search_shows_excerpts_where_the_site_is_opened_from_a_disk(tmp_path: Path) -> None:
+    program = chromium()
+    if program is None or os.name == "nt":
+        pytest.skip("no Chromium is installed that a pipe can drive")
+    (tmp_path / "theory").mkdir()
+    (tmp_path / "theory" / "lugre.html").write_text(PAGE, "utf-8")
+    script = (REPOSITORY / "docs" / "site" / "static" / "offline-search.js").read_text("utf-8")
+    search = tmp_path / "search.html"
+    search.write_text(
+        f'<!doctype html><html data-content_root="./"><head></head><script>{script}</script></html>'
+    )
+    write_excerpts(tmp_path)
+    with opened(program, tmp_path / "profile") as browser:
+        browser.open(search)
+        found = browser.run("fetch('./theory/lugre.html').then(answer => answer.text())")
+        assert found == '<div role="main">Lu Gre one two</div>'
+        assert browser.complaints == []

@@ -428,3 +428,20 @@ def test_a_limit_that_states_no_number_begins_within_the_commands(per_effort: fl
     found = fit(machine, recording)
     assert found["limit"].value == pytest.approx(per_effort * limit, rel=0.03)
     assert found["share"].value == pytest.approx(1.0, abs=0.1)
+
+
+def test_correlations_that_mislead_are_told_the_largest_first() -> None:
+    time = 1e-3 * np.arange(6000)
+    speed = 20.0 + 2.0 * np.sin(3.0 * time)  # hardly changes: level and slope go together
+    noise = 0.01 * np.random.default_rng(0).standard_normal(len(time))
+    effort = 0.2 + 0.05 * speed + 0.0076 * 6.0 * np.cos(3.0 * time) + noise
+    position = 20.0 * time - 2.0 / 3.0 * np.cos(3.0 * time)
+    plant = st.Plant.from_dict({"drive": {"input": "torque_nm"}, "friction": {"law": "coulomb"}})
+    found = st.fit(plant, st.Recording(time, effort, position))
+    told = str(found).splitlines()
+    names = "friction.coulomb and friction.viscous -"
+    assert told[-1].startswith(f"  correlations above 0.5: {names}")
+    assert names in found._repr_html_()
+    inertia = next(line for line in told if line.startswith("body.inertia"))
+    number = found["inertia"]
+    assert f"({100.0 * number.stderr / number.value:.2g} %)" in inertia

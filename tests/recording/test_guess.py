@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stiction.recording import Recording, Table, read_table
+from stiction.recording import Columns, Recording, Table, read_table
 from stiction.recording.guess import Guess, guess
+from stiction.recording.guess.overrule import overrule
 
 DEG = np.pi / 180.0
 TURN = 2.0 * np.pi
@@ -228,6 +229,23 @@ def test_a_torque_drives() -> None:
     assert found.motion == "rotary"
 
 
+def test_the_effort_of_a_joint_state_is_no_voltage() -> None:
+    real, joint = machine(), "/joint_states/elbow"
+    names = {word: f"{joint}/{word}" for word in ("position", "velocity", "effort")}
+    columns = {"__time": real["time"]} | {name: real[word] for word, name in names.items()}
+    found = guess([table(columns)])
+    assert found.drive == "torque_nm"
+    assert found.by_role["input"].unit == "Nm"
+    assert found.input_unknown
+    assert "JointState" in found.drive_reason
+
+
+def test_a_column_of_which_the_numbers_are_spoiled_is_named_where_it_is_missed() -> None:
+    columns = machine() | {"position": np.full(3000, 1e200)}
+    found = guess([table({name: columns[name] for name in ("time", "position", "effort")})])
+    assert found.missing["position"].endswith("'position' holds numbers beyond 1e100")
+
+
 def test_a_friction_coefficient_stands_for_the_effort() -> None:
     real = machine()
     found = guess([table({
@@ -391,3 +409,26 @@ def test_real_recordings_are_understood(shared_data: Path, folder: str) -> None:
         assert known == {role: name for role, name in expected.items() if role != "enabled"}
         assert found.by_role["position"].unit == UNITS[expected["position"]]
         assert found.complete == (drive is not None)
+
+
+@pytest.mark.parametrize("name", ["n [U/min]", "Drehzahl (U/min)", "n [rpm]"])
+def test_a_speed_of_the_shaft_alone_is_a_velocity(name: str) -> None:
+    real = machine()
+    columns = {"t": real["time"], "i": real["effort"], name: real["velocity"] * 30.0 / np.pi}
+    found = guess([table(columns)])
+    assert roles(found)["velocity"] == (name, "rpm")
+    assert found.missing == {}
+
+
+def test_the_only_column_that_may_drive_says_why_it_does_not() -> None:
+    real = machine()
+    columns = {"t": real["time"], "q": real["position"], "torque [% rated]": 30.0 * real["effort"]}
+    missing = guess([table(columns)]).missing["input"]
+    assert "('torque [% rated]' did not qualify: in parts of a rated value" in missing
+
+
+def test_a_velocity_that_is_stated_stands_for_the_position() -> None:
+    real = machine()
+    columns = {"t": real["time"], "i": real["effort"], "what": real["velocity"]}
+    stated = Columns.parse({"velocity": {"name": "what", "unit": "rad/s"}})
+    assert overrule(guess([table(columns)]), stated).missing == {}

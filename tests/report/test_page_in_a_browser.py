@@ -217,6 +217,17 @@ def test_a_phone_shows_it_without_scrolling_sideways(browser: Browser, page: Pat
     click(browser, "in")
 
 
+def test_a_finger_meets_what_it_is_to_press(browser: Browser, page: Path) -> None:
+    browser.size(390, 844, phone=True)
+    browser.open(page)
+    browser.wait(READY)
+    heights = browser.run(
+        "[...document.querySelectorAll('#explorer button, #explorer select')]"
+        ".map(e => e.getBoundingClientRect().height)"
+    )
+    assert min(heights) >= 32
+
+
 def test_a_wide_screen_is_used_and_not_left(browser: Browser, page: Path) -> None:
     browser.size(1600, 1000)
     browser.open(page)

@@ -12,6 +12,7 @@ from tests.report.test_report import undrawn
 import stiction as st
 from stiction.diagnosis import Diagnosis
 from stiction.diagnosis.data.gain import Gain
+from stiction.diagnosis.findings.reliability import Reliability
 from stiction.diagnosis.records import Advice, Verdict
 from stiction.report import write
 from stiction.report.labels import distinct_labels
@@ -65,6 +66,16 @@ def test_the_title_says_what_is_missing_and_what_becomes_of_the_error(tmp_path: 
     assert heading(both, tmp_path).startswith(
         "Missing: constant offset of the effort and Stribeck friction. Held‑out error 3.00 → "
     )
+    counted = replace(found.effects[0], reliability=Reliability(76, 74, 74))
+    assert heading(replace(one, effects=(counted,)), tmp_path).startswith(
+        "Missing: constant offset of the effort, 97\u00a0%. Held‑out error 0.98 → "
+    )
+    pair = (counted, replace(fall, reliability=Reliability(400, 400, 400)))
+    assert "Stribeck friction, 97\u00a0% each. Held‑out" in heading(
+        replace(one, effects=pair), tmp_path
+    )
+    never_wrong = replace(fall, reliability=Reliability(400, 400, 400))
+    assert "friction, 99\u00a0%." in heading(replace(one, effects=(never_wrong,)), tmp_path)
     untested = replace(before, heldout_relative=None, train_relative=0.123)
     assert "Error on the rows fitted 12.3 → " in heading(replace(one, baseline=untested), tmp_path)
 

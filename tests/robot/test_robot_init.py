@@ -107,3 +107,27 @@ def test_joints_without_columns_are_taken_to_rest(logs: Path) -> None:
     robot = Robot.load(out / "robot.toml")
     assert robot.names == ("base", "shoulder")
     assert dict(robot.locked) == {"elbow": 0.0}
+
+
+def test_efforts_of_joint_states_are_torques_that_somebody_has_to_confirm(
+    logs: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = SimulatedRobot()
+    table = robot.record(0, 10.0)
+    words = {"position": "q", "velocity": "v", "effort": "tau"}
+    columns = {"__time": table["t"]}
+    for word, key in words.items():
+        for j, joint in enumerate(robot.joints, 1):
+            rate = np.gradient(table[f"q{j}"], table["t"]) if key == "v" else table[f"{key}{j}"]
+            columns[f"/joint_states/{joint}/{word}"] = rate
+    np.savetxt(
+        logs / "states.csv", np.column_stack(list(columns.values())), delimiter=",",
+        header=",".join(columns), comments="",
+    )  # fmt: skip
+    words_of = ["init", str(logs / "arm.urdf"), str(logs / "states.csv"), "-o", str(logs / "d")]
+    assert ran(*words_of) == 0
+    said = capsys.readouterr().out
+    assert f"/joint_states/{robot.joints[0]}/effort [Nm]" in said
+    assert "to do: confirm in robot.toml the unit of the input of " in said
+    drafted_robot = Robot.load(logs / "d" / "robot.toml")
+    assert [(one.input, one.gain) for one in drafted_robot.joints] == [("torque_nm", 1.0)] * 3

@@ -113,3 +113,11 @@ def test_the_package_lists_its_names_and_nothing_else() -> None:
     assert [name for name in dir(st) if not name.startswith("__")] == sorted(
         set(st.__all__) - {"__version__"}
     )
+
+
+@pytest.mark.parametrize("record", [*st.laws(), *st.effects()], ids=lambda each: each.name)
+def test_a_law_or_an_effect_shows_its_parameters_in_a_notebook(record: object) -> None:
+    html = record._repr_html_()
+    assert f"<b>{record.name}</b>" in html
+    assert html.count("<tr>") == 1 + len(record.parameters)
+    assert all(f"<td>{each.name}</td>" in html for each in record.parameters)

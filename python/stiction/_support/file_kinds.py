@@ -7,7 +7,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
-__all__ = ["kind_of", "kind_of_table"]
+from ..errors import InputError
+
+__all__ = ["kind_of", "kind_of_table", "refuse_findings"]
 
 _OF_PLANT: Final = frozenset({"motion", "drive", "body", "friction"})
 _OF_SESSION: Final = frozenset({"plant", "columns", "recordings"})
@@ -24,6 +26,21 @@ def kind_of(path: Path) -> str:
 
     endings = [suffix for known in FORMATS for suffix in known.suffixes]
     return "recording" if path.suffix.casefold() in endings and os.path.isfile(path) else ""
+
+
+def refuse_findings(path: Path) -> None:
+    """Of a file that holds what was found: what to read in its place.
+
+    Raises
+    ------
+    InputError
+        It is one, by its name.
+    """
+    if path.name == "findings.json":
+        raise InputError(
+            f"{path}: holds what a diagnosis found; read it as JSON, or load plant.toml beside "
+            "it, the plant with what was found"
+        )
 
 
 def kind_of_table(table: Mapping[str, Any]) -> str:

@@ -37,11 +37,22 @@ def read_columns(text: str) -> dict[str, Any]:
             raise InputError(
                 f"--columns: '{entry.strip()}' is the wrong way round; write {name}={role}"
             )
-        bare, bracket, unit = name.partition("[")
-        if bracket:
-            if not unit.endswith("]"):
-                raise InputError(f"--columns: '{name}' lacks a closing bracket")
-            columns[role] = {"name": bare.strip(), "unit": unit[:-1].strip()}
+        # The last bracket, for a header has units of its own: input=Iq [A] [mA].
+        bare, bracket, unit = name.rpartition("[")
+        if _unquoted(name) != name:
+            columns[role] = _unquoted(name)
+        elif bracket and not unit.endswith("]"):
+            raise InputError(f"--columns: '{name}' lacks a closing bracket")
+        elif bracket and not unit[:-1].strip().isdigit():  # q[0] is a name
+            columns[role] = {"name": _unquoted(bare), "unit": unit[:-1].strip()}
         else:
             columns[role] = name
     return columns
+
+
+def _unquoted(name: str) -> str:
+    """A name without the quotes that somebody put around it for its blanks."""
+    bare = name.strip()
+    if len(bare) > 2 and bare[0] == bare[-1] and bare[0] in "\"'":
+        return bare[1:-1]
+    return bare

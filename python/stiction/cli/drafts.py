@@ -11,6 +11,7 @@ from typing import Final
 from zlib import crc32
 
 from .._support.atomic_files import write_text
+from .._support.file_kinds import refuse_findings
 from .._support.wording import commas
 from ..drafting import FILES, assumptions, draft
 from ..errors import InputError
@@ -19,6 +20,7 @@ from ..recording.formats import FORMATS
 from ..session import Session
 from .answer import folder, protect_writes
 from .columns import read_columns
+from .given import expand_patterns
 from .sessions import load_session
 
 __all__ = ["FOLDER", "Opened", "Stated", "open_session"]
@@ -104,7 +106,9 @@ def open_session(
         As for ``load_session`` and ``draft``; options of a draft beside a session file; recordings
         that do not tell what is needed; a draft that somebody has changed.
     """
+    paths = expand_patterns(paths)
     first = paths[0]
+    refuse_findings(first)
     if not all(map(is_data, paths)):
         return _of_session(paths, out, verb, stated, keep_faulty)
     resolved = [path.resolve() for path in paths]
@@ -163,6 +167,10 @@ def _of_session(
     except InputError:
         if path.suffix.casefold() == ".toml" or not os.path.isfile(path):
             raise
+        if path.suffix.casefold() == ".urdf":
+            raise InputError(
+                f"{path}: describes a robot; stiction init {path} LOGS drafts its session"
+            ) from None
         endings = commas(suffix for known in FORMATS for suffix in known.suffixes)
         raise InputError(
             f"{path}: is no session file, and no recording by its ending (known are {endings}); "

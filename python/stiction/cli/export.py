@@ -12,7 +12,7 @@ from .._support.progress import phase
 from .._support.wording import commas
 from ..errors import InputError
 from .answer import answer, folder, protect_writes
-from .given import Quiet
+from .given import Quiet, separate
 from .progress import progress
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def export(
     plant
         Plant file, or that of a robot: each of its joints is written.
     to
-        Target; may be given several times.
+        Target, or several with commas between.
     speed
         Greatest speed at which friction matters, rad/s or m/s; without it the greatest one of the
         session, or what is usual: 10 rad/s or 0.2 m/s.
@@ -71,6 +71,7 @@ def export(
         return
     if plant is None:
         raise InputError("stiction export: no plant file is given; name one, or ask with --list")
+    to = tuple(name for word in to for name in separate(word))
     if not to:
         raise InputError(
             f"stiction export: no target is given; write --to and one of {commas(known)}"

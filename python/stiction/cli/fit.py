@@ -12,7 +12,7 @@ from cyclopts import Parameter
 from .._support.atomic_files import write_text
 from ..errors import InputError
 from .answer import answer, folder, print_on_failure, protect_writes
-from .given import Quiet
+from .given import Quiet, expand_patterns
 from .interrupt import answer_on_interrupt, defer_interrupt
 from .progress import progress
 
@@ -70,10 +70,11 @@ def fit(
     from .drafts import Stated, open_session
     from .sessions import name_file_in_errors, refuse_overwrite
 
-    if not more and _curve(session, columns, law, out, as_json=json):
+    session, *others = expand_patterns([session, *more])
+    if not others and _curve(session, columns, law, out, as_json=json):
         return
     with progress(quiet):
-        at = open_session([session, *more], out, "fit", Stated(columns, gain, law, joint, header))
+        at = open_session([session, *others], out, "fit", Stated(columns, gain, law, joint, header))
         recordings, plant, where = at.session, at.plant, at.where
         refuse_overwrite(plant, where)
         folder(where)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import glob
+import os
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter, Token
 
-__all__ = ["Quiet", "Whole", "separate"]
+__all__ = ["Quiet", "Whole", "expand_patterns", "separate"]
 
 
 def _read(_: object, tokens: Sequence[Token]) -> int:
@@ -18,6 +21,17 @@ def _read(_: object, tokens: Sequence[Token]) -> int:
 def separate(names: str) -> list[str]:
     """Names that stand in one word with commas between."""
     return [name.strip() for name in names.split(",") if name.strip()]
+
+
+def expand_patterns(paths: Sequence[Path]) -> list[Path]:
+    """Paths, with what a pattern finds in its place: shells of Windows leave that to programs."""
+    found: list[Path] = []
+    for path in paths:
+        # What no file can be called is told by those that read it.
+        there = os.path.exists(path) or "\0" in str(path)
+        matches = [] if there else sorted(map(Path, glob.glob(str(path))))
+        found += matches or [path]
+    return found
 
 
 Whole = Annotated[int, Parameter(converter=_read)]

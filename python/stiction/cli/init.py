@@ -12,7 +12,7 @@ from .._support.atomic_files import create_text
 from .._support.wording import commas, plural
 from ..errors import InputError
 from .answer import answer, folder, protect_writes
-from .given import Quiet
+from .given import Quiet, expand_patterns
 from .progress import progress
 
 if TYPE_CHECKING:
@@ -60,11 +60,12 @@ def init(
     from .robot_draft import draft_robot
 
     if data.suffix.casefold() == ".urdf":
-        draft_robot(data, more, header, joint, out, as_json=json, quiet=quiet)
+        draft_robot(data, expand_patterns(more), header, joint, out, as_json=json, quiet=quiet)
         return
     vacant(out, FILES, "another folder with --out")
+    paths = expand_patterns([data, *more])
     with progress(quiet):
-        made = draft([data, *more], joint=joint, header=header)
+        made = draft(paths, joint=joint, header=header)
     where = folder(out)
     files = [where / name for name in FILES]
     with protect_writes(where):

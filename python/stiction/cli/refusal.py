@@ -8,7 +8,7 @@ from typing import Literal, get_args, get_origin
 import cyclopts
 from cyclopts import exceptions
 
-from .._support.wording import commas, did_you_mean
+from .._support.wording import commas, did_you_mean, nearest
 
 __all__ = ["refusal"]
 
@@ -80,4 +80,7 @@ def _no_verb(given: str, app: cyclopts.App) -> str:
 
 def _no_option(given: str, known: Iterable[str]) -> str:
     names = list(known)
-    return f"there is no option {given}{did_you_mean(given, names)}; there are {commas(names)}"
+    # Without the dashes, in which all of them are alike.
+    meant = nearest(given.lstrip("-"), [name.lstrip("-") for name in names])
+    near = f" (did you mean '--{meant}'?)" if meant is not None else ""
+    return f"there is no option {given}{near}; there are {commas(names)}"

@@ -124,6 +124,12 @@ def draft_robot(
     unsure = [one.name for one in joints if one.found.drive == "current_a" and one.gain is None]
     if unsure:
         todo.append(f"state the gain of {commas(unsure)} in robot.toml")
+    guessed = [one.name for one in joints if one.found.input_unknown]
+    if guessed:
+        todo.append(
+            f"confirm in robot.toml the unit of the input of {commas(guessed)}: no column says "
+            "what it is measured in"
+        )
     told = {
         "joints": {one.name: {"label": one.label, **one.found.to_dict()} for one in joints},
         "locked": list(locked),
@@ -149,10 +155,10 @@ def _places(
         ordered = {name: by_name[name] for name in kinds if name in by_name}
         return ordered, tuple(name for name in free if name not in ordered)
     if not labels or len(labels) > len(free):
+        told = f"are of {plural(len(labels), 'joint')} ({commas(labels)})"
         raise InputError(
-            f"{tables[0].path}: its columns are of {plural(len(labels), 'joint')}"
-            f"{f' ({commas(labels)})' if labels else ''}, and {urdf.name} has "
-            f"{plural(len(free), 'joint')} that "
+            f"{tables[0].path}: its columns {told if labels else 'name no joint'}, "
+            f"and {urdf.name} has {plural(len(free), 'joint')} that "
             f"{'moves' if len(free) == 1 else 'move'} ({commas(free)}); call the columns as the "
             'URDF calls its joints, or say what they are with --header "t,q*6,qd*6,i*6"'
         )
@@ -303,6 +309,8 @@ def _drive(one: _Drafted, joints: Sequence[_Drafted]) -> list[str]:
     lines = ["[robot.joints.drive]"]
     drive = one.found.drive
     if drive in ("torque_nm", "force_n"):
+        if one.found.input_unknown:
+            lines += comment(f"TO DO: confirm the unit. {printable(one.found.drive_reason)}.")
         return [*lines, f'input = "{drive}"', "gain = 1.0"]
     known = [other.gain for other in joints if other.gain is not None]
     if one.gain is not None:
@@ -371,7 +379,9 @@ def _text(
     width = max(len(one.name) for one in joints)
     for one in joints:
         roles = one.found.by_role
-        told = [f"{role} {roles[role].column}" for role in _ROLES if role in roles]
+        told = [
+            f"{role} {roles[role].column} [{roles[role].unit}]" for role in _ROLES if role in roles
+        ]
         gain = f", gain {one.gain:.3g} by the masses of the URDF" if one.gain is not None else ""
         lines.append(f"{one.name:<{width}}  {', '.join(told)}{gain}")
     lines += [f"left out: {path}: {why.removeprefix(f'{path}: ')}" for path, why in left_out]

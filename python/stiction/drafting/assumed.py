@@ -36,7 +36,13 @@ def _columns(draft: Draft) -> str:
         scale = "" if one.scale == 1.0 else f", times {one.scale:g}"
         unit = one.unit or "1"
         if role == "input" and draft.found.input_unknown:
-            unit = f"{unit} is a guess: nothing tells what it is measured in"
+            joint_state = unit in ("Nm", "N")
+            why = (
+                "JointState defines it so, drivers may write current"
+                if joint_state
+                else "nothing tells what it is measured in"
+            )
+            unit = f"{unit} is a guess: {why}"
         told.append(f"{role} = {' '.join(one.column.split())} [{unit}{scale}]")
     joint = f"; joint {draft.joints[0]} of {len(draft.joints)} (--joint)" if draft.joints else ""
     return f"columns: {', '.join(told)}{joint} (--columns states others)"

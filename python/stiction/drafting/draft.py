@@ -133,9 +133,14 @@ def draft(
 
 def _check_law(law: str) -> None:
     from .._support.wording import commas, did_you_mean
-    from ..catalogue import laws
+    from ..catalogue import effects, laws
 
     names = [record.name for record in laws()]
+    if law in (record.name for record in effects()):
+        raise InputError(
+            f"'{law}' is an effect and no law: a diagnosis tries every effect by itself, and a "
+            f"plant file states it under [[effects]]; the laws are {commas(names)}"
+        )
     if law not in names:
         raise InputError(
             f"there is no law '{law}'{did_you_mean(law, names)}; there are {commas(names)}"

@@ -97,7 +97,8 @@ class Curves:
         static = steady.static_level(plant)
         what = {"speed_off": "friction over speed", "position_off": "effort over position"}
         return tuple(
-            f"lines between points of {what[name]} are off by {off:.3g} {plant.effort_unit} at most"
+            f"{what[name]} is interpolated between points, off by {off:.3g} "
+            f"{plant.effort_unit} at most"
             for name, off in numbers.items()
             if off > ROUNDING * static
         )

@@ -100,7 +100,7 @@ pub fn friction(velocity: Real) -> Real {
     plant::stiction_friction(velocity)
 }
 
-/// Effort that the machine needs to stand at a place.
+/// Effort that holds the machine at rest at a position.
 pub fn place(position: Real) -> Real {
     plant::stiction_place(position)
 }

@@ -13,7 +13,7 @@ from .._support.units import MOTION_OF_QUANTITY, SI_UNIT, Unit, find_unit, to_si
 from .._support.wording import commas
 from ..errors import InputError
 from ..recording import Columns, Table, read_table
-from ..recording.columns import Column
+from ..recording.columns import Column, match_header
 from ..recording.guess.evidence import columns_of
 from ..recording.guess.kinds import kinds_of
 from .curve import CurveFit, fit_curve
@@ -66,6 +66,7 @@ def fit_curve_file(
         Columns that are not told, units of another kind, and all that ``fit_curve`` refuses.
     """
     given = Columns.parse(dict(stated) if stated else None, where="--columns")
+    given = match_header(given, table.columns)
     chosen = {role: given.get(role) or _by_name(table, role) for role in _ROLES}
     units = {role: _unit(table, role, column) for role, column in chosen.items()}
     values = {role: _values(table, role, chosen[role], units[role]) for role in _ROLES}

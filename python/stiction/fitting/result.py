@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from .._support import given
 from .._support.arrays import FloatArray
@@ -22,6 +22,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 __all__ = ["FitParameter", "FitResult"]
+
+LEAST_CORRELATION: Final = 0.5
+"""Of two parameters, from which on it is told; below it neither misleads about the other."""
+MOST_CORRELATIONS: Final = 6
+"""So many are told; fit.json and the page have all."""
 
 
 @dataclass(frozen=True)
@@ -157,7 +162,8 @@ class FitResult:
         rows = [("parameter", "value", "± (1 s.e.)", "unit", "")]
         for path, p in self._shown():
             note = f"at its {p.at_bound} bound" if p.at_bound else ""
-            rows.append((path, f"{p.value:.6g}", f"{p.stderr:.2g}", p.unit, note))
+            share = f" ({100.0 * abs(p.stderr / p.value):.2g} %)" if p.value else ""
+            rows.append((path, f"{p.value:.6g}", f"{p.stderr:.2g}{share}", p.unit, note))
         widths = [max(len(row[k]) for row in rows) for k in range(4)]
         table = [
             "  ".join([*(f"{row[k]:<{widths[k]}}" for k in range(4)), row[4]]).rstrip()
@@ -207,7 +213,21 @@ class FitResult:
         return f", r² {self.r2:.5f}"
 
     def _remarks(self) -> list[str]:
-        return [f"  {sentence}" for sentence in self.remarks]
+        return [f"  {sentence}" for sentence in (*self.remarks, *self._told_correlations())]
+
+    def _told_correlations(self) -> list[str]:
+        """The largest correlations of parameters that are known at all, in one sentence."""
+        names = list(self.parameters)
+        found = [
+            (abs(r), f"{names[i]} and {names[k]} {r:+.2f}")
+            for i in range(len(names))
+            for k in range(i + 1, len(names))
+            if LEAST_CORRELATION <= abs(r := float(self.correlations[i, k])) < math.inf
+        ]
+        told = [pair for _, pair in sorted(found, reverse=True)[:MOST_CORRELATIONS]]
+        if not told:
+            return []
+        return [f"correlations above {LEAST_CORRELATION:g}: {'; '.join(told)}"]
 
     def _repr_html_(self) -> str:
         rows = "".join(

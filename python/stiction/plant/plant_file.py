@@ -327,7 +327,10 @@ def _effects(
     from ..catalogue import effects
 
     if not isinstance(given, list) or not all(isinstance(e, Mapping) for e in given):
-        raise InputError(f"{source}: effects is not a list of tables; write [[effects]]")
+        raise InputError(
+            f"{source}: effects is not a list of tables; write [[effects]], in Python "
+            '"effects": [{"name": "stribeck"}]'
+        )
     records = {record.name: record for record in effects()}
     result: list[tuple[str, dict[str, Parameter]]] = []
     for index, entry in enumerate(given, 1):

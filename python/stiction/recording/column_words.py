@@ -178,7 +178,7 @@ _ALIASES: Final[dict[str, tuple[str, float]]] = {
     "lbf": ("N", 4.4482216152605),
     **_ways("rad/sec radps rad_per_s rad_per_sec", "rad/s"),
     **_ways("deg/sec °/s dps deg_per_s degps", "deg/s"),
-    **_ways("rev/min r/min 1/min min^-1", "rpm"),
+    **_ways("rev/min r/min 1/min min^-1 U/min u/min", "rpm"),
     **_ways("rev/s rps", "rpm", 60.0),
     **_ways("m/sec mps m_per_s", "m/s"),
     "cm/s": ("m/s", 1e-2),

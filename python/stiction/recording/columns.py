@@ -7,8 +7,9 @@ says role and unit together (``position_rad``) and so needs no mapping.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from .._support import given as taken
@@ -60,6 +61,7 @@ CANONICAL: Final[dict[str, tuple[str, str]]] = {
 
 NOT_THE_POSITION: Final = ("time", "input", "effort")
 """Channels that are never the position: read from its column they would explain it all."""
+_UNIT_BEHIND: Final = re.compile(r"\s*(\[[^\[\]]*\]|\([^()]*\))$")
 _COLUMN_KEYS: Final = ("name", "unit", "scale", "offset")
 
 
@@ -225,6 +227,32 @@ class Columns(Mapping[str, Column]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuilt, (dict(self._by_role), self.where)
+
+
+def match_header(columns: Columns, names: Iterable[str]) -> Columns:
+    """The same columns under the names that stand in a header.
+
+    A column goes by its number too, and by its name without the unit behind it, where that means
+    one column alone: ``Iq`` for ``Iq [A]``.
+
+    Parameters
+    ----------
+    columns : Columns
+    names : iterable of str
+        Of the header, in its order.
+    """
+    header = list(names)
+    meant = {default_name(place): [name] for place, name in enumerate(header, start=1)}
+    for name in header:
+        bare = _UNIT_BEHIND.sub("", name)
+        if bare != name:
+            meant.setdefault(bare, []).append(name)
+    found = {
+        role: replace(column, name=meant[column.name][0])
+        for role, column in columns.items()
+        if column.name not in header and len(meant.get(column.name, ())) == 1
+    }
+    return Columns({**columns, **found}, where=columns.where) if found else columns
 
 
 def _rebuilt(by_role: dict[str, Column], where: str) -> Columns:

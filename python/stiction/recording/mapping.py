@@ -25,7 +25,7 @@ from .._support.units import (
 from .._support.wording import commas, plural
 from ..errors import InputError
 from .clocks import align
-from .columns import CANONICAL, ROLES, Column, Columns, default_name
+from .columns import CANONICAL, ROLES, Column, Columns, match_header
 from .repair import check_lengths
 from .table import Table
 from .turns import unwrap
@@ -106,7 +106,7 @@ def read_channels(
     _check_choice("motion", motion, ("rotary", "linear"))
     _check_choice("drive", drive, DRIVES)
     notes: list[str] = []
-    columns = _by_name(table, columns)
+    columns = match_header(columns, table.columns)
     chosen = {
         role: _choose(table, role, column, f"{columns.where}: {role}", drive, motion, notes)
         for role, column in columns.items()
@@ -177,18 +177,6 @@ def _integrated(time: FloatArray, velocity: FloatArray) -> FloatArray:
         steps = np.nan_to_num(np.maximum(np.diff(time), 0.0), posinf=0.0)
         way: FloatArray = np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * steps)])
     return way
-
-
-def _by_name(table: Table, columns: Columns) -> Columns:
-    """The same columns, of which those that go by their number have the name in the header."""
-    names = [*table.columns]
-    numbers = {default_name(place): name for place, name in enumerate(names, start=1)}
-    named = {
-        role: replace(column, name=numbers[column.name])
-        for role, column in columns.items()
-        if column.name not in table.columns and column.name in numbers
-    }
-    return Columns({**columns, **named}, where=columns.where) if named else columns
 
 
 def _check_choice(name: str, value: str | None, allowed: tuple[str, ...]) -> None:

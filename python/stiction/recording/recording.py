@@ -587,6 +587,12 @@ def recordings_of(given: Any, where: str) -> tuple[Recording, ...]:
         found = (given,) if isinstance(given, str) else tuple(given)
     except TypeError:
         found = (given,)
+    for each in found:
+        if isinstance(each, str | os.PathLike):
+            file = brief(os.fspath(each))
+            raise InputError(
+                f"{where}: {file} is the name of a file; give what stiction.load({file}) returns"
+            )
     return tuple(instance(each, Recording, f"{where}: a recording", wanted) for each in found)
 
 

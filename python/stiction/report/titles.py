@@ -30,6 +30,8 @@ LAW_AND_EFFECTS: Final = f"{LAW}, and effects beside it may only stand for that"
 UNSURE: Final = "Something is missing, and not every name for it is sure"
 MISSING: Final = "Missing: {}"
 OR: Final = "Missing: {} or {}, which these data do not tell apart"
+MOST: Final = 0.99
+"""However often names were right, a title does not say 100 %."""
 FINE: Final = 0.1
 """Shares below this have one more digit."""
 
@@ -65,8 +67,19 @@ def _found(diagnosis: Diagnosis) -> str:
         *others, last = (diagnosis.effects[0].name, *diagnosis.effects[0].look_alikes)
         return OR.format(", ".join(effect_title(each) for each in others), effect_title(last))
     if diagnosis.verdict == "missing_effect":
-        return MISSING.format(join_words([effect_title(each.name) for each in diagnosis.effects]))
+        names = join_words([effect_title(each.name) for each in diagnosis.effects])
+        return MISSING.format(f"{names}{_probability(diagnosis)}")
     return VERDICTS[diagnosis.verdict]
+
+
+def _probability(diagnosis: Diagnosis) -> str:
+    """How often such names were right where the truth was known; "" where none was counted."""
+    held = [effect.reliability for effect in diagnosis.effects]
+    least = min((each.probability for each in held if each is not None and each.told), default=None)
+    if least is None or None in held:
+        return ""
+    several = " each" if len(held) > 1 else ""
+    return f", {percent(min(least, MOST), 0)}{several}"
 
 
 def _error(diagnosis: Diagnosis) -> str:

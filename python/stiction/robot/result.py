@@ -251,28 +251,29 @@ def folder_names(joints: Sequence[str]) -> Mapping[str, str]:
 
 
 def _told(joint: JointFindings) -> str:
-    words = joint.diagnosis.verdict.replace("_", " ")
-    names = _names_of(joint.diagnosis.effects)
+    found = joint.diagnosis
+    unexplained = found.verdict == "unexplained"
+    told = "unexplained remainder" if unexplained else found.verdict.replace("_", " ")
+    if found.effects:
+        told += f": {_names_of(found.effects)}"
     errors, reduction = joint.errors, joint.reduction
-    told = f"{words}: {names}" if names else words
     if errors is None or reduction is None:
         return told
-    return (
-        f"{told}; error of held-out torque {100 * errors[0]:.3g} % -> {100 * errors[1]:.3g} % "
-        f"({100 * reduction:.3g} % less)"
-    )
+    told += f"; error of held-out torque {100 * errors[0]:.3g} %"
+    if not found.effects and errors[0] == errors[1]:
+        return told
+    return f"{told} -> {100 * errors[1]:.3g} % ({100 * reduction:.3g} % less)"
 
 
 def _agreed(number: int, apart: Sequence[Agreement]) -> str:
     if not apart:
         return f"{plural(number, 'parameter')} agree between recordings."
     unknown = sum(not row.reason for row in apart)
-    return (
-        f"Of {plural(number, 'parameter')} {len(apart)} differ between recordings; for {unknown} "
-        "of these the data show no reason."
-    )
+    reasons = f"for {unknown} of them the data show no reason" if unknown else "the page says why"
+    verb = "differs" if len(apart) == 1 else "differ"
+    return f"{len(apart)} of {plural(number, 'parameter')} {verb} between recordings; {reasons}."
 
 
 def _names_of(causes: Sequence[Cause]) -> str:
     """Names, and which of them the data leave open."""
-    return commas(f"{'' if cause.decided else 'perhaps '}{cause.name}" for cause in causes)
+    return commas(f"{cause.name}{'' if cause.decided else ' (undecided)'}" for cause in causes)

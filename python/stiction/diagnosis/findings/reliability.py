@@ -48,13 +48,13 @@ class Reliability:
 
     def words(self, *, several: bool) -> str:
         """That in words, of a name with look-alikes or of one without."""
-        known = f"of {plural(self.told, 'time')} where the truth was known"
+        known = f"of {plural(self.told, 'session')} whose truth was known"
         if several:
             return (
-                f"of names told like these one was right {self.listed} {known}, the first one "
-                f"{self.first}"
+                f"with alternatives like these one was right in {self.listed} {known}, the first "
+                f"in {self.first}"
             )
-        return f"names told like this one were right {self.first} {known}"
+        return f"a name stated like this was right in {self.first} {known}"
 
     def to_dict(self) -> dict[str, Any]:
         """As ``reliability`` of an entry of ``effects``."""

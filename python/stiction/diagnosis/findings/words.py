@@ -414,7 +414,7 @@ def summary(diagnosis: Diagnosis) -> str:
         if cause.doubtful:
             lines.append(f"  care: {DOUBTFUL}")
         if cause.track_record:
-            lines.append(f"  counted: {cause.track_record}")
+            lines.append(f"  track record: {cause.track_record}")
     before, after = diagnosis.baseline, diagnosis.extended
     if before is not None and before.heldout_relative is not None and after is not None:
         by = comparison_of(diagnosis.plant)

@@ -25,7 +25,7 @@ STICTION_REAL stiction_friction(STICTION_REAL velocity)
     return between(SPEED_AT, FRICTION_AT, SPEEDS, velocity);
 }
 
-/* Effort that the machine needs to stand at a place. */
+/* Effort that holds the machine at rest at a position. */
 STICTION_REAL stiction_place(STICTION_REAL position)
 {
     const STICTION_REAL turn = PLACE_AT[PLACES - 1];

@@ -96,6 +96,8 @@ def _format_of(file: Path) -> Format:
 
 
 def _near_by(file: Path) -> str:
+    if file.parts[0] in ("http:", "https:"):
+        return ": it is an address; download the file and name the copy"
     folder = file.parent
     if not folder.is_dir():
         return f", and no folder '{folder}'; check the path"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -51,7 +51,11 @@ class Drive:
 
 
 def choose_drive(
-    able: Sequence[Column], motion: Motion, position: Column | None, referenced: bool
+    able: Sequence[Column],
+    motion: Motion,
+    position: Column | None,
+    referenced: bool,
+    names: Collection[str] = (),
 ) -> Drive:
     """Choose among the columns that may be an input or a measured effort.
 
@@ -62,6 +66,8 @@ def choose_drive(
     position : Column or None
     referenced : bool
         A reference is recorded, so the machine is driven.
+    names : collection of str
+        Of all columns.
     """
     refused = {column.name: _fault(column, motion, position) for column in able}
     refused = {name: fault for name, fault in refused.items() if fault}
@@ -85,7 +91,13 @@ def choose_drive(
     quantity = quantity_of(chosen)
     why = f"by column '{chosen.name}'"
     unknown = not quantity
-    if unknown:
+    if unknown and _of_joint_state(chosen, names):
+        quantity = "torque" if motion == "rotary" else "force"
+        why += (
+            f"; sensor_msgs/JointState has its effort in {'N·m' if motion == 'rotary' else 'N'}, "
+            "and drivers that write current or per cent there exist"
+        )
+    elif unknown:
         quantity = "voltage"
         why += "; nothing tells what it is measured in, and volts are a guess"
     others = tuple(c for c in fit if c is not chosen)
@@ -97,6 +109,13 @@ def quantity_of(column: Column) -> str:
     if column.said.unit is not None:
         return column.said.unit.quantity
     return column.said.quantity or ""
+
+
+def _of_joint_state(column: Column, names: Collection[str]) -> bool:
+    """Whether a column is the effort of a ROS JointState: position and velocity stand beside it."""
+    return "effort" in column.name and {
+        column.name.replace("effort", word) for word in ("position", "velocity")
+    } <= set(names)
 
 
 def runs_backward(position: Column, effort: Column) -> bool:

@@ -9,7 +9,7 @@ from typing import Final
 from ..._support.units import MOTION_OF_QUANTITY, Motion, find_unit, unit_names
 from ..._support.wording import commas, did_you_mean
 from ...errors import InputError
-from ..columns import CANONICAL, ROLES, Column, Columns
+from ..columns import CANONICAL, ROLES, Column, Columns, match_header
 from ..mapping import PRESCRIBED
 from .result import DRIVE_OF, ColumnGuess, Guess
 
@@ -36,8 +36,9 @@ def overrule(found: Guess, columns: Columns) -> Guess:
         A column that is not in the file, a role whose unit nothing tells, or a unit that is none
         of the role's.
     """
-    taken = {column.name: role for role, column in columns.items()}
     known = [each.column for each in found.columns]
+    columns = match_header(columns, known)
+    taken = {column.name: role for role, column in columns.items()}
     for role, column in columns.items():
         if column.name not in known:
             raise InputError(
@@ -59,6 +60,8 @@ def overrule(found: Guess, columns: Columns) -> Guess:
     missing = {r: w for r, w in found.missing.items() if r not in columns and r not in by_role}
     if {"input", "effort"} & columns.keys():
         missing.pop("input", None)
+    if "velocity" in by_role:  # which is integrated
+        missing.pop("position", None)
     motion, motion_reason = _motion(found, by_role, columns)
     return replace(
         found,

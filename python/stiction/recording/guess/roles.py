@@ -169,7 +169,7 @@ class _Guesser:
             self.missing["time"] = (
                 "no column is known to be the time: name it, with its unit; where the file has "
                 "none, add a column of seconds"
-            )
+            ) + "".join(f"; {quote(one.name)} does not increase" for one in named)
             return
         unit = unit_in_name(chosen, ("time",)) or units.time_unit(chosen)
         self._give(chosen, "time", unit, why, sure)
@@ -298,7 +298,7 @@ class _Guesser:
         if position is None:
             if velocity is None or not self.clock:
                 told = "no column is known to be the position: name it and its unit"
-                self.missing["position"] = told
+                self.missing["position"] = told + self._spoiled("position")
             if velocity is not None:
                 unit = units.velocity_unit(velocity, motion, None, 1.0, self.clock)
                 why = f"{self._by_name(velocity)}; no position is recorded, and it is integrated"
@@ -359,7 +359,8 @@ class _Guesser:
 
     def _drive(self, motion: Motion, position: Column | None, referenced: bool) -> Drive:
         able = self._free("drive")
-        chosen = choose_drive(able, motion, position, referenced)
+        names = [column.name for column in self.columns]
+        chosen = choose_drive(able, motion, position, referenced, names)
         self.refused |= chosen.refused
         if chosen.column is None:
             return chosen
@@ -375,6 +376,11 @@ class _Guesser:
             self._give(chosen.column, "input", unit, why, chosen.others)
         return chosen
 
+    def _spoiled(self, kind: str) -> str:
+        """Columns that would be of this kind by their names, and what is wrong with them."""
+        found = [c for c in self.columns if c.trouble and self.kinds[c.name][:1] == (kind,)]
+        return "".join(f"; {quote(column.name)} {column.trouble}" for column in found)
+
     def _sliding_test(self, drive: Drive, referenced: bool) -> Drive:
         """Without any drive a friction coefficient stands for the effort."""
         if drive.name is None and "friction_coefficient" in self._roles():
@@ -384,14 +390,17 @@ class _Guesser:
                 "no column is known to be the input: name the current, voltage, torque or force "
                 "that drives the machine, with its sign"
             )
-            if drive.refused:
+            if len(drive.refused) == 1:
+                (name, why), *_ = drive.refused.items()
+                sentence += f" ({quote(name)} did not qualify: {why})"
+            elif drive.refused:
                 sentence += f" ({commas(map(quote, drive.refused))} did not qualify)"
             if referenced:
                 sentence += (
                     "; of a servo that is given positions name the goal instead of a reference, "
                     'and state [drive] kind = "servo" in plant.toml'
                 )
-            self.missing["input"] = sentence
+            self.missing["input"] = sentence + self._spoiled("drive")
         return drive
 
     # The rest ----------------------------------------------------------------------------
