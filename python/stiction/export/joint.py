@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -98,12 +98,17 @@ def _line(speeds: FloatArray, friction: FloatArray) -> tuple[float, float]:
 
 
 def losses_of(
-    plant: Plant, joint: Joint, *, limited: bool = False, directed: bool = False
+    plant: Plant,
+    joint: Joint,
+    *,
+    limited: bool = False,
+    directed: bool = False,
+    own: Collection[str] = (),
 ) -> tuple[str, ...]:
     """What a joint of these numbers cannot hold, a sentence each.
 
     ``limited`` says whether the target has the limit of the drive, ``directed`` whether it has the
-    dry friction of each direction.
+    dry friction of each direction; ``own`` names effects that it has beside these numbers.
     """
     unit, lost = plant.effort_unit, []
     per = f"{plant.position_unit}/s"
@@ -122,7 +127,7 @@ def losses_of(
         lost.append(f"friction of the two directions differs by {joint.one_sided:.3g} {unit}")
 
     def held(effect: Effect) -> bool:
-        return _changes(plant, effect, directed=directed)
+        return effect.name in own or _changes(plant, effect, directed=directed)
 
     return (*lost, *beside(plant, held, limited=limited))
 
