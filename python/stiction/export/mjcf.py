@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from ..drive import servo_numbers
 from .joint import beside, joint_of, losses_of
+from .pd import PdServo
 
 if TYPE_CHECKING:
     from ..plant import Plant
@@ -139,9 +140,9 @@ def _drive(plant: Plant) -> tuple[tuple[str, Attributes], set[str]]:
     if held:
         delay = effects["input_delay"]["delay"]
         own |= {"delay": delay, "nsample": math.ceil(delay / SHORTEST_STEP) + 1}
-    constant, servo = plant.gain, servo_numbers(plant.drive)
-    if servo is None or constant <= 0.0:
-        own["gear"] = constant
+    servo, numbers = PdServo.of(plant), servo_numbers(plant.drive)
+    if servo is None or numbers is None:
+        own["gear"] = plant.gain
         limit = float(plant.drive.get("limit", math.inf))
         if math.isfinite(limit):
             own |= {"ctrllimited": "true", "ctrlrange": (-limit, limit)}
@@ -150,19 +151,15 @@ def _drive(plant: Plant) -> tuple[tuple[str, Attributes], set[str]]:
     if "goal_rate_limit" in effects:
         held |= {"goal_rate_limit"}
         slew = 1.0 / effects["goal_rate_limit"]["slowness"]
-    supply, per_volt = servo["supply"], constant / servo["resistance"]
-    # MuJoCo adds the voltage that the motor induces, which no such servo does: kd takes it off.
-    gains = (
-        per_volt * supply * servo["proportional"],
-        per_volt * supply * servo.get("integral", 0.0),
-        per_volt * (constant + supply * servo.get("derivative", 0.0)),
-    )
+    # MuJoCo adds the voltage that the motor induces, which no such servo does: the damping, which
+    # has it, takes it off.
+    gains, voltage = (servo.stiffness, servo.integral, servo.damping), servo.no_load * plant.gain
     own |= {
         "input": "pos",
-        "motorconst": (constant, constant),
-        "resistance": servo["resistance"],
-        "controller": (*gains, slew, 0.0, supply * servo.get("duty_limit", 1.0)),
+        "motorconst": (plant.gain, plant.gain),
+        "resistance": numbers["resistance"],
+        "controller": (*gains, slew, 0.0, voltage),
     }
-    if "current_limit" in servo:
-        own["saturation"] = (0.0, servo["current_limit"], 0.0)
+    if servo.most < servo.stall:
+        own["saturation"] = (servo.most, 0.0, 0.0)
     return ("dcmotor", own), held

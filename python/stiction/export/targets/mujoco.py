@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from ...trajectory import FloatArray
-from ..joint import sidecar
+from ..joint import hung, sidecar
 from ..made import Export
 from ..mjcf import Attributes, Mjcf
 from ..runs import MotionRun, Windows, gravity_effort
@@ -31,12 +31,7 @@ def write(plant: Plant, speed: float) -> Export:
     lost = list(made.lost)
     if plant.servo and made.actuators[0][0] == "motor":
         lost.append("the controller of the servo: its motor is driven by current here")
-    if plant.gravity:
-        lost.append(
-            f"a pendulum of {plant.gravity:.6g} {plant.effort_unit}: give the body its mass"
-        )
-    if plant.weight:
-        lost.append(f"a weight of {plant.weight:.6g} {plant.effort_unit}: give the body its mass")
+    lost += hung(plant, armature=True)
     kind = "hinge" if plant.motion == "rotary" else "slide"
     own = _attributes(made.joint)
     actuators = "".join(
