@@ -185,7 +185,7 @@ def patch(
     InputError
         No such joint; MuJoCo is missing.
     """
-    from .export.mjcf import Mjcf
+    from .export.mjcf import STIFF, Mjcf
     from .export.speeds import greatest_speed
 
     mujoco = simulator()
@@ -196,6 +196,7 @@ def patch(
         raise InputError(f"joint = '{joint}' is not in the model; there are {names}")
     made = Mjcf.of(plant, greatest_speed(plant, speed))
     own.armature, own.frictionloss = made.joint["armature"], made.joint["frictionloss"]
+    own.solref_friction[:], own.solimp_friction[:3] = STIFF.values()
     own.damping[:] = [made.joint["damping"], *[0.0] * (len(own.damping) - 1)]
     for tag, attributes in made.actuators if drive else made.actuators[1:]:
         named = {"name": f"{joint}_{attributes['name']}", "target": joint}

@@ -126,6 +126,19 @@ def test_each_number_of_a_servo_acts(name, value):
     assert np.max(np.abs(core - other)) > 0.05 * np.ptp(core)
 
 
+def test_a_slide_has_its_friction_and_a_stiff_one():
+    slide = st.Plant.from_dict(
+        {
+            "motion": {"kind": "linear"},
+            "drive": {"input": "voltage_v", "gain": 35.0},
+            "body": {"inertia": 95.0},
+            "friction": {"law": "coulomb", "coulomb": 20.0, "viscous": 200.0},
+        }
+    )
+    assert off(slide, 1e-3) < 0.002
+    assert off(plant({"law": "coulomb", "coulomb": 0.3, "viscous": 0.02}), 1e-3) < 0.002
+
+
 def test_how_an_integral_winds_up_is_told():
     own = plant({"law": "coulomb"}, drive=SERVO | {"integral": 2.0})
     assert any("integral" in each for each in own.export("mujoco").lost)

@@ -15,13 +15,17 @@ if TYPE_CHECKING:
     from ..plant import Plant
     from ..stated import Effect
 
-__all__ = ["Mjcf"]
+__all__ = ["STIFF", "Attributes", "Mjcf"]
 
 SHORTEST_STEP: Final = 2e-5
 """Of a simulation, s, for which the buffer of a late input has room."""
 CREEPS: Final = (
     "true stick: frictionloss of MuJoCo is a soft constraint, under which a joint at rest creeps"
 )
+
+STIFF: Final = {"solreffriction": (1e-4, 1.0), "solimpfriction": (0.9999, 0.9999, 1e-3)}
+"""Of the constraint that is frictionloss: as stiff as the time step allows, which MuJoCo sees to.
+The default lets a joint yield over 20 ms."""
 
 Attributes = Mapping[str, str | float | tuple[float, ...]]
 

@@ -11,7 +11,7 @@ import numpy as np
 from ...trajectory import FloatArray
 from ..joint import hung, sidecar
 from ..made import Export
-from ..mjcf import Attributes, Mjcf
+from ..mjcf import STIFF, Attributes, Mjcf
 from ..runs import MotionRun, Windows, gravity_effort
 
 if TYPE_CHECKING:
@@ -33,17 +33,18 @@ def write(plant: Plant, speed: float) -> Export:
         lost.append("the controller of the servo: its motor is driven by current here")
     lost += hung(plant, armature=True)
     kind = "hinge" if plant.motion == "rotary" else "slide"
-    own = _attributes(made.joint)
+    own = _attributes(made.joint | (STIFF if made.joint["frictionloss"] else {}))
     actuators = "".join(
         f'    <{tag} joint="joint" {_attributes(attributes)}/>\n'
         for tag, attributes in made.actuators
     )
-    # A body has to have a mass of its own; the armature is the inertia.
+    # A body has to have a mass of its own; the armature is the inertia. Its centre is off the
+    # joint, or MuJoCo would scale the friction of a slide by that mass alone.
     text = (
         '<mujoco model="plant">\n  <option integrator="implicitfast" gravity="0 0 0"/>\n'
         "  <worldbody>\n    <body>\n"
         f'      <joint name="joint" type="{kind}" axis="0 0 1" {own}/>\n'
-        '      <inertial pos="0 0 0" mass="1e-9" diaginertia="1e-9 1e-9 1e-9"/>\n'
+        '      <inertial pos="1e-3 0 0" mass="1e-9" diaginertia="1e-9 1e-9 1e-9"/>\n'
         "    </body>\n  </worldbody>\n  <actuator>\n"
         f"{actuators}  </actuator>\n</mujoco>\n"
     )
