@@ -212,8 +212,8 @@ def _set(mujoco: Any, actuator: Any, tag: str, given_as: dict[str, Any]) -> None
         actuator.set_to_motor()
     else:
         inputs = {"none": mujoco.mjtCtrlInput.mjINPUT_NONE, "pos": mujoco.mjtCtrlInput.mjINPUT_POS}
-        names = ("motorconst", "resistance", "controller", "saturation", "cogging", "lugre")
-        own = {name: given_as.pop(name) for name in names if name in given_as}
+        names = given_as.keys() - {"input", "delay", "nsample"}
+        own = {name: given_as.pop(name) for name in names}
         actuator.set_to_dcmotor(**own, ctrlspec=int(inputs[given_as.pop("input")]))
     if "gear" in given_as:
         actuator.gear[0] = given_as.pop("gear")

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 __all__ = [
     "Joint",
     "beside",
-    "commented",
-    "hung",
+    "body_losses",
+    "head_of",
     "joint_of",
     "losses_of",
     "sidecar",
@@ -159,7 +159,7 @@ def beside(
     return tuple(lost)
 
 
-def hung(plant: Plant, *, armature: bool = False) -> tuple[str, ...]:
+def body_losses(plant: Plant, *, armature: bool = False) -> tuple[str, ...]:
     """What of a plant the bodies of a simulator have to have, a sentence each.
 
     ``armature`` says whether the target has its whole inertia already, a payload's with it.
@@ -195,7 +195,7 @@ def sidecar(plant: Plant, numbers: dict[str, float], lost: tuple[str, ...]) -> s
     )
 
 
-def commented(tool: str, plant: Plant, lost: Sequence[str]) -> str:
+def head_of(tool: str, plant: Plant, lost: Sequence[str]) -> str:
     """Head of a file of Python for a tool: units, and what it cannot hold."""
     rows = "".join(f"# - {each}\n" for each in lost)
     return (

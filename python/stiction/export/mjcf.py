@@ -15,8 +15,13 @@ if TYPE_CHECKING:
     from ..plant import Plant
     from ..stated import Effect
 
-__all__ = ["STIFF", "Attributes", "Mjcf"]
+__all__ = ["LATE", "STIFF", "Attributes", "Mjcf"]
 
+WAVE: Final = "cogging"
+TURN: Final = "gravity_unbalance"
+LATE: Final = "input_delay"
+SLOW: Final = "goal_rate_limit"
+"""Effects that simulators have elements for."""
 SHORTEST_STEP: Final = 2e-5
 """Of a simulation, s, for which the buffer of a late input has room."""
 CREEPS: Final = (
@@ -107,9 +112,9 @@ def _waves(plant: Plant) -> Iterator[tuple[str, tuple[float, float, float]]]:
     """Efforts that repeat over the place: name of the effect; amplitude, order and phase."""
     for effect in plant.effects:
         values = _numbers(effect)
-        if effect.name == "gravity_unbalance":
+        if effect.name == TURN:
             values["order"] = 1.0
-        elif effect.name != "cogging":
+        elif effect.name != WAVE:
             continue
         for end in ("", "_2"):
             cosine, sine = values.get(f"cosine{end}", 0.0), values.get(f"sine{end}", 0.0)
@@ -132,7 +137,7 @@ def _passive(
         if bristles is not None and number == 0:
             own["lugre"] = bristles
         if number < len(waves):
-            own["cogging"] = waves[number]
+            own[WAVE] = waves[number]  # as MJCF calls it too
         yield "dcmotor", own
 
 
@@ -140,9 +145,9 @@ def _drive(plant: Plant) -> tuple[tuple[str, Attributes], set[str]]:
     """The motor, and names of the effects that it has."""
     own: dict[str, str | float | tuple[float, ...]] = {"name": "motor"}
     effects = {each.name: _numbers(each) for each in plant.effects}
-    held = {"input_delay"} & effects.keys()
+    held = {LATE} & effects.keys()
     if held:
-        delay = effects["input_delay"]["delay"]
+        delay = effects[LATE]["delay"]
         own |= {"delay": delay, "nsample": math.ceil(delay / SHORTEST_STEP) + 1}
     servo, numbers = PdServo.of(plant), servo_numbers(plant.drive)
     if servo is None or numbers is None:
@@ -152,9 +157,9 @@ def _drive(plant: Plant) -> tuple[tuple[str, Attributes], set[str]]:
             own |= {"ctrllimited": "true", "ctrlrange": (-limit, limit)}
         return ("motor", own), held
     slew = 0.0
-    if "goal_rate_limit" in effects:
-        held |= {"goal_rate_limit"}
-        slew = 1.0 / effects["goal_rate_limit"]["slowness"]
+    if SLOW in effects:
+        held |= {SLOW}
+        slew = 1.0 / effects[SLOW]["slowness"]
     # MuJoCo adds the voltage that the motor induces, which no such servo does: the damping, which
     # has it, takes it off.
     gains, voltage = (servo.stiffness, servo.integral, servo.damping), servo.no_load * plant.gain

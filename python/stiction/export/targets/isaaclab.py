@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ..joint import commented, hung, joint_of, losses_of, sidecar
+from ..joint import body_losses, head_of, joint_of, losses_of, sidecar
 from ..made import Export
 from ..pd import PdServo
 from ..runs import EffortRun, dry_friction
@@ -23,7 +23,7 @@ def write(plant: Plant, speed: float) -> Export:
     # It has a level of rest of its own.
     lost = list(losses_of(plant, replace(joint, static=joint.friction), limited=True))
     lost.append("true stick and break-away where Newton simulates: one level, as a soft constraint")
-    lost += hung(plant, armature=True)
+    lost += body_losses(plant, armature=True)
     numbers = {
         "armature": 0.0 if plant.prescribed_motion else float(plant.inertia),
         "friction": max(joint.static, joint.friction),
@@ -55,7 +55,7 @@ def write(plant: Plant, speed: float) -> Export:
             lost.append("the controller of the servo: its motor turns the other way round")
     rows = "".join(f"    {name}={value!r},\n" for name, value in numbers.items())
     text = (
-        f"{commented('Isaac Lab 3', plant, lost)}"
+        f"{head_of('Isaac Lab 3', plant, lost)}"
         f"from isaaclab.actuators import {kind}\n\n"
         f'JOINT = {kind}(\n    joint_names_expr=["joint"],\n{rows})\n'
     )

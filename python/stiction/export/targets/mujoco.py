@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from ...trajectory import FloatArray
-from ..joint import hung, sidecar
+from ..joint import body_losses, sidecar
 from ..made import Export
 from ..mjcf import STIFF, Attributes, Mjcf
 from ..runs import MotionRun, Windows, gravity_effort
@@ -31,9 +31,10 @@ def write(plant: Plant, speed: float) -> Export:
     lost = list(made.lost)
     if plant.servo and made.actuators[0][0] == "motor":
         lost.append("the controller of the servo: its motor is driven by current here")
-    lost += hung(plant, armature=True)
+    lost += body_losses(plant, armature=True)
     kind = "hinge" if plant.motion == "rotary" else "slide"
-    own = _attributes(made.joint | (STIFF if made.joint["frictionloss"] else {}))
+    stiff = STIFF if made.joint["frictionloss"] else {}
+    own = _attributes({**made.joint, **stiff})
     actuators = "".join(
         f'    <{tag} joint="joint" {_attributes(attributes)}/>\n'
         for tag, attributes in made.actuators

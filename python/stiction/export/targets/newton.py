@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ..joint import commented, hung, joint_of, losses_of, sidecar
+from ..joint import body_losses, head_of, joint_of, losses_of, sidecar
 from ..made import Export
+from ..mjcf import LATE
 from ..pd import PdServo
 from ..runs import EffortRun, dry_friction
 
@@ -20,9 +21,13 @@ CREEPS = "true stick: friction of a joint is a soft constraint, under which it c
 def write(plant: Plant, speed: float) -> Export:
     """A joint of one axis; its numbers go into the joint that people have."""
     joint, servo = joint_of(plant, speed), PdServo.of(plant)
-    late = next((e.parameters["delay"].value for e in plant.effects if e.name == "input_delay"), 0)
-    own = {"input_delay"} if servo is not None and late else set()
-    lost = [*losses_of(plant, joint, limited=True, own=own), CREEPS, *hung(plant, armature=True)]
+    late = next((e.parameters["delay"].value for e in plant.effects if e.name == LATE), 0)
+    own = {LATE} if servo is not None and late else set()
+    lost = [
+        *losses_of(plant, joint, limited=True, own=own),
+        CREEPS,
+        *body_losses(plant, armature=True),
+    ]
     held = ["inertia as armature", "Coulomb and viscous friction"]
     numbers = {
         "armature": 0.0 if plant.prescribed_motion else float(plant.inertia),
@@ -42,7 +47,7 @@ def write(plant: Plant, speed: float) -> Export:
         held.append("the limit of the drive")
     rows = "".join(f"        {name}={value!r},\n" for name, value in numbers.items())
     text = (
-        f"{commented('Newton 1.8', plant, lost)}import newton\n\n\n"
+        f"{head_of('Newton 1.8', plant, lost)}import newton\n\n\n"
         "def axis(direction=newton.Axis.Z):\n"
         '    """For builder.add_joint_revolute, add_joint_prismatic and add_joint_d6."""\n'
         f"    return newton.ModelBuilder.JointDofConfig(\n        axis=direction,\n{rows}    )\n"

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...errors import InputError
 from ...trajectory import FloatArray
-from ..joint import Joint, hung, joint_of, losses_of
+from ..joint import Joint, body_losses, joint_of, losses_of
 from ..made import Export
 from ..runs import EffortRun, gravity_effort
 
@@ -103,7 +103,7 @@ def _sigmoid(joint: Joint, speed: float) -> dict[str, float]:
 
 def _losses(plant: Plant, joint: Joint, speed: float) -> tuple[str, ...]:
     """What is lost, a sentence each."""
-    own = [*losses_of(plant, joint, directed=True), *hung(plant)]
+    own = [*losses_of(plant, joint, directed=True), *body_losses(plant)]
     if joint.damping > 0.0:
         own.append(f"viscous friction: {joint.damping:.3g} {plant.effort_unit}·s/rad")
     own.append(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from ...atomic_files import atomic_write, write_text
 from ...errors import InputError
 from ...trajectory import FloatArray
 from ..firmware import Firmware
@@ -58,7 +59,8 @@ def runs(made: Export, plant: Plant) -> tuple[EffortRun]:
         text = "".join(f"{at!r} {where!r}\n" for at, where in pairs)
         with TemporaryDirectory() as folder:
             caller = Path(folder) / "effort"
-            caller.write_bytes(program)
+            with atomic_write(caller) as file:
+                file.write(program)
             caller.chmod(0o700)
             told = subprocess.run(
                 [str(caller)], input=text, capture_output=True, text=True, check=True
@@ -74,7 +76,7 @@ def _built(made: Export, cargo: str) -> bytes:
         made.save(folder)
         examples = Path(folder) / "examples"
         examples.mkdir()
-        (examples / "effort.rs").write_text(CALLER, encoding="utf-8")
+        write_text(examples / "effort.rs", CALLER)
         target = Path(folder) / "target"
         done = subprocess.run(
             [cargo, "build", "--quiet", "--example", "effort", "--target-dir", str(target)],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING
 
-from ..joint import hung, joint_of, losses_of, sidecar
+from ..joint import body_losses, joint_of, losses_of, sidecar
 from ..made import Export
 from ..runs import EffortRun, dry_friction
 
@@ -21,7 +21,7 @@ def write(plant: Plant, speed: float) -> Export:
     lost = (
         *losses_of(plant, joint),
         "inertia of the rotor: an axis of SDFormat has none",
-        *hung(plant),
+        *body_losses(plant),
     )
     kind = "revolute" if plant.motion == "rotary" else "prismatic"
     text = (
